@@ -1,0 +1,47 @@
+# Everything runs in .venv, which "setup" makes; see CONTRIBUTING.md.
+BIN := .venv/bin
+LOCKBIN := .venv-lock/bin
+
+.DEFAULT_GOAL := help
+.PHONY: help setup demo test check bench docs lock clean
+
+help: ## list the targets
+	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | expand -t 10
+
+setup: .venv/.ready ## make .venv with everything pinstress needs (run by the targets that need it)
+
+.venv/.ready: requirements.lock pyproject.toml scripts/setup.sh
+	@sh scripts/setup.sh
+
+# Status 1 means: done, but a requested accuracy was not reached (printed last).
+demo: setup ## run studies/grenier2008.toml and tell where its report is
+	@status=0; $(BIN)/pinstress run studies/grenier2008.toml || status=$$?; \
+	if [ $$status -gt 1 ]; then exit $$status; fi; \
+	echo "Report: out/grenier2008/report.html"
+
+test: setup ## run the tests; ARGS="..." goes to pytest
+	$(BIN)/python -m pytest $(ARGS)
+
+check: setup ## lint, format check, types, import contracts, strict docs build
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+	@$(MAKE) --no-print-directory docs
+
+bench: setup ## run the benchmarks
+	$(BIN)/python -m benchmarks
+
+docs: setup ## build the documentation into build/docs; a warning is an error
+	$(BIN)/sphinx-build --quiet --nitpicky --fail-on-warning --keep-going -b html docs build/docs
+
+lock: ## bring requirements.lock up to pyproject.toml; LOCKFLAGS=--upgrade takes the newest of all
+	@test -x $(LOCKBIN)/uv || { python3 -m venv .venv-lock && $(LOCKBIN)/pip install --quiet uv; }
+	$(LOCKBIN)/uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest \
+		--generate-hashes --no-emit-index-url --no-annotate --extra dev \
+		--custom-compile-command "make lock" $(LOCKFLAGS) --output-file requirements.lock pyproject.toml
+
+clean: ## remove .venv, caches and built documents; results in out/ stay
+	rm -rf .venv .venv-lock build dist .mypy_cache .pytest_cache .ruff_cache .import_linter_cache \
+		.hypothesis .coverage htmlcov
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -1,0 +1,174 @@
+"""Finer and finer meshes until the maximum is known to the tolerance, or cannot be."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea.envelope import Envelope, envelope
+from fea.linear import SolveError
+from fea.material import Material
+from fea.peak import Peak, Refinement, discretisation_error
+from fea.solid import PinLoads, SolidModel, UnitFields, out_of_balance
+from geometry import Pin, sharp_corners
+from geometry.solid_mesh import MeshSize, solid_mesh
+
+STEP = 2.0**0.5  # from one mesh to the next
+MOST_UNKNOWNS = 300_000
+NEAR = 0.1  # of the local diameter: a peak this close to a sharp place is that place's
+BALANCE = 1e-6
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A peak with the fields from which it came: those of the finest mesh."""
+
+    peak: Peak
+    fields: UnitFields | None
+    envelope: Envelope | None
+
+
+def refine(
+    pin: Pin,
+    material: Material,
+    clamps: tuple[str, ...],
+    cases: tuple[PinLoads, ...],
+    tolerance: float,
+    size: MeshSize | None = None,
+    meshes: int = 3,
+    progress: Callable[[str], None] = lambda _: None,
+) -> tuple[Solution, ...]:
+    """Solutions of a pin's cases, one each, all on the same meshes.
+
+    clamps: surfaces (by the pin's names) that are held. Stops when every case's estimated error is
+    within `tolerance` of its maximum, when the peaks that remain sit at places where none exists,
+    after `meshes` meshes, or before more than MOST_UNKNOWNS unknowns.
+
+    Raises: MeshError, SolveError.
+    """
+    clamps = tuple(pin.surface(name) for name in clamps)
+    refused = {c.case: _refusal(pin, clamps, c) for c in cases}
+    live = [c for c in cases if refused[c.case] is None]
+    axes = (0, 1, 2) if any(c.axial for c in live) else (0, 1)
+    names = tuple(dict.fromkeys(s for c in live for s in c.surfaces))
+    units = tuple((name, axis) for name in names for axis in axes)
+    edges = tuple(sorted({z for n in names for z in (pin.band(n).z0, pin.band(n).z1)}))
+    edges += tuple(z for _, z in clamp_edges(pin, clamps))
+    size = size or MeshSize()
+    history: dict[str, tuple[Refinement, ...]] = {c.case: () for c in live}
+    done: dict[str, tuple[UnitFields, Envelope]] = {}
+    for level in range(meshes if live else 0):
+        if level and model.unknowns * STEP**3 > MOST_UNKNOWNS:
+            break
+        progress(f"pin {pin.name}, mesh {level + 1}")
+        start = time.perf_counter()
+        model = SolidModel(pin, solid_mesh(pin, size.finer(STEP**level), edges), material, clamps)
+        fields = model.solve(units)
+        for case in live:
+            found = envelope(fields, case)
+            step = Refinement(model.unknowns, found.maximum, time.perf_counter() - start)
+            history[case.case] += (step,)
+            done[case.case] = (fields, found)
+        if level and not any(
+            _worth_refining(pin, clamps, history[c.case], done[c.case][1], tolerance) for c in live
+        ):
+            break
+    return tuple(
+        Solution(Peak(pin.name, c.case, "solid", "rigid", refused[c.case] or ""), None, None)
+        if refused[c.case]
+        else Solution(
+            _judge(pin, clamps, c.case, history[c.case], done[c.case][1], tolerance),
+            *done[c.case],
+        )
+        for c in cases
+    )
+
+
+def _refusal(pin: Pin, clamps: tuple[str, ...], loads: PinLoads) -> str | None:
+    """Why a case cannot be solved: nothing holds the pin and its loads are not in balance."""
+    if clamps:
+        return None
+    force, couple = out_of_balance(pin, loads)
+    if max(force, couple) <= BALANCE:
+        return None
+    return (
+        f"nothing holds the pin and its loads are not in balance (resultant {force:.2g} of the "
+        f"largest force, couple {couple:.2g} of that times the length): name what holds it in "
+        f"pin.{pin.name}.clamp"
+    )
+
+
+def clamp_edges(pin: Pin, clamps: tuple[str, ...]) -> tuple[tuple[float, float], ...]:
+    """Rims (r, z) of the held surfaces, m: stresses there have no bound either."""
+    rims = []
+    for name in clamps:
+        if name == "start":
+            rims.append((pin.segments[0].diameter / 2, 0.0))
+        elif name == "end":
+            rims.append((pin.segments[-1].diameter / 2, pin.length))
+        else:
+            band = pin.band(name)
+            rims += [(band.radius, band.z0), (band.radius, band.z1)]
+    return tuple(rims)
+
+
+def sharp_place(
+    pin: Pin, clamps: tuple[str, ...], location: tuple[float, float, float]
+) -> str | None:
+    """What makes a maximum at `location` meaningless: a sharp corner or a clamp's edge nearby."""
+    r, z = float(np.hypot(location[0], location[1])), location[2]
+    places = [(c.r, c.z, "a sharp inner corner") for c in sharp_corners(pin)]
+    places += [(a, b, "the edge of a clamp") for a, b in clamp_edges(pin, clamps)]
+    near = [(float(np.hypot(r - a, z - b)), a, what) for a, b, what in places]
+    if not near:
+        return None
+    distance, radius, what = min(near)
+    return what if distance <= NEAR * 2.0 * radius else None
+
+
+def _worth_refining(
+    pin: Pin,
+    clamps: tuple[str, ...],
+    history: tuple[Refinement, ...],
+    found: Envelope,
+    tolerance: float,
+) -> bool:
+    if discretisation_error(history, STEP) <= tolerance * found.maximum:
+        return False
+    return sharp_place(pin, clamps, found.location) is None
+
+
+def _judge(
+    pin: Pin,
+    clamps: tuple[str, ...],
+    case: str,
+    history: tuple[Refinement, ...],
+    found: Envelope,
+    tolerance: float,
+) -> Peak:
+    if not np.isfinite(found.maximum):
+        raise SolveError(f"pin {pin.name}, case {case}: the stress is not finite")
+    error = discretisation_error(history, STEP) if len(history) > 1 else found.maximum
+    relative = error / found.maximum if found.maximum else 0.0
+    place = sharp_place(pin, clamps, found.location)
+    if place and found.maximum:
+        verdict, note = "unconverged", f"the peak sits at {place}, where it grows with every mesh"
+    elif relative <= tolerance:
+        verdict, note = "converged", f"known to {relative:.1%}"
+    else:
+        verdict, note = "unconverged", f"known to {relative:.1%} only, {tolerance:.1%} was asked for"
+    return Peak(
+        pin=pin.name,
+        case=case,
+        model="solid",
+        verdict=verdict,  # type: ignore[arg-type]
+        note=note,
+        max_von_mises=found.maximum,
+        error_estimate=error,
+        location=found.location,
+        instant=found.instant,
+        history=history,
+    )

@@ -1,0 +1,97 @@
+"""Stress at the nodes from a displacement field, and von Mises' equivalent of it.
+
+Values at the quadrature points are extended linearly to each element's nodes and averaged there;
+on the surface the traction is known, and the stress is corrected to carry exactly that. Components
+are xx, yy, zz, yz, xz, xy.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+from skfem import ElementTetP2
+
+from fea.elasticity import Discretisation
+from fea.material import Material
+from fea.surface import SMOOTH, Surface
+
+Floats = NDArray[np.float64]
+
+# von Mises squared is s . VON_MISES s
+VON_MISES = np.zeros((6, 6))
+VON_MISES[:3, :3] = -0.5
+VON_MISES[range(6), range(6)] = [1.0, 1.0, 1.0, 3.0, 3.0, 3.0]
+
+_PAIR = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])  # component of the stress tensor's entry ab
+
+
+def von_mises(stress: Floats) -> Floats:
+    """Von Mises' equivalent stress (...) of stresses (..., 6)."""
+    square = np.einsum("...a,ab,...b->...", stress, VON_MISES, stress)
+    return np.sqrt(np.maximum(square, 0.0))
+
+
+def recovery(space: Discretisation) -> sp.csr_matrix:
+    """Matrix (N, 4 M) from values at the quadrature points to values at the nodes."""
+    at = np.vstack([np.ones(4), space.basis.X])
+    nodes = np.vstack([np.ones(10), ElementTetP2.doflocs.T])
+    extend = np.linalg.solve(at, nodes).T  # (10, 4)
+    m = len(space.elements)
+    row = np.repeat(space.elements.ravel(), 4)
+    column = (4 * np.arange(m)[:, None, None] + np.arange(4)).repeat(10, axis=1).ravel()
+    count = np.bincount(space.elements.ravel())
+    value = np.tile(extend.ravel(), m) / count[row]
+    return sp.csr_matrix((value, (row, column)), shape=(len(count), 4 * m))
+
+
+def nodal_stress(space: Discretisation, material: Material, displacement: Floats) -> Floats:
+    """Stress (N, 6, L) in Pa of L displacement fields (N, 3, L) in m."""
+    to_nodes = recovery(space)
+    fields = []
+    for k in range(displacement.shape[2]):
+        stress = material.stress(space.strain(displacement[:, :, k]))
+        fields.append(to_nodes @ stress.reshape(-1, 6))
+    return np.stack(fields, axis=2)
+
+
+def with_known_traction(
+    stress: Floats, surface: Surface, traction: Floats, held: NDArray[np.bool_]
+) -> Floats:
+    """Stress (N, 6, L) corrected on the surface to carry the traction (F, 3, L) of its facets, Pa.
+
+    held: (F,) facets whose traction is unknown. Nodes there and on edges of the body stay as they
+    are; where two tractions meet on a smooth surface their mean is taken.
+    """
+    n_nodes = len(stress)
+    node = surface.corners.ravel()
+    count = np.bincount(node, minlength=n_nodes)
+    on = np.maximum(count, 1)
+    normal = np.stack(
+        [np.bincount(node, surface.normals[..., a].ravel(), minlength=n_nodes) for a in range(3)], 1
+    )
+    length = np.linalg.norm(normal, axis=1)
+    normal /= np.where(length > 0.0, length, 1.0)[:, None]
+    sharp = np.sum(surface.normals * normal[surface.corners], axis=2) < SMOOTH
+    fixed = np.repeat(held[:, None], 6, axis=1)
+    known = (count > 0) & (np.bincount(node, (sharp | fixed).ravel(), minlength=n_nodes) == 0)
+    out = stress.copy()
+    n = normal[known]
+    for k in range(stress.shape[2]):
+        t = np.stack(
+            [
+                np.bincount(node, np.repeat(traction[:, a, k], 6), minlength=n_nodes) / on
+                for a in range(3)
+            ],
+            axis=1,
+        )[known]
+        s = stress[known, :, k][:, _PAIR]
+        r = t - np.einsum("nab,nb->na", s, n)
+        normal_part = np.sum(r * n, axis=1)[:, None, None]
+        rn = r[:, :, None] * n[:, None, :]
+        s = s + rn + rn.swapaxes(1, 2) - normal_part * n[:, :, None] * n[:, None, :]
+        out[known, :, k] = np.stack([s[:, a, b] for a, b in _TENSOR], axis=1)
+    return out
+
+
+_TENSOR = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))

@@ -1,0 +1,214 @@
+"""The solid of a pin as second-order curved tetrahedra, by gmsh, with every surface named."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import meshio
+import numpy as np
+from numpy.typing import NDArray
+from skfem import MeshTet2
+from skfem.io.meshio import from_meshio
+
+from geometry.gmsh_session import gmsh_model
+from geometry.meridian import Arc, Edge, meridian, sharp_corners
+from geometry.pin import Pin
+
+SMALLEST_JACOBIAN = 0.1  # min / max of det J that every element must exceed
+GMSH_TO_VTK_TETRA10 = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]
+
+
+class MeshError(ArithmeticError):
+    """No valid mesh could be made; the message says what was tried and what may help."""
+
+
+@dataclass(frozen=True)
+class MeshSize:
+    """How fine. across: elements over the smallest diameter. corner: how many times finer at sharp
+    corners and edges of bands. arc: elements along a fillet's quarter circle. growth: increase of
+    the element size per distance from there."""
+
+    across: float = 4.0
+    corner: float = 4.0
+    arc: float = 2.5
+    growth: float = 0.5
+
+    def finer(self, factor: float) -> MeshSize:
+        """The same grading with every size divided by `factor`."""
+        return MeshSize(self.across * factor, self.corner, self.arc * factor, self.growth)
+
+
+@dataclass(frozen=True)
+class SolidMesh:
+    """mesh: quadratic tetrahedra, m; its `boundaries` map surface names to facets.
+
+    jacobian: smallest min/max det J of all elements. repaired: whether gmsh's optimiser was needed.
+    """
+
+    mesh: MeshTet2
+    jacobian: float
+    repaired: bool
+
+    @property
+    def nodes(self) -> NDArray[np.float64]:
+        """Coordinates of all nodes, (N, 3), m."""
+        points: NDArray[np.float64] = self.mesh.doflocs.T
+        return points
+
+
+def solid_mesh(pin: Pin, size: MeshSize, edges: tuple[float, ...] = ()) -> SolidMesh:
+    """Mesh a pin; `edges` are z (m) of further circles on the surface to refine at.
+
+    Raises: MeshError when elements stay inverted or slivers after repair and on a finer mesh.
+    """
+    tried = []
+    for factor in (1.0, 1.15, 1.35):
+        mesh, jacobian, repaired = _mesh(pin, size.finer(factor), edges)
+        if jacobian > SMALLEST_JACOBIAN:
+            return SolidMesh(mesh, jacobian, repaired)
+        tried.append(jacobian)
+    raise MeshError(
+        f"pin {pin.name}: gmsh gave inverted or sliver elements at three sizes (min/max Jacobian "
+        f"{', '.join(f'{j:.2g}' for j in tried)}, needed above {SMALLEST_JACOBIAN}) and its "
+        "optimiser did not repair them; look for a fillet or bore very small beside its neighbours"
+    )
+
+
+def _mesh(pin: Pin, size: MeshSize, edges: tuple[float, ...]) -> tuple[MeshTet2, float, bool]:
+    with gmsh_model(pin.name) as gmsh:
+        outline = meridian(pin)
+        _revolve(gmsh, outline)
+        surfaces = _name_surfaces(gmsh, pin, outline)
+        _set_sizes(gmsh, pin, size, edges)
+        try:
+            gmsh.model.mesh.generate(3)
+            gmsh.model.mesh.setOrder(2)
+            jacobian = _jacobian(gmsh)
+            repaired = jacobian <= SMALLEST_JACOBIAN
+            if repaired:
+                gmsh.model.mesh.optimize("HighOrder")
+                jacobian = _jacobian(gmsh)
+        except Exception as error:  # gmsh raises bare Exception
+            raise MeshError(f"pin {pin.name}: gmsh could not mesh it ({error})") from None
+        return _collect(gmsh, surfaces), jacobian, repaired
+
+
+def _revolve(gmsh: Any, outline: tuple[Edge, ...]) -> None:
+    occ = gmsh.model.occ
+    points: dict[tuple[float, float], int] = {}
+
+    def point(rz: tuple[float, float]) -> int:
+        if rz not in points:
+            points[rz] = occ.addPoint(rz[0], 0.0, rz[1])
+        return points[rz]
+
+    curves = []
+    for e in outline:
+        if isinstance(e, Arc):
+            centre = occ.addPoint(e.centre[0], 0.0, e.centre[1])
+            curves.append(occ.addCircleArc(point(e.start), centre, point(e.end)))
+        else:
+            curves.append(occ.addLine(point(e.start), point(e.end)))
+    face = occ.addPlaneSurface([occ.addCurveLoop(curves)])
+    occ.revolve([(2, face)], 0, 0, 0, 0, 0, 1, 2 * math.pi)
+    occ.remove([(2, face)])
+    occ.synchronize()
+
+
+def _name_surfaces(gmsh: Any, pin: Pin, outline: tuple[Edge, ...]) -> dict[str, list[int]]:
+    """Surface tags by name, told apart by the end points of the edge that made them."""
+    named: dict[str, list[int]] = {}
+    digits = int(round(6 - math.log10(pin.smallest_diameter)))
+
+    def key(points: list[tuple[float, float]]) -> frozenset[tuple[float, float]]:
+        return frozenset((round(r, digits) + 0.0, round(z, digits) + 0.0) for r, z in points if r)
+
+    names = {key([e.start, e.end]): e.name for e in outline if e.name}
+    for _, tag in gmsh.model.getBoundary(gmsh.model.getEntities(3), oriented=False):
+        ends = gmsh.model.getBoundary([(2, tag)], oriented=False, recursive=True)
+        at = [gmsh.model.getValue(0, point, []) for _, point in ends]
+        name = names.get(key([(math.hypot(x, y), z) for x, y, z in at]))
+        if name is None:
+            raise MeshError(f"pin {pin.name}: surface {tag} of gmsh's solid is none of the profile's")
+        named.setdefault(name, []).append(tag)
+    missing = set(names.values()) - set(named)
+    if missing:
+        raise MeshError(f"pin {pin.name}: gmsh's solid has no surface {', '.join(sorted(missing))}")
+    return named
+
+
+def _set_sizes(gmsh: Any, pin: Pin, size: MeshSize, edges: tuple[float, ...]) -> None:
+    """Element size as the least of graded fields about every feature circle."""
+    far = pin.smallest_diameter / size.across
+    wall = min((s.diameter - s.bore) / 2 for s in pin.segments)
+    far = min(far, wall) if any(s.bore for s in pin.segments) else far
+    near = far / size.corner
+    circles = [(c.r, c.z, near, 0.0) for c in sharp_corners(pin)]
+    for z in edges:
+        radii = {b.radius for b in pin.bands if b.z0 - 1e-12 <= z <= b.z1 + 1e-12}
+        circles += [(r, z, near, 0.0) for r in radii]
+    for i in range(len(pin.segments) - 1):
+        rho = pin.fillet_at(i)
+        if rho > 0.0:
+            thin = min(pin.segments[i].diameter, pin.segments[i + 1].diameter) / 2
+            arc = min(far, rho * math.pi / 2 / size.arc)
+            circles.append((thin, pin.stations[i + 1], arc, 1.3 * rho))
+    field = gmsh.model.mesh.field
+    tags = []
+    for r, z, h, flat in dict.fromkeys(circles):
+        d = f"Sqrt((Sqrt(x*x+y*y)-{r!r})^2+(z-{z!r})^2)-{flat!r}"
+        tags.append(field.add("MathEval"))
+        field.setString(tags[-1], "F", f"{h!r}+{size.growth / 2!r}*(({d})+Fabs({d}))")
+    for i, s in enumerate(pin.segments):
+        if s.bore:
+            h = math.pi * s.bore / (2.0 * size.across)
+            z0, z1 = pin.stations[i], pin.stations[i + 1]
+            d = f"(Sqrt(x*x+y*y)-{s.bore / 2!r})"
+            out = f"(Fabs(z-{(z0 + z1) / 2!r})-{(z1 - z0) / 2!r})"
+            grow = f"{size.growth / 2!r}*({d}+Fabs({d})+{out}+Fabs({out}))"
+            tags.append(field.add("MathEval"))
+            field.setString(tags[-1], "F", f"{h!r}+{grow}")
+    tags.append(field.add("MathEval"))
+    field.setString(tags[-1], "F", f"{far!r}")
+    least = field.add("Min")
+    field.setNumbers(least, "FieldsList", tags)
+    field.setAsBackgroundMesh(least)
+    for option in ("MeshSizeExtendFromBoundary", "MeshSizeFromPoints", "MeshSizeFromCurvature"):
+        gmsh.option.setNumber(f"Mesh.{option}", 0)
+
+
+def _jacobian(gmsh: Any) -> float:
+    """Smallest min/max det J over all tetrahedra (gmsh bounds it by Bezier coefficients)."""
+    tags = np.concatenate(gmsh.model.mesh.getElements(3)[1])
+    low = np.asarray(gmsh.model.mesh.getElementQualities(tags, "minDetJac"))
+    high = np.asarray(gmsh.model.mesh.getElementQualities(tags, "maxDetJac"))
+    return float((low / high).min())
+
+
+def _collect(gmsh: Any, surfaces: dict[str, list[int]]) -> MeshTet2:
+    tags, coordinates, _ = gmsh.model.mesh.getNodes()
+    row = np.zeros(int(tags.max()) + 1, dtype=np.int64)
+    row[tags] = np.arange(len(tags))
+    nodes = gmsh.model.mesh.getElementsByType(11)[1].reshape(-1, 10)[:, GMSH_TO_VTK_TETRA10]
+    triangles, sets = [], {}
+    count = 0
+    for name, faces in surfaces.items():
+        for face in faces:
+            facets = gmsh.model.mesh.getElementsByType(9, face)[1].reshape(-1, 6)[:, :3]
+            triangles.append(row[facets])
+            sets.setdefault(name, []).append(np.arange(count, count + len(facets)))
+            count += len(facets)
+    tetrahedra = row[nodes]
+    corners = np.unique(tetrahedra[:, :4])  # first, because facets are told by their corners
+    used = np.concatenate([corners, np.setdiff1d(tetrahedra, corners)])
+    packed = np.full(len(row), -1)
+    packed[used] = np.arange(len(used))
+    empty = np.zeros(0, dtype=np.int64)
+    solid = meshio.Mesh(
+        coordinates.reshape(-1, 3)[used],
+        [("tetra10", packed[tetrahedra]), ("triangle", packed[np.concatenate(triangles)])],
+        cell_sets={name: [empty, np.concatenate(rows)] for name, rows in sets.items()},
+    )
+    return from_meshio(solid, ignore_orientation=True)

@@ -1,0 +1,41 @@
+"""Loads: from a mechanism and its motion, or from a table, to the forces on every pin.
+
+Everything here is in SI units. This room imports nothing else of ours.
+"""
+
+from loads.drive import CosineDrive
+from loads.forces import Applied, Dynamics, motion_reactions, static_reactions
+from loads.lever import Lever
+from loads.impulse import impulse_force
+from loads.linkage import GROUND, Body, Connection, Joint, Linkage, LinkageError, Sharing, Slider, UnreachableError
+from loads.mobility import Mobility, mobility
+from loads.motion import Motion, energy, move
+from loads.reactions import Reactions, TableError, given_reactions, read_reactions
+
+__all__ = [
+    "Applied",
+    "Body",
+    "Connection",
+    "CosineDrive",
+    "Dynamics",
+    "GROUND",
+    "Joint",
+    "Lever",
+    "Linkage",
+    "LinkageError",
+    "Mobility",
+    "Motion",
+    "Reactions",
+    "Sharing",
+    "Slider",
+    "TableError",
+    "UnreachableError",
+    "energy",
+    "given_reactions",
+    "impulse_force",
+    "mobility",
+    "motion_reactions",
+    "move",
+    "read_reactions",
+    "static_reactions",
+]

@@ -1,0 +1,74 @@
+"""What a study would run, in words, without solving anything."""
+
+from __future__ import annotations
+
+from loads import Linkage, mobility
+from pinstress import build
+from pinstress.errors import InputError
+from pinstress.limits import require_built
+from pinstress.schema import GivenCase, MotionCase
+from pinstress.study import Study
+
+
+def describe(study: Study) -> str:
+    """A summary of a valid study. Raises: InputError for what only its pieces together show."""
+    table, system = study.table, study.system
+    require_built(study, table.analysis.model)
+    lines = [f"{study.path}: {table.title}", f"units {system.name}"]
+    mechanism = build.linkage(study) if table.mechanism else None
+    if mechanism is not None:
+        lines.append(_mechanism(study, mechanism))
+    for name in table.case:
+        lines.append(f"case {name}: {_case(study, name)}")
+    for name, p in table.pin.items():
+        pin = build.pin(study, name)
+        held = ", ".join(p.clamp) if p.clamp else "nothing: its loads must be in balance"
+        density = table.material[p.material].density
+        weight = pin.weight(density) / system.factor("force") if density else None
+        heavy = f", {weight:.4g} {system.force}" if weight else ""
+        lines.append(
+            f"pin {name}: {p.material}, {len(p.profile)} segments{heavy}; "
+            f"loaded at {', '.join(pin.connections) or 'nothing'}; held by {held}"
+        )
+    a = table.analysis
+    goal = f", required safety factor {a.required_safety_factor:g}" if a.required_safety_factor else ""
+    lines.append(f"model {a.model}, tolerance {a.tolerance:g}{goal}")
+    return "\n".join(lines)
+
+
+def _mechanism(study: Study, mechanism: Linkage) -> str:
+    found = mobility(mechanism)
+    if found.free:
+        raise InputError(
+            f"{study.path}: mechanism: with the drive held it can still move in {found.free} way(s): "
+            f"{', '.join(found.loose)} not guided; add the missing connection"
+        )
+    text = (
+        f"mechanism: {len(mechanism.bodies)} bodies, {len(mechanism.joints)} joints, "
+        f"{len(mechanism.connections)} connections, driven by slider {mechanism.driven}"
+    )
+    if not found.redundant:
+        return text
+    if not mechanism.sharing:
+        raise InputError(
+            f"{study.path}: mechanism: the forces at {', '.join(found.shared)} are not determined by "
+            "rigid-body statics; say how they share in [[mechanism.sharing]]"
+        )
+    rule = ", ".join(f"{'/'.join(s.connections)}" for s in mechanism.sharing)
+    return (
+        f"{text}; {found.redundant} redundant: the forces at {', '.join(found.shared)} follow the "
+        f"sharing rule for {rule}"
+    )
+
+
+def _case(study: Study, name: str) -> str:
+    case = study.table.case[name]
+    if isinstance(case, GivenCase):
+        reactions = build.case_loads(study, name, None).reactions
+        many = f"{len(reactions)} instants" if reactions.times is not None else "one instant"
+        return f"given, {many}, connections {', '.join(reactions.connections)}"
+    if isinstance(case, MotionCase):
+        law = build.drive(study)
+        return f"motion, {case.samples} instants over {law.duration:g} s"
+    loads = ", ".join(f"{load.body}" for load in case.apply) or "gravity alone"
+    return f"static, loads on {loads}"

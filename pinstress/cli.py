@@ -1,0 +1,157 @@
+"""The command line. Data go to stdout, progress and messages to stderr.
+
+The numeric libraries are imported inside the commands that need them: `check` answers at once.
+"""
+
+from __future__ import annotations
+
+import signal
+from pathlib import Path
+from typing import Any
+
+import click
+
+from pinstress.errors import InputError
+
+REACHED, NOT_REACHED, BAD_INPUT, NUMERICS_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
+
+
+def run_command_line(arguments: list[str]) -> int:
+    """Exit status of a command: 0 done, 1 something asked for was not reached, 2 bad input, 3 the
+    numerics failed, 130 interrupted."""
+    signal.signal(signal.SIGTERM, _interrupt)
+    try:
+        status = commands.main(arguments, prog_name="pinstress", standalone_mode=False)
+        return int(status or REACHED)
+    except click.ClickException as error:
+        error.show()
+        return BAD_INPUT
+    except InputError as error:
+        click.echo(f"Error: {error}", err=True)
+        return BAD_INPUT
+    except ArithmeticError as error:  # MeshError, SolveError and what numpy raises
+        click.echo(f"Error: the numerics failed: {error}", err=True)
+        return NUMERICS_FAILED
+    except MemoryError:
+        click.echo("Error: the numerics failed: out of memory; a larger --tolerance needs less", err=True)
+        return NUMERICS_FAILED
+    except (KeyboardInterrupt, click.Abort):
+        click.echo("Interrupted; nothing was written.", err=True)
+        return INTERRUPTED
+    except BrokenPipeError:
+        return REACHED
+
+
+def _interrupt(*_: object) -> None:
+    raise KeyboardInterrupt
+
+
+def _names(_: click.Context, __: click.Parameter, value: str | None) -> list[str] | None:
+    """A,B as a list."""
+    if value is None:
+        return None
+    names = [n.strip() for n in value.split(",") if n.strip()]
+    if not names:
+        raise click.BadParameter("names none; write for instance A,B")
+    return names
+
+
+@click.group(
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog="A first run: pinstress init trial && pinstress run trial/one_pin.toml",
+)
+@click.version_option(package_name="pinstress")
+def commands() -> None:
+    """Stresses and safety factors of the pins of a linkage."""
+
+
+def example(text: str) -> str:
+    """A help text that begins with an example, kept on its own line."""
+    return f"\b\nExample: {text}\n"
+
+
+@commands.command(
+    help=example("pinstress run studies/grenier2008.toml --pins B,E --out out/trial")
+    + "\nThe whole pipeline: reactions, stresses, safety factors. Prints the table and writes "
+    "tables, plots, VTK files and report.html.\n\n"
+    "Exit status: 0 done; 1 done, but a requested accuracy was not reached; 2 bad input; "
+    "3 the numerics failed; 130 interrupted."
+)
+@click.argument("study", type=click.Path(path_type=Path))
+@click.option("--out", type=click.Path(path_type=Path), help="Folder to write [out/<study's name>].")
+@click.option("--pins", callback=_names, metavar="A,B", help="These pins only.")
+@click.option("--cases", callback=_names, metavar="X,Y", help="These cases only.")
+@click.option(
+    "--model",
+    type=click.Choice(["auto", "beam", "harmonic", "solid"]),
+    help="Instead of the study's; beam and harmonic are not built yet.",
+)
+@click.option(
+    "--tolerance",
+    type=click.FloatRange(0.0, 1.0, min_open=True, max_open=True),
+    help="On the maximum stress, instead of the study's.",
+)
+@click.option("--no-pictures", is_flag=True, help="Neither plots nor rendered pins: faster.")
+def run(
+    study: Path,
+    out: Path | None,
+    pins: list[str] | None,
+    cases: list[str] | None,
+    model: str | None,
+    tolerance: float | None,
+    no_pictures: bool,
+) -> int:
+    from pinstress.study import load_study
+
+    loaded = load_study(study)
+    directory = out or Path("out") / loaded.name
+    from pinstress.write import run_and_write
+
+    chosen: dict[str, Any] = {"pins": pins, "cases": cases, "model": model, "tolerance": tolerance}
+    return run_and_write(loaded, directory, pictures=not no_pictures, **chosen)
+
+
+@commands.command(
+    help=example("pinstress check studies/grenier2008.toml")
+    + "\nRead and validate everything without solving; say what would be run."
+)
+@click.argument("study", type=click.Path(path_type=Path))
+def check(study: Path) -> None:
+    from pinstress.check import describe
+    from pinstress.study import load_study
+
+    click.echo(describe(load_study(study)))
+
+
+@commands.command(
+    help=example("pinstress init trial")
+    + "\nWrite a small commented study, one_pin.toml, that runs as it is."
+)
+@click.argument("directory", type=click.Path(path_type=Path, file_okay=False), default=Path("."))
+def init(directory: Path) -> None:
+    from pinstress.studies import shipped
+
+    target = directory / "one_pin.toml"
+    if target.exists():
+        raise InputError(f"{target} exists already; name another folder")
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        target.write_text(shipped("one_pin.toml").read_text(encoding="utf-8"), encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"{target}: cannot be written ({error.strerror})") from None
+    click.echo(str(target))
+    click.echo(f"Next: pinstress run {target}", err=True)
+
+
+@commands.command(
+    help=example("pinstress schema > study.schema.json")
+    + "\nPrint the JSON Schema of the study file, for editors."
+)
+def schema() -> None:
+    import json
+
+    from pinstress.schema import StudyTable
+
+    made = StudyTable.model_json_schema()
+    made["$schema"] = "https://json-schema.org/draft/2020-12/schema"
+    click.echo(json.dumps(made, indent=2))

@@ -1,0 +1,298 @@
+"""From what the rooms found, in SI, to the plain data that reports are made from."""
+
+from __future__ import annotations
+
+from importlib.metadata import version
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fea.beam_check import beam_check as compare_with_beam
+from fea.material import Material
+from fea.peak import Peak
+from fea.refine import Solution
+from fea.stress import von_mises
+from loads import Lever, energy
+from pinstress import build
+from pinstress.build import CaseLoads
+from pinstress.errors import InputError
+from pinstress.schema import MotionCheckTable
+from pinstress.study import Study
+from reports import results as plain
+
+if TYPE_CHECKING:
+    from pinstress.pipeline import Task
+
+PACKAGES = ("pinstress", "numpy", "scipy", "scikit-fem", "gmsh", "meshio", "cvxopt", "pymetis")
+
+
+def results(
+    study: Study,
+    loads: dict[str, CaseLoads],
+    solutions: list[tuple[Task, Solution]],
+    beam: plain.BeamCheck | None,
+    tolerance: float,
+) -> plain.Results:
+    """Everything a run found."""
+    table, system = study.table, study.system
+    tasks = list({id(task): task for task, _ in solutions}.values())
+    return plain.Results(
+        title=table.title,
+        study=study.path.name,
+        study_sha256=study.sha256,
+        units=plain.Units(system.length, system.force, system.stress, system.time),
+        required_safety_factor=table.analysis.required_safety_factor,
+        tolerance=tolerance,
+        pins=tuple(_pin_result(study, loads, task, s.peak) for task, s in solutions),
+        shapes=tuple(_shape(study, task) for task in tasks),
+        reactions=tuple(_reactions(study, name, case) for name, case in loads.items()),
+        drive=tuple(
+            _drive(study, name, case)
+            for name, case in loads.items()
+            if case.dynamics is not None and case.reactions.times is not None
+        ),
+        beam_check=beam,
+        motion_check=_motion_check(study, loads),
+        provenance=tuple(plain.Provenance(s.key, s.kind, s.note) for s in study.provenance),
+        published_source=table.published.source if table.published else "",
+        assumptions=tuple(table.assumptions),
+        versions={name: version(name) for name in PACKAGES},
+    )
+
+
+def _pin_result(
+    study: Study, loads: dict[str, CaseLoads], task: Task, peak: Peak
+) -> plain.PinResult:
+    unit = study.system.factor
+    material = build.material(study, study.table.pin[peak.pin].material)
+    required = study.table.analysis.required_safety_factor
+    factor = peak.safety_factor(material.yield_strength)
+    meets = None
+    if factor is not None and required is not None:
+        meets = factor >= required
+        if meets and peak.verdict == "unconverged":
+            meets = None  # the stress found is too low by an unknown amount
+    case = loads[peak.case]
+    times, dynamics = case.reactions.times, case.dynamics
+    position = None
+    if times is not None and dynamics is not None:
+        offset = build.drive(study).offset
+        position = float(dynamics.motion.length[peak.instant] - offset) / unit("length")
+    published = _published_peak(study, peak)
+    return plain.PinResult(
+        pin=peak.pin,
+        case=peak.case,
+        model=peak.model,
+        verdict=peak.verdict,
+        note=peak.note,
+        max_von_mises=_scaled(peak.max_von_mises, unit("stress")),
+        error_estimate=_scaled(peak.error_estimate, unit("stress")),
+        location=tuple(x / unit("length") for x in peak.location) if peak.location else None,  # type: ignore[arg-type]
+        time=None if times is None or peak.location is None else float(times[peak.instant]),
+        position=position if peak.location else None,
+        safety_factor=factor,
+        yields=None if factor is None else factor < 1.0,
+        meets_required=meets,
+        dofs=peak.dofs,
+        seconds=peak.seconds,
+        history=tuple(
+            plain.MeshStep(h.dofs, h.max_von_mises / unit("stress"), h.seconds)
+            for h in peak.history
+        ),
+        held=", ".join(task.clamps) or "nothing (loads in balance)",
+        left_out=task.left_out[peak.case],
+        published_max_von_mises=published.get("max_von_mises"),
+        published_safety_factor=published.get("safety_factor"),
+    )
+
+
+def _scaled(value: float | None, factor: float) -> float | None:
+    return None if value is None else value / factor
+
+
+def _published_peak(study: Study, peak: Peak) -> dict[str, float]:
+    published = study.table.published
+    if published is None or published.peaks is None:
+        return {}
+    columns = ("pin", "case", "max_von_mises", "safety_factor")
+    for row in build.read_published(study.beside(published.peaks), columns):
+        if (row["pin"], row["case"]) == (peak.pin, peak.case):
+            return {k: float(row[k]) for k in columns[2:]}
+    return {}
+
+
+def _shape(study: Study, task: Task) -> plain.PinShape:
+    unit = study.system.factor
+    pin, name = task.pin, study.table.pin[task.pin.name].material
+    density = build.material(study, name).density
+    held = {pin.surface(c) for c in task.clamps}
+    segments = []
+    for s, label in zip(pin.segments, pin.labels, strict=True):
+        kind = "held" if label in held else "band" if s.connection else "plain"
+        named = label if s.connection or s.name else ""
+        sizes = (x / unit("length") for x in (s.length, s.diameter, s.bore))
+        segments.append((*sizes, named, kind))
+    weight = pin.weight(density) / unit("force") if density else None
+    return plain.PinShape(pin.name, tuple(segments), name, weight)  # type: ignore[arg-type]
+
+
+def _reactions(study: Study, name: str, case: CaseLoads) -> plain.ReactionTable:
+    unit = study.system.factor
+    r, dynamics = case.reactions, case.dynamics
+    on = {c: p for p in study.table.pin for c in study.connections(p)}
+    published = {}
+    if study.table.published and study.table.published.reactions:
+        rows = build.read_published(
+            study.beside(study.table.published.reactions), ("case", "connection", "force")
+        )
+        published = {x["connection"]: float(x["force"]) for x in rows if x["case"] == name}
+    position = None
+    if dynamics is not None and r.times is not None:
+        position = (dynamics.motion.length - build.drive(study).offset) / unit("length")
+    return plain.ReactionTable(
+        case=name,
+        times=None if r.times is None else r.times / unit("time"),
+        position=position,
+        connections=r.connections,
+        bodies=r.bodies,
+        pins=tuple(on.get(c, "") for c in r.connections),
+        forces=r.forces / unit("force"),
+        moments=r.moments / unit("energy"),
+        shared=dynamics.shared if dynamics else (),
+        published=published,
+        note=case.note,
+    )
+
+
+def _drive(study: Study, name: str, case: CaseLoads) -> plain.DriveTable:
+    unit = study.system.factor
+    dynamics = case.dynamics
+    assert dynamics is not None
+    motion = dynamics.motion
+    stored = energy(motion)
+    return plain.DriveTable(
+        case=name,
+        time=motion.times / unit("time"),
+        position=(motion.length - build.drive(study).offset) / unit("length"),
+        velocity=motion.speed / unit("velocity"),
+        acceleration=motion.rate / unit("acceleration"),
+        force=dynamics.drive / unit("force"),
+        power=dynamics.power / unit("power"),
+        work=dynamics.work / unit("energy"),
+        kinetic_energy=stored.kinetic / unit("energy"),
+        potential_energy=(stored.potential - stored.potential[0]) / unit("energy"),
+    )
+
+
+def field(study: Study, solution: Solution) -> plain.Field | None:
+    """A pin's field at its governing instant; None when it was not solved."""
+    fields, found = solution.fields, solution.envelope
+    if fields is None or found is None:
+        return None
+    unit = study.system.factor
+    stress = fields.stress @ found.coefficients / unit("stress")
+    over_all = np.full(len(stress), np.nan)
+    over_all[fields.surface.nodes] = found.field / unit("stress")
+    return plain.Field(
+        pin=solution.peak.pin,
+        case=solution.peak.case,
+        points=fields.space.nodes / unit("length"),
+        cells=fields.space.elements,
+        displacement=fields.displacement @ found.coefficients / unit("length"),
+        stress=stress,
+        von_mises=von_mises(stress),
+        envelope=over_all,
+    )
+
+
+def beam_check(study: Study, task: Task, material: Material, at: Solution) -> plain.BeamCheck:
+    """The beam check of a pin at the instant of its largest force.
+
+    Raises: InputError if the pin is no cantilever with one load.
+    """
+    check, pin = study.table.beam_check, task.pin
+    assert check is not None and at.fields is not None
+    loads = next(c for c in task.loads if c.case == at.peak.case)
+    if task.clamps != ("start",) or len(loads.surfaces) != 1:
+        raise InputError(
+            f"{study.path}: beam_check: pin {pin.name} must be clamped at its start face alone and "
+            "loaded on one band to be a cantilever"
+        )
+    (band,) = loads.surfaces
+    forces = loads.forces[:, 0, :2]
+    plane = forces[np.linalg.norm(forces, axis=1).argmax()]
+    found = compare_with_beam(
+        pin, material, band, (float(plane[0]), float(plane[1])), at.fields, check.axis_bore
+    )
+    unit = study.system.factor
+    surface, axis = found.difference(found.surface_load), found.difference(found.axis_load)
+    z0, z1 = pin.band(band).z0, pin.band(band).z1
+    return plain.BeamCheck(
+        pin=pin.name,
+        case=at.peak.case,
+        connection=band,
+        force=found.force / unit("force"),
+        diameter=2.0 * pin.band(band).radius / unit("length"),
+        axis_bore=check.axis_bore / unit("length"),
+        band=(z0 / unit("length"), z1 / unit("length")),
+        z=found.beam.z / unit("length"),
+        shear=found.beam.shear / unit("force"),
+        moment=found.beam.moment / unit("energy"),
+        beam_axial_stress=found.beam.stress / unit("stress"),
+        fea_axial_stress=found.surface_load / unit("stress"),
+        fea_axial_stress_axis_load=found.axis_load / unit("stress"),
+        rms=surface.rms,
+        rms_axis_load=axis.rms,
+        largest=surface.largest,
+        largest_axis_load=axis.largest,
+        largest_anywhere=surface.largest_anywhere,
+        largest_at=surface.largest_at / unit("length"),
+    )
+
+
+def _motion_check(study: Study, loads: dict[str, CaseLoads]) -> plain.MotionCheck | None:
+    check = study.table.motion_check
+    case = loads.get(check.case) if check else None
+    if check is None or case is None:
+        return None
+    if case.dynamics is None or case.reactions.times is None:
+        raise InputError(f"{study.path}: motion_check.case: {check.case!r} is not a motion")
+    motion, unit = case.dynamics.motion, study.system.factor
+    lever, radius = _lever(study, check)
+    _, v, a = motion.joint(check.joint)
+    closed_v, closed_a = lever.point(radius, motion.length, motion.speed, motion.rate)
+    speed, acceleration = np.linalg.norm(v, axis=1), np.linalg.norm(a, axis=1)
+    rows = []
+    published = study.table.published
+    if published is not None and published.motion is not None:
+        columns = ("time", "speed", "acceleration")
+        for row in build.read_published(study.beside(published.motion), columns):
+            t, their_v, their_a = (float(row[c]) for c in columns)
+            k = int(np.abs(motion.times / unit("time") - t).argmin())
+            ours = (speed[k] / unit("velocity"), acceleration[k] / unit("acceleration"))
+            rows.append((t, their_v, their_a, float(ours[0]), float(ours[1])))
+    return plain.MotionCheck(
+        joint=check.joint,
+        case=check.case,
+        time=motion.times / unit("time"),
+        speed=speed / unit("velocity"),
+        acceleration=acceleration / unit("acceleration"),
+        closed_form_speed=closed_v / unit("velocity"),
+        closed_form_acceleration=closed_a / unit("acceleration"),
+        published=tuple(rows),
+    )
+
+
+def _lever(study: Study, check: MotionCheckTable) -> tuple[Lever, float]:
+    mechanism = study.table.mechanism
+    assert mechanism is not None
+    joints = mechanism.joint
+    pivot, joint = joints[check.pivot], joints[check.joint]
+    if pivot.fixed_in != "ground":
+        raise InputError(f"{study.path}: motion_check.pivot: {check.pivot} is not fixed in the ground")
+    start, end = (joints[j].at for j in mechanism.slider[mechanism.drive.slider].joints)
+
+    def distance(a: tuple[float, float]) -> float:
+        return float(np.hypot(a[0] - pivot.at[0], a[1] - pivot.at[1]))
+
+    return Lever(distance(start), distance(end)), distance(joint.at)

@@ -1,0 +1,334 @@
+"""The study file's form: every table and key, with its unit and domain."""
+
+from __future__ import annotations
+
+import difflib
+from typing import Annotated, Any, Literal
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationInfo,
+    WithJsonSchema,
+    model_validator,
+)
+
+from pinstress.units import DIMENSIONS, SYSTEMS, to_si
+
+Kind = Literal["given", "derived", "fitted", "assumed"]
+
+
+def _quantity(dimension: str) -> Any:
+    """A float in SI, read from a number or a string with a unit."""
+
+    def convert(value: object, info: ValidationInfo) -> float:
+        system = (info.context or {}).get("system", SYSTEMS["m-N-s"])
+        return to_si(value, dimension, system)
+
+    example = DIMENSIONS[dimension][1]
+    plain = [{"type": "number"}, {"type": "string", "examples": [example]}]
+    return Annotated[
+        float,
+        BeforeValidator(convert),
+        WithJsonSchema({"anyOf": [*plain, sourced(plain)], "description": dimension}),
+    ]
+
+
+def sourced(value: list[dict[str, Any]]) -> dict[str, Any]:
+    """JSON Schema of { value = ..., provenance = "given", note = "..." }."""
+    return {
+        "type": "object",
+        "properties": {
+            "value": {"anyOf": value},
+            "provenance": {"enum": ["given", "derived", "fitted", "assumed"]},
+            "note": {"type": "string"},
+        },
+        "required": ["value", "provenance"],
+        "additionalProperties": False,
+    }
+
+
+def _positive(value: float) -> float:
+    if not value > 0.0:
+        raise ValueError("must be positive")
+    return value
+
+
+def _not_negative(value: float) -> float:
+    if value < 0.0:
+        raise ValueError("must not be negative")
+    return value
+
+
+def _usable_name(name: str) -> str:
+    if not name or len(name) > 64 or name[0] in ". " or any(c in '/\\:*?"<>|' for c in name):
+        raise ValueError(f"{name!r} cannot be part of a file name; use letters, digits, - and _")
+    if not name.isprintable():
+        raise ValueError(f"{name!r} contains characters that cannot be printed")
+    return name
+
+
+Length = _quantity("length")
+Force = _quantity("force")
+PositiveLength = Annotated[Length, AfterValidator(_positive)]
+Fillet = Annotated[Length, AfterValidator(_not_negative)]
+Stress = Annotated[_quantity("stress"), AfterValidator(_positive)]
+Density = Annotated[_quantity("density"), AfterValidator(_positive)]
+Weight = Annotated[Force, AfterValidator(_not_negative)]
+Mass = Annotated[_quantity("mass"), AfterValidator(_not_negative)]
+Inertia = Annotated[_quantity("inertia"), AfterValidator(_positive)]
+Duration = Annotated[_quantity("time"), AfterValidator(_positive)]
+Velocity = _quantity("velocity")
+Acceleration = _quantity("acceleration")
+Name = Annotated[str, AfterValidator(_usable_name)]
+Point = tuple[Length, Length]
+
+
+class Table(BaseModel):
+    """A table of the study file: unknown keys are errors, and anything may say where it is from."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+    provenance: Kind | None = Field(None, description="where the numbers of this table come from")
+    note: str | None = Field(None, description="why, in words")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _known_keys(cls, data: Any) -> Any:
+        if isinstance(data, dict):
+            for key in data:
+                if key not in cls.model_fields:
+                    near = difflib.get_close_matches(str(key), cls.model_fields, n=1, cutoff=0.5)
+                    known = ", ".join(k for k in cls.model_fields if k not in ("provenance", "note"))
+                    hint = f"did you mean {near[0]!r}?" if near else f"known here: {known}"
+                    raise ValueError(f"unknown key {key!r}; {hint}")
+        return data
+
+
+class MaterialTable(Table):
+    """An isotropic linear-elastic material."""
+
+    youngs_modulus: Stress
+    poisson_ratio: Annotated[float, Field(gt=-1.0, lt=0.5)]
+    density: Density | None = None
+    yield_strength: Stress | None = None
+
+
+class SegmentTable(Table):
+    """A cylinder of a pin's profile; `fillet` is at its far end."""
+
+    length: PositiveLength
+    diameter: PositiveLength
+    bore: Annotated[Length, AfterValidator(_not_negative)] = 0.0
+    name: str | None = None
+    connection: str | None = None
+    fillet: Fillet | None = None
+
+
+class PinTable(Table):
+    """A pin: a body of revolution, and what holds it."""
+
+    material: str
+    profile: Annotated[list[SegmentTable], Field(min_length=1)]
+    clamp: list[str] = []
+    fillet: Fillet = 0.0
+
+
+class GivenCase(Table):
+    """Stated forces, or a table of them."""
+
+    kind: Literal["given"]
+    forces: dict[str, Annotated[list[Force], Field(min_length=2, max_length=3)]] | None = None
+    table: str | None = None
+    distribution: Literal["uniform", "cosine"] = "uniform"
+
+    @model_validator(mode="after")
+    def _one_source(self) -> GivenCase:
+        if (self.forces is None) == (self.table is None):
+            raise ValueError("give either forces = { ... } or table = \"file.csv\"")
+        if self.forces is not None and not self.forces:
+            raise ValueError("forces names no connection")
+        return self
+
+
+class MotionCase(Table):
+    """The mechanism driven from the start of its drive to the end."""
+
+    kind: Literal["motion"]
+    samples: Annotated[int, Field(ge=2, le=100_001)] = 201
+    distribution: Literal["uniform", "cosine"] = "uniform"
+
+
+class ImpulseTable(Table):
+    """A landing force from an impulse: mass times velocity change over time."""
+
+    weight: Weight | None = None
+    gravity: Annotated[Acceleration, AfterValidator(_positive)] = 9.80665
+    mass: Mass | None = None
+    velocity_change: Annotated[Velocity, AfterValidator(_positive)]
+    impulse_time: Duration
+    direction: tuple[float, float]
+
+    @model_validator(mode="after")
+    def _one_mass(self) -> ImpulseTable:
+        if (self.mass is None) == (self.weight is None):
+            raise ValueError("give either mass or weight (with gravity)")
+        if not any(self.direction):
+            raise ValueError("direction must not be zero")
+        return self
+
+
+class ApplyTable(Table):
+    """A force on a body, at a joint (by name) or a point as drawn."""
+
+    body: str
+    at: str | Point
+    force: tuple[Force, Force] | None = None
+    impulse: ImpulseTable | None = None
+
+    @model_validator(mode="after")
+    def _one_force(self) -> ApplyTable:
+        if (self.force is None) == (self.impulse is None):
+            raise ValueError("give either force = [fx, fy] or impulse = { ... }")
+        return self
+
+
+class StaticCase(Table):
+    """The mechanism held still, under gravity and applied forces."""
+
+    kind: Literal["static"]
+    drive_length: PositiveLength | None = None
+    apply: list[ApplyTable] = []
+    distribution: Literal["uniform", "cosine"] = "uniform"
+
+
+class JointTable(Table):
+    """A pin of the mechanism as drawn, and the body on each of its connections.
+
+    fixed_in: "ground" or a body; absent for a floating pin, whose weight is that of its profile
+    unless given here.
+    """
+
+    at: Point
+    connections: Annotated[dict[str, str], Field(min_length=1)]
+    fixed_in: str | None = None
+    weight: Weight | None = None
+
+
+class BodyTable(Table):
+    """A rigid body: weight or mass, centre of mass as drawn, inertia about it (none: a particle)."""
+
+    weight: Weight | None = None
+    mass: Mass | None = None
+    centre: Point
+    inertia: Inertia | None = None
+
+    @model_validator(mode="after")
+    def _one_mass(self) -> BodyTable:
+        if (self.mass is None) == (self.weight is None):
+            raise ValueError("give either weight or mass")
+        return self
+
+
+class SliderTable(Table):
+    """One body sliding on another along the line between two joints: [base, moving]."""
+
+    bodies: tuple[str, str]
+    joints: tuple[str, str]
+
+
+class DriveTable(Table):
+    """The law of a slider's length: half a cosine from start to end, at rest at both."""
+
+    slider: str
+    law: Literal["cosine"] = "cosine"
+    start: PositiveLength
+    end: PositiveLength
+    duration: Duration
+    position_offset: Length = 0.0
+
+
+class SharingTable(Table):
+    """How redundant connections share: as springs of these stiffnesses (only ratios matter)."""
+
+    connections: Annotated[list[str], Field(min_length=1)]
+    stiffness: Annotated[list[Annotated[float, Field(gt=0.0)]], Field(min_length=1)]
+
+    @model_validator(mode="after")
+    def _same_length(self) -> SharingTable:
+        if len(self.connections) != len(self.stiffness):
+            raise ValueError("give one stiffness for each connection")
+        return self
+
+
+class MechanismTable(Table):
+    """A planar linkage in the position in which it is drawn."""
+
+    gravity: tuple[Acceleration, Acceleration] = (0.0, -9.80665)
+    joint: Annotated[dict[str, JointTable], Field(min_length=1)]
+    body: Annotated[dict[str, BodyTable], Field(min_length=1)]
+    slider: dict[str, SliderTable]
+    drive: DriveTable
+    sharing: list[SharingTable] = []
+
+
+class AnalysisTable(Table):
+    """What is asked of the analysis."""
+
+    model: Literal["auto", "beam", "harmonic", "solid"] = "auto"
+    tolerance: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.02
+    required_safety_factor: Annotated[float, Field(gt=0.0)] | None = None
+
+
+class BeamCheckTable(Table):
+    """Compare a cantilever pin's axial stress with beam theory; the load also on a thin bore."""
+
+    pin: str
+    case: str
+    axis_bore: PositiveLength
+
+
+class MotionCheckTable(Table):
+    """Compare a joint's speed and acceleration with the closed form of a lever: the joint turns
+    about the fixed `pivot` with the moving end of the driven slider."""
+
+    case: str
+    joint: str
+    pivot: str
+
+
+class PublishedTable(Table):
+    """Tables (CSV) of published values to print beside ours.
+
+    peaks: pin,case,max_von_mises,safety_factor. reactions: case,connection,force. motion:
+    time,speed,acceleration of the joint in motion_check.
+    """
+
+    source: str
+    peaks: str | None = None
+    reactions: str | None = None
+    motion: str | None = None
+
+
+class StudyTable(Table):
+    """A study: pins, their materials, what loads them and what is asked."""
+
+    title: str
+    units: Literal["in-lbf-s", "mm-N-s", "m-N-s"]
+    material: Annotated[dict[str, MaterialTable], Field(min_length=1)]
+    pin: Annotated[dict[Name, PinTable], Field(min_length=1)]
+    case: Annotated[
+        dict[
+            Name,
+            Annotated[GivenCase | MotionCase | StaticCase, Field(discriminator="kind")],
+        ],
+        Field(min_length=1),
+    ]
+    mechanism: MechanismTable | None = None
+    analysis: AnalysisTable = AnalysisTable()
+    beam_check: BeamCheckTable | None = None
+    motion_check: MotionCheckTable | None = None
+    published: PublishedTable | None = None
+    assumptions: list[str] = []

@@ -1,0 +1,206 @@
+"""Reading a study file: TOML, validated, in SI, every cross-reference checked."""
+
+from __future__ import annotations
+
+import difflib
+import hashlib
+import tomllib
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from pinstress.errors import InputError
+from pinstress.schema import GivenCase, StudyTable
+from pinstress.units import SYSTEMS, UnitSystem
+
+
+@dataclass(frozen=True)
+class Sourced:
+    """Where a number of the study comes from."""
+
+    key: str
+    kind: str
+    note: str
+
+
+@dataclass(frozen=True)
+class Study:
+    """A valid study. table: its content in SI. system: the units it speaks."""
+
+    path: Path
+    text: str
+    table: StudyTable
+    provenance: tuple[Sourced, ...]
+
+    @property
+    def system(self) -> UnitSystem:
+        """The study's unit system."""
+        return SYSTEMS[self.table.units]
+
+    @property
+    def name(self) -> str:
+        """The file's name without its ending."""
+        return self.path.stem
+
+    @property
+    def sha256(self) -> str:
+        """Hash of the study file."""
+        return hashlib.sha256(self.text.encode()).hexdigest()
+
+    def beside(self, name: str) -> Path:
+        """A file that the study names."""
+        return self.path.parent / name
+
+    def connections(self, pin: str) -> tuple[str, ...]:
+        """Connections that bear on a pin."""
+        return tuple(s.connection for s in self.table.pin[pin].profile if s.connection)
+
+
+def load_study(path: str | Path) -> Study:
+    """Read and validate a study file.
+
+    Raises: InputError naming the file, the keys and what would be right.
+    """
+    path = Path(path)
+    try:
+        text = path.read_text(encoding="utf-8")
+        raw = tomllib.loads(text)
+    except FileNotFoundError:
+        raise InputError(f"{path}: no such file") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: cannot be read ({error})") from None
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{path}: not valid TOML: {error}") from None
+    provenance: list[Sourced] = []
+    raw = _unwrap(raw, "", provenance)
+    system = SYSTEMS.get(str(raw.get("units")), SYSTEMS["m-N-s"])
+    try:
+        table = StudyTable.model_validate(raw, context={"system": system})
+    except ValidationError as error:
+        raise InputError(_explain(path, error)) from None
+    wrong = list(_cross_references(table))
+    if wrong:
+        raise InputError(_listed(path, wrong))
+    return Study(path, text, table, tuple(provenance))
+
+
+def _unwrap(node: Any, key: str, found: list[Sourced]) -> Any:
+    """The same tree with { value, provenance, note } replaced by its value, noted in `found`."""
+    if isinstance(node, list):
+        return [_unwrap(v, f"{key}[{i}]", found) for i, v in enumerate(node, 1)]
+    if not isinstance(node, dict):
+        return node
+    kind = node.get("provenance")
+    if isinstance(kind, str):
+        found.append(Sourced(key, kind, str(node.get("note", ""))))
+    if "value" in node and set(node) <= {"value", "provenance", "note"}:
+        return node["value"]
+    return {k: _unwrap(v, f"{key}.{k}" if key else k, found) for k, v in node.items()}
+
+
+def _listed(path: Path, wrong: list[str]) -> str:
+    if len(wrong) == 1:
+        return f"{path}: {wrong[0]}"
+    return f"{path}: {len(wrong)} errors\n" + "\n".join(f"  {w}" for w in wrong)
+
+
+def _explain(path: Path, error: ValidationError) -> str:
+    wrong = []
+    for item in error.errors():
+        key = ""
+        for part in item["loc"]:
+            if part in ("given", "motion", "static"):
+                continue  # the union's tag, not a key of the file
+            key += f"[{part + 1}]" if isinstance(part, int) else f"{'.' if key else ''}{part}"
+        message = item["msg"].removeprefix("Value error, ")
+        value = item.get("input")
+        if item["type"] == "missing":
+            message = "is missing"
+        elif item["type"] not in ("value_error", "union_tag_invalid", "union_tag_not_found"):
+            message = f"{message[0].lower()}{message[1:]}"
+            if isinstance(value, int | float | str):
+                message += f", not {value!r}"
+        wrong.append(f"{key}: {message}" if key else message)
+    return _listed(path, wrong)
+
+
+def _near(name: str, known: Iterable[str]) -> str:
+    known = list(known)
+    near = difflib.get_close_matches(name, known, n=1)
+    return f"did you mean {near[0]!r}?" if near else f"there are {', '.join(known) or 'none'}"
+
+
+def _cross_references(table: StudyTable) -> Iterable[str]:
+    """What names something that is not there."""
+    bears: dict[str, str] = {}
+    for name, pin in table.pin.items():
+        if pin.material not in table.material:
+            yield f"pin.{name}.material: no material {pin.material!r}; " + _near(
+                pin.material, table.material
+            )
+        for i, s in enumerate(pin.profile, 1):
+            if s.connection and s.connection in bears:
+                yield (
+                    f"pin.{name}.profile[{i}].connection: {s.connection!r} bears on pin "
+                    f"{bears[s.connection]} already"
+                )
+            if s.connection:
+                bears[s.connection] = name
+    for name, case in table.case.items():
+        if isinstance(case, GivenCase):
+            for connection in case.forces or ():
+                if connection not in bears:
+                    yield f"case.{name}.forces: no pin has a connection {connection!r}; " + _near(
+                        connection, bears
+                    )
+        elif table.mechanism is None:
+            yield f"case.{name}: kind {case.kind!r} needs a [mechanism]"
+    yield from _mechanism_references(table, bears)
+    for key, check, pools in (
+        ("beam_check", table.beam_check, (("pin", table.pin), ("case", table.case))),
+        ("motion_check", table.motion_check, (("case", table.case),)),
+    ):
+        for field, pool in pools:
+            if check is not None and getattr(check, field) not in pool:
+                name = getattr(check, field)
+                yield f"{key}.{field}: no {field} {name!r}; " + _near(name, pool)
+
+
+def _mechanism_references(table: StudyTable, bears: dict[str, str]) -> Iterable[str]:
+    mechanism = table.mechanism
+    if mechanism is None:
+        return
+    have = {c for joint in mechanism.joint.values() for c in joint.connections}
+    driven = any(not isinstance(case, GivenCase) for case in table.case.values())
+    for connection, pin in bears.items():
+        if driven and connection not in have:
+            yield (
+                f"pin.{pin}: connection {connection!r} is not in the mechanism; "
+                + _near(connection, have)
+            )
+    for name, slider in mechanism.slider.items():
+        for joint in slider.joints:
+            if joint not in mechanism.joint:
+                yield f"mechanism.slider.{name}.joints: no joint {joint!r}; " + _near(
+                    joint, mechanism.joint
+                )
+    if mechanism.drive.slider not in mechanism.slider:
+        yield f"mechanism.drive.slider: no slider {mechanism.drive.slider!r}; " + _near(
+            mechanism.drive.slider, mechanism.slider
+        )
+    for name, case in table.case.items():
+        for i, load in enumerate(getattr(case, "apply", ()), 1):
+            where = f"case.{name}.apply[{i}]"
+            if load.body not in mechanism.body:
+                yield f"{where}.body: no body {load.body!r}; " + _near(load.body, mechanism.body)
+            if isinstance(load.at, str) and load.at not in mechanism.joint:
+                yield f"{where}.at: no joint {load.at!r}; " + _near(load.at, mechanism.joint)
+    if (check := table.motion_check) is not None:
+        for field in ("joint", "pivot"):
+            if getattr(check, field) not in mechanism.joint:
+                yield f"motion_check.{field}: no joint {getattr(check, field)!r}; " + _near(
+                    getattr(check, field), mechanism.joint
+                )

@@ -1,0 +1,119 @@
+"""The door: numbers come in and go out in the study's units; inside everything is SI."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+# dimension: its exponents of length, force and time, and an example with a unit
+DIMENSIONS: dict[str, tuple[tuple[int, int, int], str]] = {
+    "length": ((1, 0, 0), "2 in"),
+    "force": ((0, 1, 0), "500 lbf"),
+    "time": ((0, 0, 1), "0.15 s"),
+    "stress": ((-2, 1, 0), "225 ksi"),
+    "mass": ((-1, 1, 2), "12 kg"),
+    "density": ((-4, 1, 2), "0.2836 lb/in^3"),
+    "inertia": ((1, 1, 2), "0.14 kg m^2"),
+    "velocity": ((1, 0, -1), "25 ft/s"),
+    "acceleration": ((1, 0, -2), "9.81 m/s^2"),
+    "energy": ((1, 1, 0), "3 J"),
+    "power": ((1, 1, -1), "3 W"),
+}
+
+
+@dataclass(frozen=True)
+class UnitSystem:
+    """A consistent system: names and SI values of its length, force and time; name of its stress."""
+
+    name: str
+    length: str
+    force: str
+    time: str
+    stress: str
+    in_si: tuple[float, float, float]
+
+    def factor(self, dimension: str) -> float:
+        """SI value of this system's unit of a dimension."""
+        exponents, _ = DIMENSIONS[dimension]
+        return math.prod(f**e for f, e in zip(self.in_si, exponents, strict=True))
+
+
+_POUND_FORCE = 0.45359237 * 9.80665
+
+SYSTEMS = {
+    s.name: s
+    for s in (
+        UnitSystem("in-lbf-s", "in", "lbf", "s", "psi", (0.0254, _POUND_FORCE, 1.0)),
+        UnitSystem("mm-N-s", "mm", "N", "s", "MPa", (1e-3, 1.0, 1.0)),
+        UnitSystem("m-N-s", "m", "N", "s", "Pa", (1.0, 1.0, 1.0)),
+    )
+}
+
+
+@cache
+def _registry() -> Any:
+    import pint
+
+    return pint.UnitRegistry(str(Path(__file__).with_name("units.txt")))
+
+
+@cache
+def _expected(dimension: str) -> Any:
+    exponents, _ = DIMENSIONS[dimension]
+    unit = _registry().Unit("")
+    for base, e in zip(("m", "N", "s"), exponents, strict=True):
+        unit = unit * _registry().Unit(base) ** e
+    return unit
+
+
+def to_si(value: object, dimension: str, system: UnitSystem) -> float:
+    """A study's number or string as a float in SI.
+
+    Raises: ValueError saying what is wrong with it and what would be right.
+    """
+    _, example = DIMENSIONS[dimension]
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        raise ValueError(f"{value!r} is not a {dimension}; write a number or a string like {example!r}")
+    if isinstance(value, str):
+        si = _parse(value, dimension, system)
+    else:
+        si = float(value) * system.factor(dimension)
+    if not math.isfinite(si):
+        raise ValueError(f"{value!r} is not finite")
+    return si
+
+
+def _parse(text: str, dimension: str, system: UnitSystem) -> float:
+    _, example = DIMENSIONS[dimension]
+    match = re.fullmatch(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", text)
+    if not match:
+        raise ValueError(f"{text!r} does not begin with a number; write for instance {example!r}")
+    number, unit = float(match[1]), match[2]
+    if not unit:
+        return number * system.factor(dimension)
+    return number * _unit_factor(unit, dimension, text)
+
+
+@cache
+def _unit_factor(unit: str, dimension: str, text: str) -> float:
+    import pint
+
+    _, example = DIMENSIONS[dimension]
+    try:
+        parsed = _registry().Quantity(1.0, unit)
+    except pint.UndefinedUnitError as error:
+        unknown = error.unit_names if isinstance(error.unit_names, str) else error.unit_names[0]
+        near = difflib.get_close_matches(str(unknown), [str(u) for u in _registry()._units], n=1)
+        hint = f"; did you mean {near[0]!r}?" if near else f"; write for instance {example!r}"
+        raise ValueError(f"unknown unit {str(unknown)!r} in {text!r}{hint}") from None
+    except Exception:  # pint's parser raises what its tokenizer raises
+        raise ValueError(f"cannot read the unit in {text!r}; write for instance {example!r}") from None
+    try:
+        return float(parsed.to(_expected(dimension)).magnitude)
+    except pint.DimensionalityError:
+        raise ValueError(f"{text!r} is not a {dimension}; write for instance {example!r}") from None

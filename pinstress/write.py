@@ -1,0 +1,92 @@
+"""The `run` command: analyse, write the output folder as a whole, print the table."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import click
+from rich.console import Console
+
+from pinstress.output import replacing, require_replaceable
+from pinstress.pipeline import Progress, run
+from pinstress.study import Study
+from reports.results import Field, Results, Units
+from reports.terminal import print_safety_factors
+from reports.vtk import render_pin, renderer_problem, write_vtu
+from reports.write import write_reports
+
+
+def run_and_write(study: Study, directory: Path, *, pictures: bool, **chosen: Any) -> int:
+    """Run a study into a folder; returns the exit status.
+
+    chosen: what pinstress.pipeline.run takes. Raises: InputError, ArithmeticError.
+    """
+    require_replaceable(directory)
+    problem = renderer_problem() if pictures else None
+    drawn: dict[tuple[str, str], Path] = {}
+    s = study.system
+    units = Units(s.length, s.force, s.stress, s.time)
+    with replacing(directory) as staging:
+        vtk = staging / "vtk"
+        vtk.mkdir()
+
+        def keep(field: Field) -> None:
+            name = f"{field.pin}_{field.case}"
+            write_vtu(field, vtk / f"{name}.vtu", units)
+            if pictures and problem is None:
+                picture = staging / "plots" / f"pin_{name}.png"
+                picture.parent.mkdir(exist_ok=True)
+                render_pin(field, picture, units, f"pin {field.pin}, {field.case}")
+                drawn[field.pin, field.case] = picture
+
+        with progress_bar() as progress:
+            results = run(study, keep=keep, progress=progress, **chosen)
+            progress("report", 1.0)
+            write_reports(results, staging, drawn, plots=pictures)
+    print_safety_factors(results, Console())
+    _tell_left_out(results)
+    if problem is not None:
+        click.echo(f"No pictures of the pins: {problem}", err=True)
+    click.echo(f"Report: {directory / 'report.html'}", err=True)
+    return _tell_not_reached(results)
+
+
+def _tell_left_out(results: Results) -> None:
+    for pin in {p.pin: p for p in results.pins if p.left_out}.values():
+        click.echo(
+            f"Pin {pin.pin}: the force at {', '.join(pin.left_out)} is left out, because the pin is "
+            f"held there.",
+            err=True,
+        )
+
+
+def _tell_not_reached(results: Results) -> int:
+    missed = [p for p in results.pins if p.verdict != "converged"]
+    if not missed:
+        return 0
+    reasons: dict[str, list[str]] = {}
+    for p in missed:
+        reasons.setdefault(p.note, []).append(f"{p.pin} ({p.case})")
+    for reason, which in reasons.items():
+        click.echo(f"Not reached: {', '.join(which)}: {reason}.", err=True)
+    return 1
+
+
+@contextmanager
+def progress_bar() -> Iterator[Progress]:
+    """A bar on stderr while it is a terminal; nothing otherwise."""
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+    console = Console(stderr=True)
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task("reactions", total=1.0)
+
+        def tell(message: str, part: float) -> None:
+            bar.update(task, description=message, completed=part)
+
+        show: Callable[[str, float], None] = tell
+        yield show
