@@ -11,7 +11,7 @@ import numpy as np
 from fea.envelope import Envelope, envelope
 from fea.linear import SolveError
 from fea.material import Material
-from fea.peak import Peak, Refinement, discretisation_error
+from fea.peak import Peak, Refinement, Verdict, discretisation_error
 from fea.solid import PinLoads, SolidModel, UnitFields, out_of_balance
 from geometry import Pin, sharp_corners
 from geometry.solid_mesh import MeshSize, solid_mesh
@@ -20,6 +20,9 @@ STEP = 2.0**0.5  # from one mesh to the next
 MOST_UNKNOWNS = 300_000
 NEAR = 0.1  # of the local diameter: a peak this close to a sharp place is that place's
 BALANCE = 1e-6
+
+
+Found = list[tuple[Refinement, UnitFields, Envelope]]  # one entry per mesh
 
 
 @dataclass(frozen=True)
@@ -49,41 +52,50 @@ def refine(
 
     Raises: MeshError, SolveError.
     """
-    clamps = tuple(pin.surface(name) for name in clamps)
-    refused = {c.case: _refusal(pin, clamps, c) for c in cases}
-    live = [c for c in cases if refused[c.case] is None]
-    axes = (0, 1, 2) if any(c.axial for c in live) else (0, 1)
-    names = tuple(dict.fromkeys(s for c in live for s in c.surfaces))
-    units = tuple((name, axis) for name in names for axis in axes)
-    edges = tuple(sorted({z for n in names for z in (pin.band(n).z0, pin.band(n).z1)}))
-    edges += tuple(z for _, z in clamp_edges(pin, clamps))
-    size = size or MeshSize()
-    history: dict[str, tuple[Refinement, ...]] = {c.case: () for c in live}
-    done: dict[str, tuple[UnitFields, Envelope]] = {}
+    held = tuple(pin.surface(name) for name in clamps)
+    refused = {c.case: why for c in cases if (why := _refusal(pin, held, c))}
+    live = tuple(c for c in cases if c.case not in refused)
+    found: dict[str, Found] = {c.case: [] for c in live}
     for level in range(meshes if live else 0):
-        if level and model.unknowns * STEP**3 > MOST_UNKNOWNS:
+        if level and _unknowns(found) * STEP**3 > MOST_UNKNOWNS:
             break
         progress(f"pin {pin.name}, mesh {level + 1}")
         start = time.perf_counter()
-        model = SolidModel(pin, solid_mesh(pin, size.finer(STEP**level), edges), material, clamps)
-        fields = model.solve(units)
+        fields = _unit_fields(pin, material, held, live, (size or MeshSize()).finer(STEP**level))
         for case in live:
-            found = envelope(fields, case)
-            step = Refinement(model.unknowns, found.maximum, time.perf_counter() - start)
-            history[case.case] += (step,)
-            done[case.case] = (fields, found)
-        if level and not any(
-            _worth_refining(pin, clamps, history[c.case], done[c.case][1], tolerance) for c in live
-        ):
+            top = envelope(fields, case)
+            spent = time.perf_counter() - start
+            step = Refinement(fields.space.unknowns, top.maximum, spent)
+            found[case.case].append((step, fields, top))
+        if level and not any(_worth_refining(pin, held, found[c.case], tolerance) for c in live):
             break
     return tuple(
-        Solution(Peak(pin.name, c.case, "solid", "rigid", refused[c.case] or ""), None, None)
-        if refused[c.case]
-        else Solution(
-            _judge(pin, clamps, c.case, history[c.case], done[c.case][1], tolerance),
-            *done[c.case],
-        )
+        Solution(Peak(pin.name, c.case, "solid", "rigid", refused[c.case]), None, None)
+        if c.case in refused
+        else _judge(pin, held, c.case, found[c.case], tolerance)
         for c in cases
+    )
+
+
+def _unknowns(found: dict[str, Found]) -> int:
+    return max(steps[-1][0].dofs for steps in found.values())
+
+
+def _unit_fields(
+    pin: Pin,
+    material: Material,
+    held: tuple[str, ...],
+    cases: tuple[PinLoads, ...],
+    size: MeshSize,
+) -> UnitFields:
+    """Unit fields for all that the cases load, on a mesh refined at the edges of bands and clamps."""
+    axes = (0, 1, 2) if any(c.axial for c in cases) else (0, 1)
+    names = tuple(dict.fromkeys(name for c in cases for name in c.surfaces))
+    edges = tuple(z for name in names for z in (pin.band(name).z0, pin.band(name).z1))
+    edges += tuple(z for _, z in clamp_edges(pin, held))
+    mesh = solid_mesh(pin, size, tuple(dict.fromkeys(edges)))
+    return SolidModel(pin, mesh, material, held).solve(
+        tuple((name, axis) for name in names for axis in axes)
     )
 
 
@@ -129,46 +141,44 @@ def sharp_place(
     return what if distance <= NEAR * 2.0 * radius else None
 
 
-def _worth_refining(
-    pin: Pin,
-    clamps: tuple[str, ...],
-    history: tuple[Refinement, ...],
-    found: Envelope,
-    tolerance: float,
-) -> bool:
-    if discretisation_error(history, STEP) <= tolerance * found.maximum:
+def _history(found: Found) -> tuple[Refinement, ...]:
+    return tuple(step for step, _, _ in found)
+
+
+def _worth_refining(pin: Pin, held: tuple[str, ...], found: Found, tolerance: float) -> bool:
+    top = found[-1][2]
+    if discretisation_error(_history(found), STEP) <= tolerance * top.maximum:
         return False
-    return sharp_place(pin, clamps, found.location) is None
+    return sharp_place(pin, held, top.location) is None
 
 
 def _judge(
-    pin: Pin,
-    clamps: tuple[str, ...],
-    case: str,
-    history: tuple[Refinement, ...],
-    found: Envelope,
-    tolerance: float,
-) -> Peak:
-    if not np.isfinite(found.maximum):
+    pin: Pin, held: tuple[str, ...], case: str, found: Found, tolerance: float
+) -> Solution:
+    history = _history(found)
+    _, fields, top = found[-1]
+    if not np.isfinite(top.maximum):
         raise SolveError(f"pin {pin.name}, case {case}: the stress is not finite")
-    error = discretisation_error(history, STEP) if len(history) > 1 else found.maximum
-    relative = error / found.maximum if found.maximum else 0.0
-    place = sharp_place(pin, clamps, found.location)
-    if place and found.maximum:
-        verdict, note = "unconverged", f"the peak sits at {place}, where it grows with every mesh"
+    error = discretisation_error(history, STEP) if len(history) > 1 else top.maximum
+    relative = error / top.maximum if top.maximum else 0.0
+    place = sharp_place(pin, held, top.location)
+    verdict: Verdict = "unconverged"
+    if place and top.maximum:
+        note = f"the peak sits at {place}, where it grows with every mesh"
     elif relative <= tolerance:
         verdict, note = "converged", f"known to {relative:.1%}"
     else:
-        verdict, note = "unconverged", f"known to {relative:.1%} only, {tolerance:.1%} was asked for"
-    return Peak(
+        note = f"known to {relative:.1%} only, {tolerance:.1%} was asked for"
+    peak = Peak(
         pin=pin.name,
         case=case,
         model="solid",
-        verdict=verdict,  # type: ignore[arg-type]
+        verdict=verdict,
         note=note,
-        max_von_mises=found.maximum,
+        max_von_mises=top.maximum,
         error_estimate=error,
-        location=found.location,
-        instant=found.instant,
+        location=top.location,
+        instant=top.instant,
         history=history,
     )
+    return Solution(peak, fields, top)

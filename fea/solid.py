@@ -67,8 +67,10 @@ class UnitFields:
 
 
 class SolidModel:
-    """A pin on one mesh, held at surfaces (by name) or, if there are none, at six unknowns that
-    only take away the rigid motions.
+    """A pin on one mesh, held at surfaces (by name).
+
+    Without any, every load's resultant and couple are taken up by forces spread over all nodes,
+    which cancel where loads are in balance, and six unknowns are held against rigid motions.
 
     Leaves out: plasticity, contact and clearance (loads are tractions), the pin's own weight and
     inertia, moments at connections.
@@ -129,6 +131,9 @@ class SolidModel:
         """Displacements (n, L) under F (n, L), and the clamps' resultant force (L, 3)."""
         free = np.setdiff1d(np.arange(self.unknowns), self.fixed)
         K = self.stiffness
+        if not self.clamps:
+            rigid, _ = np.linalg.qr(rigid_modes(self.space.nodes))
+            F = F - rigid @ (rigid.T @ F)
         u = np.zeros_like(F)
         u[free] = factorize(K[free][:, free], free // 3)(F[free])
         reaction = np.zeros_like(F)

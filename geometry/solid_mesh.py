@@ -17,7 +17,10 @@ from geometry.meridian import Arc, Edge, meridian, sharp_corners
 from geometry.pin import Pin
 
 SMALLEST_JACOBIAN = 0.1  # min / max of det J that every element must exceed
+MOST_REPAIRS = 8  # halvings of an edge's curvature
+TETRA10, TRIANGLE6 = 11, 9  # gmsh's element types
 GMSH_TO_VTK_TETRA10 = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]
+GMSH_EDGES = ((0, 1), (1, 2), (2, 0), (3, 0), (2, 3), (1, 3))  # of its nodes 4 to 9
 
 
 class MeshError(ArithmeticError):
@@ -44,12 +47,13 @@ class MeshSize:
 class SolidMesh:
     """mesh: quadratic tetrahedra, m; its `boundaries` map surface names to facets.
 
-    jacobian: smallest min/max det J of all elements. repaired: whether gmsh's optimiser was needed.
+    jacobian: smallest min/max det J of all elements. repaired: number of elements whose edges were
+    straightened to get there.
     """
 
     mesh: MeshTet2
     jacobian: float
-    repaired: bool
+    repaired: int
 
     @property
     def nodes(self) -> NDArray[np.float64]:
@@ -71,12 +75,12 @@ def solid_mesh(pin: Pin, size: MeshSize, edges: tuple[float, ...] = ()) -> Solid
         tried.append(jacobian)
     raise MeshError(
         f"pin {pin.name}: gmsh gave inverted or sliver elements at three sizes (min/max Jacobian "
-        f"{', '.join(f'{j:.2g}' for j in tried)}, needed above {SMALLEST_JACOBIAN}) and its "
-        "optimiser did not repair them; look for a fillet or bore very small beside its neighbours"
+        f"{', '.join(f'{j:.2g}' for j in tried)}, needed above {SMALLEST_JACOBIAN}), and "
+        "straightening their edges did not repair them; look for a fillet or bore very small beside its neighbours"
     )
 
 
-def _mesh(pin: Pin, size: MeshSize, edges: tuple[float, ...]) -> tuple[MeshTet2, float, bool]:
+def _mesh(pin: Pin, size: MeshSize, edges: tuple[float, ...]) -> tuple[MeshTet2, float, int]:
     with gmsh_model(pin.name) as gmsh:
         outline = meridian(pin)
         _revolve(gmsh, outline)
@@ -85,11 +89,7 @@ def _mesh(pin: Pin, size: MeshSize, edges: tuple[float, ...]) -> tuple[MeshTet2,
         try:
             gmsh.model.mesh.generate(3)
             gmsh.model.mesh.setOrder(2)
-            jacobian = _jacobian(gmsh)
-            repaired = jacobian <= SMALLEST_JACOBIAN
-            if repaired:
-                gmsh.model.mesh.optimize("HighOrder")
-                jacobian = _jacobian(gmsh)
+            jacobian, repaired = _repair(gmsh)
         except Exception as error:  # gmsh raises bare Exception
             raise MeshError(f"pin {pin.name}: gmsh could not mesh it ({error})") from None
         return _collect(gmsh, surfaces), jacobian, repaired
@@ -179,24 +179,47 @@ def _set_sizes(gmsh: Any, pin: Pin, size: MeshSize, edges: tuple[float, ...]) ->
         gmsh.option.setNumber(f"Mesh.{option}", 0)
 
 
-def _jacobian(gmsh: Any) -> float:
-    """Smallest min/max det J over all tetrahedra (gmsh bounds it by Bezier coefficients)."""
-    tags = np.concatenate(gmsh.model.mesh.getElements(3)[1])
+def _jacobians(gmsh: Any) -> NDArray[np.float64]:
+    """min/max det J of every tetrahedron (gmsh bounds them by Bezier coefficients)."""
+    tags = gmsh.model.mesh.getElementsByType(TETRA10)[0]
     low = np.asarray(gmsh.model.mesh.getElementQualities(tags, "minDetJac"))
     high = np.asarray(gmsh.model.mesh.getElementQualities(tags, "maxDetJac"))
-    return float((low / high).min())
+    return low / high
+
+
+def _repair(gmsh: Any) -> tuple[float, int]:
+    """Straighten the edges of bad elements, half-way at a time, until all are good.
+
+    Returns the smallest min/max Jacobian and how many elements were touched. gmsh's own optimiser
+    for curved elements is not used: it can abort the whole process.
+    """
+    touched: set[int] = set()
+    ratios = _jacobians(gmsh)
+    for _ in range(MOST_REPAIRS):
+        bad = np.flatnonzero(ratios <= SMALLEST_JACOBIAN)
+        if not len(bad):
+            break
+        touched.update(bad.tolist())
+        nodes = gmsh.model.mesh.getElementsByType(TETRA10)[1].reshape(-1, 10)[bad]
+        for (a, b), middle in zip(GMSH_EDGES, range(4, 10), strict=True):
+            for i, k, m in np.unique(nodes[:, [a, b, middle]], axis=0):
+                ends = [np.asarray(gmsh.model.mesh.getNode(n)[0]) for n in (i, k)]
+                now = np.asarray(gmsh.model.mesh.getNode(m)[0])
+                gmsh.model.mesh.setNode(m, list((now + (ends[0] + ends[1]) / 2.0) / 2.0), [])
+        ratios = _jacobians(gmsh)
+    return float(ratios.min()), len(touched)
 
 
 def _collect(gmsh: Any, surfaces: dict[str, list[int]]) -> MeshTet2:
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     row = np.zeros(int(tags.max()) + 1, dtype=np.int64)
     row[tags] = np.arange(len(tags))
-    nodes = gmsh.model.mesh.getElementsByType(11)[1].reshape(-1, 10)[:, GMSH_TO_VTK_TETRA10]
+    nodes = gmsh.model.mesh.getElementsByType(TETRA10)[1].reshape(-1, 10)[:, GMSH_TO_VTK_TETRA10]
     triangles, sets = [], {}
     count = 0
     for name, faces in surfaces.items():
         for face in faces:
-            facets = gmsh.model.mesh.getElementsByType(9, face)[1].reshape(-1, 6)[:, :3]
+            facets = gmsh.model.mesh.getElementsByType(TRIANGLE6, face)[1].reshape(-1, 6)[:, :3]
             triangles.append(row[facets])
             sets.setdefault(name, []).append(np.arange(count, count + len(facets)))
             count += len(facets)

@@ -154,6 +154,8 @@ def _pin_item(joint: Joint) -> str:
 
 
 def _check(linkage: Linkage) -> None:
+    if not linkage.joints:
+        raise LinkageError("the linkage has no joints")
     bodies = {b.name: b for b in linkage.bodies}
     names = [c.name for j in linkage.joints for c in j.connections]
     for what, seen in (

@@ -1,0 +1,94 @@
+"""Von Mises, recovery at the surface, and the envelope over instants."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fea.envelope import envelope
+from fea.material import Material
+from fea.solid import PinLoads, SolidModel, UnitFields
+from fea.stress import von_mises
+from geometry import Pin, Segment
+from geometry.solid_mesh import MeshSize, solid_mesh
+
+
+@pytest.mark.parametrize(
+    ("stress", "expected"),
+    [
+        ([100, 0, 0, 0, 0, 0], 100.0),
+        ([0, 0, 0, 0, 0, 100], 100.0 * np.sqrt(3)),
+        ([70, 70, 70, 0, 0, 0], 0.0),
+        ([50, -50, 0, 0, 0, 0], 50.0 * np.sqrt(3)),
+    ],
+)
+def test_known_states(stress: list[float], expected: float) -> None:
+    assert von_mises(np.array(stress, dtype=float)) == pytest.approx(expected, abs=1e-6)
+
+
+@given(st.lists(st.floats(-1e3, 1e3), min_size=6, max_size=6))
+def test_from_principal_stresses(s: list[float]) -> None:
+    xx, yy, zz, yz, xz, xy = s
+    a, b, c = np.linalg.eigvalsh([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    expected = np.sqrt(((a - b) ** 2 + (b - c) ** 2 + (c - a) ** 2) / 2)
+    assert von_mises(np.array(s)) == pytest.approx(expected, abs=1e-5)
+
+
+@pytest.fixture(scope="module")
+def bar(steel: Material) -> UnitFields:
+    """A bar clamped at its start with two bands."""
+    pin = Pin(
+        "P", (Segment(0.04, 0.02), Segment(0.02, 0.02, connection="B"),
+              Segment(0.02, 0.02, connection="C"))
+    )  # fmt: skip
+    mesh = solid_mesh(pin, MeshSize(across=3.0), (0.04, 0.06, 0.08))
+    units = tuple((name, axis) for name in "BC" for axis in (0, 1))
+    return SolidModel(pin, mesh, steel, ("start",)).solve(units)
+
+
+def test_clamps_answer_every_unit_load(bar: UnitFields) -> None:
+    expected = np.zeros((4, 3))
+    for k, (_, axis) in enumerate(bar.loads):
+        expected[k, axis] = -1.0
+    assert bar.support == pytest.approx(expected, abs=1e-9)
+
+
+def test_the_free_surface_carries_no_traction(bar: UnitFields) -> None:
+    """With the mean normal of a node's facets, at every node inside the unloaded cylinder and the end face."""
+    s, space = bar.surface, bar.space
+    index = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])
+    near = space.nodes[s.corners][..., 2]
+    free = np.isin(s.facets, space.mesh.boundaries["segment 1"])
+    free &= (near.min(axis=1) > 0.001) & (near.max(axis=1) < 0.039)
+    assert free.sum() > 20
+    sigma = bar.stress[s.corners[free]][..., index, :]
+    mean = np.zeros((len(space.nodes), 3))
+    np.add.at(mean, s.corners, s.normals)
+    normal = mean[s.corners[free]]
+    normal /= np.linalg.norm(normal, axis=2, keepdims=True)
+    traction = np.einsum("fnabl,fnb->fnal", sigma, normal)
+    assert np.abs(traction).max() < 1e-12 * np.abs(bar.stress).max()
+
+
+def test_the_envelope_is_the_largest_of_all_instants(bar: UnitFields) -> None:
+    rng = np.random.default_rng(0)
+    forces = rng.standard_normal((25, 2, 3))
+    forces[..., 2] = 0.0
+    found = envelope(bar, PinLoads("case", ("B", "C"), forces))
+    brute = np.stack(
+        [
+            von_mises(bar.stress[bar.surface.nodes] @ forces[t, :, :2].ravel())
+            for t in range(len(forces))
+        ]
+    )
+    assert found.maximum == pytest.approx(brute.max(), rel=1e-12)
+    assert found.instant == int(brute.max(axis=1).argmax())
+    assert found.field == pytest.approx(brute.max(axis=0), rel=1e-10)
+    assert found.coefficients == pytest.approx(forces[found.instant, :, :2].ravel())
+
+
+def test_a_band_without_force_in_a_case_is_unloaded(bar: UnitFields) -> None:
+    only_c = PinLoads("case", ("C",), np.array([[[1.0, 2.0, 0.0]]]))
+    assert bar.coefficients(only_c).tolist() == [[0.0, 0.0, 1.0, 2.0]]

@@ -1,0 +1,104 @@
+"""Solid meshes: volume, areas, names, valid elements."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from fea.elasticity import Discretisation
+from fea.surface import surface, uniform_share
+from geometry import Pin, Segment
+from geometry import solid_mesh as module
+from geometry.gmsh_session import gmsh_model
+from geometry.solid_mesh import MeshError, MeshSize, solid_mesh
+
+PINS = {
+    "plain": Pin("plain", (Segment(0.05, 0.02, connection="B"),)),
+    "sharp": Pin("sharp", (Segment(0.005, 0.03), Segment(0.03, 0.02, connection="B"))),
+    "fillet": Pin(
+        "fillet", (Segment(0.02, 0.02, connection="B"), Segment(0.01, 0.03)), fillet=0.003
+    ),
+    "whole step": Pin(
+        "whole", (Segment(0.02, 0.03), Segment(0.02, 0.02, connection="B")), fillet=0.005
+    ),
+    "bores": Pin(
+        "bores",
+        (Segment(0.02, 0.02, bore=0.01, connection="B"), Segment(0.02, 0.03, bore=0.006)),
+    ),
+    "large": Pin("large", (Segment(5.0, 2.0, connection="B"), Segment(1.0, 3.0))),
+}
+
+
+@pytest.mark.parametrize("name", PINS)
+def test_volume_area_names_and_elements(name: str) -> None:
+    pin = PINS[name]
+    solid = solid_mesh(pin, MeshSize(), (pin.band("B").z0, pin.band("B").z1))
+    space = Discretisation(solid.mesh)
+    assert solid.jacobian > 0.1
+    # quadratic facets on a circle in 12 parts or more: 1e-4 is twice what is seen
+    assert space.weights.sum() == pytest.approx(pin.volume, rel=1e-4)
+    _, area = uniform_share(space, surface(space), "B")
+    assert area == pytest.approx(pin.band("B").area, rel=1e-4)
+    facets = np.concatenate(list(solid.mesh.boundaries.values()))
+    assert np.array_equal(np.sort(facets), np.sort(solid.mesh.boundary_facets()))
+    expected = {e.name for e in module.meridian(pin) if e.name}
+    assert set(solid.mesh.boundaries) == expected
+
+
+def test_nodes_of_a_band_lie_on_its_cylinder() -> None:
+    pin = PINS["fillet"]
+    space = Discretisation(solid_mesh(pin, MeshSize()).mesh)
+    s = surface(space)
+    on = s.corners[np.isin(s.facets, space.mesh.boundaries["B"])]
+    x = space.nodes[on]
+    assert np.hypot(x[..., 0], x[..., 1]) == pytest.approx(np.full(on.shape, 0.01), rel=1e-9)
+    outward = s.normals[np.isin(s.facets, space.mesh.boundaries["B"])]
+    radial = x[..., :2] / 0.01
+    assert np.sum(outward[..., :2] * radial, axis=2).min() > math.cos(0.05)
+
+
+def test_the_same_pin_gives_the_same_mesh() -> None:
+    one, two = (solid_mesh(PINS["sharp"], MeshSize()) for _ in range(2))
+    assert np.array_equal(one.nodes, two.nodes)
+    assert np.array_equal(one.mesh.t, two.mesh.t)
+
+
+def test_finer_means_more_elements() -> None:
+    coarse = solid_mesh(PINS["plain"], MeshSize())
+    fine = solid_mesh(PINS["plain"], MeshSize().finer(2.0))
+    assert fine.mesh.nelements > 4 * coarse.mesh.nelements
+
+
+def test_bad_elements_are_repaired(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A mesh so coarse that gmsh's curved elements turn inside out (its own optimiser aborts the
+    process on this one) must come out valid, with few elements touched and the volume kept."""
+    pin = Pin("P", tuple(Segment(0.02, 0.02, connection=c) for c in "ABC"))
+    edges = (0.0, 0.02, 0.04, 0.06)
+    solid = solid_mesh(pin, MeshSize(across=2.5).finer(2.0**0.5), edges)
+    assert 0 < solid.repaired < 0.02 * solid.mesh.nelements
+    assert solid.jacobian > 0.1
+    assert Discretisation(solid.mesh).weights.min() > 0.0
+    assert Discretisation(solid.mesh).weights.sum() == pytest.approx(pin.volume, rel=1e-3)
+    monkeypatch.setattr(module, "SMALLEST_JACOBIAN", 1.5)  # more than any element can have
+    with pytest.raises(MeshError, match="inverted or sliver elements at three sizes"):
+        solid_mesh(pin, MeshSize(across=2.5).finer(2.0**0.5), edges)
+
+
+def test_the_jacobian_measure_sees_an_inverted_element() -> None:
+    """A mid-edge node pushed across its element turns det J negative; gmsh's bound must say so."""
+    with gmsh_model("one") as gmsh:
+        gmsh.model.occ.addBox(0, 0, 0, 1, 1, 1)
+        gmsh.model.occ.synchronize()
+        gmsh.option.setNumber("Mesh.MeshSizeMin", 1.0)
+        gmsh.model.mesh.generate(3)
+        gmsh.model.mesh.setOrder(2)
+        assert module._jacobians(gmsh) == pytest.approx(1.0)
+        nodes = gmsh.model.mesh.getElementsByType(11)[1].reshape(-1, 10)[0]
+        a, b = (np.array(gmsh.model.mesh.getNode(n)[0]) for n in nodes[[0, 3]])
+        gmsh.model.mesh.setNode(int(nodes[4]), list(a + 1.2 * (b - a)), [])
+        assert module._jacobians(gmsh).min() < 0.0
+        jacobian, touched = module._repair(gmsh)
+        assert jacobian > 0.1
+        assert touched >= 1
