@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import csv
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -195,15 +193,3 @@ def _applied_force(study: Study, load: ApplyTable) -> tuple[tuple[float, float],
         f"{impulse.impulse_time:g} s."
     )
     return (float(size * x), float(size * y)), note
-
-
-def read_published(path: Path, columns: tuple[str, ...]) -> list[dict[str, str]]:
-    """Rows of a table of published values. Raises: InputError."""
-    try:
-        rows = list(csv.DictReader(path.read_text(encoding="utf-8-sig").splitlines()))
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: cannot be read ({error})") from None
-    for column in columns:
-        if not rows or column not in rows[0]:
-            raise InputError(f"{path}: column {column!r} is missing; needed: {','.join(columns)}")
-    return rows

@@ -6,6 +6,7 @@ from loads import Linkage, mobility
 from pinstress import build
 from pinstress.errors import InputError
 from pinstress.limits import require_built
+from pinstress.published import read_published
 from pinstress.schema import GivenCase, MotionCase
 from pinstress.study import Study
 
@@ -14,6 +15,7 @@ def describe(study: Study) -> str:
     """A summary of a valid study. Raises: InputError for what only its pieces together show."""
     table, system = study.table, study.system
     require_built(study, table.analysis.model)
+    read_published(study)
     lines = [f"{study.path}: {table.title}", f"units {system.name}"]
     mechanism = build.linkage(study) if table.mechanism else None
     if mechanism is not None:

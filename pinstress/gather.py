@@ -16,6 +16,7 @@ from loads import Lever, energy
 from pinstress import build
 from pinstress.build import CaseLoads
 from pinstress.errors import InputError
+from pinstress.published import Published
 from pinstress.schema import MotionCheckTable
 from pinstress.study import Study
 from reports import results as plain
@@ -31,6 +32,7 @@ def results(
     loads: dict[str, CaseLoads],
     solutions: list[tuple[Task, Solution]],
     beam: plain.BeamCheck | None,
+    published: Published,
     tolerance: float,
 ) -> plain.Results:
     """Everything a run found."""
@@ -43,16 +45,16 @@ def results(
         units=plain.Units(system.length, system.force, system.stress, system.time),
         required_safety_factor=table.analysis.required_safety_factor,
         tolerance=tolerance,
-        pins=tuple(_pin_result(study, loads, task, s.peak) for task, s in solutions),
+        pins=tuple(_pin_result(study, loads, task, s.peak, published) for task, s in solutions),
         shapes=tuple(_shape(study, task) for task in tasks),
-        reactions=tuple(_reactions(study, name, case) for name, case in loads.items()),
+        reactions=tuple(_reactions(study, name, case, published) for name, case in loads.items()),
         drive=tuple(
             _drive(study, name, case)
             for name, case in loads.items()
             if case.dynamics is not None and case.reactions.times is not None
         ),
         beam_check=beam,
-        motion_check=_motion_check(study, loads),
+        motion_check=motion_check(study, loads, published),
         provenance=tuple(plain.Provenance(s.key, s.kind, s.note) for s in study.provenance),
         published_source=table.published.source if table.published else "",
         assumptions=tuple(table.assumptions),
@@ -61,7 +63,11 @@ def results(
 
 
 def _pin_result(
-    study: Study, loads: dict[str, CaseLoads], task: Task, peak: Peak
+    study: Study,
+    loads: dict[str, CaseLoads],
+    task: Task,
+    peak: Peak,
+    published: Published,
 ) -> plain.PinResult:
     unit = study.system.factor
     material = build.material(study, study.table.pin[peak.pin].material)
@@ -78,7 +84,7 @@ def _pin_result(
     if times is not None and dynamics is not None:
         offset = build.drive(study).offset
         position = float(dynamics.motion.length[peak.instant] - offset) / unit("length")
-    published = _published_peak(study, peak)
+    theirs = published.peaks.get((peak.pin, peak.case), (None, None))
     return plain.PinResult(
         pin=peak.pin,
         case=peak.case,
@@ -101,24 +107,13 @@ def _pin_result(
         ),
         held=", ".join(task.clamps) or "nothing (loads in balance)",
         left_out=task.left_out[peak.case],
-        published_max_von_mises=published.get("max_von_mises"),
-        published_safety_factor=published.get("safety_factor"),
+        published_max_von_mises=theirs[0],
+        published_safety_factor=theirs[1],
     )
 
 
 def _scaled(value: float | None, factor: float) -> float | None:
     return None if value is None else value / factor
-
-
-def _published_peak(study: Study, peak: Peak) -> dict[str, float]:
-    published = study.table.published
-    if published is None or published.peaks is None:
-        return {}
-    columns = ("pin", "case", "max_von_mises", "safety_factor")
-    for row in build.read_published(study.beside(published.peaks), columns):
-        if (row["pin"], row["case"]) == (peak.pin, peak.case):
-            return {k: float(row[k]) for k in columns[2:]}
-    return {}
 
 
 def _shape(study: Study, task: Task) -> plain.PinShape:
@@ -136,16 +131,12 @@ def _shape(study: Study, task: Task) -> plain.PinShape:
     return plain.PinShape(pin.name, tuple(segments), name, weight)  # type: ignore[arg-type]
 
 
-def _reactions(study: Study, name: str, case: CaseLoads) -> plain.ReactionTable:
+def _reactions(
+    study: Study, name: str, case: CaseLoads, published: Published
+) -> plain.ReactionTable:
     unit = study.system.factor
     r, dynamics = case.reactions, case.dynamics
     on = {c: p for p in study.table.pin for c in study.connections(p)}
-    published = {}
-    if study.table.published and study.table.published.reactions:
-        rows = build.read_published(
-            study.beside(study.table.published.reactions), ("case", "connection", "force")
-        )
-        published = {x["connection"]: float(x["force"]) for x in rows if x["case"] == name}
     position = None
     if dynamics is not None and r.times is not None:
         position = (dynamics.motion.length - build.drive(study).offset) / unit("length")
@@ -159,7 +150,7 @@ def _reactions(study: Study, name: str, case: CaseLoads) -> plain.ReactionTable:
         forces=r.forces / unit("force"),
         moments=r.moments / unit("energy"),
         shared=dynamics.shared if dynamics else (),
-        published=published,
+        published={c: f for (k, c), f in published.reactions.items() if k == name},
         note=case.note,
     )
 
@@ -205,19 +196,21 @@ def field(study: Study, solution: Solution) -> plain.Field | None:
     )
 
 
-def beam_check(study: Study, task: Task, material: Material, at: Solution) -> plain.BeamCheck:
-    """The beam check of a pin at the instant of its largest force.
+def require_cantilever(study: Study, task: Task, case: str) -> None:
+    """Raises: InputError if the pin of the beam check is no cantilever with one load."""
+    loads = next(c for c in task.loads if c.case == case)
+    if task.clamps != ("start",) or len(loads.surfaces) != 1:
+        raise InputError(
+            f"{study.path}: beam_check: pin {task.pin.name} must be clamped at its start face alone "
+            "and loaded on one band to be a cantilever"
+        )
 
-    Raises: InputError if the pin is no cantilever with one load.
-    """
+
+def beam_check(study: Study, task: Task, material: Material, at: Solution) -> plain.BeamCheck:
+    """The beam check of a pin at the instant of its largest force."""
     check, pin = study.table.beam_check, task.pin
     assert check is not None and at.fields is not None
     loads = next(c for c in task.loads if c.case == at.peak.case)
-    if task.clamps != ("start",) or len(loads.surfaces) != 1:
-        raise InputError(
-            f"{study.path}: beam_check: pin {pin.name} must be clamped at its start face alone and "
-            "loaded on one band to be a cantilever"
-        )
     (band,) = loads.surfaces
     forces = loads.forces[:, 0, :2]
     plane = forces[np.linalg.norm(forces, axis=1).argmax()]
@@ -250,7 +243,10 @@ def beam_check(study: Study, task: Task, material: Material, at: Solution) -> pl
     )
 
 
-def _motion_check(study: Study, loads: dict[str, CaseLoads]) -> plain.MotionCheck | None:
+def motion_check(
+    study: Study, loads: dict[str, CaseLoads], published: Published
+) -> plain.MotionCheck | None:
+    """A joint's speed and acceleration beside the closed form; None when the study asks for none."""
     check = study.table.motion_check
     case = loads.get(check.case) if check else None
     if check is None or case is None:
@@ -263,14 +259,10 @@ def _motion_check(study: Study, loads: dict[str, CaseLoads]) -> plain.MotionChec
     closed_v, closed_a = lever.point(radius, motion.length, motion.speed, motion.rate)
     speed, acceleration = np.linalg.norm(v, axis=1), np.linalg.norm(a, axis=1)
     rows = []
-    published = study.table.published
-    if published is not None and published.motion is not None:
-        columns = ("time", "speed", "acceleration")
-        for row in build.read_published(study.beside(published.motion), columns):
-            t, their_v, their_a = (float(row[c]) for c in columns)
-            k = int(np.abs(motion.times / unit("time") - t).argmin())
-            ours = (speed[k] / unit("velocity"), acceleration[k] / unit("acceleration"))
-            rows.append((t, their_v, their_a, float(ours[0]), float(ours[1])))
+    for t, their_v, their_a in published.motion:
+        k = int(np.abs(motion.times / unit("time") - t).argmin())
+        ours = (speed[k] / unit("velocity"), acceleration[k] / unit("acceleration"))
+        rows.append((t, their_v, their_a, float(ours[0]), float(ours[1])))
     return plain.MotionCheck(
         joint=check.joint,
         case=check.case,

@@ -15,6 +15,7 @@ from pinstress import build, gather
 from pinstress.build import CaseLoads
 from pinstress.errors import InputError
 from pinstress.limits import require_built
+from pinstress.published import read_published
 from pinstress.study import Study
 from reports.results import Field, Results
 
@@ -104,8 +105,16 @@ def run(
     tolerance = tolerance or study.table.analysis.tolerance
     require_built(study, model)
     progress("reactions", 0.0)
+    published = read_published(study)
     loads = all_loads(study, select(study.table.case, cases, "case"))
+    gather.motion_check(study, loads, published)  # a mistake there should not wait for the stresses
     todo = tasks(study, select(study.table.pin, pins, "pin"), loads)
+    check = study.table.beam_check
+    checked = next((t for t in todo if check and t.pin.name == check.pin), None)
+    if check is None or checked is None or check.case not in checked.left_out:
+        checked = None
+    else:
+        gather.require_cantilever(study, checked, check.case)
     solutions: list[tuple[Task, Solution]] = []
     beam = None
     for i, task in enumerate(todo):
@@ -116,13 +125,11 @@ def run(
         material = build.material(study, study.table.pin[task.pin.name].material)
         found = refine(task.pin, material, task.clamps, task.loads, tolerance, progress=tell)
         for solution in found:
-            solutions.append((task, solution))
             if (field := gather.field(study, solution)) is not None:
                 keep(field)
-        check = study.table.beam_check
-        if check is not None and check.pin == task.pin.name and check.case in task.left_out:
+        if task is checked and check is not None:
             tell(f"pin {task.pin.name}, beam check")
             at = next(s for s in found if s.peak.case == check.case)
             beam = gather.beam_check(study, task, material, at)
-        solutions = [(t, Solution(s.peak, None, None)) for t, s in solutions]  # fields are large
-    return gather.results(study, loads, solutions, beam, tolerance)
+        solutions += [(task, Solution(s.peak, None, None)) for s in found]  # fields are large
+    return gather.results(study, loads, solutions, beam, published, tolerance)

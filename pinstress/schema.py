@@ -1,6 +1,5 @@
 """The study file's form: every table and key, with its unit and domain."""
 
-from __future__ import annotations
 
 import difflib
 from typing import Annotated, Any, Literal
@@ -145,7 +144,7 @@ class GivenCase(Table):
     distribution: Literal["uniform", "cosine"] = "uniform"
 
     @model_validator(mode="after")
-    def _one_source(self) -> GivenCase:
+    def _one_source(self) -> "GivenCase":
         if (self.forces is None) == (self.table is None):
             raise ValueError("give either forces = { ... } or table = \"file.csv\"")
         if self.forces is not None and not self.forces:
@@ -172,7 +171,7 @@ class ImpulseTable(Table):
     direction: tuple[float, float]
 
     @model_validator(mode="after")
-    def _one_mass(self) -> ImpulseTable:
+    def _one_mass(self) -> "ImpulseTable":
         if (self.mass is None) == (self.weight is None):
             raise ValueError("give either mass or weight (with gravity)")
         if not any(self.direction):
@@ -189,7 +188,7 @@ class ApplyTable(Table):
     impulse: ImpulseTable | None = None
 
     @model_validator(mode="after")
-    def _one_force(self) -> ApplyTable:
+    def _one_force(self) -> "ApplyTable":
         if (self.force is None) == (self.impulse is None):
             raise ValueError("give either force = [fx, fy] or impulse = { ... }")
         return self
@@ -226,7 +225,7 @@ class BodyTable(Table):
     inertia: Inertia | None = None
 
     @model_validator(mode="after")
-    def _one_mass(self) -> BodyTable:
+    def _one_mass(self) -> "BodyTable":
         if (self.mass is None) == (self.weight is None):
             raise ValueError("give either weight or mass")
         return self
@@ -257,7 +256,7 @@ class SharingTable(Table):
     stiffness: Annotated[list[Annotated[float, Field(gt=0.0)]], Field(min_length=1)]
 
     @model_validator(mode="after")
-    def _same_length(self) -> SharingTable:
+    def _same_length(self) -> "SharingTable":
         if len(self.connections) != len(self.stiffness):
             raise ValueError("give one stiffness for each connection")
         return self

@@ -1,0 +1,65 @@
+"""Tables of published values, read before anything is solved."""
+
+from __future__ import annotations
+
+import csv
+import math
+from dataclasses import dataclass, field
+
+from pinstress.errors import InputError
+from pinstress.study import Study
+
+
+@dataclass(frozen=True)
+class Published:
+    """Published values in the study's units.
+
+    peaks: (maximum von Mises, safety factor) by pin and case. reactions: magnitude by case and
+    connection. motion: rows of time, speed, acceleration.
+    """
+
+    peaks: dict[tuple[str, str], tuple[float, float]] = field(default_factory=dict)
+    reactions: dict[tuple[str, str], float] = field(default_factory=dict)
+    motion: tuple[tuple[float, float, float], ...] = ()
+
+
+def read_published(study: Study) -> Published:
+    """The study's tables of published values. Raises: InputError."""
+    named = study.table.published
+    if named is None:
+        return Published()
+    peaks = _rows(study, named.peaks, ("pin", "case"), ("max_von_mises", "safety_factor"))
+    reactions = _rows(study, named.reactions, ("case", "connection"), ("force",))
+    motion = _rows(study, named.motion, (), ("time", "speed", "acceleration"))
+    return Published(
+        peaks={(names[0], names[1]): (v[0], v[1]) for names, v in peaks},
+        reactions={(names[0], names[1]): v[0] for names, v in reactions},
+        motion=tuple((v[0], v[1], v[2]) for _, v in motion),
+    )
+
+
+def _rows(
+    study: Study, name: str | None, names: tuple[str, ...], numbers: tuple[str, ...]
+) -> list[tuple[list[str], list[float]]]:
+    """Rows of one table, as its names and its numbers."""
+    if name is None:
+        return []
+    path = study.beside(name)
+    try:
+        reader = csv.DictReader(path.read_text(encoding="utf-8-sig").splitlines())
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: cannot be read ({error})") from None
+    for column in (*names, *numbers):
+        if column not in (reader.fieldnames or ()):
+            needed = ",".join((*names, *numbers))
+            raise InputError(f"{path}: column {column!r} is missing; needed are {needed}")
+    found = []
+    for row in reader:
+        try:
+            values = [float(row[c]) for c in numbers]
+        except (TypeError, ValueError):
+            values = [math.nan]
+        if not all(math.isfinite(v) for v in values):
+            raise InputError(f"{path}, line {reader.line_num}: {','.join(numbers)} must be numbers")
+        found.append(([row[c] for c in names], values))
+    return found
