@@ -59,7 +59,7 @@ def pin(study: Study, name: str) -> Pin:
     )
     try:
         made = Pin(name, segments, p.fillet)
-        for clamp in p.clamp:
+        for clamp in (*p.clamp, *(c for k in study.table.case.values() for c in k.clamp.get(name, ()))):
             made.surface(clamp)
     except GeometryError as error:
         raise InputError(f"{study.path}: {error}") from None

@@ -24,7 +24,8 @@ def describe(study: Study) -> str:
         lines.append(f"case {name}: {_case(study, name)}")
     for name, p in table.pin.items():
         pin = build.pin(study, name)
-        held = ", ".join(p.clamp) if p.clamp else "nothing: its loads must be in balance"
+        ways = dict.fromkeys(study.clamps(name, case) for case in table.case)
+        held = " or ".join(", ".join(w) or "nothing: loads must be in balance" for w in ways)
         density = table.material[p.material].density
         weight = pin.weight(density) / system.factor("force") if density else None
         heavy = f", {weight:.4g} {system.force}" if weight else ""

@@ -37,7 +37,7 @@ def results(
 ) -> plain.Results:
     """Everything a run found."""
     table, system = study.table, study.system
-    tasks = list({id(task): task for task, _ in solutions}.values())
+    tasks = {task.pin.name: task for task, _ in reversed(solutions)}
     return plain.Results(
         title=table.title,
         study=study.path.name,
@@ -46,7 +46,7 @@ def results(
         required_safety_factor=table.analysis.required_safety_factor,
         tolerance=tolerance,
         pins=tuple(_pin_result(study, loads, task, s.peak, published) for task, s in solutions),
-        shapes=tuple(_shape(study, task) for task in tasks),
+        shapes=tuple(_shape(study, tasks[name]) for name in table.pin if name in tasks),
         reactions=tuple(_reactions(study, name, case, published) for name, case in loads.items()),
         drive=tuple(
             _drive(study, name, case)
@@ -75,9 +75,8 @@ def _pin_result(
     factor = peak.safety_factor(material.yield_strength)
     meets = None
     if factor is not None and required is not None:
-        meets = factor >= required
-        if meets and peak.verdict == "unconverged":
-            meets = None  # the stress found is too low by an unknown amount
+        # a peak that is no value decides nothing, whichever side of the limit it is on
+        meets = factor >= required if peak.verdict != "unconverged" else None
     case = loads[peak.case]
     times, dynamics = case.reactions.times, case.dynamics
     position = None

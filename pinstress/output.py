@@ -6,7 +6,7 @@ import os
 import shutil
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from pinstress.errors import InputError
@@ -33,6 +33,7 @@ def replacing(directory: Path) -> Iterator[Path]:
     """
     require_replaceable(directory)
     directory = directory.resolve()
+    made = [p for p in directory.parents if not p.exists()]
     try:
         directory.parent.mkdir(parents=True, exist_ok=True)
         staging = Path(tempfile.mkdtemp(prefix=f".{directory.name}.", dir=directory.parent))
@@ -46,6 +47,9 @@ def replacing(directory: Path) -> Iterator[Path]:
         _swap(staging, directory)
     finally:
         shutil.rmtree(staging, ignore_errors=True)
+        for parent in made:
+            with suppress(OSError):  # it holds the results
+                parent.rmdir()
 
 
 def _swap(staging: Path, directory: Path) -> None:

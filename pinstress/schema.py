@@ -135,13 +135,19 @@ class PinTable(Table):
     fillet: Fillet = 0.0
 
 
-class GivenCase(Table):
+class CaseTable(Table):
+    """What all cases may say: how loads spread over bands, and pins held differently in this case."""
+
+    distribution: Literal["uniform", "cosine"] = "uniform"
+    clamp: dict[str, list[str]] = {}
+
+
+class GivenCase(CaseTable):
     """Stated forces, or a table of them."""
 
     kind: Literal["given"]
     forces: dict[str, Annotated[list[Force], Field(min_length=2, max_length=3)]] | None = None
     table: str | None = None
-    distribution: Literal["uniform", "cosine"] = "uniform"
 
     @model_validator(mode="after")
     def _one_source(self) -> "GivenCase":
@@ -152,12 +158,11 @@ class GivenCase(Table):
         return self
 
 
-class MotionCase(Table):
+class MotionCase(CaseTable):
     """The mechanism driven from the start of its drive to the end."""
 
     kind: Literal["motion"]
     samples: Annotated[int, Field(ge=2, le=100_001)] = 201
-    distribution: Literal["uniform", "cosine"] = "uniform"
 
 
 class ImpulseTable(Table):
@@ -194,13 +199,12 @@ class ApplyTable(Table):
         return self
 
 
-class StaticCase(Table):
+class StaticCase(CaseTable):
     """The mechanism held still, under gravity and applied forces."""
 
     kind: Literal["static"]
     drive_length: PositiveLength | None = None
     apply: list[ApplyTable] = []
-    distribution: Literal["uniform", "cosine"] = "uniform"
 
 
 class JointTable(Table):

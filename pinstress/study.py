@@ -54,6 +54,10 @@ class Study:
         """A file that the study names."""
         return self.path.parent / name
 
+    def clamps(self, pin: str, case: str) -> tuple[str, ...]:
+        """What holds a pin in a case, in the study's words."""
+        return tuple(self.table.case[case].clamp.get(pin, self.table.pin[pin].clamp))
+
     def connections(self, pin: str) -> tuple[str, ...]:
         """Connections that bear on a pin."""
         return tuple(s.connection for s in self.table.pin[pin].profile if s.connection)
@@ -150,6 +154,9 @@ def _cross_references(table: StudyTable) -> Iterable[str]:
             if s.connection:
                 bears[s.connection] = name
     for name, case in table.case.items():
+        for pin_name in case.clamp:
+            if pin_name not in table.pin:
+                yield f"case.{name}.clamp: no pin {pin_name!r}; " + _near(pin_name, table.pin)
         if isinstance(case, GivenCase):
             for connection in case.forces or ():
                 if connection not in bears:

@@ -11,7 +11,7 @@ import click
 from rich.console import Console
 
 from pinstress.output import replacing, require_replaceable
-from pinstress.pipeline import Progress, run
+from pinstress.pipeline import Progress, prepare, solve
 from pinstress.study import Study
 from reports.results import Field, Results, Units
 from reports.terminal import print_safety_factors
@@ -22,9 +22,10 @@ from reports.write import write_reports
 def run_and_write(study: Study, directory: Path, *, pictures: bool, **chosen: Any) -> int:
     """Run a study into a folder; returns the exit status.
 
-    chosen: what pinstress.pipeline.run takes. Raises: InputError, ArithmeticError.
+    chosen: what pinstress.pipeline.prepare takes. Raises: InputError, ArithmeticError.
     """
     require_replaceable(directory)
+    plan = prepare(study, **chosen)
     problem = renderer_problem() if pictures else None
     drawn: dict[tuple[str, str], Path] = {}
     s = study.system
@@ -43,7 +44,7 @@ def run_and_write(study: Study, directory: Path, *, pictures: bool, **chosen: An
                 drawn[field.pin, field.case] = picture
 
         with progress_bar() as progress:
-            results = run(study, keep=keep, progress=progress, **chosen)
+            results = solve(plan, keep, progress)
             progress("report", 1.0)
             write_reports(results, staging, drawn, plots=pictures)
     print_safety_factors(results, Console())

@@ -1,0 +1,262 @@
+"""The command line as a user meets it: output, exit status, files, interruption."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from pinstress.cli import run_command_line
+from pinstress.output import replacing
+from pinstress.errors import InputError
+from tests.conftest import ROOT
+
+ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()
+# a coarse answer is enough to test what surrounds it
+QUICK = ONE_PIN.replace("tolerance = 0.02", "tolerance = 0.3")
+
+
+def pinstress(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "pinstress", *arguments], cwd=cwd, capture_output=True, text=True
+    )
+
+
+@pytest.fixture(scope="module")
+def run_once(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str, str]:
+    folder = tmp_path_factory.mktemp("run")
+    (folder / "study.toml").write_text(QUICK)
+    done = pinstress("run", "study.toml", "--no-pictures", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    return folder, done.stdout, done.stderr
+
+
+def test_run_writes_what_the_contract_names(run_once: tuple[Path, str, str]) -> None:
+    folder, stdout, stderr = run_once
+    out = folder / "out" / "study"
+    for name in ("results.json", "safety_factors.csv", "safety_factors.md", "reactions.csv",
+                 "vtk/B_landing.vtu", "report.html"):  # fmt: skip
+        assert (out / name).is_file(), name
+    assert sorted(p.name for p in (folder / "out").iterdir()) == ["study"]
+    results = json.loads((out / "results.json").read_text())
+    assert results["schema"] == "pinstress-results/1"
+    assert results["units"] == {"length": "in", "force": "lbf", "stress": "psi", "time": "s"}
+    (pin,) = results["pins"]
+    assert (pin["pin"], pin["case"], pin["model"]) == ("B", "landing", "solid")
+    assert pin["verdict"] == "converged"
+    assert pin["error_estimate"] <= 0.3 * pin["max_von_mises"]
+    assert pin["safety_factor"] == pytest.approx(225e3 / pin["max_von_mises"], rel=1e-12)
+    assert pin["meets_required"] is True
+    assert pin["yields"] is False
+    assert pin["time"] is None
+    # the peak of this pin sits in the fillet, on the line through the load
+    assert 1.0 < pin["location"][2] < 1.5
+    assert "landing" in stdout
+    assert "Report: " in stderr
+    assert "\x1b" not in stdout + stderr  # no colour, no bar without a terminal
+
+
+def test_reactions_have_the_contracts_columns(run_once: tuple[Path, str, str]) -> None:
+    path = run_once[0] / "out" / "study" / "reactions.csv"
+    (row,) = csv.DictReader(path.read_text().splitlines())
+    assert list(row) == "case time connection body fx fy fz mx my mz".split()
+    assert float(row["fy"]) == pytest.approx(-988.86, rel=1e-14)
+
+
+def test_the_same_study_gives_the_same_numbers(run_once: tuple[Path, str, str]) -> None:
+    folder = run_once[0]
+    first = json.loads((folder / "out" / "study" / "results.json").read_text())
+    done = pinstress("run", "study.toml", "--no-pictures", "--out", "again", cwd=folder)
+    assert done.returncode == 0
+    again = json.loads((folder / "again" / "results.json").read_text())
+
+    def without_times(results: dict[str, object]) -> object:
+        text = json.dumps(results)
+        return json.loads(
+            text, object_hook=lambda d: {k: v for k, v in d.items() if k != "seconds"}
+        )
+
+    assert without_times(first) == without_times(again)
+
+
+def test_a_tolerance_that_is_not_reached_is_status_1(tmp_path: Path) -> None:
+    sharp = ONE_PIN.replace("fillet = 0.4 ", "fillet = 0.0 ")
+    (tmp_path / "study.toml").write_text(sharp)
+    done = pinstress("run", "study.toml", "--no-pictures", cwd=tmp_path)
+    assert done.returncode == 1
+    last = done.stderr.strip().splitlines()[-1]
+    assert last.startswith("Not reached: B (landing): the peak sits at a sharp inner corner")
+    (pin,) = json.loads((tmp_path / "out" / "study" / "results.json").read_text())["pins"]
+    assert pin["verdict"] == "unconverged"
+    assert pin["meets_required"] is None
+
+
+def test_millimetres_and_inches_give_the_same_pin(
+    run_once: tuple[Path, str, str], tmp_path: Path
+) -> None:
+    text = QUICK.replace('"in-lbf-s"', '"mm-N-s"')
+    for inch in ("length = 1.0", "length = 2.0", "diameter = 3.0", "diameter = 2.0", "fillet = 0.4"):
+        key, value = inch.split(" = ")
+        text = text.replace(inch, f'{key} = "{value} in"')
+    text = text.replace("-988.86", '"-988.86 lbf"')
+    (tmp_path / "study.toml").write_text(text)
+    assert pinstress("run", "study.toml", "--no-pictures", cwd=tmp_path).returncode == 0
+    (mm,) = json.loads((tmp_path / "out" / "study" / "results.json").read_text())["pins"]
+    (inch,) = json.loads((run_once[0] / "out" / "study" / "results.json").read_text())["pins"]  # type: ignore[assignment]
+    assert mm["max_von_mises"] == pytest.approx(inch["max_von_mises"] * 6.894757293e-3, rel=1e-9)  # type: ignore[index]
+    assert mm["safety_factor"] == pytest.approx(inch["safety_factor"], rel=1e-9)  # type: ignore[index]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "change", "message"),
+    [
+        (["study.toml", "--pins", "Q"], ("", ""), "--pins: the study has no pin 'Q'"),
+        (["study.toml", "--cases", "lading"], ("", ""), "did you mean 'landing'?"),
+        (["study.toml", "--model", "harmonic"], ("", ""), "not built yet"),
+        (["study.toml", "--tolerance", "2"], ("", ""), "--tolerance"),
+        (["gone.toml"], ("", ""), "gone.toml: no such file"),
+        (["study.toml"], ("fillet = 0.4", "fillet = 4"), "does not fit"),
+        (["study.toml"], ("-988.86", "nan"), "nan is not finite"),
+        (["study.toml"], ('["start"]', '["B"]'), "nothing loads it"),
+        (["study.toml"], ("forces = { B = [0.0, -988.86] }", 'table = "t.csv"'), "t.csv"),
+        (["study.toml"], ('kind = "given"', 'kind = "given"\ndistribution = "cosine"'), "cosine"),
+    ],
+)
+def test_bad_input_is_one_message_and_nothing_written(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    arguments: list[str],
+    change: tuple[str, str],
+    message: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("study.toml").write_text(ONE_PIN.replace(*change) if change[0] else ONE_PIN)
+    Path("t.csv").write_text("connection,fx,fy\nX1,0,1\n")
+    before = sorted(p.name for p in tmp_path.iterdir())
+    assert run_command_line(["run", *arguments]) == 2
+    said = capsys.readouterr()
+    assert message in said.err
+    assert said.out == ""
+    assert "Traceback" not in said.err
+    assert sorted(p.name for p in tmp_path.iterdir()) == before
+
+
+def test_a_pin_that_nothing_holds_is_rigid(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("study.toml").write_text(ONE_PIN.replace('clamp = ["start"]', "clamp = []"))
+    assert run_command_line(["run", "study.toml", "--no-pictures"]) == 1
+    assert "nothing holds the pin" in capsys.readouterr().err
+    (pin,) = json.loads(Path("out/study/results.json").read_text())["pins"]
+    assert pin["verdict"] == "rigid"
+    assert pin["max_von_mises"] is None
+    assert pin["safety_factor"] is None
+
+
+def test_init_writes_a_study_and_does_not_overwrite_it(tmp_path: Path) -> None:
+    assert pinstress("init", "new", cwd=tmp_path).returncode == 0
+    assert (tmp_path / "new" / "one_pin.toml").read_text() == ONE_PIN
+    again = pinstress("init", "new", cwd=tmp_path)
+    assert again.returncode == 2
+    assert "exists already" in again.stderr
+
+
+def test_check_says_what_would_be_run_and_loads_no_heavy_library(tmp_path: Path) -> None:
+    code = (
+        "import sys; from pinstress.cli import run_command_line as run; "
+        f"status = run(['check', {str(ROOT / 'studies' / 'grenier2008.toml')!r}]); "
+        "heavy = {'gmsh', 'pyvista', 'vtk', 'matplotlib', 'skfem', 'scipy', 'meshio', 'rich', "
+        "'cvxopt', 'jinja2'} & set(sys.modules); print(sorted(heavy)); sys.exit(status)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    lines = done.stdout.splitlines()
+    assert lines[-1] == "[]"
+    assert any("D1, D2, G1, G3 follow the sharing rule" in line for line in lines)
+    assert any(line.startswith("case retract: motion, 201 instants over 4 s") for line in lines)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_schema_is_json_and_knows_every_table() -> None:
+    done = pinstress("schema", cwd=ROOT)
+    made = json.loads(done.stdout)
+    assert {"title", "units", "material", "pin", "case"} <= set(made["required"])
+    assert "mechanism" in made["properties"]
+
+
+@pytest.mark.parametrize("command", ["run", "check", "init", "schema"])
+def test_help_begins_with_an_example(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run_command_line([command, "--help"]) == 0
+    body = capsys.readouterr().out.split("\n\n")[1]
+    assert body.strip().startswith(f"Example: pinstress {command}")
+
+
+def test_an_interrupt_leaves_nothing_behind(tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(ONE_PIN)
+    earlier = tmp_path / "out" / "study"
+    earlier.mkdir(parents=True)
+    (earlier / "results.json").write_text("{}")
+    process = subprocess.Popen(
+        [sys.executable, "-m", "pinstress", "run", "study.toml", "--no-pictures"],
+        cwd=tmp_path,
+        stderr=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    deadline = time.monotonic() + 60.0
+    while not list((tmp_path / "out").glob(".study.*")) and time.monotonic() < deadline:
+        time.sleep(0.02)  # until it has begun to write
+    os.kill(process.pid, signal.SIGINT)
+    _, stderr = process.communicate(timeout=120)
+    assert process.returncode == 130, stderr
+    assert "Interrupted; nothing was written" in stderr
+    assert [p.name for p in (tmp_path / "out").iterdir()] == ["study"]
+    assert (earlier / "results.json").read_text() == "{}"
+
+
+def test_a_folder_that_is_not_ours_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "thesis.doc").write_text("years of work")
+    with pytest.raises(InputError, match="not results of pinstress"), replacing(tmp_path / "mine"):
+        raise AssertionError("must not get here")
+    assert (tmp_path / "mine" / "thesis.doc").read_text() == "years of work"
+
+
+def test_a_failure_keeps_the_earlier_results(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    with replacing(out) as staging:
+        (staging / "results.json").write_text("1")
+    with pytest.raises(RuntimeError), replacing(out) as staging:
+        (staging / "results.json").write_text("2")
+        raise RuntimeError
+    assert (out / "results.json").read_text() == "1"
+    with replacing(out) as staging:
+        (staging / "results.json").write_text("3")
+    assert (out / "results.json").read_text() == "3"
+    assert [p.name for p in tmp_path.iterdir()] == ["out"]
+
+
+def test_numerics_that_fail_are_status_3(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    import fea.refine
+    from geometry.solid_mesh import MeshError
+
+    def no_mesh(*_: object) -> None:
+        raise MeshError("pin B: no mesh")
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(fea.refine, "solid_mesh", no_mesh)
+    Path("study.toml").write_text(ONE_PIN)
+    assert run_command_line(["run", "study.toml", "--no-pictures"]) == 3
+    assert "the numerics failed: pin B: no mesh" in capsys.readouterr().err
+    assert [p.name for p in tmp_path.iterdir()] == ["study.toml"]
