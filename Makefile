@@ -26,7 +26,7 @@ check: setup ## lint, format check, types, import contracts, strict docs build
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	$(BIN)/lint-imports
+	$(BIN)/lint-imports --no-logo
 	@$(MAKE) --no-print-directory docs
 
 bench: setup ## run the benchmarks

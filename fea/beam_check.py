@@ -25,7 +25,8 @@ WINDOW = (0.3, 0.8)  # of the loaded length: away from the root and from the loa
 @dataclass(frozen=True)
 class Difference:
     """Of the solid's stress from the beam's, as parts of the beam's peak: rms and largest within
-    the window, largest anywhere and its z (m)."""
+    the window, largest anywhere and its z (m).
+    """
 
     rms: float
     largest: float
@@ -89,7 +90,8 @@ def beam_check(
 
 def axial_stress(fields: UnitFields, c: Floats, radius: float, angle: float, z: Floats) -> Floats:
     """Axial stress (Z,) in Pa at z (m) on the surface line at `angle` (rad) of a cylinder of
-    `radius` (m), under loads c (L,) in N: linear between the nodes of the unrolled surface."""
+    `radius` (m), under loads c (L,) in N: linear between the nodes of the unrolled surface.
+    """
     from scipy.interpolate import LinearNDInterpolator
 
     nodes = fields.surface.nodes

@@ -82,8 +82,11 @@ class Discretisation:
 
     def strain(self, displacement: Floats) -> Floats:
         """Strains (M, 4, 6) at the quadrature points for a displacement (N, 3) in m:
-        xx, yy, zz, yz, xz, xy, shears as tensor components."""
+        xx, yy, zz, yz, xz, xy, shears as tensor components.
+        """
         u = displacement[self.elements]
         h = np.einsum("mqia,mib->mqab", self.gradients, u, optimize=True)
         h = 0.5 * (h + h.swapaxes(2, 3))
-        return np.stack([h[..., a, b] for a, b in ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))], -1)
+        return np.stack(
+            [h[..., a, b] for a, b in ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))], -1
+        )

@@ -20,7 +20,8 @@ Floats = NDArray[np.float64]
 @dataclass(frozen=True)
 class Envelope:
     """maximum: largest von Mises stress, Pa, at `node` and `instant`. field: (S,) each surface
-    node's largest over all instants. coefficients: (L,) loads at the governing instant, N."""
+    node's largest over all instants. coefficients: (L,) loads at the governing instant, N.
+    """
 
     maximum: float
     node: int

@@ -1,4 +1,4 @@
-"""Factor once, solve many: CHOLMOD with a METIS ordering, or SuperLU where that is not to be had."""
+"""Factor once, solve many: CHOLMOD with a METIS ordering, or SuperLU where that is missing."""
 
 from __future__ import annotations
 
@@ -51,7 +51,9 @@ def _cholmod(K: sp.csr_matrix, node: NDArray[np.int64]) -> Solve:
     order = matrix(_dissection(K, node))
     lower = sp.tril(K, format="coo")
     A = spmatrix(
-        matrix(lower.data), matrix(lower.row.astype(np.int64)), matrix(lower.col.astype(np.int64)),
+        matrix(lower.data),
+        matrix(lower.row.astype(np.int64)),
+        matrix(lower.col.astype(np.int64)),
         K.shape,
     )
     cholmod.options["supernodal"] = 2  # L L^T, which fails on a matrix that is not definite
@@ -80,13 +82,13 @@ def _dissection(K: sp.csr_matrix, node: NDArray[np.int64]) -> NDArray[np.int64]:
     _, node = np.unique(node, return_inverse=True)
     belongs = sp.csr_matrix((np.ones(n, dtype=np.int32), (np.arange(n), node)))
     pattern = sp.csr_matrix((np.ones(K.nnz, dtype=np.int32), K.indices, K.indptr), shape=K.shape)
-    graph = (belongs.T @ pattern @ belongs).tocsr()
+    graph = sp.csr_matrix(belongs.T @ pattern @ belongs)
     graph.setdiag(0)
     graph.eliminate_zeros()
     adjacency = pymetis.CSRAdjacency(graph.indptr, graph.indices)
-    order, _ = pymetis.nested_dissection(adjacency)
+    order = np.asarray(pymetis.nested_dissection(adjacency)[0])
     rank = np.empty(len(order), dtype=np.int64)
-    rank[np.asarray(order)] = np.arange(len(order))
+    rank[order] = np.arange(len(order))
     return np.argsort(rank[node], kind="stable")
 
 
@@ -101,6 +103,8 @@ def _superlu(K: sp.csr_matrix) -> Solve:
             options={"SymmetricMode": True},
         )
     except RuntimeError as error:
-        raise SolveError(f"the stiffness matrix is singular ({error}): the pin is not held") from None
+        raise SolveError(
+            f"the stiffness matrix is singular ({error}): the pin is not held"
+        ) from None
     solve: Solve = factor.solve
     return solve

@@ -26,7 +26,7 @@ class Material:
             raise ValueError(f"material {self.name}: Young's modulus must be positive")
         if not -1.0 < self.poisson_ratio < 0.5:
             raise ValueError(
-                f"material {self.name}: Poisson's ratio must lie between -1 and 0.5, both excluded; "
+                f"material {self.name}: Poisson's ratio must lie inside -1 to 0.5; "
                 f"it is {self.poisson_ratio:g}"
             )
 

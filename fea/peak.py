@@ -59,15 +59,17 @@ def discretisation_error(history: tuple[Refinement, ...], ratio: float) -> float
 
     Roache's grid convergence index, Fs |f2 - f1| / (ratio^p - 1). Three meshes: the observed p and
     Fs = 1.25 if it lies between 0.5 and 3. Otherwise Fs = 3, with p = 2, the order of the recovered
-    stress, or p = 0.5 where the changes do not shrink. Source: Roache, J. Fluids Eng. 116 (1994) 405.
+    stress, or p = 0.5 where the changes do not shrink.
+
+    Source: Roache, J. Fluids Eng. 116 (1994) 405.
     """
     values = [step.max_von_mises for step in history]
     change = abs(values[-1] - values[-2])
-    formal = 3.0 * change / (ratio**2 - 1.0)
+    formal = 3.0 * change / (ratio * ratio - 1.0)
     if len(values) == 2:
         return formal
     before = abs(values[-2] - values[-3])
     if change >= before:
-        return 3.0 * change / (ratio**0.5 - 1.0)
+        return 3.0 * change / (math.sqrt(ratio) - 1.0)
     p = math.log(before / change) / math.log(ratio) if change else math.inf
-    return 1.25 * change / (ratio**p - 1.0) if 0.5 <= p <= 3.0 else formal
+    return 1.25 * change / math.expm1(p * math.log(ratio)) if 0.5 <= p <= 3.0 else formal

@@ -88,7 +88,7 @@ def _unit_fields(
     cases: tuple[PinLoads, ...],
     size: MeshSize,
 ) -> UnitFields:
-    """Unit fields for all that the cases load, on a mesh refined at the edges of bands and clamps."""
+    """Unit fields for all that the cases load; the mesh is finer at edges of bands and clamps."""
     axes = (0, 1, 2) if any(c.axial for c in cases) else (0, 1)
     names = tuple(dict.fromkeys(name for c in cases for name in c.surfaces))
     edges = tuple(z for name in names for z in (pin.band(name).z0, pin.band(name).z1))
@@ -152,9 +152,7 @@ def _worth_refining(pin: Pin, held: tuple[str, ...], found: Found, tolerance: fl
     return sharp_place(pin, held, top.location) is None
 
 
-def _judge(
-    pin: Pin, held: tuple[str, ...], case: str, found: Found, tolerance: float
-) -> Solution:
+def _judge(pin: Pin, held: tuple[str, ...], case: str, found: Found, tolerance: float) -> Solution:
     history = _history(found)
     _, fields, top = found[-1]
     if not np.isfinite(top.maximum):

@@ -29,7 +29,7 @@ _PAIR = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])  # component of the stress t
 def von_mises(stress: Floats) -> Floats:
     """Von Mises' equivalent stress (...) of stresses (..., 6)."""
     square = np.einsum("...a,ab,...b->...", stress, VON_MISES, stress)
-    return np.sqrt(np.maximum(square, 0.0))
+    return np.asarray(np.sqrt(np.maximum(square, 0.0)))
 
 
 def recovery(space: Discretisation) -> sp.csr_matrix:
@@ -67,7 +67,7 @@ def with_known_traction(
     node = surface.corners.ravel()
     count = np.bincount(node, minlength=n_nodes)
     on = np.maximum(count, 1)
-    normal = np.stack(
+    normal: Floats = np.stack(
         [np.bincount(node, surface.normals[..., a].ravel(), minlength=n_nodes) for a in range(3)], 1
     )
     length = np.linalg.norm(normal, axis=1)

@@ -38,7 +38,8 @@ def _slopes(x: Floats, y: Floats) -> Floats:
 @dataclass(frozen=True)
 class Surface:
     """nodes: (S,) node numbers on the boundary. facets: (F,) facet numbers. corners: (F, 6) node
-    numbers. normals: (F, 6, 3) outward unit vectors at those nodes."""
+    numbers. normals: (F, 6, 3) outward unit vectors at those nodes.
+    """
 
     nodes: Ints
     facets: Ints

@@ -31,7 +31,8 @@ class MeshError(ArithmeticError):
 class MeshSize:
     """How fine. across: elements over the smallest diameter. corner: how many times finer at sharp
     corners and edges of bands. arc: elements along a fillet's quarter circle. growth: increase of
-    the element size per distance from there."""
+    the element size per distance from there.
+    """
 
     across: float = 4.0
     corner: float = 4.0
@@ -76,7 +77,8 @@ def solid_mesh(pin: Pin, size: MeshSize, edges: tuple[float, ...] = ()) -> Solid
     raise MeshError(
         f"pin {pin.name}: gmsh gave inverted or sliver elements at three sizes (min/max Jacobian "
         f"{', '.join(f'{j:.2g}' for j in tried)}, needed above {SMALLEST_JACOBIAN}), and "
-        "straightening their edges did not repair them; look for a fillet or bore very small beside its neighbours"
+        "straightening their edges did not repair them; look for a fillet or bore that is "
+        "very small beside its neighbours"
     )
 
 
@@ -120,7 +122,7 @@ def _revolve(gmsh: Any, outline: tuple[Edge, ...]) -> None:
 def _name_surfaces(gmsh: Any, pin: Pin, outline: tuple[Edge, ...]) -> dict[str, list[int]]:
     """Surface tags by name, told apart by the end points of the edge that made them."""
     named: dict[str, list[int]] = {}
-    digits = int(round(6 - math.log10(pin.smallest_diameter)))
+    digits = round(6 - math.log10(pin.smallest_diameter))
 
     def key(points: list[tuple[float, float]]) -> frozenset[tuple[float, float]]:
         return frozenset((round(r, digits) + 0.0, round(z, digits) + 0.0) for r, z in points if r)
@@ -131,7 +133,9 @@ def _name_surfaces(gmsh: Any, pin: Pin, outline: tuple[Edge, ...]) -> dict[str, 
         at = [gmsh.model.getValue(0, point, []) for _, point in ends]
         name = names.get(key([(math.hypot(x, y), z) for x, y, z in at]))
         if name is None:
-            raise MeshError(f"pin {pin.name}: surface {tag} of gmsh's solid is none of the profile's")
+            raise MeshError(
+                f"pin {pin.name}: surface {tag} of gmsh's solid is none of the profile's"
+            )
         named.setdefault(name, []).append(tag)
     missing = set(names.values()) - set(named)
     if missing:
@@ -184,7 +188,8 @@ def _jacobians(gmsh: Any) -> NDArray[np.float64]:
     tags = gmsh.model.mesh.getElementsByType(TETRA10)[0]
     low = np.asarray(gmsh.model.mesh.getElementQualities(tags, "minDetJac"))
     high = np.asarray(gmsh.model.mesh.getElementQualities(tags, "maxDetJac"))
-    return low / high
+    ratios: NDArray[np.float64] = low / high
+    return ratios
 
 
 def _repair(gmsh: Any) -> tuple[float, int]:
@@ -215,7 +220,8 @@ def _collect(gmsh: Any, surfaces: dict[str, list[int]]) -> MeshTet2:
     row = np.zeros(int(tags.max()) + 1, dtype=np.int64)
     row[tags] = np.arange(len(tags))
     nodes = gmsh.model.mesh.getElementsByType(TETRA10)[1].reshape(-1, 10)[:, GMSH_TO_VTK_TETRA10]
-    triangles, sets = [], {}
+    triangles: list[NDArray[np.int64]] = []
+    sets: dict[str, list[NDArray[np.int64]]] = {}
     count = 0
     for name, faces in surfaces.items():
         for face in faces:

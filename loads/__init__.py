@@ -5,20 +5,30 @@ Everything here is in SI units. This room imports nothing else of ours.
 
 from loads.drive import CosineDrive
 from loads.forces import Applied, Dynamics, motion_reactions, static_reactions
-from loads.lever import Lever
 from loads.impulse import impulse_force
-from loads.linkage import GROUND, Body, Connection, Joint, Linkage, LinkageError, Sharing, Slider, UnreachableError
+from loads.lever import Lever
+from loads.linkage import (
+    GROUND,
+    Body,
+    Connection,
+    Joint,
+    Linkage,
+    LinkageError,
+    Sharing,
+    Slider,
+    UnreachableError,
+)
 from loads.mobility import Mobility, mobility
 from loads.motion import Motion, energy, move
 from loads.reactions import Reactions, TableError, given_reactions, read_reactions
 
 __all__ = [
+    "GROUND",
     "Applied",
     "Body",
     "Connection",
     "CosineDrive",
     "Dynamics",
-    "GROUND",
     "Joint",
     "Lever",
     "Linkage",

@@ -5,7 +5,8 @@ parallel and in line (two rows), and the drive prescribes the driven slider's le
 last). Coordinates are the centre (x, y) and the angle from the drawn position of every item, the
 angle times a typical length so that all columns are lengths; particles have no angle. The
 multipliers of these equations are the forces of the connections themselves, which is why nothing is
-eliminated. Source: Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), ch. 3.
+eliminated. Source: Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems
+(1989), ch. 3.
 """
 
 from __future__ import annotations
@@ -31,7 +32,10 @@ def turned(vector: Floats) -> Floats:
 
 @dataclass(frozen=True)
 class Constraints:
-    """The equations of one linkage; state arrays are (T, items + ground, 3): x, y (m), angle (rad)."""
+    """The equations of one linkage.
+
+    State arrays are (T, items + ground, 3): x, y (m), angle (rad).
+    """
 
     linkage: Linkage
     first: np.ndarray  # (P,) item on whose body the point lies
@@ -122,7 +126,7 @@ class Constraints:
         arm2: Floats,
         i: np.ndarray,
     ) -> None:
-        """Rows of axis . (s2 - s1), where the axis turns with the base at `axis_rate` per radian."""
+        """Rows of axis . (s2 - s1), the axis turns with the base by `axis_rate` per radian."""
         scale = self.linkage.length_scale
         base, moving = self.base[i], self.moving[i]
         axis, axis_rate, d, arm1, arm2 = (v[:, i] for v in (axis, axis_rate, d, arm1, arm2))
@@ -134,7 +138,7 @@ class Constraints:
         J[:, row, base, 2] += lever / scale
 
     def acceleration_terms(self, q: Floats, v: Floats) -> Floats:
-        """The part of each equation's second rate that is quadratic in the velocities, (T, rows)."""
+        """The part of each equation's second rate that is quadratic in the velocity, (T, rows)."""
         w = v[..., 2]
         quadratic = []
         for item, arm in ((self.first, self.first_arm), (self.second, self.second_arm)):
@@ -145,9 +149,7 @@ class Constraints:
         s2, arm2 = self._points(q, self.moving, self.moving_arm)
         w1, w2 = w[:, self.base, None], w[:, self.moving, None]
         d = s2 - s1
-        d_rate = (
-            v[:, self.moving, :2] + w2 * turned(arm2) - v[:, self.base, :2] - w1 * turned(arm1)
-        )
+        d_rate = v[:, self.moving, :2] + w2 * turned(arm2) - v[:, self.base, :2] - w1 * turned(arm1)
         d_second = -(w2**2) * arm2 + w1**2 * arm1
         e = rotated(q[:, self.base, 2], self.direction[None])
         n = turned(e)
@@ -158,9 +160,9 @@ class Constraints:
 
     def spread(self, x: Floats) -> Floats:
         """Coordinates (T, columns) in m as a state increment (T, items + ground, 3)."""
-        full = np.zeros((len(x), len(self.free)))
-        full[:, self.free] = x
-        full = full.reshape(len(x), -1, 3)
+        flat = np.zeros((len(x), len(self.free)))
+        flat[:, self.free] = x
+        full: Floats = flat.reshape(len(x), -1, 3)
         full[..., 2] /= self.linkage.length_scale
         return full
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from loads.constraints import Constraints
 from loads.linkage import Floats, Linkage, LinkageError, Point
-from loads.mobility import require_determined, shared_connections
+from loads.mobility import require_determined
 from loads.motion import Motion, at_rest
 from loads.reactions import Reactions
 
@@ -30,7 +30,8 @@ class Applied:
 @dataclass(frozen=True)
 class Dynamics:
     """Reactions with what goes along: drive (T,) N, pushing the slider longer; the motion itself;
-    shared: connections whose forces follow the sharing rule."""
+    shared: connections whose forces follow the sharing rule.
+    """
 
     reactions: Reactions
     drive: Floats
@@ -73,9 +74,7 @@ def _reactions(
     J = system.jacobian(motion.q)
     Q, R = np.linalg.qr(J, mode="complete")
     n = system.columns
-    determined = np.linalg.solve(
-        np.swapaxes(R[:, :n], 1, 2), system.gather(unbalanced)[..., None]
-    )
+    determined = np.linalg.solve(np.swapaxes(R[:, :n], 1, 2), system.gather(unbalanced)[..., None])
     f = (Q[:, :, :n] @ determined)[..., 0]
     null = Q[:, :, n:]
     shared: tuple[str, ...] = ()
@@ -127,7 +126,8 @@ def _applied_forces(motion: Motion, applied: tuple[Applied, ...]) -> Floats:
 
 def _shares(system: Constraints, f: Floats, null: Floats, shared: tuple[str, ...]) -> Floats:
     """Amounts (T, k) of the null vectors that make the sharing connections behave like springs:
-    the sum of force^2 / stiffness over them is least."""
+    the sum of force^2 / stiffness over them is least.
+    """
     linkage = system.linkage
     names = [c.name for _, c in linkage.connections]
     told = f"the forces at {', '.join(shared)} are not determined by rigid-body statics"
@@ -147,4 +147,4 @@ def _shares(system: Constraints, f: Floats, null: Floats, shared: tuple[str, ...
             "determine them; name connections among those on both redundant sides"
         )
     b = -np.swapaxes(N, 1, 2) @ (weight * f[:, rows])[..., None]
-    return np.linalg.solve(G, b)[..., 0]
+    return np.asarray(np.linalg.solve(G, b)[..., 0], dtype=np.float64)

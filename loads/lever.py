@@ -18,7 +18,8 @@ class Lever:
 
     def turn(self, length: Floats, speed: Floats, rate: Floats) -> tuple[Floats, Floats, Floats]:
         """Angle at the pivot (rad), its rate and second rate, for the slider's length, speed and
-        rate (T,). From length^2 = base^2 + arm^2 - 2 base arm cos(angle), differentiated twice."""
+        rate (T,). From length^2 = base^2 + arm^2 - 2 base arm cos(angle), differentiated twice.
+        """
         k = self.base * self.arm
         angle = np.arccos((self.base**2 + self.arm**2 - length**2) / (2.0 * k))
         sine, cosine = np.sin(angle), np.cos(angle)

@@ -77,7 +77,8 @@ class Joint:
 @dataclass(frozen=True)
 class Slider:
     """A prismatic joint: `moving` slides along the line from `start` (a point of `base`) to `end`
-    (a point of `moving`), both in world axes as drawn, m. Its length is their distance."""
+    (a point of `moving`), both in world axes as drawn, m. Its length is their distance.
+    """
 
     name: str
     base: str
@@ -185,18 +186,20 @@ def _check(linkage: Linkage) -> None:
             if body not in bodies:
                 raise LinkageError(f"slider {slider.name}: there is no body {body!r}")
         if slider.drawn_length == 0.0:
-            raise LinkageError(f"slider {slider.name}: its two points coincide, it has no direction")
+            raise LinkageError(
+                f"slider {slider.name}: its two points coincide, it has no direction"
+            )
     if linkage.driven not in [s.name for s in linkage.sliders]:
         raise LinkageError(f"the drive moves slider {linkage.driven!r}, which does not exist")
     for share in linkage.sharing:
         for name in share.connections:
             if name not in names:
                 raise LinkageError(f"sharing names connection {name!r}, which does not exist")
-    for body in linkage.bodies:
-        if body.inertia is None:
-            held = [j for j in linkage.joints for c in j.connections if c.body == body.name]
-            if len(held) != 1 or not np.allclose(held[0].at, body.centre, atol=1e-9):
+    for particle in linkage.bodies:
+        if particle.inertia is None:
+            held = [j for j in linkage.joints for c in j.connections if c.body == particle.name]
+            if len(held) != 1 or not np.allclose(held[0].at, particle.centre, atol=1e-9):
                 raise LinkageError(
-                    f"body {body.name}: without inertia it is a particle, held by one connection at "
-                    "its centre; give it an inertia, or put its centre at that joint"
+                    f"body {particle.name}: without inertia it is a particle, held by one "
+                    "connection at its centre; give it an inertia, or put its centre at that joint"
                 )

@@ -7,7 +7,9 @@ import numpy as np
 from loads.constraints import Constraints
 from loads.linkage import Floats, UnreachableError
 
-NEWTON_TOLERANCE = 1e-10  # last correction, of the length scale: Newton is quadratic, so the error is far less
+NEWTON_TOLERANCE = (
+    1e-10  # last correction, of the length scale: Newton is quadratic, so the error is far less
+)
 LARGEST_TURN = 0.15  # rad (or length scales) that a step of the continuation may move an item
 CONTRACTION = 0.25  # each Newton correction must be at most this part of the one before
 WORST_CONDITION = 1e10
@@ -88,7 +90,8 @@ def _follow(
 
 def _newton(system: Constraints, q: Floats, lengths: Floats, reach: float) -> Floats:
     """Newton from `q`; the first correction must stay below a tenth of `reach` steps of
-    LARGEST_TURN, and every next one contract."""
+    LARGEST_TURN, and every next one contract.
+    """
     scale = system.linkage.length_scale
     before = 0.1 * reach * LARGEST_TURN * scale / CONTRACTION
     for _ in range(12):
@@ -120,7 +123,7 @@ def _hermite(nodes: list[tuple[float, Floats, Floats]], lengths: Floats) -> Floa
     k = np.clip(np.searchsorted(x, lengths) - 1, 0, len(x) - 2)
     h = (x[k + 1] - x[k])[:, None, None]
     s = ((lengths - x[k]) / (x[k + 1] - x[k]))[:, None, None]
-    return (
+    return np.asarray(
         (1 + 2 * s) * (1 - s) ** 2 * values[k]
         + s * (1 - s) ** 2 * h * rates[k]
         + s**2 * (3 - 2 * s) * values[k + 1]

@@ -44,7 +44,7 @@ class Reactions:
     @property
     def magnitudes(self) -> Floats:
         """(T, C) N."""
-        return np.linalg.norm(self.forces, axis=2)
+        return np.asarray(np.linalg.norm(self.forces, axis=2))
 
     def force(self, connection: str) -> Floats:
         """(T, 3) N, world axes."""
@@ -136,7 +136,7 @@ def read_reactions(
                 f"{path}: connection {sorted(gap)[0]} is not given at every time "
                 f"(see time {(time or 0.0) / time_unit:g})"
             )
-    first = given_reactions(case, {n: (0.0, 0.0) for n in names})
+    first = given_reactions(case, dict.fromkeys(names, (0.0, 0.0)))
     order = sorted(data, key=lambda t: t or 0.0)
     forces = np.array([[data[t][n] for n in names] for t in order])
     return replace(

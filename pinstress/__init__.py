@@ -1,8 +1,8 @@
 """Pinstress: stresses and safety factors of the pins of a linkage.
 
-    import pinstress
-    study = pinstress.load_study("studies/grenier2008.toml")
-    results = pinstress.run(study)
+import pinstress
+study = pinstress.load_study("studies/grenier2008.toml")
+results = pinstress.run(study)
 """
 
 from __future__ import annotations

@@ -59,7 +59,10 @@ def pin(study: Study, name: str) -> Pin:
     )
     try:
         made = Pin(name, segments, p.fillet)
-        for clamp in (*p.clamp, *(c for k in study.table.case.values() for c in k.clamp.get(name, ()))):
+        for clamp in (
+            *p.clamp,
+            *(c for k in study.table.case.values() for c in k.clamp.get(name, ())),
+        ):
             made.surface(clamp)
     except GeometryError as error:
         raise InputError(f"{study.path}: {error}") from None
@@ -76,7 +79,12 @@ def linkage(study: Study) -> Linkage:
     try:
         return Linkage(
             bodies=tuple(
-                Body(name, b.mass if b.mass is not None else (b.weight or 0.0) / g, b.centre, b.inertia)
+                Body(
+                    name,
+                    b.mass if b.mass is not None else (b.weight or 0.0) / g,
+                    b.centre,
+                    b.inertia,
+                )
                 for name, b in mechanism.body.items()
             ),
             joints=tuple(

@@ -34,7 +34,9 @@ def describe(study: Study) -> str:
             f"loaded at {', '.join(pin.connections) or 'nothing'}; held by {held}"
         )
     a = table.analysis
-    goal = f", required safety factor {a.required_safety_factor:g}" if a.required_safety_factor else ""
+    goal = (
+        f", required safety factor {a.required_safety_factor:g}" if a.required_safety_factor else ""
+    )
     lines.append(f"model {a.model}, tolerance {a.tolerance:g}{goal}")
     return "\n".join(lines)
 
@@ -43,8 +45,8 @@ def _mechanism(study: Study, mechanism: Linkage) -> str:
     found = mobility(mechanism)
     if found.free:
         raise InputError(
-            f"{study.path}: mechanism: with the drive held it can still move in {found.free} way(s): "
-            f"{', '.join(found.loose)} not guided; add the missing connection"
+            f"{study.path}: mechanism: with the drive held it can still move in "
+            f"{found.free} way(s): {', '.join(found.loose)} not guided; add the missing connection"
         )
     text = (
         f"mechanism: {len(mechanism.bodies)} bodies, {len(mechanism.joints)} joints, "
@@ -54,8 +56,8 @@ def _mechanism(study: Study, mechanism: Linkage) -> str:
         return text
     if not mechanism.sharing:
         raise InputError(
-            f"{study.path}: mechanism: the forces at {', '.join(found.shared)} are not determined by "
-            "rigid-body statics; say how they share in [[mechanism.sharing]]"
+            f"{study.path}: mechanism: the forces at {', '.join(found.shared)} are not determined "
+            "by rigid-body statics; say how they share in [[mechanism.sharing]]"
         )
     rule = ", ".join(f"{'/'.join(s.connections)}" for s in mechanism.sharing)
     return (

@@ -18,7 +18,8 @@ REACHED, NOT_REACHED, BAD_INPUT, NUMERICS_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
 
 def run_command_line(arguments: list[str]) -> int:
     """Exit status of a command: 0 done, 1 something asked for was not reached, 2 bad input, 3 the
-    numerics failed, 130 interrupted."""
+    numerics failed, 130 interrupted.
+    """
     signal.signal(signal.SIGTERM, _interrupt)
     try:
         status = commands.main(arguments, prog_name="pinstress", standalone_mode=False)
@@ -33,7 +34,9 @@ def run_command_line(arguments: list[str]) -> int:
         click.echo(f"Error: the numerics failed: {error}", err=True)
         return NUMERICS_FAILED
     except MemoryError:
-        click.echo("Error: the numerics failed: out of memory; a larger --tolerance needs less", err=True)
+        click.echo(
+            "Error: the numerics failed: out of memory; a larger --tolerance needs less", err=True
+        )
         return NUMERICS_FAILED
     except (KeyboardInterrupt, click.Abort):
         click.echo("Interrupted; nothing was written.", err=True)
@@ -78,7 +81,9 @@ def example(text: str) -> str:
     "3 the numerics failed; 130 interrupted."
 )
 @click.argument("study", type=click.Path(path_type=Path))
-@click.option("--out", type=click.Path(path_type=Path), help="Folder to write [out/<study's name>].")
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="Folder to write [out/<study's name>]."
+)
 @click.option("--pins", callback=_names, metavar="A,B", help="These pins only.")
 @click.option("--cases", callback=_names, metavar="X,Y", help="These cases only.")
 @click.option(

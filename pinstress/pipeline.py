@@ -7,34 +7,18 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from fea.refine import Solution, refine
-from fea.solid import PinLoads
-from geometry import Pin
-from pinstress import build, gather
+from pinstress import build, checks, gather
 from pinstress.build import CaseLoads
 from pinstress.errors import InputError
 from pinstress.limits import require_built
 from pinstress.published import Published, read_published
 from pinstress.study import Study
+from pinstress.tasks import Task, tasks
 from reports.results import Field, Results
 
 Progress = Callable[[str, float], None]
 Keep = Callable[[Field], None]
-
-
-@dataclass(frozen=True)
-class Task:
-    """One pin, held in one way, with its loads in all the cases where it is held so.
-
-    left_out: by case, the connections whose force is not applied because their band is held.
-    """
-
-    pin: Pin
-    clamps: tuple[str, ...]
-    loads: tuple[PinLoads, ...]
-    left_out: dict[str, tuple[str, ...]]
 
 
 def select(names: Iterable[str], wanted: Iterable[str] | None, what: str) -> list[str]:
@@ -54,43 +38,6 @@ def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
     """The reactions of every case, by name."""
     mechanism = build.linkage(study) if study.table.mechanism else None
     return {name: build.case_loads(study, name, mechanism) for name in cases}
-
-
-def tasks(study: Study, pins: list[str], loads: dict[str, CaseLoads]) -> list[Task]:
-    """What is to be solved: the pins that any case loads.
-
-    Raises: InputError when nothing is, or when all forces on a pin are at what holds it.
-    """
-    out = []
-    for name in pins:
-        pin = build.pin(study, name)
-        ways = dict.fromkeys(study.clamps(name, case) for case in loads)
-        for clamps in ways:
-            task = _task(study, pin, clamps, loads)
-            if task.loads:
-                out.append(task)
-    if not out:
-        raise InputError(f"{study.path}: none of the cases loads any of the pins")
-    return out
-
-
-def _task(study: Study, pin: Pin, clamps: tuple[str, ...], loads: dict[str, CaseLoads]) -> Task:
-    held = {pin.surface(c) for c in clamps}
-    cases, left_out = [], {}
-    for case, given in loads.items():
-        here = [c for c in pin.connections if c in given.reactions.connections]
-        if not here or study.clamps(pin.name, case) != clamps:
-            continue
-        applied = [c for c in here if c not in held]
-        if not applied:
-            raise InputError(
-                f"{study.path}: case.{case}: every force on pin {pin.name} is at a clamped band "
-                f"({', '.join(here)}), so nothing loads it; clamp something else"
-            )
-        left_out[case] = tuple(c for c in here if c in held)
-        forces = np.stack([given.reactions.in_pin_axes(c) for c in applied], axis=1)
-        cases.append(PinLoads(case, tuple(applied), forces))
-    return Task(pin, clamps, tuple(cases), left_out)
 
 
 @dataclass(frozen=True)
@@ -125,17 +72,15 @@ def prepare(
     require_built(study, model or study.table.analysis.model)
     published = read_published(study)
     loads = all_loads(study, select(study.table.case, cases, "case"))
-    gather.motion_check(study, loads, published)  # a mistake there should not wait for the stresses
+    checks.motion_check(study, loads, published)  # a mistake there should not wait for the stresses
     todo = tasks(study, select(study.table.pin, pins, "pin"), loads)
     check, checked = study.table.beam_check, None
     if check is not None:
         asked = (t for t in todo if t.pin.name == check.pin and check.case in t.left_out)
         checked = next(asked, None)
         if checked is not None:
-            gather.require_cantilever(study, checked, check.case)
-    return Plan(
-        study, tolerance or study.table.analysis.tolerance, loads, todo, published, checked
-    )
+            checks.require_cantilever(study, checked, check.case)
+    return Plan(study, tolerance or study.table.analysis.tolerance, loads, todo, published, checked)
 
 
 def solve(
@@ -166,7 +111,7 @@ def solve(
         if task is plan.checked and study.table.beam_check is not None:
             tell(f"pin {task.pin.name}, beam check")
             at = next(s for s in found if s.peak.case == study.table.beam_check.case)
-            beam = gather.beam_check(study, task, material, at)
+            beam = checks.beam_check(study, task, material, at)
         solutions += [(task, Solution(s.peak, None, None)) for s in found]  # fields are large
     pins, cases = list(study.table.pin), list(plan.loads)
     solutions.sort(key=lambda s: (pins.index(s[1].peak.pin), cases.index(s[1].peak.case)))

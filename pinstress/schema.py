@@ -1,39 +1,36 @@
 """The study file's form: every table and key, with its unit and domain."""
 
-
 import difflib
+from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
-from pydantic import (
-    AfterValidator,
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    Field,
-    ValidationInfo,
-    WithJsonSchema,
-    model_validator,
-)
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+from pydantic_core import core_schema
 
 from pinstress.units import DIMENSIONS, SYSTEMS, to_si
 
 Kind = Literal["given", "derived", "fitted", "assumed"]
 
 
-def _quantity(dimension: str) -> Any:
-    """A float in SI, read from a number or a string with a unit."""
+@dataclass(frozen=True)
+class Quantity:
+    """Marks a float that is read from a number or a string with a unit, and kept in SI."""
 
-    def convert(value: object, info: ValidationInfo) -> float:
+    dimension: str
+
+    def __get_pydantic_core_schema__(self, *_: object) -> core_schema.CoreSchema:
+        return core_schema.with_info_plain_validator_function(self._read)
+
+    def __get_pydantic_json_schema__(self, *_: object) -> dict[str, Any]:
+        plain: list[dict[str, Any]] = [
+            {"type": "number"},
+            {"type": "string", "examples": [DIMENSIONS[self.dimension][1]]},
+        ]
+        return {"anyOf": [*plain, sourced(plain)], "description": self.dimension}
+
+    def _read(self, value: object, info: core_schema.ValidationInfo) -> float:
         system = (info.context or {}).get("system", SYSTEMS["m-N-s"])
-        return to_si(value, dimension, system)
-
-    example = DIMENSIONS[dimension][1]
-    plain = [{"type": "number"}, {"type": "string", "examples": [example]}]
-    return Annotated[
-        float,
-        BeforeValidator(convert),
-        WithJsonSchema({"anyOf": [*plain, sourced(plain)], "description": dimension}),
-    ]
+        return to_si(value, self.dimension, system)
 
 
 def sourced(value: list[dict[str, Any]]) -> dict[str, Any]:
@@ -70,18 +67,18 @@ def _usable_name(name: str) -> str:
     return name
 
 
-Length = _quantity("length")
-Force = _quantity("force")
+Length = Annotated[float, Quantity("length")]
+Force = Annotated[float, Quantity("force")]
 PositiveLength = Annotated[Length, AfterValidator(_positive)]
 Fillet = Annotated[Length, AfterValidator(_not_negative)]
-Stress = Annotated[_quantity("stress"), AfterValidator(_positive)]
-Density = Annotated[_quantity("density"), AfterValidator(_positive)]
+Stress = Annotated[Annotated[float, Quantity("stress")], AfterValidator(_positive)]
+Density = Annotated[Annotated[float, Quantity("density")], AfterValidator(_positive)]
 Weight = Annotated[Force, AfterValidator(_not_negative)]
-Mass = Annotated[_quantity("mass"), AfterValidator(_not_negative)]
-Inertia = Annotated[_quantity("inertia"), AfterValidator(_positive)]
-Duration = Annotated[_quantity("time"), AfterValidator(_positive)]
-Velocity = _quantity("velocity")
-Acceleration = _quantity("acceleration")
+Mass = Annotated[Annotated[float, Quantity("mass")], AfterValidator(_not_negative)]
+Inertia = Annotated[Annotated[float, Quantity("inertia")], AfterValidator(_positive)]
+Duration = Annotated[Annotated[float, Quantity("time")], AfterValidator(_positive)]
+Velocity = Annotated[float, Quantity("velocity")]
+Acceleration = Annotated[float, Quantity("acceleration")]
 Name = Annotated[str, AfterValidator(_usable_name)]
 Point = tuple[Length, Length]
 
@@ -100,7 +97,9 @@ class Table(BaseModel):
             for key in data:
                 if key not in cls.model_fields:
                     near = difflib.get_close_matches(str(key), cls.model_fields, n=1, cutoff=0.5)
-                    known = ", ".join(k for k in cls.model_fields if k not in ("provenance", "note"))
+                    known = ", ".join(
+                        k for k in cls.model_fields if k not in ("provenance", "note")
+                    )
                     hint = f"did you mean {near[0]!r}?" if near else f"known here: {known}"
                     raise ValueError(f"unknown key {key!r}; {hint}")
         return data
@@ -136,7 +135,7 @@ class PinTable(Table):
 
 
 class CaseTable(Table):
-    """What all cases may say: how loads spread over bands, and pins held differently in this case."""
+    """What all cases may say: how loads spread over bands, which pins are held otherwise here."""
 
     distribution: Literal["uniform", "cosine"] = "uniform"
     clamp: dict[str, list[str]] = {}
@@ -152,7 +151,7 @@ class GivenCase(CaseTable):
     @model_validator(mode="after")
     def _one_source(self) -> "GivenCase":
         if (self.forces is None) == (self.table is None):
-            raise ValueError("give either forces = { ... } or table = \"file.csv\"")
+            raise ValueError('give either forces = { ... } or table = "file.csv"')
         if self.forces is not None and not self.forces:
             raise ValueError("forces names no connection")
         return self
@@ -221,7 +220,7 @@ class JointTable(Table):
 
 
 class BodyTable(Table):
-    """A rigid body: weight or mass, centre of mass as drawn, inertia about it (none: a particle)."""
+    """A rigid body: weight or mass, its centre as drawn, inertia about it (none: a particle)."""
 
     weight: Weight | None = None
     mass: Mass | None = None
@@ -295,7 +294,8 @@ class BeamCheckTable(Table):
 
 class MotionCheckTable(Table):
     """Compare a joint's speed and acceleration with the closed form of a lever: the joint turns
-    about the fixed `pivot` with the moving end of the driven slider."""
+    about the fixed `pivot` with the moving end of the driven slider.
+    """
 
     case: str
     joint: str

@@ -28,7 +28,7 @@ DIMENSIONS: dict[str, tuple[tuple[int, int, int], str]] = {
 
 @dataclass(frozen=True)
 class UnitSystem:
-    """A consistent system: names and SI values of its length, force and time; name of its stress."""
+    """A consistent system: names and SI values of length, force, time; the name of its stress."""
 
     name: str
     length: str
@@ -78,7 +78,9 @@ def to_si(value: object, dimension: str, system: UnitSystem) -> float:
     """
     _, example = DIMENSIONS[dimension]
     if isinstance(value, bool) or not isinstance(value, int | float | str):
-        raise ValueError(f"{value!r} is not a {dimension}; write a number or a string like {example!r}")
+        raise ValueError(
+            f"{value!r} is not a {dimension}; write a number or a string like {example!r}"
+        )
     if isinstance(value, str):
         si = _parse(value, dimension, system)
     else:
@@ -107,12 +109,15 @@ def _unit_factor(unit: str, dimension: str, text: str) -> float:
     try:
         parsed = _registry().Quantity(1.0, unit)
     except pint.UndefinedUnitError as error:
-        unknown = error.unit_names if isinstance(error.unit_names, str) else error.unit_names[0]
+        names: Any = error.unit_names
+        unknown = names if isinstance(names, str) else names[0]
         near = difflib.get_close_matches(str(unknown), [str(u) for u in _registry()._units], n=1)
         hint = f"; did you mean {near[0]!r}?" if near else f"; write for instance {example!r}"
         raise ValueError(f"unknown unit {str(unknown)!r} in {text!r}{hint}") from None
     except Exception:  # pint's parser raises what its tokenizer raises
-        raise ValueError(f"cannot read the unit in {text!r}; write for instance {example!r}") from None
+        raise ValueError(
+            f"cannot read the unit in {text!r}; write for instance {example!r}"
+        ) from None
     try:
         return float(parsed.to(_expected(dimension)).magnitude)
     except pint.DimensionalityError:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -47,7 +48,8 @@ def run_and_write(study: Study, directory: Path, *, pictures: bool, **chosen: An
             results = solve(plan, keep, progress)
             progress("report", 1.0)
             write_reports(results, staging, drawn, plots=pictures)
-    print_safety_factors(results, Console())
+    wide = {} if sys.stdout.isatty() else {"width": 120}  # a file has no width of its own
+    print_safety_factors(results, Console(**wide))  # type: ignore[arg-type]
     _tell_left_out(results)
     if problem is not None:
         click.echo(f"No pictures of the pins: {problem}", err=True)
@@ -58,8 +60,8 @@ def run_and_write(study: Study, directory: Path, *, pictures: bool, **chosen: An
 def _tell_left_out(results: Results) -> None:
     for pin in {p.pin: p for p in results.pins if p.left_out}.values():
         click.echo(
-            f"Pin {pin.pin}: the force at {', '.join(pin.left_out)} is left out, because the pin is "
-            f"held there.",
+            f"Pin {pin.pin}: the force at {', '.join(pin.left_out)} is left out, because the pin "
+            "is held there.",
             err=True,
         )
 
@@ -83,7 +85,9 @@ def progress_bar() -> Iterator[Progress]:
 
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
     console = Console(stderr=True)
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+    with Progress(
+        *columns, console=console, transient=True, disable=not console.is_terminal
+    ) as bar:
         task = bar.add_task("reactions", total=1.0)
 
         def tell(message: str, part: float) -> None:

@@ -35,7 +35,8 @@ def test_the_matrix_is_scikit_fems(cantilever_pin: Pin, steel: Material) -> None
 def test_patch(cantilever_pin: Pin, steel: Material, straight: bool, imbalance: float) -> None:
     """A linear displacement gives its constant stress exactly, and is in equilibrium: exactly on
     straight-sided elements; on coarse curved ones but for the four-point rule, which does not
-    integrate a varying det J exactly (2e-3 here, 1e-4 on the meshes that are used)."""
+    integrate a varying det J exactly (2e-3 here, 1e-4 on the meshes that are used).
+    """
     mesh = solid_mesh(cantilever_pin, MeshSize(across=2.0, arc=1.5)).mesh
     if straight:
         mesh = MeshTet2.from_mesh(MeshTet(mesh.p[:, : mesh.nvertices], mesh.t))
@@ -109,7 +110,8 @@ def solve(exact: Manufactured, n: int) -> tuple[float, float]:
     load = F.ravel()[free] - K[free][:, fixed] @ flat[fixed]
     flat[free] = factorize(K[free][:, free], free // 3)(load)
     at = sum(
-        np.asarray(rule.basis[i][0])[..., None] * u[rule.element_dofs[i]][:, None] for i in range(10)
+        np.asarray(rule.basis[i][0])[..., None] * u[rule.element_dofs[i]][:, None]
+        for i in range(10)
     )
     error_u = np.sqrt(np.sum((at - exact.displacement(x)) ** 2 * rule.dx[..., None]))
     x4 = np.moveaxis(np.asarray(space.basis.global_coordinates()), 0, -1)

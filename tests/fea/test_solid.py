@@ -21,7 +21,8 @@ LONG = Pin("long", (Segment(0.10, 0.02), Segment(0.02, 0.02, connection="B")))
 def test_a_long_cantilever_bends_as_beams_do(steel: Material) -> None:
     """Mid-span, five diameters long: axial stress within 1 % (recovery on a mesh of 5 elements
     across), tip deflection within 2 % of Timoshenko's with kappa = 6(1+nu)/(7+6nu) for the circle
-    (the clamp also hinders the root's lateral contraction, which theory does not)."""
+    (the clamp also hinders the root's lateral contraction, which theory does not).
+    """
     force = 1000.0
     model = SolidModel(LONG, solid_mesh(LONG, MeshSize(across=5.0)), steel, ("start",))
     fields = model.solve((("B", 1),))
@@ -109,7 +110,8 @@ def test_a_fillet_converges(cantilever_pin: Pin, steel: Material) -> None:
     """Bending of a shoulder fillet, D/d = 1.5, r/d = 0.25 (so h/r = 1): Peterson's Kt is 1.41 for
     the largest principal stress, and von Mises is below that. The peak must lie between the nominal
     stress where it is and 1.41 times the nominal stress at the shoulder, where the moment is
-    larger; and the estimate must cover the difference from a finer mesh."""
+    larger; and the estimate must cover the difference from a finer mesh.
+    """
     load = PinLoads("case", ("P1",), np.array([[[0.0, 1000.0, 0.0]]]))
     (coarse,) = refine(cantilever_pin, steel, ("start",), (load,), 0.05)
     assert coarse.peak.verdict == "converged", coarse.peak.note
@@ -117,7 +119,9 @@ def test_a_fillet_converges(cantilever_pin: Pin, steel: Material) -> None:
         cantilever_pin, steel, ("start",), (load,), 0.05, MeshSize().finer(2.0), meshes=1
     )
     a, b = coarse.peak.max_von_mises, fine.peak.max_von_mises
-    assert a is not None and b is not None and coarse.peak.error_estimate is not None
+    assert a is not None
+    assert b is not None
+    assert coarse.peak.error_estimate is not None
     assert abs(a - b) <= coarse.peak.error_estimate
     assert fine.peak.location is not None
     z = np.array([fine.peak.location[2], 0.02])

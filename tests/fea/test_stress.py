@@ -56,7 +56,7 @@ def test_clamps_answer_every_unit_load(bar: UnitFields) -> None:
 
 
 def test_the_free_surface_carries_no_traction(bar: UnitFields) -> None:
-    """With the mean normal of a node's facets, at every node inside the unloaded cylinder and the end face."""
+    """With the mean normal of a node's facets, at every node inside the unloaded part."""
     s, space = bar.surface, bar.space
     index = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])
     near = space.nodes[s.corners][..., 2]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -38,7 +39,7 @@ def pins(draw: st.DrawFn) -> Pin:
         Segment(draw(st.floats(0.5, 4.0)), d, bore=draw(st.sampled_from([0.0, 0.1, 0.4])))
         for d in diameters
     ]
-    steps = [abs(a - b) / 2 for a, b in zip(diameters, diameters[1:], strict=False) if a != b]
+    steps = [abs(a - b) / 2 for a, b in pairwise(diameters) if a != b]
     room = min([*steps, *(s.length / 2 for s in segments)])
     return Pin("H", tuple(segments), fillet=draw(st.floats(0.0, 1.0)) * 0.99 * room)
 

@@ -9,7 +9,7 @@ import pytest
 
 from fea.elasticity import Discretisation
 from fea.surface import surface, uniform_share
-from geometry import Pin, Segment
+from geometry import Pin, Segment, meridian
 from geometry import solid_mesh as module
 from geometry.gmsh_session import gmsh_model
 from geometry.solid_mesh import MeshError, MeshSize, solid_mesh
@@ -43,7 +43,7 @@ def test_volume_area_names_and_elements(name: str) -> None:
     assert area == pytest.approx(pin.band("B").area, rel=1e-4)
     facets = np.concatenate(list(solid.mesh.boundaries.values()))
     assert np.array_equal(np.sort(facets), np.sort(solid.mesh.boundary_facets()))
-    expected = {e.name for e in module.meridian(pin) if e.name}
+    expected = {e.name for e in meridian(pin) if e.name}
     assert set(solid.mesh.boundaries) == expected
 
 
@@ -73,7 +73,8 @@ def test_finer_means_more_elements() -> None:
 
 def test_bad_elements_are_repaired(monkeypatch: pytest.MonkeyPatch) -> None:
     """A mesh so coarse that gmsh's curved elements turn inside out (its own optimiser aborts the
-    process on this one) must come out valid, with few elements touched and the volume kept."""
+    process on this one) must come out valid, with few elements touched and the volume kept.
+    """
     pin = Pin("P", tuple(Segment(0.02, 0.02, connection=c) for c in "ABC"))
     edges = (0.0, 0.02, 0.04, 0.06)
     solid = solid_mesh(pin, MeshSize(across=2.5).finer(2.0**0.5), edges)

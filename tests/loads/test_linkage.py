@@ -32,7 +32,8 @@ def lever(
     arm: float = 0.4, base: float = 0.9, angle: float = 1.2, mass: float = 3.0, offset: float = 0.1
 ) -> Linkage:
     """Pivot D at the origin, cylinder's foot H at (0, base), its head G on the lever at `angle`
-    from DH; the lever's centre beside the line DG."""
+    from DH; the lever's centre beside the line DG.
+    """
     end = (arm * np.sin(angle), arm * np.cos(angle))
     foot = (0.0, base)
     toward = np.subtract(end, foot)
@@ -169,5 +170,4 @@ def test_redundant_connections_need_a_rule() -> None:
 )
 def test_contradictions_are_refused(change: dict[str, object], message: str) -> None:
     with pytest.raises(LinkageError, match=message):
-        mobile = replace(lever(), **change)  # type: ignore[arg-type]
-        move(mobile, drive(mobile), np.zeros(1))
+        replace(lever(), **change)  # type: ignore[arg-type]

@@ -45,7 +45,7 @@ def test_a_bad_table_is_refused(tmp_path: Path, text: str, message: str) -> None
 
 
 def test_a_missing_table_is_named(tmp_path: Path) -> None:
-    with pytest.raises(TableError, match="gone.csv: no such file"):
+    with pytest.raises(TableError, match=r"gone\.csv: no such file"):
         read_reactions("case", tmp_path / "gone.csv", 1.0, 1.0, {"B"})
 
 

@@ -90,7 +90,11 @@ def test_values_carry_their_provenance() -> None:
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("diameter = 2.0,", "diametre = 2.0,", r"profile\[2\]: unknown key 'diametre'; did you mean"),
+        (
+            "diameter = 2.0,",
+            "diametre = 2.0,",
+            r"profile\[2\]: unknown key 'diametre'; did you mean",
+        ),
         ("title =", "titel =", "unknown key 'titel'; did you mean 'title'"),
         ("[analysis]", "[analyses]", "unknown key 'analyses'; did you mean 'analysis'"),
         ('units = "in-lbf-s"', 'units = "inch"', "units: input should be 'in-lbf-s', 'mm-N-s'"),
@@ -100,7 +104,11 @@ def test_values_carry_their_provenance() -> None:
         ("length = 2.0", "length = nan", r"profile\[2\].length: nan is not finite"),
         ('"28400 ksi"', '"28400 s"', "youngs_modulus: '28400 s' is not a stress"),
         ("fillet = 0.4", "fillet = 0.6", "fillet of 1.2 times the step does not fit"),
-        ('clamp = ["start"]', 'clamp = ["strat"]', "no surface 'strat'; it has start, end, root, B"),
+        (
+            'clamp = ["start"]',
+            'clamp = ["strat"]',
+            "no surface 'strat'; it has start, end, root, B",
+        ),
         ('material = "AISI 4340"', 'material = "AISI 430"', "did you mean 'AISI 4340'"),
         ("forces = { B =", "forces = { D =", "no pin has a connection 'D'"),
         ("-988.86]", "-988.86, 0, 0]", "forces.B: list should have at most 3 items"),
@@ -116,8 +124,7 @@ def test_each_mistake_is_told(tmp_path: Path, old: str, new: str, message: str) 
     assert old in ONE_PIN
     path = write(tmp_path, ONE_PIN.replace(old, new))
     with pytest.raises(InputError, match=message) as caught:
-        study = load_study(path)
-        build.pin(study, "B")
+        build.pin(load_study(path), "B")
     assert str(path) in str(caught.value)
 
 
@@ -151,7 +158,11 @@ GEAR = (
         ('connections = ["G1", "G3"]', 'connections = ["G1", "G4"]', "names connection 'G4'"),
         ('connections = ["G1", "G3"]', 'connections = ["E1", "E2"]', "does not determine them"),
         ("value = 41.96,", "value = 44.0,", "cannot close with slider HG at 44 in: .* to 43.2"),
-        ('connections = { B = "BC" }', 'connections = { BB = "BC" }', "'B' is not in the mechanism"),
+        (
+            'connections = { B = "BC" }',
+            'connections = { BB = "BC" }',
+            "'B' is not in the mechanism",
+        ),
         ('fixed_in = "EBJ"', 'fixed_in = "EJB"', "joint B: there is no body 'EJB'"),
         ('pivot = "D"', 'pivot = "C"', "C is not fixed in the ground"),
     ],
@@ -159,14 +170,12 @@ GEAR = (
 def test_each_mistake_in_a_mechanism_is_told(
     tmp_path: Path, old: str, new: str, message: str
 ) -> None:
-    from pinstress.gather import motion_check
-    from pinstress.pipeline import all_loads
-    from pinstress.published import read_published
+    from pinstress.pipeline import prepare
 
     assert old in GEAR
+    path = write(tmp_path, GEAR.replace(old, new, 1))
     with pytest.raises(InputError, match=message):
-        study = load_study(write(tmp_path, GEAR.replace(old, new, 1)))
-        motion_check(study, all_loads(study, list(study.table.case)), read_published(study))
+        prepare(load_study(path))
 
 
 def test_without_a_sharing_rule_the_connections_are_named(tmp_path: Path) -> None:

@@ -182,10 +182,10 @@ def test_solid_has_the_axis_loads_term() -> None:
     """On a thin bore instead of the surface, the load lowers the stress further.
 
     The plane-strain difference is (1 - b^2) / (1 + b^2) of the axis's on a bore of radius b.
-    Tolerance 6 %: measured 2.8 % too much, from elements about half as large as their
+    Tolerance 6 %: measured 2.7 % too much, from elements about half as large as their
     distance from the axis.
     """
-    length, b, nu = 6.0, 0.1, 0.3
+    length, b, nu = 6.0, 0.15, 0.3
     mesh = bar_mesh(length, 2.0 * b, MeshSize(across=4.0, corner=1.0, growth=0.25))
     material = Material("bar", 200e9, nu)
     fields = SolidModel(bar(length, 2.0 * b), mesh, material, ("start",)).solve(

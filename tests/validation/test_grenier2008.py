@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from loads import CosineDrive, Dynamics, Linkage, Motion, Sharing, energy, move
+from loads import CosineDrive, Dynamics, Linkage, Sharing, energy, move
 from loads.forces import motion_reactions
 from pinstress import build
 from pinstress.study import Study
@@ -51,7 +51,8 @@ def test_landing_magnitudes_are_those_of_table_4(gear: Study, landing: Dynamics)
 
 def test_landing_directions_are_those_of_table_3(landing: Dynamics) -> None:
     """Each pin's components are printed in a frame of its own; scalar products of the forces on one
-    pin do not depend on it. G1 . G3 and D1 . D2 hang on how the two levers share."""
+    pin do not depend on it. G1 . G3 and D1 . D2 hang on how the two levers share.
+    """
     parts = {
         row["connection"]: float(row["force_lbf"])
         for row in rows(Path(__file__).with_name("grenier2008_table3.csv"))
@@ -86,16 +87,12 @@ def test_plain_least_squares_is_not_how_the_levers_share(
 
     names = tuple(c.name for _, c in gear_linkage.connections)
     plain = replace(gear_linkage, sharing=(Sharing(names, (1.0,) * len(names)),))
-    other = motion_reactions("plain", retract.motion.__class__(**_moved(plain, retract.motion)))
+    law = CosineDrive(30.70 * INCH, 41.96 * INCH, 4.0)
+    other = motion_reactions("plain", move(plain, law, TIMES))
     gap = np.linalg.norm(other.reactions.force("G1") - retract.reactions.force("G1"), axis=1)
     assert gap.max() / LBF > 10.0
     same = np.linalg.norm(other.reactions.force("E2") - retract.reactions.force("E2"), axis=1)
     assert same.max() / LBF < 1e-8
-
-
-def _moved(linkage: Linkage, motion: Motion) -> dict[str, object]:
-    again = move(linkage, CosineDrive(30.70 * INCH, 41.96 * INCH, 4.0), motion.times)
-    return vars(again)
 
 
 def test_the_radial_shares_at_g_are_equal(gear_linkage: Linkage, retract: Dynamics) -> None:
@@ -111,7 +108,8 @@ def test_only_the_two_levers_share(retract: Dynamics) -> None:
 
 def test_power_balances_at_every_instant(retract: Dynamics) -> None:
     """The drive is the only thing that does work besides gravity: its power is the rate of the
-    energies, all from velocities and accelerations of the same instant."""
+    energies, all from velocities and accelerations of the same instant.
+    """
     stored = energy(retract.motion)
     surplus = retract.power - stored.kinetic_rate - stored.potential_rate
     assert np.abs(surplus).max() < 1e-9 * np.abs(retract.power).max()
@@ -119,7 +117,8 @@ def test_power_balances_at_every_instant(retract: Dynamics) -> None:
 
 def test_work_is_the_change_of_energy(gear_linkage: Linkage, retract: Dynamics) -> None:
     """By Gauss's rule with 4 points in each of the 200 intervals, which never meets the instants
-    of the solution: a check of velocities and forces against positions."""
+    of the solution: a check of velocities and forces against positions.
+    """
     law = CosineDrive(30.70 * INCH, 41.96 * INCH, 4.0)
     at, weight = np.polynomial.legendre.leggauss(4)
     h = np.diff(TIMES)
@@ -150,7 +149,8 @@ def test_pin_f_moves_as_printed(
 )
 def test_pins_weigh_what_table_3_says(gear: Study, pin: str, weight: float) -> None:
     """Their weights follow from the differences of forces in table 3; C and F to 1e-6 because
-    0.2 % leaves nothing for rounding (4.566 against 4.557)."""
+    0.2 % leaves nothing for rounding (4.566 against 4.557).
+    """
     density = build.material(gear, "AISI 4340").density
     assert density is not None
     assert build.pin(gear, pin).weight(density) / LBF == pytest.approx(weight, rel=2e-3)

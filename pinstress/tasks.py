@@ -1,0 +1,64 @@
+"""What is to be solved: each pin, how it is held, and its loads in every case."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea.solid import PinLoads
+from geometry import Pin
+from pinstress import build
+from pinstress.build import CaseLoads
+from pinstress.errors import InputError
+from pinstress.study import Study
+
+
+@dataclass(frozen=True)
+class Task:
+    """One pin, held in one way, with its loads in all the cases where it is held so.
+
+    left_out: by case, the connections whose force is not applied because their band is held.
+    """
+
+    pin: Pin
+    clamps: tuple[str, ...]
+    loads: tuple[PinLoads, ...]
+    left_out: dict[str, tuple[str, ...]]
+
+
+def tasks(study: Study, pins: list[str], loads: dict[str, CaseLoads]) -> list[Task]:
+    """What is to be solved: the pins that any case loads.
+
+    Raises: InputError when nothing is, or when all forces on a pin are at what holds it.
+    """
+    out = []
+    for name in pins:
+        pin = build.pin(study, name)
+        ways = dict.fromkeys(study.clamps(name, case) for case in loads)
+        for clamps in ways:
+            task = _task(study, pin, clamps, loads)
+            if task.loads:
+                out.append(task)
+    if not out:
+        raise InputError(f"{study.path}: none of the cases loads any of the pins")
+    return out
+
+
+def _task(study: Study, pin: Pin, clamps: tuple[str, ...], loads: dict[str, CaseLoads]) -> Task:
+    held = {pin.surface(c) for c in clamps}
+    cases, left_out = [], {}
+    for case, given in loads.items():
+        here = [c for c in pin.connections if c in given.reactions.connections]
+        if not here or study.clamps(pin.name, case) != clamps:
+            continue
+        applied = [c for c in here if c not in held]
+        if not applied:
+            raise InputError(
+                f"{study.path}: case.{case}: every force on pin {pin.name} is at a clamped band "
+                f"({', '.join(here)}), so nothing loads it; clamp something else"
+            )
+        left_out[case] = tuple(c for c in here if c in held)
+        forces = np.stack([given.reactions.in_pin_axes(c) for c in applied], axis=1)
+        cases.append(PinLoads(case, tuple(applied), forces))
+    return Task(pin, clamps, tuple(cases), left_out)

@@ -1,0 +1,38 @@
+"""CSV for spreadsheets: numbers with every digit, names that are never taken for formulas."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import numpy as np
+
+Cell = str | bool | int | float | None
+
+
+def write_csv(path: Path, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
+    """Write rows under column names; None and numbers that are none become empty cells."""
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(columns)
+        writer.writerows([cell(value) for value in row] for row in rows)
+
+
+def cell(value: Cell) -> str:
+    """A value as the text of a cell."""
+    if value is None:
+        return ""
+    if isinstance(value, (bool, np.bool_)):
+        return "yes" if value else "no"
+    if isinstance(value, str):
+        return harmless(value)
+    if isinstance(value, (int, np.integer)):
+        return str(int(value))
+    return repr(float(value)) if np.isfinite(value) else ""
+
+
+def harmless(text: str) -> str:
+    """Text which a spreadsheet shows and does not run."""
+    # Spreadsheets skip leading blanks before they look for a formula.
+    return "'" + text if text.lstrip()[:1] in tuple("=+-@") or text[:1] in tuple("\t\r\n") else text

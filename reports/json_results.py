@@ -1,0 +1,69 @@
+"""results.json: what a run found, for programs to read."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from reports.numbers import finite
+from reports.results import PinResult, Results
+
+SCHEMA = "pinstress-results/1"
+
+
+def to_json(results: Results) -> dict[str, Any]:
+    """The results as plain JSON values; a number that is none is null."""
+    return {
+        "schema": SCHEMA,
+        "title": results.title,
+        "study": results.study,
+        "study_sha256": results.study_sha256,
+        "units": asdict(results.units),
+        "required_safety_factor": finite(results.required_safety_factor),
+        "tolerance": finite(results.tolerance),
+        "versions": {name: results.versions[name] for name in sorted(results.versions)},
+        "pins": [_pin(pin) for pin in results.pins],
+        "provenance": [asdict(entry) for entry in results.provenance],
+    }
+
+
+def write_json(results: Results, path: Path) -> None:
+    """Write results.json: strict JSON in UTF-8 with every digit of every number."""
+    text = json.dumps(to_json(results), indent=2, ensure_ascii=False, allow_nan=False)
+    path.write_text(text + "\n", encoding="utf-8")
+
+
+def _pin(pin: PinResult) -> dict[str, Any]:
+    return {
+        "pin": pin.pin,
+        "case": pin.case,
+        "model": pin.model,
+        "max_von_mises": finite(pin.max_von_mises),
+        "error_estimate": finite(pin.error_estimate),
+        "verdict": pin.verdict,
+        "note": pin.note,
+        "location": None if pin.location is None else [finite(x) for x in pin.location],
+        "time": finite(pin.time),
+        "safety_factor": finite(pin.safety_factor),
+        "yields": _truth(pin.yields),
+        "meets_required": _truth(pin.meets_required),
+        "dofs": int(pin.dofs),
+        "seconds": finite(pin.seconds),
+        "history": [
+            {
+                "dofs": int(step.dofs),
+                "max_von_mises": finite(step.max_von_mises),
+                "seconds": finite(step.seconds),
+            }
+            for step in pin.history
+        ],
+        "held": pin.held,
+        "left_out": list(pin.left_out),
+    }
+
+
+def _truth(value: bool | None) -> bool | None:
+    # A numpy bool is no JSON value.
+    return None if value is None else bool(value)

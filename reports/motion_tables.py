@@ -1,0 +1,69 @@
+"""CSV tables of what happens along a motion and in the checks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from reports.csv_files import Cell, write_csv
+from reports.results import BeamCheck, MotionCheck, ReactionTable, Results
+
+REACTIONS = ("case", "time", "connection", "body", "fx", "fy", "fz", "mx", "my", "mz")
+DRIVE = (
+    "time",
+    "position",
+    "velocity",
+    "acceleration",
+    "force",
+    "power",
+    "work",
+    "kinetic_energy",
+    "potential_energy",
+)
+BEAM = (
+    "z",
+    "shear",
+    "moment",
+    "beam_axial_stress",
+    "fea_axial_stress",
+    "fea_axial_stress_axis_load",
+)
+MOTION = (
+    "time",
+    "speed",
+    "acceleration",
+    "closed_form_speed",
+    "closed_form_acceleration",
+)
+
+
+def write_reactions(results: Results, path: Path) -> None:
+    """Write the forces and moments on the pins, world axes: a row per instant and connection."""
+    write_csv(path, REACTIONS, (row for table in results.reactions for row in _instants(table)))
+
+
+def _instants(table: ReactionTable) -> Iterator[list[Cell]]:
+    for t in range(len(table.forces)):
+        time = None if table.times is None else float(table.times[t])
+        for c, (connection, body) in enumerate(zip(table.connections, table.bodies, strict=True)):
+            yield [table.case, time, connection, body, *table.forces[t, c], *table.moments[t, c]]
+
+
+def write_drive(results: Results, path: Path) -> None:
+    """Write the drive along every motion, with the case in the first column."""
+    rows: Iterator[list[Cell]] = (
+        [table.case, *(float(getattr(table, name)[t]) for name in DRIVE)]
+        for table in results.drive
+        for t in range(len(table.time))
+    )
+    write_csv(path, ("case", *DRIVE), rows)
+
+
+def write_beam_check(check: BeamCheck, path: Path) -> None:
+    """Write shear, moment and axial stresses along the cantilever pin."""
+    write_csv(path, BEAM, zip(*(getattr(check, name) for name in BEAM), strict=True))
+
+
+def write_motion_check(check: MotionCheck, path: Path) -> None:
+    """Write a joint's speed and acceleration, from the linkage and in closed form."""
+    write_csv(path, MOTION, zip(*(getattr(check, name) for name in MOTION), strict=True))

@@ -1,0 +1,64 @@
+"""Numbers as engineers write them: four digits, no 1e+05, exponents in threes."""
+
+from __future__ import annotations
+
+import math
+
+DASH = "–"
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def engineering(value: float | None, digits: int = 4) -> str:
+    """A number with `digits` significant digits; a dash for none or not finite.
+
+    Up to a million with thousands set off by commas, beyond and under a thousandth with 10³ⁿ.
+    """
+    if value is None or not math.isfinite(value):
+        return DASH
+    rounded = float(f"{value:.{digits - 1}e}")
+    if rounded == 0.0:
+        return "0"
+    size = math.floor(math.log10(abs(rounded)))
+    if -3 <= size < 7:
+        return _plain(rounded, digits, size)
+    power = 3 * (size // 3)
+    return f"{_plain(rounded / 10.0**power, digits, size - power)}×{ten_to(power)}"
+
+
+def ten_to(power: int) -> str:
+    """Ten to a power, as text."""
+    return "10" + str(power).translate(SUPERSCRIPTS)
+
+
+def _plain(value: float, digits: int, size: int) -> str:
+    text = f"{value:,.{max(digits - 1 - size, 0)}f}"
+    return text.replace("-", "−")
+
+
+def short(value: float) -> str:
+    """A dimension or an instant as it was given: no padding zeros, at most six digits."""
+    text = engineering(value, 6)
+    head, times, power = text.partition("×")
+    if "." in head:
+        head = head.rstrip("0").rstrip(".")
+    return head + times + power
+
+
+def like(value: float, given: float) -> str:
+    """A number rounded to as many decimals as one that was given."""
+    _, _, decimals = repr(float(given)).partition(".")
+    if "e" in decimals or decimals == "0":
+        decimals = ""
+    return f"{value:,.{len(decimals)}f}".replace("-", "−")
+
+
+def finite(value: float | None) -> float | None:
+    """The number, or None where it is none."""
+    return None if value is None or not math.isfinite(value) else float(value)
+
+
+def ratio(ours: float | None, published: float | None) -> float | None:
+    """Ours over published, None where either is missing or published is zero."""
+    if ours is None or published is None or published == 0.0:
+        return None
+    return finite(ours / published)

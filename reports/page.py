@@ -1,0 +1,107 @@
+"""report.html: one file that shows everything a run found, without network or scripts."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from reports.drawing import draw_pin
+from reports.numbers import DASH, engineering, like, short
+from reports.page_rows import pin_parts, reaction_tables
+from reports.plot_names import SVG, plot_name
+from reports.published import published_reactions
+from reports.results import Results
+from reports.tables import TEXTS, safety_factor_rows, shown, shown_columns
+from reports.words import READING, outcome, summary, word
+
+TEMPLATES = Path(__file__).parent / "templates"
+TYPES = {".svg": "image/svg+xml", ".png": "image/png", ".jpg": "image/jpeg"}
+
+
+@dataclass(frozen=True)
+class _Plots:
+    """The plots that may be shown, by name."""
+
+    files: dict[str, Path]
+
+    def uri(self, kind: str, *names: str) -> str | None:
+        path = self.files.get(plot_name(kind, *names))
+        return None if path is None else data_uri(path)
+
+
+def write_page(
+    results: Results,
+    directory: Path,
+    pictures: dict[tuple[str, str], Path],
+    plots: Iterable[Path] | None = None,
+) -> Path:
+    """Write report.html and return its path.
+
+    pictures: of pins, by pin and case. plots: their files; None for those in directory/plots.
+    """
+    found = (directory / "plots").glob("*.svg") if plots is None else plots
+    path = directory / "report.html"
+    path.write_text(
+        render(results, pictures, {p.name.removesuffix(SVG): p for p in found if p.suffix == SVG}),
+        encoding="utf-8",
+    )
+    return path
+
+
+def render(results: Results, pictures: dict[tuple[str, str], Path], plots: dict[str, Path]) -> str:
+    """The page as text; plots by name (reports.plot_names)."""
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+    from markupsafe import Markup
+
+    environment = Environment(
+        loader=FileSystemLoader(TEMPLATES),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters.update(eng=engineering, short=_short, word=word, like=like)
+    template = environment.get_template("report.html.j2")
+    drawings: dict[str, str] = {s.pin: Markup(draw_pin(s, results.units)) for s in results.shapes}
+    return template.render(
+        results=results,
+        units=results.units,
+        summary=summary(results),
+        reading=READING,
+        plot=_Plots(plots).uri,
+        pins=pin_parts(results, drawings, {k: data_uri(p) for k, p in pictures.items()}),
+        published=published_reactions(results),
+        reactions=reaction_tables(results),
+        cases=list(dict.fromkeys(pin.case for pin in results.pins)),
+        **_safety_factors(results),
+    )
+
+
+def _safety_factors(results: Results) -> dict[str, Any]:
+    rows = safety_factor_rows(results)
+    columns = shown_columns(rows, results.units)
+    columns.pop("meets_required")  # the outcome says it
+    return {
+        "columns": columns,
+        "numeric": [name for name in columns if name not in TEXTS],
+        "rows": [
+            {
+                "pin": pin.pin,
+                "outcome": outcome(pin),
+                "cells": {name: shown(name, row) for name in columns},
+            }
+            for pin, row in zip(results.pins, rows, strict=True)
+        ],
+    }
+
+
+def data_uri(path: Path) -> str:
+    """A picture's bytes as an address."""
+    return f"data:{TYPES[path.suffix]};base64,{b64encode(path.read_bytes()).decode('ascii')}"
+
+
+def _short(value: float | None) -> str:
+    return DASH if value is None else short(value)

@@ -1,0 +1,91 @@
+"""What the page shows of each pin and each case, gathered from the results."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from reports.results import PinResult, PinShape, ReactionTable, Results
+from reports.words import outcome
+
+
+@dataclass(frozen=True)
+class PinCase:
+    """A pin's result in one case, with one word for it and its picture's address."""
+
+    result: PinResult
+    outcome: str
+    picture: str | None
+
+
+@dataclass(frozen=True)
+class PinPart:
+    """All of one pin: its anchor on the page, profile and drawing, cases, cases with a motion."""
+
+    pin: str
+    anchor: str
+    shape: PinShape | None
+    drawing: str
+    cases: tuple[PinCase, ...]
+    moving: tuple[str, ...]
+
+
+def pin_parts(
+    results: Results, drawings: dict[str, str], pictures: dict[tuple[str, str], str]
+) -> list[PinPart]:
+    """The pins in the order of the results, then those that are only drawn."""
+    shapes = {shape.pin: shape for shape in results.shapes}
+    names = dict.fromkeys([p.pin for p in results.pins] + list(shapes))
+    return [
+        PinPart(
+            pin=name,
+            anchor=f"pin-{number}",
+            shape=shapes.get(name),
+            drawing=drawings.get(name, ""),
+            cases=tuple(
+                PinCase(p, outcome(p), pictures.get((p.pin, p.case)))
+                for p in results.pins
+                if p.pin == name
+            ),
+            moving=tuple(
+                t.case for t in results.reactions if t.times is not None and name in t.pins
+            ),
+        )
+        for number, name in enumerate(names, start=1)
+    ]
+
+
+@dataclass(frozen=True)
+class ReactionRow:
+    """A connection's largest force, its components then, and when."""
+
+    connection: str
+    body: str
+    pin: str
+    shared: bool
+    largest: float
+    components: tuple[float, float, float]
+    time: float | None
+
+
+def reaction_tables(results: Results) -> list[tuple[ReactionTable, list[ReactionRow]]]:
+    """For each case every connection at the instant of its largest force."""
+    return [(table, _rows(table)) for table in results.reactions]
+
+
+def _rows(table: ReactionTable) -> list[ReactionRow]:
+    instants = table.magnitudes.argmax(axis=0)
+    rows = []
+    for c, t in enumerate(instants.tolist()):
+        x, y, z = table.forces[t, c].tolist()
+        rows.append(
+            ReactionRow(
+                connection=table.connections[c],
+                body=table.bodies[c],
+                pin=table.pins[c],
+                shared=table.connections[c] in table.shared,
+                largest=float(table.magnitudes[t, c]),
+                components=(x, y, z),
+                time=None if table.times is None else float(table.times[t]),
+            )
+        )
+    return rows

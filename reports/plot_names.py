@@ -1,0 +1,17 @@
+"""File names of the plots, known without drawing any."""
+
+from __future__ import annotations
+
+from urllib.parse import quote
+
+SVG, PNG = ".svg", ".png"
+
+
+def plot_name(kind: str, *names: str) -> str:
+    """A name without extension, such as "reactions.retract.B"; different names stay different."""
+    return ".".join((kind, *(_safe(name) for name in names)))
+
+
+def _safe(name: str) -> str:
+    # A dot parts the names, so it is no letter of one.
+    return quote(name, safe="").replace(".", "%2E")

@@ -1,0 +1,62 @@
+"""Plots of the maximum against the number of unknowns."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.ticker import FixedLocator, NullFormatter
+
+from reports.plot_names import plot_name
+from reports.results import PinResult, Units
+from reports.style import label_ends, line_style, panels, plain_numbers, save
+from reports.words import word
+
+MARKS = "os^Dv<>ph*"
+
+
+def refinement_plot(
+    case: str, pins: Sequence[PinResult], units: Units, directory: Path
+) -> list[Path]:
+    """Every pin's maximum on its meshes, both axes logarithmic; open marks: not converged."""
+    with panels(1, height=max(3.6, 0.2 * len(pins) + 1.0)) as (figure, (axes,)):
+        lines = []
+        for order, pin in enumerate(pins):
+            style = line_style(order)
+            face = style["color"] if pin.verdict == "converged" else "white"
+            lines += axes.plot(
+                [step.dofs for step in pin.history],
+                [step.max_von_mises for step in pin.history],
+                marker=MARKS[order % len(MARKS)],
+                markersize=5,
+                markerfacecolor=face,
+                **style,
+            )
+        axes.set(xscale="log", yscale="log")
+        _ticks(axes, pins)
+        axes.set_xlabel("unknowns")
+        axes.set_ylabel(f"max von Mises [{units.stress}]")
+        axes.set_title(f"{case}: maximum on finer and finer meshes", pad=8)
+        label_ends(figure, axes, lines, [_text(pin) for pin in pins])
+        return save(figure, directory, plot_name("refinement", case))
+
+
+def _text(pin: PinResult) -> str:
+    return pin.pin if pin.verdict == "converged" else f"{pin.pin}, {word(pin.verdict)}"
+
+
+def _ticks(axes: Axes, pins: Sequence[PinResult]) -> None:
+    """Ticks at 1, 2, 5 where the range is small: decades alone would leave an axis bare."""
+    steps = [step for pin in pins for step in pin.history]
+    for axis, values in (
+        (axes.xaxis, [float(step.dofs) for step in steps]),
+        (axes.yaxis, [step.max_von_mises for step in steps]),
+    ):
+        low, high = np.log10(min(values)), np.log10(max(values))
+        decades = np.arange(np.floor(low), np.ceil(high) + 1)
+        within = (1.0, 2.0, 5.0) if high - low < 3.0 else (1.0,)
+        axis.set_major_locator(FixedLocator([m * 10.0**d for d in decades for m in within]))
+        axis.set_minor_formatter(NullFormatter())
+    plain_numbers(axes)

@@ -1,0 +1,37 @@
+"""All plots of a run, each as SVG and as PNG."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from reports.plot_checks import beam_plots, motion_plot
+from reports.plot_drive import drive_plot
+from reports.plot_reactions import bars, motion_plots
+from reports.plot_refinement import refinement_plot
+from reports.results import PinResult, Results
+
+
+def save_plots(results: Results, directory: Path) -> list[Path]:
+    """Draw everything the results hold into `directory`; returns the files."""
+    directory.mkdir(parents=True, exist_ok=True)
+    units = results.units
+    paths = []
+    for table in results.reactions:
+        moving = table.times is not None
+        paths += (motion_plots if moving else bars)(table, units, directory)
+    for drive in results.drive:
+        paths += drive_plot(drive, units, directory)
+    if results.beam_check is not None:
+        paths += beam_plots(results.beam_check, units, directory)
+    if results.motion_check is not None:
+        paths += motion_plot(results.motion_check, units, directory)
+    for case in dict.fromkeys(pin.case for pin in results.pins):
+        refined = [pin for pin in results.pins if pin.case == case and _can_be_drawn(pin)]
+        if refined:
+            paths += refinement_plot(case, refined, units, directory)
+    return paths
+
+
+def _can_be_drawn(pin: PinResult) -> bool:
+    # A logarithmic axis has no place for zero.
+    return len(pin.history) > 0 and all(step.max_von_mises > 0.0 for step in pin.history)

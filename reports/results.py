@@ -1,0 +1,207 @@
+"""What a run found, as plain data in the study's own units: all that reports are made from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Units:
+    """Names of the units in which everything here is given."""
+
+    length: str
+    force: str
+    stress: str
+    time: str
+
+
+@dataclass(frozen=True)
+class MeshStep:
+    """One mesh of a refinement: unknowns, maximum, seconds."""
+
+    dofs: int
+    max_von_mises: float
+    seconds: float
+
+
+@dataclass(frozen=True)
+class PinResult:
+    """One pin in one case. Numbers are None for verdict `rigid`; time is None without a motion.
+
+    location: x, y, z in the pin's own axes. held: what holds the pin, in words. left_out: given
+    forces that were not applied because their band is held. published_*: the publication's value.
+    """
+
+    pin: str
+    case: str
+    model: str
+    verdict: str
+    note: str
+    max_von_mises: float | None
+    error_estimate: float | None
+    location: tuple[float, float, float] | None
+    time: float | None
+    position: float | None
+    safety_factor: float | None
+    yields: bool | None
+    meets_required: bool | None
+    dofs: int
+    seconds: float
+    history: tuple[MeshStep, ...]
+    held: str
+    left_out: tuple[str, ...] = ()
+    published_max_von_mises: float | None = None
+    published_safety_factor: float | None = None
+
+
+@dataclass(frozen=True)
+class ReactionTable:
+    """One case's forces on the pins, world axes: forces, moments (T, C, 3).
+
+    times, position (T,): None without a motion. pins: (C,) the pin on which each connection bears.
+    shared: connections whose forces follow the study's sharing rule. published: magnitudes by
+    connection. note: how the case came about (an impulse estimate, say).
+    """
+
+    case: str
+    times: Floats | None
+    position: Floats | None
+    connections: tuple[str, ...]
+    bodies: tuple[str, ...]
+    pins: tuple[str, ...]
+    forces: Floats
+    moments: Floats
+    shared: tuple[str, ...] = ()
+    published: dict[str, float] = field(default_factory=dict)
+    note: str = ""
+
+    @property
+    def magnitudes(self) -> Floats:
+        """(T, C)."""
+        return np.asarray(np.linalg.norm(self.forces, axis=2))
+
+
+@dataclass(frozen=True)
+class DriveTable:
+    """The drive along a motion, all (T,): energies and work in force x length."""
+
+    case: str
+    time: Floats
+    position: Floats
+    velocity: Floats
+    acceleration: Floats
+    force: Floats
+    power: Floats
+    work: Floats
+    kinetic_energy: Floats
+    potential_energy: Floats
+
+
+@dataclass(frozen=True)
+class BeamCheck:
+    """Beam theory beside the solid's axial stress on the tension line of a cantilever pin; all
+    arrays along z. band: z-range of the load. rms, largest: difference of the surface load's stress
+    from the beam's between 30 and 80 % of the loaded length, over the beam's peak; largest_at: z
+    of the largest difference anywhere.
+    """
+
+    pin: str
+    case: str
+    connection: str
+    force: float
+    diameter: float
+    axis_bore: float
+    band: tuple[float, float]
+    z: Floats
+    shear: Floats
+    moment: Floats
+    beam_axial_stress: Floats
+    fea_axial_stress: Floats
+    fea_axial_stress_axis_load: Floats
+    rms: float
+    rms_axis_load: float
+    largest: float
+    largest_axis_load: float
+    largest_anywhere: float
+    largest_at: float
+
+
+@dataclass(frozen=True)
+class MotionCheck:
+    """Speed and acceleration magnitude of a joint, from the linkage and in closed form, (T,);
+    published: rows of time, speed, acceleration with ours at that time (time, v, a, our v, our a).
+    """
+
+    joint: str
+    case: str
+    time: Floats
+    speed: Floats
+    acceleration: Floats
+    closed_form_speed: Floats
+    closed_form_acceleration: Floats
+    published: tuple[tuple[float, float, float, float, float], ...]
+
+
+@dataclass(frozen=True)
+class Field:
+    """A solid mesh with results at its nodes: points (N, 3), tetra10 cells (M, 10; VTK order),
+    displacement (N, 3), stress (N, 6: xx, yy, zz, yz, xz, xy), von_mises (N,), and envelope (N,):
+    the largest von Mises over all instants at surface nodes, NaN inside.
+    """
+
+    pin: str
+    case: str
+    points: Floats
+    cells: NDArray[np.int64]
+    displacement: Floats
+    stress: Floats
+    von_mises: Floats
+    envelope: Floats
+
+
+@dataclass(frozen=True)
+class PinShape:
+    """A pin's profile for drawing: segments (length, diameter, bore, label, kind) in order, where
+    kind is "band", "held" or "plain"; its weight (None without a density).
+    """
+
+    pin: str
+    segments: tuple[tuple[float, float, float, str, str], ...]
+    material: str
+    weight: float | None
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Where a number of the study comes from: given, derived, fitted or assumed."""
+
+    key: str
+    kind: str
+    note: str
+
+
+@dataclass(frozen=True)
+class Results:
+    """Everything a run found, without the fields (those are written pin by pin)."""
+
+    title: str
+    study: str
+    study_sha256: str
+    units: Units
+    required_safety_factor: float | None
+    tolerance: float
+    pins: tuple[PinResult, ...]
+    shapes: tuple[PinShape, ...] = ()
+    reactions: tuple[ReactionTable, ...] = ()
+    drive: tuple[DriveTable, ...] = ()
+    beam_check: BeamCheck | None = None
+    motion_check: MotionCheck | None = None
+    provenance: tuple[Provenance, ...] = ()
+    published_source: str = ""
+    assumptions: tuple[str, ...] = ()
+    versions: dict[str, str] = field(default_factory=dict)

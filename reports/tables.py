@@ -1,0 +1,148 @@
+"""The safety factors, as rows, as CSV and as Markdown."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from reports import markdown
+from reports.csv_files import write_csv
+from reports.motion_tables import (
+    write_beam_check,
+    write_drive,
+    write_motion_check,
+    write_reactions,
+)
+from reports.numbers import DASH, engineering, finite, ratio, short
+from reports.published import write_published_reactions
+from reports.results import PinResult, Results, Units
+from reports.words import READING, word
+
+__all__ = [
+    "safety_factor_rows",
+    "write_beam_check",
+    "write_drive",
+    "write_motion_check",
+    "write_published_reactions",
+    "write_reactions",
+    "write_safety_factors",
+]
+
+Row = dict[str, str | float | None]
+COLUMNS = (
+    "pin",
+    "case",
+    "time",
+    "max_von_mises",
+    "error_estimate",
+    "safety_factor",
+    "required",
+    "meets_required",
+    "verdict",
+    "model",
+    "published_max_von_mises",
+    "ratio",
+    "published_safety_factor",
+    "note",
+)
+TEXTS = ("pin", "case", "meets_required", "verdict", "model")
+PUBLISHED = ("published_max_von_mises", "ratio", "published_safety_factor")
+
+
+def safety_factor_rows(results: Results) -> list[Row]:
+    """A row per pin and case; numbers in the study's units, None where there is none."""
+    required = finite(results.required_safety_factor)
+    return [_row(pin, required) for pin in results.pins]
+
+
+def _row(pin: PinResult, required: float | None) -> Row:
+    return {
+        "pin": pin.pin,
+        "case": pin.case,
+        "time": finite(pin.time),
+        "max_von_mises": finite(pin.max_von_mises),
+        "error_estimate": finite(pin.error_estimate),
+        "safety_factor": finite(pin.safety_factor),
+        "required": required,
+        "meets_required": None if pin.meets_required is None else _yes(pin.meets_required),
+        "verdict": pin.verdict,
+        "model": pin.model,
+        "published_max_von_mises": finite(pin.published_max_von_mises),
+        "ratio": ratio(pin.max_von_mises, pin.published_max_von_mises),
+        "published_safety_factor": finite(pin.published_safety_factor),
+        "note": pin.note,
+    }
+
+
+def _yes(value: bool) -> str:
+    return "yes" if value else "no"
+
+
+def shown_columns(rows: list[Row], units: Units) -> dict[str, str]:
+    """Columns for people with their headings: without the note, and the published if there are."""
+    headings = {
+        "pin": "pin",
+        "case": "case",
+        "time": f"time [{units.time}]",
+        "max_von_mises": f"max von Mises [{units.stress}]",
+        "error_estimate": f"± [{units.stress}]",
+        "safety_factor": "safety factor",
+        "required": "required",
+        "meets_required": "meets it",
+        "verdict": "verdict",
+        "model": "model",
+        "published_max_von_mises": f"published max [{units.stress}]",
+        "ratio": "ours / published",
+        "published_safety_factor": "published factor",
+    }
+    empty = [name for name in PUBLISHED if all(row[name] is None for row in rows)]
+    return {name: text for name, text in headings.items() if name not in empty}
+
+
+def shown(name: str, row: Row) -> str:
+    """A value of a row for people: four digits, a dash for none."""
+    value = row[name]
+    if name == "verdict":
+        return word(str(value))
+    if value is None or (name == "meets_required" and row["verdict"] != "converged"):
+        return DASH
+    if isinstance(value, str):
+        return value
+    if name in ("required", "time"):
+        return short(value)
+    return engineering(value, 2 if name == "error_estimate" else 4)
+
+
+def write_safety_factors(results: Results, directory: Path) -> None:
+    """Write safety_factors.csv, every digit, and safety_factors.md, four digits and the notes."""
+    units = results.units
+    rows = safety_factor_rows(results)
+    write_csv(
+        directory / "safety_factors.csv",
+        (*COLUMNS, "stress_unit", "time_unit"),
+        ([*(row[name] for name in COLUMNS), units.stress, units.time] for row in rows),
+    )
+    text = _markdown(results, rows)
+    (directory / "safety_factors.md").write_text(text, encoding="utf-8")
+
+
+def _markdown(results: Results, rows: list[Row]) -> str:
+    columns = shown_columns(rows, results.units)
+    parts = [
+        f"# Safety factors: {markdown.escaped(results.title)}",
+        markdown.table(
+            tuple(columns.values()),
+            [[shown(name, row) for name in columns] for row in rows],
+            [name not in TEXTS for name in columns],
+        ),
+        READING,
+    ]
+    if results.published_source:
+        parts.append(f"Published values: {markdown.escaped(results.published_source)}")
+    notes = [f"- {_note(pin)}" for pin in results.pins if pin.note]
+    if notes:
+        parts += ["## Notes", "\n".join(notes)]
+    return "\n\n".join(parts) + "\n"
+
+
+def _note(pin: PinResult) -> str:
+    return markdown.escaped(f"{pin.pin}, {pin.case}: {pin.note}")

@@ -1,0 +1,63 @@
+"""Where to look at a pin from, such that its peak and its heads are seen and it fills the view."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from reports.results import Floats
+
+Point = tuple[float, float, float]
+VIEW_ANGLE = 30.0  # degrees, vertical
+ASPECT = 1.5
+ACROSS, UPRIGHT = 0.86, 0.62  # of the picture that the pin may fill
+TURN = np.radians(25.0)  # from the peak, so that it does not face the viewer squarely
+LEAN = 0.55  # towards the nearer end
+
+
+@dataclass(frozen=True)
+class View:
+    """Perspective from `eye` to `centre` with `up`, each (3,)."""
+
+    eye: Floats
+    centre: Floats
+    up: Floats
+
+    @staticmethod
+    def of(points: Floats, peak: Floats) -> View:
+        """From the side of the peak and a little from the nearer end; the axis lies across."""
+        centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
+        angle = np.arctan2(peak[1] - centre[1], peak[0] - centre[0]) + TURN
+        end = 1.0 if peak[2] >= centre[2] else -1.0
+        towards = np.array([np.cos(angle), np.sin(angle), LEAN * end])
+        towards /= np.linalg.norm(towards)
+        up = np.cross(np.array([0.0, 0.0, 1.0]), towards)
+        up /= np.linalg.norm(up)
+        basis = np.stack([np.cross(up, towards), up, towards])
+        return View(centre + _distance((points - centre) @ basis.T) * towards, centre, up)
+
+    @property
+    def camera(self) -> list[Point]:
+        """Position, focal point and up, as VTK takes them."""
+        return [_point(self.eye), _point(self.centre), _point(self.up)]
+
+    def beside(self, points: Floats, place: Floats) -> Floats:
+        """A point (3,) right above `place` on the picture, clear of the pin."""
+        heights = (points - self.centre) @ self.up
+        height = float((place - self.centre) @ self.up)
+        clear = float(heights.max()) + 0.35 * float(np.ptp(heights))
+        return np.asarray(place + (clear - height) * self.up)
+
+
+def _distance(seen: Floats) -> float:
+    """How far the eye must be for all points (N, 3: right, up, towards it) to be on the picture."""
+    half = np.tan(np.radians(VIEW_ANGLE / 2))
+    right = seen[:, 2] + np.abs(seen[:, 0]) / (half * ASPECT * ACROSS)
+    up = seen[:, 2] + np.abs(seen[:, 1]) / (half * UPRIGHT)
+    return float(max(right.max(), up.max()))
+
+
+def _point(vector: Floats) -> Point:
+    x, y, z = (float(v) for v in vector)
+    return x, y, z

@@ -1,0 +1,42 @@
+"""Fields on solid meshes: VTU files for ParaView, and pictures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from reports.picture import render_pin
+from reports.renderer import renderer_problem
+from reports.results import Field, Floats, Units
+
+__all__ = ["point_data", "render_pin", "renderer_problem", "write_vtu"]
+
+# From xx, yy, zz, yz, xz, xy to the order of VTK's symmetric tensors, XX YY ZZ XY YZ XZ.
+VTK_SYMMETRIC = (0, 1, 2, 5, 3, 4)
+
+
+def point_data(field: Field, units: Units) -> dict[str, Floats]:
+    """Arrays at the nodes under names with units: displacement (N, 3), stress (N, 6: XX, YY, ZZ,
+    XY, YZ, XZ, as ParaView names the components of a symmetric tensor), von Mises (N,), von Mises
+    envelope (N,; NaN inside).
+    """
+    stress = units.stress
+    return {
+        f"displacement [{units.length}]": np.ascontiguousarray(field.displacement),
+        f"stress [{stress}]": np.ascontiguousarray(field.stress[:, VTK_SYMMETRIC]),
+        f"von Mises [{stress}]": np.ascontiguousarray(field.von_mises),
+        f"von Mises envelope [{stress}]": np.ascontiguousarray(field.envelope),
+    }
+
+
+def write_vtu(field: Field, path: Path, units: Units) -> None:
+    """Write a VTU file (binary, compressed) of quadratic tetrahedra with results at the nodes."""
+    import meshio
+
+    mesh = meshio.Mesh(
+        points=field.points,
+        cells=[("tetra10", field.cells)],
+        point_data=point_data(field, units),
+    )
+    meshio.write(path, mesh, file_format="vtu", binary=True, compression="zlib")

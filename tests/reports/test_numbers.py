@@ -1,0 +1,62 @@
+from __future__ import annotations
+
+import itertools
+import math
+
+import pytest
+
+from reports.numbers import engineering, like, ratio, short
+from reports.plot_names import plot_name
+from reports.spread import rows, spread
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (None, "–"),
+        (math.nan, "–"),
+        (math.inf, "–"),
+        (0.0, "0"),
+        (2640.0, "2,640"),
+        (99999.6, "100,000"),
+        (-123456.0, "−123,500"),
+        (0.012346, "0.01235"),
+        (0.9999999, "1.000"),
+        (8.123456e8, "812.3×10⁶"),
+        (1.5e-5, "15.00×10⁻⁶"),
+    ],
+)
+def test_engineering(value: float | None, text: str) -> None:
+    assert engineering(value) == text
+
+
+def test_short_keeps_what_was_given() -> None:
+    assert [short(x) for x in (1.5, 100.0, 0.125, 2.0e7)] == ["1.5", "100", "0.125", "20×10⁶"]
+
+
+def test_like_takes_the_published_decimals() -> None:
+    assert (like(7.7781745, 7.78), like(11.04, 11.0)) == ("7.78", "11")
+
+
+def test_ratio_needs_both() -> None:
+    assert (ratio(3.0, 2.0), ratio(None, 2.0), ratio(3.0, 0.0)) == (1.5, None, None)
+
+
+def test_spread_keeps_labels_apart_and_in_order() -> None:
+    wanted, sizes = [0.5, 0.5, 0.52, 0.0], [0.1, 0.2, 0.1, 0.1]
+    found = spread(wanted, sizes)
+    spans = sorted((c - s / 2, c + s / 2) for c, s in zip(found, sizes, strict=True))
+    assert all(b[0] >= a[1] - 1e-12 for a, b in itertools.pairwise(spans))
+    assert found[3] == pytest.approx(0.0)
+    assert found[0] < found[1] < found[2]
+
+
+def test_rows_part_what_overlaps() -> None:
+    assert rows([0.0, 1.0, 10.0], [4.0, 4.0, 4.0]) == [0, 1, 0]
+
+
+def test_plot_names_are_safe_and_differ() -> None:
+    assert plot_name("reactions", "retract", "B") == "reactions.retract.B"
+    assert "/" not in plot_name("reactions", "../x", "/etc")
+    assert plot_name("k", "a.b", "c") != plot_name("k", "a", "b.c")
+    assert plot_name("k", "a b") != plot_name("k", "a_b")

@@ -1,0 +1,156 @@
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from reports.drawing import draw_pin
+from reports.page import write_page
+from reports.plots import save_plots
+from reports.results import PinShape, Results, Units
+from reports.write import write_reports
+
+EVIL = '<script>alert("1")</script>&\'='
+
+
+class Reader(HTMLParser):
+    """Collects tags, addresses, anchors and text."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.tags: list[str] = []
+        self.addresses: list[str] = []
+        self.ids: list[str] = []
+        self.text = ""
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        for name, value in attrs:
+            if name in ("src", "href", "srcset", "data", "xlink:href"):
+                self.addresses.append(value or "")
+            if name == "id":
+                self.ids.append(value or "")
+
+    def handle_data(self, data: str) -> None:
+        self.text += data
+
+
+def parse(path: Path) -> Reader:
+    reader = Reader()
+    reader.feed(path.read_text(encoding="utf-8"))
+    return reader
+
+
+@pytest.fixture(scope="module")
+def small(results: Results) -> Results:
+    """Few plots, so that tests are quick."""
+    return replace(results, reactions=results.reactions[1:], pins=results.pins[-9:])
+
+
+@pytest.fixture(scope="module")
+def written(small: Results, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    directory = tmp_path_factory.mktemp("out")
+    picture = directory / "b.png"
+    picture.write_bytes(b"\x89PNG\r\n\x1a\n")
+    return write_reports(small, directory, {("B", "landing"): picture})
+
+
+def test_writes_everything(written: Path) -> None:
+    assert written.name == "report.html"
+    found = {path.name for path in written.parent.iterdir()}
+    assert found >= {
+        "results.json",
+        "safety_factors.csv",
+        "safety_factors.md",
+        "reactions.csv",
+        "reactions_published.csv",
+        "drive.csv",
+        "beam_check.csv",
+        "motion_check.csv",
+        "plots",
+        "report.html",
+    }
+
+
+def test_page_is_self_contained(written: Path) -> None:
+    page = parse(written)
+    text = written.read_text(encoding="utf-8")
+    assert "script" not in page.tags
+    assert "link" not in page.tags
+    assert all(a.startswith(("data:", "#")) for a in page.addresses)
+    outside = re.sub(r'xmlns="http://www.w3.org/2000/svg"', "", text)
+    assert not re.search(r"https?://|url\((?!#)|@import", outside)
+
+
+def test_anchors_lead_somewhere(written: Path) -> None:
+    page = parse(written)
+    anchors = [a[1:] for a in page.addresses if a.startswith("#")]
+    assert len(anchors) > 10
+    assert set(anchors) <= set(page.ids)
+
+
+def test_page_shows_plots_and_pictures(written: Path) -> None:
+    addresses = parse(written).addresses
+    assert sum(a.startswith("data:image/svg+xml") for a in addresses) == 6
+    assert sum(a.startswith("data:image/png") for a in addresses) == 1
+
+
+def test_page_says_the_outcome(written: Path) -> None:
+    text = parse(written).text
+    assert "miss it" in text
+    assert "no value" in text
+    assert "0.9346" in text
+    assert "ab" * 32 in text
+    assert "Links are rigid." in text
+
+
+def test_without_plots_none_is_shown(small: Results, tmp_path: Path) -> None:
+    save_plots(replace(small, reactions=(), pins=(), drive=()), tmp_path / "plots")
+    page = write_reports(small, tmp_path, {}, plots=False)
+    assert "data:" not in page.read_text(encoding="utf-8")
+    assert "data:image/svg" in write_page(small, tmp_path, {}).read_text(encoding="utf-8")
+
+
+def test_names_are_shown_and_not_run(small: Results, tmp_path: Path) -> None:
+    first = replace(small.pins[0], pin=EVIL, case=EVIL, note=EVIL, held=EVIL, left_out=(EVIL,))
+    table = replace(small.reactions[0], case=EVIL, note=EVIL, shared=(EVIL,))
+    table = replace(table, connections=(EVIL, *table.connections[1:]), published={EVIL: 1.0})
+    shape = PinShape(EVIL, ((1.0, 1.0, 0.0, EVIL, EVIL),), EVIL, None)
+    odd = replace(
+        small,
+        title=EVIL,
+        study=EVIL,
+        units=Units("<i>", "<i>", "<i>", "<i>"),
+        pins=(first, *small.pins[1:]),
+        shapes=(shape,),
+        reactions=(table,),
+        drive=(),
+        beam_check=None,
+        motion_check=None,
+        assumptions=(EVIL,),
+        published_source=EVIL,
+        versions={EVIL: EVIL},
+    )
+    page = parse(write_reports(odd, tmp_path, {}))
+    assert "script" not in page.tags
+    assert "i" not in page.tags
+    assert EVIL in page.text
+
+
+def test_empty_results_make_a_page(small: Results, tmp_path: Path) -> None:
+    bare = Results("t", "s.toml", "0", small.units, None, 0.02, ())
+    text = parse(write_reports(bare, tmp_path, {})).text
+    assert "No pin was solved." in text
+
+
+def test_drawing_has_dimensions_and_labels(results: Results) -> None:
+    svg = draw_pin(results.shapes[0], results.units)
+    for text in ("drag brace A", "strut A", "⌀1.5 / 0.25", ">1.25<", "2.875 in"):
+        assert text in svg
+
+
+def test_drawing_of_nothing_is_empty(results: Results) -> None:
+    assert draw_pin(PinShape("A", (), "steel", None), results.units) == ""

@@ -1,0 +1,80 @@
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from reports.plots import save_plots
+from reports.results import Results
+
+
+@pytest.fixture
+def small(results: Results) -> Results:
+    """A motion of one pin with two connections, and everything else."""
+    table = results.reactions[0]
+    few = replace(
+        table,
+        connections=table.connections[:2],
+        bodies=table.bodies[:2],
+        pins=table.pins[:2],
+        forces=table.forces[:, :2],
+        moments=table.moments[:, :2],
+    )
+    return replace(results, reactions=(few, results.reactions[1]))
+
+
+def test_plots_are_the_same_bytes_on_every_run(small: Results, tmp_path: Path) -> None:
+    first, second = (save_plots(small, tmp_path / name) for name in ("a", "b"))
+    assert [p.name for p in first] == [p.name for p in second]
+    assert [p.read_bytes() for p in first] == [p.read_bytes() for p in second]
+
+
+def test_every_plot_is_there_as_svg_and_png(small: Results, tmp_path: Path) -> None:
+    paths = save_plots(small, tmp_path)
+    kinds = {
+        "reactions.retract.A",
+        "magnitudes.retract.A",
+        "reactions.landing",
+        "drive.retract",
+        "beam-diagrams",
+        "beam-stress",
+        "motion-check",
+        "refinement.retract",
+        "refinement.landing",
+    }
+    assert {p.name for p in paths} == {k + end for k in kinds for end in (".svg", ".png")}
+    for path in paths:
+        if path.suffix == ".svg":
+            assert ElementTree.parse(path).getroot().tag.endswith("svg")
+        else:
+            assert path.read_bytes().startswith(b"\x89PNG")
+
+
+def test_zero_forces_and_odd_names(results: Results, tmp_path: Path) -> None:
+    moving, static = results.reactions
+    odd = replace(
+        results,
+        reactions=(
+            replace(
+                moving,
+                case="$x_1",
+                position=None,
+                connections=("a/b $", *moving.connections[1:2]),
+                bodies=moving.bodies[:2],
+                pins=("../P", "../P"),
+                forces=np.zeros((201, 2, 3)),
+                moments=np.zeros((201, 2, 3)),
+            ),
+            replace(static, case="zero", forces=np.zeros_like(static.forces), published={}),
+        ),
+        drive=(),
+        beam_check=None,
+        motion_check=None,
+        pins=(),
+    )
+    paths = save_plots(odd, tmp_path)
+    assert len(paths) == 6
+    assert all(path.parent == tmp_path and path.exists() for path in paths)
