@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam import BeamForces, cantilever
+from fea.distributed_load import axis_load_term, constant_stress, surface_load_term
 from fea.material import Material
 from fea.solid import SolidModel, UnitFields
 from geometry import Pin
@@ -36,12 +37,18 @@ class Difference:
 
 @dataclass(frozen=True)
 class BeamCheck:
-    """Axial stresses (Pa) along z (m), from the root to the end of the load; force (N)."""
+    """Axial stresses (Pa) along z (m), from the root to the end of the load; force (N).
+
+    surface_term, axis_term: by how much (Pa) exact elasticity lies below beam theory while the load
+    acts, away from the ends, for the load on the surface and on the axis (fea.distributed_load).
+    """
 
     force: float
     beam: BeamForces
     surface_load: Floats
     axis_load: Floats
+    surface_term: float
+    axis_term: float
 
     def difference(self, stress: Floats) -> Difference:
         """How far `stress` is from the beam's."""
@@ -80,8 +87,11 @@ def beam_check(
     name = f"bore {band}"
     on_axis = SolidModel(bored, mesh, material, ("start",)).solve(((name, 0), (name, 1)))
     c = [dict(zip(((band, 0), (band, 1)), force, strict=True)).get(k, 0.0) for k in fields.loads]
+    w, nu = size / pin.band(band).length, material.poisson_ratio
     return BeamCheck(
         force=size,
+        surface_term=constant_stress(surface_load_term(nu), w, pin.band(band).radius),
+        axis_term=constant_stress(axis_load_term(nu), w, pin.band(band).radius),
         beam=beam,
         surface_load=axial_stress(fields, np.array(c), pin.band(band).radius, away, beam.z),
         axis_load=axial_stress(on_axis, np.array(force), pin.band(band).radius, away, beam.z),

@@ -104,10 +104,12 @@ class DriveTable:
 
 @dataclass(frozen=True)
 class BeamCheck:
-    """Beam theory beside the solid's axial stress on the tension line of a cantilever pin; all
-    arrays along z. band: z-range of the load. rms, largest: difference of the surface load's stress
-    from the beam's between 30 and 80 % of the loaded length, over the beam's peak; largest_at: z
-    of the largest difference anywhere.
+    """Beam theory beside the solid's axial stress on a cantilever pin's tension line, along z.
+
+    band: z-range of the load. rms, largest: difference of the surface load's stress from the beam's
+    between 30 and 80 % of the loaded length, over the beam's peak; largest_at: z of the largest
+    anywhere. expected_offset: what exact elasticity adds to beam theory there (a stress);
+    *_beyond_offset: the rms once that is added.
     """
 
     pin: str
@@ -125,6 +127,10 @@ class BeamCheck:
     fea_axial_stress_axis_load: Floats
     rms: float
     rms_axis_load: float
+    expected_offset: float
+    expected_offset_axis_load: float
+    rms_beyond_offset: float
+    rms_axis_load_beyond_offset: float
     largest: float
     largest_axis_load: float
     largest_anywhere: float

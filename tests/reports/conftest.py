@@ -158,7 +158,7 @@ def beam_check() -> BeamCheck:
     return BeamCheck(
         "B", "landing", "strut B", 1000.0, 1.0, 0.1, (2.0, 5.0), z, shear, moment, beam,
         beam * (1.0 + 0.9 * root) - 900.0 * (z / 5.0) ** 4, beam * (1.0 + 0.9 * root),
-        0.0123, 0.0045, 0.021, 0.009, 0.9, 0.0,
+        0.0123, 0.0045, -4.74, -8.18, 0.006, 0.01, 0.021, 0.009, 0.9, 0.0,
     )  # fmt: skip
 
 
