@@ -19,7 +19,8 @@ def check(gear: Study) -> BeamCheck:
 
 def test_the_load_and_the_diagrams_are_the_publications(check: BeamCheck) -> None:
     """101 lbf over 2 in: 50.5 lbf/in, V = 101 lbf and M = 101 lbf in at the root, M r / I with
-    I = pi r^4 / 4 and r = 1 in."""
+    I = pi r^4 / 4 and r = 1 in.
+    """
     assert check.force == pytest.approx(101.06, rel=1e-3)
     assert check.shear[0] == pytest.approx(check.force)
     assert check.moment[0] == pytest.approx(check.force * 1.0)
@@ -38,7 +39,8 @@ def test_the_solid_agrees_away_from_the_root(check: BeamCheck) -> None:
 
 def test_what_remains_is_michells_term(check: BeamCheck) -> None:
     """The loads' exact constants (-4.74 and -8.19 psi) leave 1 % rms of the beam's peak: the pin is
-    one diameter long, so the window is not quite free of its ends."""
+    one diameter long, so the window is not quite free of its ends.
+    """
     assert check.expected_offset == pytest.approx(-4.743, abs=2e-3)
     assert check.expected_offset_axis_load == pytest.approx(-8.189, abs=2e-3)
     assert check.rms_beyond_offset < 0.01

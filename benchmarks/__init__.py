@@ -1,0 +1,1 @@
+"""Measurements of what we claim; `python -m benchmarks` runs them all."""
