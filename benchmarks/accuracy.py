@@ -25,7 +25,7 @@ def fillet() -> str:
     steps: list[Refinement] = []
     for level in range(5):
         start = time.perf_counter()
-        mesh = solid_mesh(PIN, MeshSize().finer(STEP**level), (0.02, 0.06))
+        mesh = solid_mesh(PIN, MeshSize(across=3.0, arc=1.5).finer(STEP**level), (0.02, 0.06))
         model = SolidModel(PIN, mesh, STEEL, ("start",))
         found = envelope(model.solve((("B", 0), ("B", 1))), LOAD)
         steps.append(Refinement(model.unknowns, found.maximum, time.perf_counter() - start))

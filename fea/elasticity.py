@@ -1,7 +1,7 @@
 """Stiffness matrix of linear elasticity, all element matrices formed at once.
 
 Basis functions, mapping and quadrature are scikit-fem's; only the assembly is ours, because forms
-are evaluated component by component there: the same matrix takes 15 times longer.
+are evaluated component by component there (`python -m benchmarks assembly` for the ratio).
 """
 
 from __future__ import annotations

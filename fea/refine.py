@@ -17,6 +17,7 @@ from geometry import Pin, sharp_corners
 from geometry.solid_mesh import MeshSize, solid_mesh
 
 STEP = 2.0**0.5  # from one mesh to the next
+FEWEST = 3  # meshes before a maximum may be called converged: two can agree by chance
 MOST_UNKNOWNS = 300_000
 NEAR = 0.1  # of the local diameter: a peak this close to a sharp place is that place's
 BALANCE = 1e-6
@@ -41,14 +42,14 @@ def refine(
     cases: tuple[PinLoads, ...],
     tolerance: float,
     size: MeshSize | None = None,
-    meshes: int = 3,
+    meshes: int = 4,
     progress: Callable[[str], None] = lambda _: None,
 ) -> tuple[Solution, ...]:
     """Solutions of a pin's cases, one each, all on the same meshes.
 
     clamps: surfaces (by the pin's names) that are held. Stops when every case's estimated error is
-    within `tolerance` of its maximum, when the peaks that remain sit at places where none exists,
-    after `meshes` meshes, or before more than MOST_UNKNOWNS unknowns.
+    within `tolerance` of its maximum on FEWEST meshes or more, when the peaks that remain sit at
+    places where none exists, after `meshes` meshes, or before more than MOST_UNKNOWNS unknowns.
 
     Raises: MeshError, SolveError.
     """
@@ -147,9 +148,10 @@ def _history(found: Found) -> tuple[Refinement, ...]:
 
 def _worth_refining(pin: Pin, held: tuple[str, ...], found: Found, tolerance: float) -> bool:
     top = found[-1][2]
-    if discretisation_error(_history(found), STEP) <= tolerance * top.maximum:
+    if sharp_place(pin, held, top.location) is not None:
         return False
-    return sharp_place(pin, held, top.location) is None
+    error = discretisation_error(_history(found), STEP)
+    return len(found) < FEWEST or error > tolerance * top.maximum
 
 
 def _judge(pin: Pin, held: tuple[str, ...], case: str, found: Found, tolerance: float) -> Solution:
@@ -163,7 +165,7 @@ def _judge(pin: Pin, held: tuple[str, ...], case: str, found: Found, tolerance: 
     verdict: Verdict = "unconverged"
     if place and top.maximum:
         note = f"the peak sits at {place}, where it grows with every mesh"
-    elif relative <= tolerance:
+    elif relative <= tolerance and len(history) >= FEWEST:
         verdict, note = "converged", f"known to {relative:.1%}"
     else:
         note = f"known to {relative:.1%} only, {tolerance:.1%} was asked for"

@@ -9,7 +9,7 @@ from pydantic_core import core_schema
 
 from pinstress.units import DIMENSIONS, SYSTEMS, to_si
 
-Kind = Literal["given", "derived", "fitted", "assumed"]
+KINDS = ("given", "derived", "fitted", "assumed")
 
 
 @dataclass(frozen=True)
@@ -33,14 +33,23 @@ class Quantity:
         return to_si(value, self.dimension, system)
 
 
+PROVENANCE: dict[str, Any] = {
+    "provenance": {"enum": list(KINDS), "description": "where the numbers here come from"},
+    "note": {"type": "string", "description": "why, in words"},
+}
+
+
+def _allow_provenance(schema: dict[str, Any]) -> None:
+    schema["properties"].update(PROVENANCE)
+
+
 def sourced(value: list[dict[str, Any]]) -> dict[str, Any]:
     """JSON Schema of { value = ..., provenance = "given", note = "..." }."""
     return {
         "type": "object",
         "properties": {
             "value": {"anyOf": value},
-            "provenance": {"enum": ["given", "derived", "fitted", "assumed"]},
-            "note": {"type": "string"},
+            **PROVENANCE,
         },
         "required": ["value", "provenance"],
         "additionalProperties": False,
@@ -84,11 +93,12 @@ Point = tuple[Length, Length]
 
 
 class Table(BaseModel):
-    """A table of the study file: unknown keys are errors, and anything may say where it is from."""
+    """A table of the study file: unknown keys are errors.
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
-    provenance: Kind | None = Field(None, description="where the numbers of this table come from")
-    note: str | None = Field(None, description="why, in words")
+    Any table may also have `provenance` and `note`; they are taken out before validation.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True, json_schema_extra=_allow_provenance)
 
     @model_validator(mode="before")
     @classmethod
@@ -97,9 +107,7 @@ class Table(BaseModel):
             for key in data:
                 if key not in cls.model_fields:
                     near = difflib.get_close_matches(str(key), cls.model_fields, n=1, cutoff=0.5)
-                    known = ", ".join(
-                        k for k in cls.model_fields if k not in ("provenance", "note")
-                    )
+                    known = ", ".join(cls.model_fields)
                     hint = f"did you mean {near[0]!r}?" if near else f"known here: {known}"
                     raise ValueError(f"unknown key {key!r}; {hint}")
         return data

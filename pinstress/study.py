@@ -13,7 +13,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from pinstress.errors import InputError
-from pinstress.schema import GivenCase, StudyTable
+from pinstress.schema import KINDS, GivenCase, StudyTable
 from pinstress.units import SYSTEMS, UnitSystem
 
 
@@ -80,28 +80,35 @@ def load_study(path: str | Path) -> Study:
         raise InputError(f"{path}: not valid TOML: {error}") from None
     provenance: list[Sourced] = []
     raw = _unwrap(raw, "", provenance)
+    wrong = [
+        f"{s.key}: provenance must be given, derived, fitted or assumed, not {s.kind!r}"
+        for s in provenance
+        if s.kind not in KINDS
+    ]
     system = SYSTEMS.get(str(raw.get("units")), SYSTEMS["m-N-s"])
     try:
         table = StudyTable.model_validate(raw, context={"system": system})
     except ValidationError as error:
-        raise InputError(_explain(path, error)) from None
-    wrong = list(_cross_references(table))
+        raise InputError(_listed(path, wrong + _explain(error))) from None
+    wrong += _cross_references(table)
     if wrong:
         raise InputError(_listed(path, wrong))
     return Study(path, text, table, tuple(provenance))
 
 
 def _unwrap(node: Any, key: str, found: list[Sourced]) -> Any:
-    """The same tree with { value, provenance, note } replaced by its value, noted in `found`."""
+    """The same tree without provenance and notes, which go to `found`; of { value, provenance,
+    note } the value remains.
+    """
     if isinstance(node, list):
         return [_unwrap(v, f"{key}[{i}]", found) for i, v in enumerate(node, 1)]
     if not isinstance(node, dict):
         return node
-    kind = node.get("provenance")
-    if isinstance(kind, str):
-        found.append(Sourced(key, kind, str(node.get("note", ""))))
-    if "value" in node and set(node) <= {"value", "provenance", "note"}:
-        return node["value"]
+    if isinstance(node.get("provenance"), str):
+        found.append(Sourced(key, node["provenance"], str(node.get("note", ""))))
+        node = {k: v for k, v in node.items() if k not in ("provenance", "note")}
+        if set(node) == {"value"}:
+            return node["value"]
     return {k: _unwrap(v, f"{key}.{k}" if key else k, found) for k, v in node.items()}
 
 
@@ -111,7 +118,7 @@ def _listed(path: Path, wrong: list[str]) -> str:
     return f"{path}: {len(wrong)} errors\n" + "\n".join(f"  {w}" for w in wrong)
 
 
-def _explain(path: Path, error: ValidationError) -> str:
+def _explain(error: ValidationError) -> list[str]:
     wrong = []
     for item in error.errors():
         key = ""
@@ -128,7 +135,7 @@ def _explain(path: Path, error: ValidationError) -> str:
             if isinstance(value, int | float | str):
                 message += f", not {value!r}"
         wrong.append(f"{key}: {message}" if key else message)
-    return _listed(path, wrong)
+    return wrong
 
 
 def _near(name: str, known: Iterable[str]) -> str:

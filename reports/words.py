@@ -50,7 +50,10 @@ def _against_required(results: Results) -> str:
     missing = [pin for pin, found in outcomes.items() if bad in found]
     open_ = [pin for pin in outcomes if pin not in meeting and pin not in missing]
     factor = "" if required is None else f" the required safety factor {short(required)}"
-    done = "meet" if required is not None else "stay below yield"
+    one = len(outcomes) == 1
+    done = (
+        ("meet", "meets")[one] if required is not None else ("stay", "stays")[one] + " below yield"
+    )
     failed = ("misses it", "miss it") if required is not None else ("yields", "yield")
     text = f"{len(meeting)} of {_count(len(outcomes), 'pin')} {done}{factor} in every case"
     if missing:

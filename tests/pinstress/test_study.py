@@ -118,6 +118,11 @@ def test_values_carry_their_provenance() -> None:
         ("tolerance = 0.02", "tolerance = 2", "tolerance: input should be less than 1, not 2"),
         ("[pin.B]", '[pin."a/b"]', "'a/b' cannot be part of a file name"),
         ("title =", "title = = ", "not valid TOML"),
+        (
+            "fillet = 0.4",
+            "fillet = { value = 0.4, provenance = 'guess' }",
+            "fillet: provenance must",
+        ),
     ],
 )
 def test_each_mistake_is_told(tmp_path: Path, old: str, new: str, message: str) -> None:
