@@ -58,10 +58,14 @@ def run_and_write(study: Study, directory: Path, *, pictures: bool, **chosen: An
 
 
 def _tell_left_out(results: Results) -> None:
-    for pin in {p.pin: p for p in results.pins if p.left_out}.values():
+    ways: dict[tuple[str, tuple[str, ...]], list[str]] = {}
+    for p in results.pins:
+        if p.left_out:
+            ways.setdefault((p.pin, p.left_out), []).append(p.case)
+    for (pin, connections), cases in ways.items():
         click.echo(
-            f"Pin {pin.pin}: the force at {', '.join(pin.left_out)} is left out, because the pin "
-            "is held there.",
+            f"Pin {pin}, {', '.join(cases)}: the force at {', '.join(connections)} is left out, "
+            "because the pin is held there.",
             err=True,
         )
 

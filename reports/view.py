@@ -12,6 +12,7 @@ Point = tuple[float, float, float]
 VIEW_ANGLE = 30.0  # degrees, vertical
 ASPECT = 1.5
 ACROSS, UPRIGHT = 0.86, 0.62  # of the picture that the pin may fill
+ABOVE = 0.07  # of the picture's height, from the pin to the label of its peak
 TURN = np.radians(25.0)  # from the peak, so that it does not face the viewer squarely
 LEAN = 0.55  # towards the nearer end
 
@@ -46,7 +47,8 @@ class View:
         """A point (3,) right above `place` on the picture, clear of the pin."""
         heights = (points - self.centre) @ self.up
         height = float((place - self.centre) @ self.up)
-        clear = float(heights.max()) + 0.35 * float(np.ptp(heights))
+        visible = 2.0 * np.linalg.norm(self.eye - self.centre) * np.tan(np.radians(VIEW_ANGLE / 2))
+        clear = float(heights.max() + ABOVE * visible)
         return np.asarray(place + (clear - height) * self.up)
 
 
