@@ -117,11 +117,11 @@ def _refusal(pin: Pin, clamps: tuple[str, ...], loads: PinLoads) -> str | None:
 def clamp_edges(pin: Pin, clamps: tuple[str, ...]) -> tuple[tuple[float, float], ...]:
     """Rims (r, z) of the held surfaces, m: stresses there have no bound either."""
     rims = []
+    faces = {"start": (pin.segments[0], 0.0), "end": (pin.segments[-1], pin.length)}
     for name in clamps:
-        if name == "start":
-            rims.append((pin.segments[0].diameter / 2, 0.0))
-        elif name == "end":
-            rims.append((pin.segments[-1].diameter / 2, pin.length))
+        if name in faces:
+            segment, z = faces[name]
+            rims += [(d / 2, z) for d in (segment.diameter, segment.bore) if d]
         else:
             band = pin.band(name)
             rims += [(band.radius, band.z0), (band.radius, band.z1)]

@@ -103,6 +103,8 @@ def test_a_sharp_corner_and_a_clamp_edge_are_never_called_converged(steel: Mater
     )
     assert sharp_place(pin, ("start",), (0.0, 0.0149, 0.0)) == "the edge of a clamp"
     assert sharp_place(pin, ("start",), (0.0, 0.01, 0.03)) is None
+    tube = Pin("P", (Segment(0.02, 0.03, bore=0.02),))
+    assert sharp_place(tube, ("end",), (0.0, 0.0101, 0.02)) == "the edge of a clamp"
 
 
 @pytest.mark.slow
