@@ -2,6 +2,10 @@
 
 Von Mises squared is a quadratic form of the stress, so at every point it is c . M c with the
 instant's loads c: two matrix products cover any number of instants.
+
+A body of revolution must answer the same whichever way round it is loaded; its mesh does not quite.
+So all loads are also turned together about the axis: the mean over these directions is the maximum,
+and how far they scatter is a part of its error that is seen directly.
 """
 
 from __future__ import annotations
@@ -17,37 +21,56 @@ from fea.stress import VON_MISES
 Floats = NDArray[np.float64]
 
 
+DIRECTIONS = 9  # an odd number: opposite loads give the same von Mises stress
+
+
 @dataclass(frozen=True)
 class Envelope:
-    """maximum: largest von Mises stress, Pa, at `node` and `instant`. field: (S,) each surface
-    node's largest over all instants. coefficients: (L,) loads at the governing instant, N.
+    """maximum: largest von Mises stress (Pa) at the governing `instant`, mean over directions.
+
+    scatter: half its range over the directions, Pa. location: where it is (m) with the loads as
+    they are. field: (S,) each surface node's largest over all instants, Pa, and coefficients: (L,)
+    loads at the governing instant, N, with the loads as they are.
     """
 
     maximum: float
-    node: int
+    scatter: float
     instant: int
     location: tuple[float, float, float]
     field: Floats
     coefficients: Floats
 
 
-def envelope(fields: UnitFields, loads: PinLoads) -> Envelope:
-    """Largest von Mises stress over the surface and all instants of a case."""
+def envelope(fields: UnitFields, loads: PinLoads, directions: int = DIRECTIONS) -> Envelope:
+    """Largest von Mises stress over the surface and all instants of a case.
+
+    fields: with unit loads along both x and y wherever `loads` has a force.
+    """
     nodes = fields.surface.nodes
     s = fields.stress[nodes]
-    c = fields.coefficients(loads)
-    a, b = np.triu_indices(c.shape[1])
+    a, b = np.triu_indices(s.shape[2])
     form = np.einsum("nik,ij,njl->nkl", s, VON_MISES, s, optimize=True)[:, a, b]
-    pairs = c[:, a] * c[:, b] * np.where(a == b, 1.0, 2.0)
-    squares = form @ pairs.T
-    field = np.sqrt(np.maximum(squares.max(axis=1), 0.0))
-    where, when = np.unravel_index(int(np.argmax(squares)), squares.shape)
-    x, y, z = fields.space.nodes[nodes[where]]
+    twice = np.where(a == b, 1.0, 2.0)
+
+    def squares(turn: float) -> Floats:
+        c = fields.coefficients(loads.turned(turn))
+        return np.asarray(form @ (c[:, a] * c[:, b] * twice).T)
+
+    as_is = squares(0.0)
+    peaks = np.stack(
+        [
+            (squares(2.0 * np.pi * k / directions) if k else as_is).max(axis=0)
+            for k in range(directions)
+        ]
+    )
+    peaks = np.sqrt(np.maximum(peaks, 0.0))  # (directions, T)
+    instant = int(peaks.mean(axis=0).argmax())
+    x, y, z = fields.space.nodes[nodes[as_is[:, instant].argmax()]]
     return Envelope(
-        maximum=float(field[where]),
-        node=int(nodes[where]),
-        instant=int(when),
+        maximum=float(peaks[:, instant].mean()),
+        scatter=float(np.ptp(peaks[:, instant])) / 2.0,
+        instant=instant,
         location=(float(x), float(y), float(z)),
-        field=field,
-        coefficients=c[when],
+        field=np.sqrt(np.maximum(as_is.max(axis=1), 0.0)),
+        coefficients=fields.coefficients(loads)[instant],
     )

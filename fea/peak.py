@@ -54,25 +54,32 @@ class Peak:
         return yield_strength / self.max_von_mises
 
 
-def discretisation_error(history: tuple[Refinement, ...], ratio: float) -> float:
+def discretisation_error(
+    history: tuple[Refinement, ...], ratio: float, scatter: float = 0.0
+) -> float:
     """Estimated error (Pa) of the last of at least two meshes, each `ratio` times finer.
 
     Roache's grid convergence index, Fs e / (ratio^p - 1), with the observed order p and Fs = 1.25.
     On unstructured meshes two values can agree by chance, so the last change e counts as at least
     what the change before it would leave at p = 2, the order of the recovered stress. Where the
-    changes hardly shrink (p < 0.5), p = 0.5 and Fs = 3. Two meshes: p = 2 and Fs = 3, for what it
-    is worth.
+    changes hardly shrink (p < 0.5) Fs = 3, and p = 0.5; but a change within twice the `scatter`
+    (Pa) that the mesh has anyway is no trend, and then p = 2. Two meshes: p = 2 and Fs = 3, for
+    what it is worth. Never less than the scatter.
 
     Source: Roache, J. Fluids Eng. 116 (1994) 405.
     """
     values = [step.max_von_mises for step in history]
     change = abs(values[-1] - values[-2])
+    formal = max(3.0 * change / (ratio * ratio - 1.0), scatter)
     if len(values) == 2:
-        return 3.0 * change / (ratio * ratio - 1.0)
-    slow = 3.0 * change / (math.sqrt(ratio) - 1.0)
+        return formal
     before = abs(values[-2] - values[-3])
-    if before == 0.0:
-        return slow
-    change = max(change, before / (ratio * ratio))
-    p = math.log(before / change) / math.log(ratio)
-    return 1.25 * change / math.expm1(p * math.log(ratio)) if p >= 0.5 else slow
+    least = max(change, before / (ratio * ratio))
+    if least == 0.0:
+        return scatter
+    p = math.log(before / least) / math.log(ratio) if before else -math.inf
+    if p >= 0.5:
+        return max(1.25 * least / math.expm1(p * math.log(ratio)), scatter)
+    if change <= 2.0 * scatter:
+        return formal
+    return 3.0 * change / (math.sqrt(ratio) - 1.0)

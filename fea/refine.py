@@ -146,12 +146,19 @@ def _history(found: Found) -> tuple[Refinement, ...]:
     return tuple(step for step, _, _ in found)
 
 
+def _error(found: Found) -> float:
+    """Of the last mesh, Pa."""
+    top = found[-1][2]
+    if len(found) == 1:
+        return top.maximum
+    return discretisation_error(_history(found), STEP, top.scatter)
+
+
 def _worth_refining(pin: Pin, held: tuple[str, ...], found: Found, tolerance: float) -> bool:
     top = found[-1][2]
     if sharp_place(pin, held, top.location) is not None:
         return False
-    error = discretisation_error(_history(found), STEP)
-    return len(found) < FEWEST or error > tolerance * top.maximum
+    return len(found) < FEWEST or _error(found) > tolerance * top.maximum
 
 
 def _judge(pin: Pin, held: tuple[str, ...], case: str, found: Found, tolerance: float) -> Solution:
@@ -159,7 +166,7 @@ def _judge(pin: Pin, held: tuple[str, ...], case: str, found: Found, tolerance: 
     _, fields, top = found[-1]
     if not np.isfinite(top.maximum):
         raise SolveError(f"pin {pin.name}, case {case}: the stress is not finite")
-    error = discretisation_error(history, STEP) if len(history) > 1 else top.maximum
+    error = _error(found)
     relative = error / top.maximum if top.maximum else 0.0
     place = sharp_place(pin, held, top.location)
     verdict: Verdict = "unconverged"

@@ -41,6 +41,12 @@ class PinLoads:
         """Whether any force has a part along the pin."""
         return bool(np.any(self.forces[..., 2]))
 
+    def turned(self, angle: float) -> PinLoads:
+        """The same forces, all turned about the pin's axis by `angle` (rad)."""
+        c, s = np.cos(angle), np.sin(angle)
+        about_z = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+        return PinLoads(self.case, self.surfaces, self.forces @ about_z)
+
 
 @dataclass(frozen=True)
 class UnitFields:

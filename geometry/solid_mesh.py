@@ -36,7 +36,7 @@ class MeshSize:
 
     across: float = 4.0
     corner: float = 4.0
-    arc: float = 2.5
+    arc: float = 1.5
     growth: float = 0.5
 
     def finer(self, factor: float) -> MeshSize:

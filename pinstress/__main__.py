@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+import os
 import sys
 
 
 def main() -> None:
     """Run the command line; never returns."""
-    from pinstress.cli import run_command_line
+    from pinstress.cli import INTERRUPTED, run_command_line
 
-    sys.exit(run_command_line(sys.argv[1:]))
+    status = run_command_line(sys.argv[1:])
+    if status == INTERRUPTED:
+        # If the interrupt came while exec() ran a string (an import of dataclasses, say), CPython
+        # ends the process by the signal, whoever caught it; everything is cleaned up by now.
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(status)
+    sys.exit(status)
 
 
 if __name__ == "__main__":

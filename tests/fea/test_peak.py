@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -44,6 +45,13 @@ def test_agreement_by_chance_does_not_stay_unnoticed() -> None:
     for n in (3, 4, 5):
         assert discretisation_error(sequence(*seen[:n]), 2.0**0.5) >= abs(seen[n - 1] - seen[-1])
     assert discretisation_error(sequence(*seen), 2.0**0.5) > 0.1
+
+
+def test_a_change_within_the_scatter_is_no_trend() -> None:
+    seen = sequence(1846.0, 1856.0, 1842.0)
+    assert discretisation_error(seen, 2.0**0.5, 45.0) == pytest.approx(45.0)
+    assert discretisation_error(seen, 2.0**0.5, 10.0) == pytest.approx(42.0)
+    assert discretisation_error(seen, 2.0**0.5) > 200.0
 
 
 def test_nothing_changes() -> None:

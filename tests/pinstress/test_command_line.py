@@ -20,7 +20,7 @@ from tests.conftest import ROOT
 
 ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()
 # a coarse answer is enough to test what surrounds it
-QUICK = ONE_PIN.replace("tolerance = 0.02", "tolerance = 0.3")
+QUICK = ONE_PIN.replace("tolerance = 0.05", "tolerance = 0.3")
 
 
 def pinstress(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
@@ -57,7 +57,7 @@ def test_run_writes_what_the_contract_names(run_once: tuple[Path, str, str]) -> 
     assert pin["yields"] is False
     assert pin["time"] is None
     # the peak of this pin sits in the fillet, on the line through the load
-    assert 1.0 < pin["location"][2] < 1.5
+    assert 1.5 < pin["location"][2] < 2.0
     assert "landing" in stdout
     assert "Report: " in stderr
     assert "\x1b" not in stdout + stderr  # no colour, no bar without a terminal
@@ -103,9 +103,9 @@ def test_millimetres_and_inches_give_the_same_pin(
 ) -> None:
     text = QUICK.replace('"in-lbf-s"', '"mm-N-s"')
     for inch in (
-        "length = 1.0",
+        "length = 1.5",
         "length = 2.0",
-        "diameter = 3.0",
+        "diameter = 4.0",
         "diameter = 2.0",
         "fillet = 0.4",
     ):
