@@ -17,6 +17,7 @@ from geometry.meridian import Arc, Edge, meridian, sharp_corners
 from geometry.pin import Pin
 
 SMALLEST_JACOBIAN = 0.1  # min / max of det J that every element must exceed
+MOST_ELEMENTS = 1e6
 MOST_REPAIRS = 8  # halvings of an edge's curvature
 TETRA10, TRIANGLE6 = 11, 9  # gmsh's element types
 GMSH_TO_VTK_TETRA10 = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]
@@ -83,18 +84,37 @@ def solid_mesh(pin: Pin, size: MeshSize, edges: tuple[float, ...] = ()) -> Solid
 
 
 def _mesh(pin: Pin, size: MeshSize, edges: tuple[float, ...]) -> tuple[MeshTet2, float, int]:
+    _require_reasonable(pin, size)
     with gmsh_model(pin.name) as gmsh:
-        outline = meridian(pin)
-        _revolve(gmsh, outline)
-        surfaces = _name_surfaces(gmsh, pin, outline)
-        _set_sizes(gmsh, pin, size, edges)
         try:
+            outline = meridian(pin)
+            _revolve(gmsh, outline)
+            surfaces = _name_surfaces(gmsh, pin, outline)
+            _set_sizes(gmsh, pin, size, edges)
             gmsh.model.mesh.generate(3)
             gmsh.model.mesh.setOrder(2)
             jacobian, repaired = _repair(gmsh)
-        except Exception as error:  # gmsh raises bare Exception
+            return _collect(gmsh, surfaces), jacobian, repaired
+        except Exception as error:
+            if type(error) is not Exception:  # gmsh raises bare ones
+                raise
             raise MeshError(f"pin {pin.name}: gmsh could not mesh it ({error})") from None
-        return _collect(gmsh, surfaces), jacobian, repaired
+
+
+def _require_reasonable(pin: Pin, size: MeshSize) -> None:
+    """Raises: MeshError when even the coarse part of the mesh would be too large to make."""
+    elements = pin.volume / (0.12 * _far(pin, size) ** 3)  # 0.12 h^3: a regular tetrahedron
+    if elements > MOST_ELEMENTS:
+        raise MeshError(
+            f"pin {pin.name}: it would take {elements:.1e} elements, because its thinnest part is "
+            "so small beside the whole; model the part that matters by itself"
+        )
+
+
+def _far(pin: Pin, size: MeshSize) -> float:
+    """Element size (m) away from all features: by the thinnest shaft or wall."""
+    walls = [(s.diameter - s.bore) / 2 for s in pin.segments if s.bore]
+    return min([pin.smallest_diameter / size.across, *walls])
 
 
 def _revolve(gmsh: Any, outline: tuple[Edge, ...]) -> None:
@@ -145,9 +165,7 @@ def _name_surfaces(gmsh: Any, pin: Pin, outline: tuple[Edge, ...]) -> dict[str, 
 
 def _set_sizes(gmsh: Any, pin: Pin, size: MeshSize, edges: tuple[float, ...]) -> None:
     """Element size as the least of graded fields about every feature circle."""
-    far = pin.smallest_diameter / size.across
-    wall = min((s.diameter - s.bore) / 2 for s in pin.segments)
-    far = min(far, wall) if any(s.bore for s in pin.segments) else far
+    far = _far(pin, size)
     near = far / size.corner
     circles = [(c.r, c.z, near, 0.0) for c in sharp_corners(pin)]
     for z in edges:

@@ -62,6 +62,12 @@ def _positive(value: float) -> float:
     return value
 
 
+def _pin_sized(value: float) -> float:
+    if not 1e-6 < value < 1e3:
+        raise ValueError("must lie between 1e-6 m and 1000 m")
+    return value
+
+
 def _not_negative(value: float) -> float:
     if value < 0.0:
         raise ValueError("must not be negative")
@@ -78,7 +84,7 @@ def _usable_name(name: str) -> str:
 
 Length = Annotated[float, Quantity("length")]
 Force = Annotated[float, Quantity("force")]
-PositiveLength = Annotated[Length, AfterValidator(_positive)]
+PositiveLength = Annotated[Length, AfterValidator(_positive), AfterValidator(_pin_sized)]
 Fillet = Annotated[Length, AfterValidator(_not_negative)]
 Stress = Annotated[Annotated[float, Quantity("stress")], AfterValidator(_positive)]
 Density = Annotated[Annotated[float, Quantity("density")], AfterValidator(_positive)]

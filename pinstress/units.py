@@ -26,6 +26,9 @@ DIMENSIONS: dict[str, tuple[tuple[int, int, int], str]] = {
 }
 
 
+LARGEST = 1e18  # in SI: beyond any modulus, and its fourth power is still a number
+
+
 @dataclass(frozen=True)
 class UnitSystem:
     """A consistent system: names and SI values of length, force, time; the name of its stress."""
@@ -87,6 +90,8 @@ def to_si(value: object, dimension: str, system: UnitSystem) -> float:
         si = float(value) * system.factor(dimension)
     if not math.isfinite(si):
         raise ValueError(f"{value!r} is not finite")
+    if abs(si) > LARGEST:
+        raise ValueError(f"{value!r} is too large to calculate with")
     return si
 
 

@@ -104,3 +104,16 @@ def test_the_jacobian_measure_sees_an_inverted_element() -> None:
         jacobian, touched = module._repair(gmsh)
         assert jacobian > 0.1
         assert touched >= 1
+
+
+def test_a_pin_of_impossible_proportions_is_refused_before_it_is_meshed() -> None:
+    wire = Pin("wire", (Segment(100.0, 0.001), Segment(1.0, 1.0)))
+    with pytest.raises(MeshError, match="pin wire: it would take"):
+        solid_mesh(wire, MeshSize())
+
+
+@pytest.mark.parametrize("diameter", [2e-5, 500.0])
+def test_very_small_and_very_large_pins(diameter: float) -> None:
+    pin = Pin("P", (Segment(2 * diameter, diameter), Segment(diameter, 1.5 * diameter)))
+    solid = solid_mesh(pin, MeshSize())
+    assert Discretisation(solid.mesh).weights.sum() == pytest.approx(pin.volume, rel=1e-3)

@@ -101,6 +101,12 @@ def test_values_carry_their_provenance() -> None:
         ('units = "in-lbf-s" ', "", "units: is missing"),
         ("poisson_ratio = 0.30", "poisson_ratio = 0.5", "poisson_ratio: input should be less than"),
         ("length = 2.0", "length = -2.0", r"profile\[2\].length: must be positive"),
+        ("length = 2.0", "length = 1e300", r"profile\[2\].length: 1e\+300 is too large"),
+        (
+            "length = 2.0",
+            "length = 1e9",
+            r"profile\[2\].length: must lie between 1e-6 m and 1000 m",
+        ),
         ("length = 2.0", "length = nan", r"profile\[2\].length: nan is not finite"),
         ('"28400 ksi"', '"28400 s"', "youngs_modulus: '28400 s' is not a stress"),
         ("fillet = 0.4", "fillet = 1.1", "fillet of 1.1 times the step does not fit"),
