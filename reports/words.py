@@ -12,7 +12,9 @@ READING = (
     "instant, its estimated error (±) from successive meshes, and the yield stress over that "
     "maximum. An unconverged row gives no value: a peak at a sharp corner or at the edge "
     "of a clamp grows with every finer mesh, so its number says more about the mesh than about "
-    "the pin. A row that is not solved has no number; its note says why."
+    "the pin. A row that is not solved has no number; its note says why. The maximum is a mean "
+    "over turning the loads about the axis; pictures and VTU files show the pin as it is loaded, "
+    "and their maximum may differ by as much as the ±."
 )
 
 
