@@ -57,18 +57,6 @@ class Reactions:
         fx, fy, fz = self.forces[:, c].T
         return np.stack([cos * fx + sin * fy, cos * fy - sin * fx, fz], axis=1)
 
-    def only(self, connections: list[str]) -> Reactions:
-        """The same case, these connections alone."""
-        k = [self.connections.index(c) for c in connections]
-        return replace(
-            self,
-            connections=tuple(connections),
-            bodies=tuple(self.bodies[i] for i in k),
-            forces=self.forces[:, k],
-            moments=self.moments[:, k],
-            turn=self.turn[:, k],
-        )
-
 
 def given_reactions(case: str, forces: dict[str, tuple[float, ...]]) -> Reactions:
     """One instant of stated forces (N) per connection, in the pin's own axes: (fx, fy[, fz])."""
