@@ -6,7 +6,6 @@ The numeric libraries are imported inside the commands that need them: `check` a
 from __future__ import annotations
 
 import signal
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -44,19 +43,6 @@ def run_command_line(arguments: list[str]) -> int:
         return INTERRUPTED
     except BrokenPipeError:
         return REACHED
-
-
-def _import_pint_alone() -> None:
-    """Import pint without babel and scipy, which it imports where it finds them, for formatting and
-    arrays that we do not use: a fifth of the time of `check`.
-    """
-    absent = [name for name in ("babel", "scipy") if name not in sys.modules]
-    sys.modules.update(dict.fromkeys(absent))  # type: ignore[arg-type]  # None: "not to be found"
-    try:
-        import pint  # noqa: F401
-    finally:
-        for name in absent:
-            del sys.modules[name]
 
 
 def _interrupt(*_: object) -> None:
@@ -136,7 +122,6 @@ def run(
 )
 @click.argument("study", type=click.Path(path_type=Path))
 def check(study: Path) -> None:
-    _import_pint_alone()
     from pinstress.check import describe
     from pinstress.study import load_study
 

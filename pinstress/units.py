@@ -58,6 +58,39 @@ SYSTEMS = {
 }
 
 
+# What pint gives for the usual units (a test compares them): pint takes longer to import than a
+# study to check, so it is asked only for others, and to say what is wrong.
+USUAL: dict[str, tuple[str, float]] = {
+    "m": ("length", 1.0),
+    "cm": ("length", 0.01),
+    "mm": ("length", 0.001),
+    "in": ("length", 0.0254),
+    "ft": ("length", 0.3048),
+    "N": ("force", 1.0),
+    "kN": ("force", 1e3),
+    "lbf": ("force", _POUND_FORCE),
+    "kip": ("force", 1e3 * _POUND_FORCE),
+    "s": ("time", 1.0),
+    "ms": ("time", 0.001),
+    "Pa": ("stress", 1.0),
+    "MPa": ("stress", 1e6),
+    "GPa": ("stress", 1e9),
+    "psi": ("stress", _POUND_FORCE / 0.0254**2),
+    "ksi": ("stress", 1e3 * _POUND_FORCE / 0.0254**2),
+    "kg": ("mass", 1.0),
+    "lb": ("mass", 0.45359237),
+    "kg/m^3": ("density", 1.0),
+    "g/cm^3": ("density", 1e3),
+    "lb/in^3": ("density", 0.45359237 / 0.0254**3),
+    "kg m^2": ("inertia", 1.0),
+    "m/s": ("velocity", 1.0),
+    "ft/s": ("velocity", 0.3048),
+    "m/s^2": ("acceleration", 1.0),
+    "ft/s^2": ("acceleration", 0.3048),
+    "in/s^2": ("acceleration", 0.0254),
+}
+
+
 @cache
 def _registry() -> Any:
     import pint
@@ -108,6 +141,12 @@ def _parse(text: str, dimension: str, system: UnitSystem) -> float:
 
 @cache
 def _unit_factor(unit: str, dimension: str, text: str) -> float:
+    if unit in USUAL and USUAL[unit][0] == dimension:
+        return USUAL[unit][1]
+    return _by_pint(unit, dimension, text)
+
+
+def _by_pint(unit: str, dimension: str, text: str) -> float:
     import pint
 
     _, example = DIMENSIONS[dimension]

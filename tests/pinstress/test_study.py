@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from pinstress import InputError, build, load_study
-from pinstress.units import DIMENSIONS, SYSTEMS, to_si
+from pinstress.units import DIMENSIONS, SYSTEMS, USUAL, _by_pint, to_si
 from tests.conftest import INCH, LBF, PSI, ROOT
 
 ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()
@@ -45,6 +45,12 @@ def test_shipped_studies_are_valid(name: str) -> None:
 )
 def test_units(text: object, dimension: str, system: str, si: float) -> None:
     assert to_si(text, dimension, SYSTEMS[system]) == pytest.approx(si, rel=1e-14)
+
+
+@pytest.mark.parametrize("unit", USUAL)
+def test_the_usual_units_are_pints(unit: str) -> None:
+    dimension, factor = USUAL[unit]
+    assert factor == pytest.approx(_by_pint(unit, dimension, unit), rel=1e-15)
 
 
 @pytest.mark.parametrize("dimension", DIMENSIONS)
