@@ -88,7 +88,10 @@ class ReactionTable:
 
 @dataclass(frozen=True)
 class DriveTable:
-    """The drive along a motion, all (T,): energies and work in force x length."""
+    """One drive along a motion, all (T,): a slider's length and force, or (kind "rotary") an angle
+    in degrees with its rates in rad and the torque. Energies and work in force x length; the
+    energies are the whole linkage's.
+    """
 
     case: str
     time: Floats
@@ -100,6 +103,72 @@ class DriveTable:
     work: Floats
     kinetic_energy: Floats
     potential_energy: Floats
+    name: str = ""
+    kind: str = "slider"
+
+    @property
+    def mean(self) -> float:
+        """Mean force or torque over the time."""
+        return float(np.trapezoid(self.force, self.time) / np.ptp(self.time))
+
+    @property
+    def rms(self) -> float:
+        """Root of the mean square of the force or torque over the time."""
+        return float(np.sqrt(np.trapezoid(self.force**2, self.time) / np.ptp(self.time)))
+
+
+@dataclass(frozen=True)
+class PowerLedger:
+    """Who puts power in, (T,) each: drives, gravity, applied loads, friction (never positive)
+    against the rate of kinetic energy. violation: the largest difference over the largest term.
+    """
+
+    drives: Floats
+    gravity: Floats
+    applied: Floats
+    friction: Floats
+    kinetic_rate: Floats
+    violation: float
+
+
+@dataclass(frozen=True)
+class LinkageMotion:
+    """How a linkage moves in one case: T instants (one, without time, when it is held).
+
+    links: for each of B bodies the joints on it, in the order to draw them. centre, velocity,
+    acceleration: (T, B, 2) of the centres of mass. angle: (T, B) direction from the body's first
+    joint to its second, degrees counter-clockwise from x, without jumps (NaN for a particle);
+    angular_velocity, angular_acceleration: (T, B) in rad. joints: J names; joint_position,
+    joint_velocity, joint_acceleration: (T, J, 2). ground: joints that stand still. slides: by
+    slider, its two ends (T, 2, 2). connections: (name, body, joint) in the order of the case's
+    ReactionTable. transmission: by link and joint, (T,) degrees, 90 is best, 0 is a dead point.
+    condition: (T,) of the loop equations. shaking_force (T, 2), shaking_moment (T,): of the linkage
+    on its ground, the moment about the joint `shaking_about`.
+    """
+
+    case: str
+    time: Floats | None
+    bodies: tuple[str, ...]
+    links: tuple[tuple[str, ...], ...]
+    centre: Floats
+    velocity: Floats
+    acceleration: Floats
+    angle: Floats
+    angular_velocity: Floats
+    angular_acceleration: Floats
+    joints: tuple[str, ...]
+    ground: tuple[str, ...]
+    joint_position: Floats
+    joint_velocity: Floats
+    joint_acceleration: Floats
+    slides: dict[str, Floats]
+    connections: tuple[tuple[str, str, str], ...]
+    transmission: dict[str, Floats]
+    condition: Floats
+    shaking_force: Floats
+    shaking_moment: Floats
+    shaking_about: str
+    ledger: PowerLedger
 
 
 @dataclass(frozen=True)
@@ -205,6 +274,7 @@ class Results:
     shapes: tuple[PinShape, ...] = ()
     reactions: tuple[ReactionTable, ...] = ()
     drive: tuple[DriveTable, ...] = ()
+    motion: tuple[LinkageMotion, ...] = ()
     beam_check: BeamCheck | None = None
     motion_check: MotionCheck | None = None
     provenance: tuple[Provenance, ...] = ()
