@@ -21,7 +21,7 @@ from fea.surface import held_nodes
 from geometry import Pin, Segment
 from geometry.solid_mesh import MeshSize, solid_mesh
 from loads import motion_reactions, move
-from pinstress import build, load_study
+from pinstress import load_study, mechanism
 
 STUDY = Path(__file__).parent.parent / "studies" / "grenier2008.toml"
 STEEL = Material("steel", 2.0e11, 0.3)
@@ -31,15 +31,15 @@ PIN = Pin("P", (Segment(0.02, 0.03), Segment(0.04, 0.02, connection="B")), fille
 def motion() -> str:
     """Positions to reactions of the landing gear, by number of instants."""
     study = load_study(STUDY)
-    linkage, law = build.linkage(study), build.drive(study)
+    linkage, courses = mechanism.linkage(study), mechanism.laws(study)
     rows = []
     for n in (21, 201, 2001):
-        times = np.linspace(0.0, law.duration, n)
-        moved = move(linkage, law, times)
+        times = np.linspace(0.0, mechanism.span(study), n)
+        moved = move(linkage, courses, times)
         rows.append(
             (
                 n,
-                seconds(lambda t=times: move(linkage, law, t)),  # type: ignore[misc]
+                seconds(lambda t=times: move(linkage, courses, t)),  # type: ignore[misc]
                 seconds(lambda m=moved: motion_reactions("retract", m)),  # type: ignore[misc]
             )
         )

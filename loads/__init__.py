@@ -3,8 +3,18 @@
 Everything here is in SI units. This room imports nothing else of ours.
 """
 
-from loads.drive import CosineDrive
+from loads.drive import (
+    ConstantDrive,
+    CosineDrive,
+    CycloidalDrive,
+    Law,
+    StateDrive,
+    TableDrive,
+)
+from loads.energy import Energy, Ledger, energy, ledger
 from loads.forces import Applied, Dynamics, motion_reactions, static_reactions
+from loads.friction import JammingError
+from loads.impasse import Impasse
 from loads.impulse import impulse_force
 from loads.lever import Lever
 from loads.linkage import (
@@ -16,10 +26,10 @@ from loads.linkage import (
     LinkageError,
     Sharing,
     Slider,
-    UnreachableError,
+    Turn,
 )
 from loads.mobility import Mobility, mobility
-from loads.motion import Motion, energy, move
+from loads.motion import Motion, at_rest, move
 from loads.reactions import Reactions, TableError, given_reactions, read_reactions
 
 __all__ = [
@@ -27,9 +37,16 @@ __all__ = [
     "Applied",
     "Body",
     "Connection",
+    "ConstantDrive",
     "CosineDrive",
+    "CycloidalDrive",
     "Dynamics",
+    "Energy",
+    "Impasse",
+    "JammingError",
     "Joint",
+    "Law",
+    "Ledger",
     "Lever",
     "Linkage",
     "LinkageError",
@@ -38,11 +55,15 @@ __all__ = [
     "Reactions",
     "Sharing",
     "Slider",
+    "StateDrive",
+    "TableDrive",
     "TableError",
-    "UnreachableError",
+    "Turn",
+    "at_rest",
     "energy",
     "given_reactions",
     "impulse_force",
+    "ledger",
     "mobility",
     "motion_reactions",
     "move",

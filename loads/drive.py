@@ -1,33 +1,151 @@
-"""Laws of motion of a drive: position, velocity and acceleration at given times, exactly."""
+"""Laws of motion of a drive: value, rate and second rate at given times, exactly.
+
+Values are lengths (m) of a slider or angles (rad). Outside its time a drive rests where it is.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Protocol
 
 import numpy as np
 
-from loads.linkage import Floats
+from loads.linkage import Floats, LinkageError
+
+Values = tuple[Floats, Floats, Floats]
+
+
+class Law(Protocol):
+    """Value, rate and second rate (T,) at times (T,) in s."""
+
+    def __call__(self, times: Floats) -> Values: ...
 
 
 @dataclass(frozen=True)
-class CosineDrive:
-    """From `start` to `end` (m) in `duration` (s) by half a cosine: at rest at both ends.
-
-    offset: what the quantity shown as "position" is short of the length (m).
-    """
+class Ramp:
+    """From `start` to `end` in `duration` (s), beginning at time `begin` (s)."""
 
     start: float
     end: float
     duration: float
-    offset: float = 0.0
+    begin: float = 0.0
 
-    def __call__(self, times: Floats) -> tuple[Floats, Floats, Floats]:
-        """Length (m), its rate (m/s) and second rate (m/s^2) at `times` (T,) in s."""
-        half = 0.5 * (self.end - self.start)
-        omega = np.pi / self.duration
-        phase = omega * times
+    @property
+    def finish(self) -> float:
+        """When it is over, s."""
+        return self.begin + self.duration
+
+    def _course(self, times: Floats, shape: Floats, first: Floats, second: Floats) -> Values:
+        """From a shape that goes from 0 to 1 in time / duration, with its two derivatives."""
+        run = self.end - self.start
+        moving = (times >= self.begin) & (times <= self.finish)
         return (
-            self.start + half * (1.0 - np.cos(phase)),
-            half * omega * np.sin(phase),
-            half * omega**2 * np.cos(phase),
+            self.start + run * shape,
+            np.where(moving, run / self.duration * first, 0.0),
+            np.where(moving, run / self.duration**2 * second, 0.0),
+        )
+
+    def _part(self, times: Floats) -> Floats:
+        return np.clip((times - self.begin) / self.duration, 0.0, 1.0)
+
+
+class CosineDrive(Ramp):
+    """Half a cosine: at rest at both ends, the acceleration jumps there."""
+
+    def __call__(self, times: Floats) -> Values:
+        phase = np.pi * self._part(times)
+        return self._course(
+            times,
+            0.5 * (1.0 - np.cos(phase)),
+            0.5 * np.pi * np.sin(phase),
+            0.5 * np.pi**2 * np.cos(phase),
+        )
+
+
+class CycloidalDrive(Ramp):
+    """A cycloid: speed and acceleration vanish at both ends."""
+
+    def __call__(self, times: Floats) -> Values:
+        part = self._part(times)
+        phase = 2.0 * np.pi * part
+        return self._course(
+            times,
+            part - np.sin(phase) / (2.0 * np.pi),
+            1.0 - np.cos(phase),
+            2.0 * np.pi * np.sin(phase),
+        )
+
+
+class ConstantDrive(Ramp):
+    """Constant speed from start to end."""
+
+    def __call__(self, times: Floats) -> Values:
+        part = self._part(times)
+        return self._course(times, part, np.ones_like(part), np.zeros_like(part))
+
+
+@dataclass(frozen=True)
+class StateDrive:
+    """One instant: value, rate and second rate as given, whatever the time."""
+
+    value: float
+    rate: float = 0.0
+    second: float = 0.0
+
+    def __call__(self, times: Floats) -> Values:
+        one = np.ones_like(times)
+        return self.value * one, self.rate * one, self.second * one
+
+
+@dataclass(frozen=True)
+class TableDrive:
+    """A table made smooth by polynomials of degree five.
+
+    times (N,) s, rising; values (N,); rates and seconds (N,), both or neither. With them every
+    piece meets the rows' own rates; without it is the interpolating spline, smooth to the fourth
+    derivative.
+
+    Raises: LinkageError for fewer rows than the polynomial needs, or times that do not rise.
+    """
+
+    times: tuple[float, ...]
+    values: tuple[float, ...]
+    rates: tuple[float, ...] = ()
+    seconds: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        least = 2 if self.rates else 6
+        if len(self.times) < least:
+            raise LinkageError(f"a drive's table needs at least {least} rows")
+        if not np.all(np.diff(self.times) > 0.0):
+            raise LinkageError("the times of a drive's table must rise from row to row")
+
+    @property
+    def begin(self) -> float:
+        """Its first time, s."""
+        return self.times[0]
+
+    @property
+    def finish(self) -> float:
+        """Its last time, s."""
+        return self.times[-1]
+
+    @cached_property
+    def _pieces(self) -> Any:
+        from scipy.interpolate import BPoly, make_interp_spline
+
+        if not self.rates:
+            return make_interp_spline(self.times, self.values, k=5)
+        rows = np.stack([self.values, self.rates, self.seconds], axis=1)
+        return BPoly.from_derivatives(self.times, rows)
+
+    def __call__(self, times: Floats) -> Values:
+        at = np.clip(times, self.begin, self.finish)
+        moving = (times >= self.begin) & (times <= self.finish)
+        pieces = self._pieces
+        return (
+            np.asarray(pieces(at)),
+            np.where(moving, pieces.derivative(1)(at), 0.0),
+            np.where(moving, pieces.derivative(2)(at), 0.0),
         )

@@ -1,134 +1,316 @@
 """Newton-Euler for every body and pin, at all instants at once.
 
-The equations of motion are J^T f = M a - Q: the transposed constraint Jacobian times the forces of
-all connections, sliders and the drive. With more connections than equations the forces along the
-null vectors of J^T are not determined by rigid-body statics; the linkage's sharing rule does it.
+By virtual work the few multipliers of the loop and drive equations balance what the bodies need,
+J^T f = partials . (m a - weight - applied); the forces in all members follow from them. With more
+equations than coordinates the forces along the null vectors of J^T are not determined by rigid-body
+statics; the linkage's sharing rule does it.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from loads.constraints import Constraints
-from loads.linkage import Floats, Linkage, LinkageError, Point
-from loads.mobility import require_determined
+from loads.friction import MOST_CONTACTS, JammingError, contact_forces
+from loads.linkage import Floats, Linkage, LinkageError, Point, Slider
+from loads.loops import Complex, cross, number, pairs
+from loads.members import (
+    closing_points,
+    connection_members,
+    slider_couple,
+    slider_members,
+)
 from loads.motion import Motion, at_rest
 from loads.reactions import Reactions
+
+STANDS = 1e-9  # of a slider's largest speed: below it nothing slides
 
 
 @dataclass(frozen=True)
 class Applied:
-    """A constant force (N, world axes) on a body's point (m, as drawn)."""
+    """A constant force (N) on a body's point (m, as drawn) and a couple (N m) on the body.
+
+    follows: the force turns with the body (given in axes as drawn); otherwise in world axes.
+    """
 
     body: str
     at: Point
-    force: Point
+    force: Point = (0.0, 0.0)
+    couple: float = 0.0
+    follows: bool = False
+
+
+@dataclass(frozen=True)
+class SliderForces:
+    """Of the base on the moving body of every slider, (T, S): normal (N, left of the axis), couple
+    (N m) about the slider's end, friction (N, along the axis).
+    """
+
+    normal: Floats
+    couple: Floats
+    friction: Floats
 
 
 @dataclass(frozen=True)
 class Dynamics:
-    """Reactions with what goes along: drive (T,) N, pushing the slider longer; the motion itself;
-    shared: connections whose forces follow the sharing rule.
+    """Reactions with what goes along.
+
+    drive: (T, D) N, pushing a slider longer, or N m, turning a body on. needed, couples: (T, items)
+    forces (complex, N) and couples (N m) that joints and drives bring to each item. applied: the
+    loads. shared: connections whose forces follow the sharing rule.
     """
 
     reactions: Reactions
     drive: Floats
     motion: Motion
+    applied: tuple[Applied, ...]
+    sliders: SliderForces
+    needed: Complex
+    couples: Floats
     shared: tuple[str, ...]
 
     @property
     def power(self) -> Floats:
-        """Power of the drive, (T,) W."""
-        return self.drive * self.motion.speed
+        """Power of every drive, (T, D) W."""
+        return self.drive * self.motion.speeds
 
     @property
     def work(self) -> Floats:
-        """Work of the drive since the first instant, (T,) J: the integral of a cubic spline."""
+        """Work of every drive since the first instant, (T, D) J: the integral of a spline."""
         from scipy.interpolate import CubicSpline
 
+        if len(self.motion) < 2:
+            return np.zeros_like(self.drive)
         times = self.motion.times
-        if len(times) < 2:
-            return np.zeros(len(times))
         return np.asarray(CubicSpline(times, self.power).antiderivative()(times))
 
+    def shaking(self, about: Point) -> tuple[Floats, Floats]:
+        """Force (T, 2) N and moment (T,) N m about a point (m) of the linkage on its ground."""
+        centres, _, _ = self.motion.centres
+        moment = self.couples + cross(centres - number(about), self.needed)
+        return -pairs(self.needed.sum(axis=1)), -moment.sum(axis=1)
 
-def motion_reactions(case: str, motion: Motion) -> Dynamics:
-    """Reactions of a driven motion under gravity."""
-    return _reactions(case, motion, motion.times, ())
+
+def motion_reactions(
+    case: str, motion: Motion, applied: Sequence[Applied] = (), timed: bool = True
+) -> Dynamics:
+    """Reactions of a driven motion under gravity, applied loads and friction.
+
+    timed: whether its instants follow each other in time. Raises: LinkageError when connections
+    share forces without a rule, JammingError.
+    """
+    return _Balance(motion, tuple(applied)).dynamics(case, timed)
 
 
 def static_reactions(
-    case: str, linkage: Linkage, length: float, applied: tuple[Applied, ...]
+    case: str, linkage: Linkage, drives: Sequence[float], applied: Sequence[Applied] = ()
 ) -> Dynamics:
-    """Reactions of the linkage held at a length (m) of its driven slider, under applied forces."""
-    return _reactions(case, at_rest(linkage, length), None, applied)
+    """Reactions of the linkage held at values of its drives (m or rad), under applied loads."""
+    return motion_reactions(case, at_rest(linkage, drives), applied, timed=False)
 
 
-def _reactions(
-    case: str, motion: Motion, times: Floats | None, applied: tuple[Applied, ...]
-) -> Dynamics:
-    linkage, system = motion.linkage, motion.system
-    unbalanced = _inertia(motion) - _applied_forces(motion, applied)
-    J = system.jacobian(motion.q)
-    Q, R = np.linalg.qr(J, mode="complete")
-    n = system.columns
-    determined = np.linalg.solve(np.swapaxes(R[:, :n], 1, 2), system.gather(unbalanced)[..., None])
-    f = (Q[:, :, :n] @ determined)[..., 0]
-    null = Q[:, :, n:]
-    shared: tuple[str, ...] = ()
-    if null.shape[2]:
-        shared = require_determined(linkage).shared
-        f = f + (null @ _shares(system, f, null, shared)[..., None])[..., 0]
-    count = len(linkage.connections)
-    on_pin = np.zeros((len(f), count, 3))
-    on_pin[..., :2] = -f[:, : 2 * count].reshape(-1, count, 2)
-    turn = np.stack([motion.angle(_frame(linkage, j.fixed_in)) for j, _ in linkage.connections], 1)
-    reactions = Reactions(
-        case=case,
-        times=times,
-        connections=tuple(c.name for _, c in linkage.connections),
-        bodies=tuple(c.body for _, c in linkage.connections),
-        forces=on_pin,
-        moments=np.zeros_like(on_pin),
-        turn=turn,
-    )
-    return Dynamics(reactions, f[:, -1], motion, shared)
+class _Balance:
+    """The balance of forces of one motion: linear in what the bodies need."""
+
+    def __init__(self, motion: Motion, applied: tuple[Applied, ...]) -> None:
+        self.motion, self.applied, self.loops = motion, applied, motion.loops
+        self.connections = connection_members(self.loops)
+        self.slides = slider_members(self.loops)
+        self.shared = motion.found.shared
+        self.needed, self.couples = self._needs()
+
+    def dynamics(self, case: str, timed: bool) -> Dynamics:
+        linkage = self.motion.linkage
+        f = self._multipliers(self._generalised(), self.needed)
+        rubs = [k for k, s in enumerate(linkage.sliders) if s.friction]
+        friction = np.zeros((len(f), len(linkage.sliders)))
+        if rubs:
+            friction, f = self._with_friction(f, rubs)
+        drive = self._drives(f)
+        normal, couple = self._slider_forces(f, self.needed, self.couples)
+        return Dynamics(
+            reactions=self._reactions(case, f, timed),
+            drive=drive,
+            motion=self.motion,
+            applied=self.applied,
+            sliders=SliderForces(normal, couple, friction),
+            needed=self.needed,
+            couples=self.couples,
+            shared=self.shared,
+        )
+
+    def _needs(self) -> tuple[Complex, Floats]:
+        """m a - weight - applied force, and the couples about the centres, (T, items) each."""
+        motion, linkage = self.motion, self.motion.linkage
+        items = linkage.items
+        mass = np.array([item.mass for item in items])
+        inertia = np.array([item.inertia or 0.0 for item in items])
+        centres, _, acceleration = motion.centres
+        needed = mass * (acceleration - number(linkage.gravity))
+        spin = np.stack([motion.angular_acceleration(item.name) for item in items], axis=1)
+        couples = inertia * spin
+        for load in self.applied:
+            i = linkage.index[load.body]
+            force = np.full(len(motion), number(load.force))
+            if load.follows:
+                force = force * np.exp(1j * motion.angle(load.body))
+            at, _, _ = motion.point(load.body, load.at)
+            arm = at[:, 0] + 1j * at[:, 1] - centres[:, i]
+            needed[:, i] -= force
+            couples[:, i] -= cross(arm, force) + load.couple
+        return needed, couples
+
+    def _generalised(self) -> Floats:
+        """What the bodies need as forces along the coordinates, (T, n) N (N m for angles)."""
+        loops = self.loops
+        slopes = loops.partials(self.motion.pose, loops.centres)
+        out = np.real(np.conj(slopes) @ self.needed[..., None])[..., 0]
+        for i in range(len(loops.linkage.items)):
+            if f := loops.frame[i]:
+                out[:, f - 1] += self.couples[:, i]
+        return np.asarray(out)
+
+    def _closing(self, f: Floats) -> Complex:
+        k = len(self.loops.closing)
+        return np.asarray(f[:, :k] + 1j * f[:, k : 2 * k])
+
+    def _drives(self, f: Floats) -> Floats:
+        """(T, D) forces and torques of the drives."""
+        D = len(self.loops.linkage.driven)
+        return f[:, f.shape[1] - D :] * [self.loops.drive_scale(k) for k in range(D)]
+
+    def _multipliers(self, generalised: Floats, needed: Complex) -> Floats:
+        """Multipliers (T, rows) that balance forces along the coordinates, shared as told."""
+        factors = self.motion.factors
+        f = factors.solve_transposed(generalised / self.loops.scale)
+        if not self.shared:
+            return f
+        at_connections = self.connections.forces(needed, self._closing(f))
+        null = factors.null
+        nothing = np.zeros((1, needed.shape[1]), dtype=complex)
+        k = len(self.loops.closing)
+        loose = np.stack(
+            [self.connections.forces(nothing, self._closing(null[:, :, i]))
+             for i in range(null.shape[2])], axis=2,
+        ) if k else np.zeros((*at_connections.shape, 0))  # fmt: skip
+        amounts = _shares(self.loops.linkage, at_connections, loose, self.shared)
+        return f + (null @ amounts[..., None])[..., 0]
+
+    def _slider_forces(self, f: Floats, needed: Complex, couples: Floats) -> tuple[Floats, Floats]:
+        """Normal force and couple at every slider, (T, S)."""
+        loops, pose = self.loops, self.motion.pose
+        sliders = loops.linkage.sliders
+        if not sliders:
+            return np.zeros((len(f), 0)), np.zeros((len(f), 0))
+        closing = self._closing(f)
+        force = self.slides.forces(needed, closing)
+        normal = np.real(np.conj(1j * pose.axis) * force)
+        centres, _, _ = self.motion.centres
+        items, at = closing_points(loops)
+        closing_at = loops.place(pose, loops.points(items, at))
+        torques = self._drives(f)
+        couple = np.stack(
+            [
+                slider_couple(
+                    loops, k, self._end(s), centres, needed, couples, closing_at, closing, torques
+                )
+                for k, s in enumerate(sliders)
+            ],
+            axis=1,
+        )
+        return normal, couple
+
+    def _end(self, slider: Slider) -> Complex:
+        index = self.loops.linkage.index
+        item, at = np.array([index[slider.moving]]), np.array([number(slider.end)])
+        return self.loops.place(self.motion.pose, self.loops.points(item, at))[:, 0]
+
+    def _contacts(self, normal: Floats, couple: Floats, rubs: list[int]) -> Floats:
+        """Forces on the pads of the sliders that rub, (T, K)."""
+        out = []
+        for k in rubs:
+            bearing = self.loops.linkage.sliders[k].bearing
+            if bearing is None:
+                out.append(normal[:, k])
+            else:
+                out += [normal[:, k] / 2 + couple[:, k] / bearing]
+                out += [normal[:, k] / 2 - couple[:, k] / bearing]
+        return np.stack(out, axis=1)
+
+    def _with_friction(self, f: Floats, rubs: list[int]) -> tuple[Floats, Floats]:
+        """Friction (T, S) and the multipliers with it."""
+        motion, loops = self.motion, self.loops
+        sliders, first = loops.linkage.sliders, loops.frames - 1
+        free = self._contacts(*self._slider_forces(f, self.needed, self.couples), rubs)
+        owner = [k for k in rubs for _ in range(1 if sliders[k].bearing is None else 2)]
+        if len(owner) > MOST_CONTACTS:
+            raise LinkageError(
+                f"{len(owner)} contacts with friction are too many; at most {MOST_CONTACTS}"
+            )
+        speed = motion.v[:, first:]
+        slides = np.abs(speed) > STANDS * np.abs(speed).max(axis=0, initial=0.0)
+        opposes = np.where(slides, -np.sign(speed), 0.0)
+        nothing, none = np.zeros_like(self.needed), np.zeros_like(self.couples)
+        response, contacts = {}, {}
+        for k in rubs:
+            push = np.zeros_like(motion.q)
+            push[:, first + k] = -1.0
+            response[k] = self._multipliers(push, nothing)
+            contacts[k] = self._contacts(*self._slider_forces(response[k], nothing, none), rubs)
+        feedback = np.stack(
+            [-contacts[k] * (sliders[k].friction * opposes[:, k])[:, None] for k in owner], axis=2
+        )
+        try:
+            n = np.abs(contact_forces(free, feedback))
+        except JammingError as error:
+            raise self._told(error, feedback, owner) from None
+        friction = np.zeros((len(f), len(sliders)))
+        for i, k in enumerate(owner):
+            friction[:, k] += sliders[k].friction * opposes[:, k] * n[:, i]
+        for k in rubs:
+            f = f + friction[:, k, None] * response[k]
+        return friction, f
+
+    def _told(self, error: JammingError, feedback: Floats, owner: list[int]) -> JammingError:
+        """The same with the sliders named and the time."""
+        t = int(error.instants[0])
+        grips = np.abs(np.diagonal(feedback[t]))
+        which = self.loops.linkage.sliders[owner[int(grips.argmax())]]
+        when = f"t = {self.motion.times[t]:.6g} s" if len(self.motion) > 1 else ""
+        return JammingError(
+            error.instants, error.none, float(grips.max()), when, f"slider {which.name}"
+        )
+
+    def _reactions(self, case: str, f: Floats, timed: bool) -> Reactions:
+        motion, linkage = self.motion, self.motion.linkage
+        on_body = self.connections.forces(self.needed, self._closing(f))
+        on_pin = np.zeros((*on_body.shape, 3))
+        on_pin[..., 0], on_pin[..., 1] = -on_body.real, -on_body.imag
+        turn = np.stack(
+            [motion.angle(_axes(linkage, j.fixed_in)) for j, _ in linkage.connections], axis=1
+        )
+        return Reactions(
+            case=case,
+            times=motion.times if timed else None,
+            connections=tuple(c.name for _, c in linkage.connections),
+            bodies=tuple(c.body for _, c in linkage.connections),
+            forces=on_pin,
+            moments=np.zeros_like(on_pin),
+            turn=turn,
+        )
 
 
-def _frame(linkage: Linkage, fixed_in: str | None) -> str:
+def _axes(linkage: Linkage, fixed_in: str | None) -> str:
     """The item whose rotation the pin's own axes follow; a floating pin keeps the world's."""
     return fixed_in if fixed_in in linkage.index else "ground"
 
 
-def _inertia(motion: Motion) -> Floats:
-    """M a minus the weights, (T, items + ground, 3)."""
-    items = motion.linkage.items
-    m = np.array([item.mass for item in items] + [0.0])
-    inertia = np.array([item.inertia or 0.0 for item in items] + [0.0])
-    force = np.zeros_like(motion.a)
-    force[..., :2] = m[:, None] * (motion.a[..., :2] - np.array(motion.linkage.gravity))
-    force[..., 2] = inertia * motion.a[..., 2]
-    return force
-
-
-def _applied_forces(motion: Motion, applied: tuple[Applied, ...]) -> Floats:
-    force = np.zeros_like(motion.a)
-    for load in applied:
-        i = motion.linkage.index[load.body]
-        position, _, _ = motion.point(load.body, load.at)
-        arm = position - motion.q[:, i, :2]
-        force[:, i, :2] += load.force
-        force[:, i, 2] += arm[:, 0] * load.force[1] - arm[:, 1] * load.force[0]
-    return force
-
-
-def _shares(system: Constraints, f: Floats, null: Floats, shared: tuple[str, ...]) -> Floats:
-    """Amounts (T, k) of the null vectors that make the sharing connections behave like springs:
-    the sum of force^2 / stiffness over them is least.
+def _shares(linkage: Linkage, forces: Complex, loose: Complex, shared: tuple[str, ...]) -> Floats:
+    """Amounts (T, k) of self-equilibrated forces `loose` (T, C, k) that make the sharing
+    connections behave like springs: the sum of force^2 / stiffness over them is least.
     """
-    linkage = system.linkage
     names = [c.name for _, c in linkage.connections]
     told = f"the forces at {', '.join(shared)} are not determined by rigid-body statics"
     if not linkage.sharing:
@@ -136,15 +318,16 @@ def _shares(system: Constraints, f: Floats, null: Floats, shared: tuple[str, ...
             f"{told}; say how they share: [[mechanism.sharing]] with connections = [...] and "
             "stiffness = [...], one entry for each way in which they are redundant"
         )
-    pairs = [p for s in linkage.sharing for p in zip(s.connections, s.stiffness, strict=True)]
-    rows = [2 * names.index(name) + k for name, _ in pairs for k in (0, 1)]
-    weight = np.repeat([1.0 / stiffness for _, stiffness in pairs], 2)
-    N = null[:, rows]
+    members = [p for s in linkage.sharing for p in zip(s.connections, s.stiffness, strict=True)]
+    which = [names.index(name) for name, _ in members]
+    weight = np.tile([1.0 / stiffness for _, stiffness in members], 2)
+    N = np.concatenate([loose[:, which].real, loose[:, which].imag], axis=1)
+    g = np.concatenate([forces[:, which].real, forces[:, which].imag], axis=1)
     G = np.swapaxes(N, 1, 2) @ (weight[:, None] * N)
     if np.linalg.eigvalsh(G).min() < 1e-9 * weight.min():
         raise LinkageError(
-            f"{told}, and the sharing over {', '.join(name for name, _ in pairs)} does not "
+            f"{told}, and the sharing over {', '.join(name for name, _ in members)} does not "
             "determine them; name connections among those on both redundant sides"
         )
-    b = -np.swapaxes(N, 1, 2) @ (weight * f[:, rows])[..., None]
+    b = -np.swapaxes(N, 1, 2) @ (weight * g)[..., None]
     return np.asarray(np.linalg.solve(G, b)[..., 0], dtype=np.float64)

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import math
+
+# peak force over mean force of a pulse, for the same impulse in the same time
+PULSES = {"rectangular": 1.0, "half-sine": math.pi / 2.0, "triangular": 2.0}
+
 
 def impulse_force(
-    weight: float, gravity: float, velocity_change: float, impulse_time: float
+    mass: float, velocity_change: float, impulse_time: float, pulse: str = "rectangular"
 ) -> float:
-    """Mean force (N) that takes `velocity_change` (m/s) from a mass within `impulse_time` (s).
+    """Largest force (N) of a pulse that takes `velocity_change` (m/s) from a mass (kg) within
+    `impulse_time` (s): the mean, m dV / dt, times the pulse's peak over its mean.
 
-    The mass is weight (N) / gravity (m/s^2): F dt = m dV. Source: any text on impulse and momentum;
-    Grenier (2008), eq. L2.
+    Source: any text on impulse and momentum; Grenier (2008), eq. L2, for the rectangular pulse.
     """
-    return weight / gravity * velocity_change / impulse_time
+    return mass * velocity_change / impulse_time * PULSES[pulse]

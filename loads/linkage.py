@@ -1,4 +1,4 @@
-"""A planar linkage as data: rigid bodies, the pins that join them, sliders and how they share."""
+"""A planar linkage as data: rigid bodies, pins, sliders, drives, and how connections share."""
 
 from __future__ import annotations
 
@@ -18,31 +18,12 @@ class LinkageError(ValueError):
     """The linkage as described cannot be analysed; the message says why and what would be right."""
 
 
-class UnreachableError(LinkageError):
-    """The linkage does not close at a length of its driven slider; all lengths in m."""
-
-    def __init__(self, slider: str, drawn: float, reached: float, wanted: float) -> None:
-        self.slider, self.drawn, self.reached, self.wanted = slider, drawn, reached, wanted
-        super().__init__(self.message())
-
-    def message(self, unit: str = "m", factor: float = 1.0) -> str:
-        """The message with lengths in a unit of `factor` m."""
-        drawn, reached, wanted = (
-            f"{x / factor:.6g} {unit}" for x in (self.drawn, self.reached, self.wanted)
-        )
-        return (
-            f"the linkage cannot close with slider {self.slider} at {wanted}: it can be followed "
-            f"from {drawn} (as drawn) to {reached} only; check the drive's range and the "
-            "coordinates of the joints"
-        )
-
-
 @dataclass(frozen=True)
 class Body:
     """A rigid body in the drawn position.
 
     mass: kg. centre: centre of mass in world axes, m. inertia: about the centre, kg m^2; a body
-    without inertia is a particle at `centre` and must be held there by a single connection.
+    without inertia is a particle, held at `centre` by a single connection, or slides on the ground.
     """
 
     name: str
@@ -76,8 +57,12 @@ class Joint:
 
 @dataclass(frozen=True)
 class Slider:
-    """A prismatic joint: `moving` slides along the line from `start` (a point of `base`) to `end`
-    (a point of `moving`), both in world axes as drawn, m. Its length is their distance.
+    """A prismatic joint: `moving` slides on `base`, a body or GROUND.
+
+    start, end: a point of the base and one of the moving body, in world axes as drawn, m; the
+    slider's length is their distance along `direction` (by default from start to end), which turns
+    with the base. friction: Coulomb's coefficient. bearing: distance of the two pads, centred on
+    `end`, that carry the couple, m; None when the couple is carried without friction.
     """
 
     name: str
@@ -85,11 +70,32 @@ class Slider:
     moving: str
     start: Point
     end: Point
+    direction: Point | None = None
+    friction: float = 0.0
+    bearing: float | None = None
 
     @property
-    def drawn_length(self) -> float:
-        """Distance from start to end as drawn, m."""
-        return float(np.hypot(self.end[0] - self.start[0], self.end[1] - self.start[1]))
+    def axis(self) -> Point:
+        """Unit vector along which it slides, as drawn; zero when the points coincide."""
+        x, y = self.direction or (self.end[0] - self.start[0], self.end[1] - self.start[1])
+        size = float(np.hypot(x, y)) or 1.0
+        return x / size, y / size
+
+    @property
+    def drawn(self) -> float:
+        """Length as drawn, m."""
+        ex, ey = self.axis
+        return (self.end[0] - self.start[0]) * ex + (self.end[1] - self.start[1]) * ey
+
+
+@dataclass(frozen=True)
+class Turn:
+    """The angle of `body` against `base` as a drive sees it; `drawn`: its value as drawn, rad."""
+
+    name: str
+    body: str
+    drawn: float
+    base: str = GROUND
 
 
 @dataclass(frozen=True)
@@ -102,15 +108,17 @@ class Sharing:
 
 @dataclass(frozen=True)
 class Linkage:
-    """Bodies, joints and one driven slider, in the position in which they are drawn.
+    """Bodies, joints, sliders and turns in the position in which they are drawn.
 
-    gravity: acceleration of free fall, world axes, m/s^2.
+    driven: names of the sliders and turns that drives prescribe. gravity: acceleration of free
+    fall, world axes, m/s^2.
     """
 
     bodies: tuple[Body, ...]
     joints: tuple[Joint, ...]
-    sliders: tuple[Slider, ...]
-    driven: str
+    driven: tuple[str, ...]
+    sliders: tuple[Slider, ...] = ()
+    turns: tuple[Turn, ...] = ()
     gravity: Point = (0.0, 0.0)
     sharing: tuple[Sharing, ...] = ()
 
@@ -123,9 +131,11 @@ class Linkage:
         return tuple((j, c) for j in self.joints for c in j.connections)
 
     @cached_property
-    def driven_slider(self) -> Slider:
-        """The slider whose length the drive prescribes."""
-        return next(s for s in self.sliders if s.name == self.driven)
+    def drives(self) -> tuple[Slider | Turn, ...]:
+        """What the drives prescribe, in the order of `driven`."""
+        known: dict[str, Slider | Turn] = {s.name: s for s in self.sliders}
+        known |= {t.name: t for t in self.turns}
+        return tuple(known[name] for name in self.driven)
 
     @cached_property
     def items(self) -> tuple[Body, ...]:
@@ -135,18 +145,31 @@ class Linkage:
 
     @cached_property
     def index(self) -> dict[str, int]:
-        """Row of each item in a state array; the ground is the row after the last."""
+        """Number of each item; the ground comes after the last."""
         rows = {item.name: i for i, item in enumerate(self.items)}
         return rows | {GROUND: len(rows)}
+
+    def joint(self, name: str) -> Joint:
+        """The joint of this name."""
+        return next(j for j in self.joints if j.name == name)
 
     def carrier(self, joint: Joint) -> str:
         """The item of which the pin is a part: a body, the ground, or itself when it floats."""
         return _pin_item(joint) if joint.fixed_in is None else joint.fixed_in
 
+    def joints_on(self, body: str) -> tuple[Joint, ...]:
+        """The joints at which a body (or the ground) turns or carries the pin."""
+        return tuple(
+            j
+            for j in self.joints
+            if j.fixed_in == body or any(c.body == body for c in j.connections)
+        )
+
     @cached_property
     def length_scale(self) -> float:
         """A typical distance between joints, m: turns angles into lengths of like size."""
-        at = np.array([j.at for j in self.joints])
+        ends = [p for s in self.sliders for p in (s.start, s.end)]
+        at = np.array([j.at for j in self.joints] + ends)
         return float(np.linalg.norm(at - at.mean(axis=0), axis=1).mean()) or 1.0
 
 
@@ -159,18 +182,37 @@ def _check(linkage: Linkage) -> None:
         raise LinkageError("the linkage has no joints")
     bodies = {b.name: b for b in linkage.bodies}
     names = [c.name for j in linkage.joints for c in j.connections]
+    coordinates = [s.name for s in linkage.sliders] + [t.name for t in linkage.turns]
     for what, seen in (
         ("body", [b.name for b in linkage.bodies]),
         ("joint", [j.name for j in linkage.joints]),
         ("connection", names),
-        ("slider", [s.name for s in linkage.sliders]),
+        ("slider or turn", coordinates),
+        ("drive", list(linkage.driven)),
     ):
         twice = sorted({n for n in seen if seen.count(n) > 1})
         if twice:
             raise LinkageError(f"{what} {twice[0]!r} is named twice; names must be unique")
+    if GROUND in bodies:
+        raise LinkageError(f"no body may be called {GROUND!r}: that is what stands still")
+    _check_joints(linkage, bodies)
+    _check_sliders(linkage, bodies)
+    for name in linkage.driven:
+        if name not in coordinates:
+            raise LinkageError(f"the drive moves {name!r}, which does not exist")
+    for share in linkage.sharing:
+        for name in share.connections:
+            if name not in names:
+                raise LinkageError(f"sharing names connection {name!r}, which does not exist")
+    for body in linkage.bodies:
+        if body.inertia is None:
+            _check_particle(linkage, body)
+
+
+def _check_joints(linkage: Linkage, bodies: dict[str, Body]) -> None:
     for joint in linkage.joints:
         for c in joint.connections:
-            if c.body not in bodies:
+            if c.body not in (GROUND, *bodies):
                 raise LinkageError(f"connection {c.name}: there is no body {c.body!r}")
             if c.body == joint.fixed_in:
                 raise LinkageError(
@@ -181,25 +223,36 @@ def _check(linkage: Linkage) -> None:
             raise LinkageError(f"joint {joint.name}: there is no body {joint.fixed_in!r}")
         if joint.fixed_in is None and len(joint.connections) < 2:
             raise LinkageError(f"joint {joint.name}: a floating pin needs at least two connections")
+
+
+def _check_sliders(linkage: Linkage, bodies: dict[str, Body]) -> None:
     for slider in linkage.sliders:
         for body in (slider.base, slider.moving):
-            if body not in bodies:
+            if body not in (GROUND, *bodies):
                 raise LinkageError(f"slider {slider.name}: there is no body {body!r}")
-        if slider.drawn_length == 0.0:
+        if slider.base == slider.moving:
+            raise LinkageError(f"slider {slider.name}: {slider.base} cannot slide on itself")
+        if slider.axis == (0.0, 0.0):
             raise LinkageError(
-                f"slider {slider.name}: its two points coincide, it has no direction"
+                f"slider {slider.name}: its two points coincide, it has no direction; give one"
             )
-    if linkage.driven not in [s.name for s in linkage.sliders]:
-        raise LinkageError(f"the drive moves slider {linkage.driven!r}, which does not exist")
-    for share in linkage.sharing:
-        for name in share.connections:
-            if name not in names:
-                raise LinkageError(f"sharing names connection {name!r}, which does not exist")
-    for particle in linkage.bodies:
-        if particle.inertia is None:
-            held = [j for j in linkage.joints for c in j.connections if c.body == particle.name]
-            if len(held) != 1 or not np.allclose(held[0].at, particle.centre, atol=1e-9):
-                raise LinkageError(
-                    f"body {particle.name}: without inertia it is a particle, held by one "
-                    "connection at its centre; give it an inertia, or put its centre at that joint"
-                )
+    for turn in linkage.turns:
+        for body in (turn.base, turn.body):
+            if body not in (GROUND, *bodies):
+                raise LinkageError(f"drive {turn.name}: there is no body {body!r}")
+        if turn.base == turn.body:
+            raise LinkageError(f"drive {turn.name}: {turn.base} cannot turn against itself")
+
+
+def _check_particle(linkage: Linkage, body: Body) -> None:
+    slides = [s for s in linkage.sliders if body.name in (s.base, s.moving)]
+    if any(GROUND in (s.base, s.moving) for s in slides):
+        return
+    held = [j for j in linkage.joints for c in j.connections if c.body == body.name]
+    carries = any(j.fixed_in == body.name for j in linkage.joints)
+    alone = len(held) == 1 and not slides and not carries
+    if not alone or not np.allclose(held[0].at, body.centre, atol=1e-9):
+        raise LinkageError(
+            f"body {body.name}: without inertia it is a particle, held by one connection at its "
+            "centre; give it an inertia, or put its centre at that joint"
+        )

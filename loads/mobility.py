@@ -1,4 +1,4 @@
-"""Rank of the constraint equations: is every body guided, and which connections are redundant."""
+"""Rank of the loop equations: is every body guided, which connections are redundant."""
 
 from __future__ import annotations
 
@@ -6,21 +6,26 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loads.constraints import Constraints, constraints
-from loads.linkage import Floats, Linkage, LinkageError
+from loads.linkage import GROUND, Floats, Linkage, LinkageError
+from loads.loops import Loops, Pose
+from loads.members import connection_members
 
 RANK_TOLERANCE = 1e-9  # smallest singular value that counts, relative to the largest
+TAKES_PART = 1e-6  # of the largest part in a null vector
 
 
 @dataclass(frozen=True)
 class Mobility:
-    """What the constraints leave open in one position.
+    """What joints and drives leave open in the drawn position.
 
-    free: motions that remain with the drive held (0 when the position is determined).
-    loose: items that take part in them. redundant: number of equations too many.
-    shared: connections whose force rigid-body statics does not determine.
+    kutzbach: degrees of freedom by counting links and joints. degrees: by rank, without drives.
+    free: motions that remain with the drives held (0 when the position is determined). loose:
+    bodies that take part in them. redundant: number of equations too many. shared: connections
+    whose force rigid-body statics does not determine.
     """
 
+    kutzbach: int
+    degrees: int
     free: int
     loose: tuple[str, ...]
     redundant: int
@@ -28,43 +33,91 @@ class Mobility:
 
 
 def mobility(linkage: Linkage) -> Mobility:
-    """Mobility and redundancy of the linkage as drawn, by rank (singular values)."""
-    system = constraints(linkage)
-    J = system.jacobian(system.drawn()[None])[0]
+    """Mobility and redundancy as drawn. Raises: LinkageError for bodies joined to nothing."""
+    loops = Loops(linkage)
+    pose = loops.pose(np.zeros((1, loops.columns)))
+    J = loops.jacobian(pose)[0]
     left, singular, right = np.linalg.svd(J)
-    rank = int(np.sum(singular > RANK_TOLERANCE * singular[0]))
-    loose = _touched(system.spread(right[rank:])) if rank < system.columns else ()
-    items = linkage.items
+    rank = _rank(singular)
+    guided = J[: 2 * len(loops.closing)]
+    free = right[rank:]
     return Mobility(
-        free=system.columns - rank,
-        loose=tuple(items[i].name for i in loose),
-        redundant=system.rows - rank,
-        shared=shared_connections(system, left[:, rank:]),
+        kutzbach=kutzbach(linkage),
+        degrees=loops.columns - _rank(np.linalg.svd(guided, compute_uv=False)),
+        free=len(free),
+        loose=moving_bodies(loops, pose, free / loops.scale),
+        redundant=len(J) - rank,
+        shared=stressed_connections(loops, left[:, rank:]),
     )
 
 
-def shared_connections(system: Constraints, null: Floats) -> tuple[str, ...]:
-    """Connections on which the self-equilibrated forces `null` (rows, k) act."""
-    n = len(system.first)
-    touched = _touched(null[: 2 * n].T.reshape(-1, n, 2))
-    return tuple(system.linkage.connections[i][1].name for i in touched)
+def kutzbach(linkage: Linkage) -> int:
+    """Degrees of freedom by count: 3 (links - 1) - 2 (pins and sliders).
+
+    A pin on which k links meet counts k - 1 times; particles count for nothing.
+    """
+    links = {b.name for b in linkage.bodies if not _is_particle(linkage, b.name)} | {GROUND}
+    pins = 0
+    for joint in linkage.joints:
+        meeting = {c.body for c in joint.connections} | {joint.fixed_in}
+        pins += max(len(meeting & links) - 1, 0)
+    return 3 * (len(links) - 1) - 2 * (pins + len(linkage.sliders))
 
 
-def _touched(vectors: Floats) -> tuple[int, ...]:
-    """Which of N entries take part in any of k unit vectors, given as (k, N, components)."""
-    size = np.abs(vectors).max(axis=(0, 2), initial=0.0)
-    return tuple(int(i) for i in np.flatnonzero(size > 1e-6))
+def _is_particle(linkage: Linkage, name: str) -> bool:
+    body = next(b for b in linkage.bodies if b.name == name)
+    slides = any(name in (s.base, s.moving) for s in linkage.sliders)
+    return body.inertia is None and not slides
+
+
+def _rank(singular: Floats) -> int:
+    if not len(singular) or singular[0] == 0.0:
+        return 0
+    return int(np.sum(singular > RANK_TOLERANCE * singular[0]))
+
+
+def moving_bodies(loops: Loops, pose: Pose, rates: Floats) -> tuple[str, ...]:
+    """Bodies that take part in motions given as rates (k, n) at one pose."""
+    if not len(rates):
+        return ()
+    linkage, angles = loops.linkage, loops.frames - 1
+    slopes = loops.partials(pose, loops.centres)[0]
+    speed = np.abs(rates @ slopes)[:, : len(linkage.bodies)]
+    for i, body in enumerate(linkage.bodies):
+        f = loops.frame[i]
+        if f and body.inertia is not None and f <= angles:
+            speed[:, i] += linkage.length_scale * np.abs(rates[:, f - 1])
+    largest = speed.max(axis=0)
+    return tuple(
+        b.name for b, v in zip(linkage.bodies, largest, strict=True) if _counts(v, largest)
+    )
+
+
+def stressed_connections(loops: Loops, multipliers: Floats) -> tuple[str, ...]:
+    """Connections that take part in self-equilibrated forces: multipliers (rows, k)."""
+    count = len(loops.closing)
+    closing = (multipliers[:count] + 1j * multipliers[count : 2 * count]).T
+    if not closing.size:
+        return ()
+    nothing = np.zeros((len(closing), len(loops.linkage.items)), dtype=complex)
+    size = np.abs(connection_members(loops).forces(nothing, closing)).max(axis=0)
+    names = [c.name for _, c in loops.linkage.connections]
+    return tuple(n for n, f in zip(names, size, strict=True) if _counts(f, size))
+
+
+def _counts(value: float, all_values: Floats) -> bool:
+    return bool(value > TAKES_PART * all_values.max(initial=0.0))
 
 
 def require_determined(linkage: Linkage) -> Mobility:
-    """The mobility, once it is certain that the drive determines every position.
+    """The mobility, once it is certain that the drives determine every position.
 
     Raises: LinkageError naming the bodies that can still move.
     """
     found = mobility(linkage)
     if found.free:
         raise LinkageError(
-            f"with the drive held the linkage can still move in {found.free} way(s): "
-            f"{', '.join(found.loose)} not guided; add the missing connection"
+            f"with the drives held the linkage can still move in {found.free} way(s): "
+            f"{', '.join(found.loose)} not guided; add the missing connection or drive"
         )
     return found

@@ -2,108 +2,127 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from loads.constraints import Constraints, constraints, rotated, turned
-from loads.linkage import GROUND, Floats, Linkage, Point
-from loads.mobility import require_determined
-from loads.position import least_squares, positions
-
-Law = Callable[[Floats], tuple[Floats, Floats, Floats]]
+from loads.drive import Law, StateDrive
+from loads.factors import Factors
+from loads.impasse import impasse
+from loads.linkage import Floats, Linkage, LinkageError, Point
+from loads.loops import Complex, Loops, Points, Pose, number, pairs
+from loads.mobility import RANK_TOLERANCE, Mobility, require_determined
+from loads.position import positions
 
 
 @dataclass(frozen=True)
 class Motion:
-    """States of all items: q, v, a are (T, items + ground, 3) in m, rad, s and world axes.
+    """Coordinates of a linkage and their rates, (T, n), in rad and m.
 
-    times (T,) s. length, speed, rate (T,): the driven slider's length (m, m/s, m/s^2).
+    times: (T,) s. drives, speeds, rates: (T, D) values of the drives (m or rad) and their rates.
     """
 
-    system: Constraints
+    loops: Loops
+    found: Mobility
     times: Floats
-    length: Floats
-    speed: Floats
-    rate: Floats
+    drives: Floats
+    speeds: Floats
+    rates: Floats
     q: Floats
     v: Floats
     a: Floats
+    factors: Factors
+
+    def __len__(self) -> int:
+        return len(self.times)
 
     @property
     def linkage(self) -> Linkage:
         """The linkage that moves."""
-        return self.system.linkage
+        return self.loops.linkage
+
+    @cached_property
+    def pose(self) -> Pose:
+        """Where everything is."""
+        return self.loops.pose(self.q)
+
+    def follow(self, points: Points) -> tuple[Complex, Complex, Complex]:
+        """Positions, velocities, accelerations (T, N) of points."""
+        slopes = self.loops.partials(self.pose, points)
+        bends = self.loops.bends(self.pose, self.v, points)
+        return (
+            self.loops.place(self.pose, points),
+            _along(self.v, slopes),
+            _along(self.a, slopes) + bends,
+        )
+
+    @cached_property
+    def centres(self) -> tuple[Complex, Complex, Complex]:
+        """Position, velocity, acceleration (T, items) of the centres of mass."""
+        return self.follow(self.loops.centres)
 
     def point(self, item: str, drawn: Point) -> tuple[Floats, Floats, Floats]:
         """Position, velocity, acceleration (T, 2) of the item's point at `drawn` (m, as drawn)."""
-        i = self.linkage.index[item]
-        centre = (0.0, 0.0) if item == GROUND else self.linkage.items[i].centre
-        arm = rotated(self.q[:, i, 2], np.subtract(drawn, centre)[None])
-        w, alpha = self.v[:, i, 2, None], self.a[:, i, 2, None]
-        return (
-            self.q[:, i, :2] + arm,
-            self.v[:, i, :2] + w * turned(arm),
-            self.a[:, i, :2] + alpha * turned(arm) - w**2 * arm,
-        )
+        number_of = np.array([self.linkage.index[item]])
+        found = self.follow(self.loops.points(number_of, np.array([number(drawn)])))
+        return tuple(pairs(z[:, 0]) for z in found)  # type: ignore[return-value]
 
     def joint(self, name: str) -> tuple[Floats, Floats, Floats]:
         """Position, velocity, acceleration (T, 2) of the pin of joint `name`."""
-        joint = next(j for j in self.linkage.joints if j.name == name)
+        joint = self.linkage.joint(name)
         return self.point(self.linkage.carrier(joint), joint.at)
+
+    def _angular(self, coordinates: Floats, item: str) -> Floats:
+        f = self.loops.frame[self.linkage.index[item]]
+        return coordinates[:, f - 1] if f else np.zeros(len(coordinates))
 
     def angle(self, item: str) -> Floats:
         """Rotation of an item from the drawn position, (T,), rad."""
-        return self.q[:, self.linkage.index[item], 2]
+        return self._angular(self.q, item)
+
+    def angular_velocity(self, item: str) -> Floats:
+        """(T,) rad/s."""
+        return self._angular(self.v, item)
+
+    def angular_acceleration(self, item: str) -> Floats:
+        """(T,) rad/s^2."""
+        return self._angular(self.a, item)
+
+    @cached_property
+    def condition(self) -> Floats:
+        """(T,) condition number of the loop and drive equations."""
+        return np.asarray(np.linalg.cond(self.loops.jacobian(self.pose)))
 
 
-def move(linkage: Linkage, law: Law, times: Floats) -> Motion:
-    """The motion under a drive law at `times` (T,) s.
+def _along(rates: Floats, slopes: Complex) -> Complex:
+    return np.asarray((rates[:, None, :] @ slopes)[:, 0])
 
-    Velocities and accelerations follow from the differentiated constraint equations, not from
-    differences. Raises: LinkageError when the linkage is not determined or cannot close.
+
+def move(linkage: Linkage, laws: Sequence[Law], times: Floats) -> Motion:
+    """The motion under one law per drive at `times` (T,) s.
+
+    Velocities and accelerations follow from the differentiated loop equations, not from
+    differences. Raises: LinkageError when the linkage is not determined or cannot follow (Impasse).
     """
-    require_determined(linkage)
-    system = constraints(linkage)
-    length, speed, rate = law(times)
-    q = positions(system, length)
-    J = system.jacobian(q)
-    b = np.zeros((len(times), system.rows))
-    b[:, -1] = speed
-    v = system.spread(least_squares(J, b))
-    b = -system.acceleration_terms(q, v)
-    b[:, -1] += rate
-    a = system.spread(least_squares(J, b))
-    return Motion(system, times, length, speed, rate, q, v, a)
+    if len(laws) != len(linkage.driven):
+        raise LinkageError(f"{len(linkage.driven)} drives need as many laws, not {len(laws)}")
+    found = require_determined(linkage)
+    loops = Loops(linkage)
+    course = [law(times) for law in laws]
+    drives, speeds, rates = (np.stack([c[k] for c in course], axis=1) for k in range(3))
+    q = positions(loops, drives)
+    pose = loops.pose(q)
+    factors = Factors(loops.jacobian(pose))
+    weak = int(factors.weakest.argmin())
+    if factors.weakest[weak] < RANK_TOLERANCE:
+        raise impasse(loops, q[weak], drives[weak], drives[-1])
+    v = factors.solve(loops.drive_side(speeds)) / loops.scale
+    a = factors.solve(loops.drive_side(rates) + loops.bend_side(pose, v)) / loops.scale
+    return Motion(loops, found, times, drives, speeds, rates, q, v, a, factors)
 
 
-def at_rest(linkage: Linkage, length: float) -> Motion:
-    """The linkage held with its driven slider at `length` (m): one instant without motion."""
-    zero = np.zeros(1)
-    return move(linkage, lambda t: (np.full(1, length), zero, zero), zero)
-
-
-@dataclass(frozen=True)
-class Energy:
-    """Kinetic and potential energy (T,) in J, and the rates of both from v and a (T,) in W."""
-
-    kinetic: Floats
-    potential: Floats
-    kinetic_rate: Floats
-    potential_rate: Floats
-
-
-def energy(motion: Motion) -> Energy:
-    """Energies of all items and their exact rates."""
-    items = motion.linkage.items
-    m = np.array([item.mass for item in items])
-    inertia = np.array([item.inertia or 0.0 for item in items])
-    q, v, a = (state[:, : len(items)] for state in (motion.q, motion.v, motion.a))
-    weight = m[:, None] * np.array(motion.linkage.gravity)
-    return Energy(
-        kinetic=0.5 * (np.sum(v[..., :2] ** 2, axis=2) @ m + v[..., 2] ** 2 @ inertia),
-        potential=-np.einsum("tik,ik->t", q[..., :2], weight),
-        kinetic_rate=np.sum(v[..., :2] * a[..., :2], axis=2) @ m + (v * a)[..., 2] @ inertia,
-        potential_rate=-np.einsum("tik,ik->t", v[..., :2], weight),
-    )
+def at_rest(linkage: Linkage, drives: Sequence[float]) -> Motion:
+    """The linkage held with its drives at these values (m or rad): one instant without motion."""
+    return move(linkage, [StateDrive(value) for value in drives], np.zeros(1))

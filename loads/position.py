@@ -1,136 +1,225 @@
-"""Positions along a drive: continuation that cannot jump branches, then Newton at all instants."""
+"""Positions along drives: continuation that cannot jump branches, then Newton at all instants."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from itertools import pairwise
+
 import numpy as np
 
-from loads.constraints import Constraints
-from loads.linkage import Floats, UnreachableError
+from loads.factors import Factors
+from loads.impasse import Impasse, impasse
+from loads.linkage import Floats
+from loads.loops import Ints, Loops
 
-NEWTON_TOLERANCE = (
-    1e-10  # last correction, of the length scale: Newton is quadratic, so the error is far less
-)
-LARGEST_TURN = 0.15  # rad (or length scales) that a step of the continuation may move an item
+NEWTON_TOLERANCE = 1e-10  # last correction, of the length scale: the error is its square
+CLOSURE = 1e-11  # largest gap of a closed loop, of the length scale
+LARGEST_TURN = 0.15  # rad (or length scales) that a step of the continuation may move a coordinate
 CONTRACTION = 0.25  # each Newton correction must be at most this part of the one before
-WORST_CONDITION = 1e10
+WEAKEST = 1e-10  # pivot, of the largest: below it rank is lost
+MOST_WAYPOINTS = 129  # when several drives move together
 
 
 class _Lost(Exception):
     """Newton did not converge at once from the predicted position."""
 
 
-def least_squares(J: Floats, b: Floats) -> Floats:
-    """Solutions (T, columns) of J x = b, J (T, rows, columns) of full column rank.
+class _Open(Exception):
+    """The equations contradict each other: the best coordinates leave loops open."""
 
-    Redundant rows are consistent, so the least-squares solution solves them all.
+    def __init__(self, q: Floats) -> None:
+        self.q = q
+        super().__init__()
+
+
+@dataclass(frozen=True)
+class _Node:
+    """A point of the path: part of the way, coordinates, their rate per part."""
+
+    part: float
+    q: Floats
+    rate: Floats
+
+
+def positions(loops: Loops, drives: Floats) -> Floats:
+    """Coordinates (T, n) at the drives' values (T, D), m or rad.
+
+    The path is followed from the drawn position to the first instant and on, in steps so small
+    that Newton contracts from the first iteration on: another branch is never in reach. Every
+    instant then starts from the cubic through the path's nodes and is polished by Newton, all at
+    once.
+
+    Raises: Impasse where the linkage cannot follow.
     """
-    Q, R = np.linalg.qr(J)
-    return np.linalg.solve(R, np.swapaxes(Q, 1, 2) @ b[..., None])[..., 0]
-
-
-def positions(system: Constraints, lengths: Floats) -> Floats:
-    """States (T, items + ground, 3) at the given lengths (T,) of the driven slider, m.
-
-    A path is followed from the drawn position over the range of lengths, in steps so small that
-    Newton contracts from the first iteration on: another branch is never in reach. Each instant
-    then starts from the cubic through the path's nodes and is polished by Newton, all at once.
-
-    Raises: UnreachableError with the last length that can be reached.
-    """
-    drawn = system.linkage.driven_slider.drawn_length
-    start = system.drawn()[None]
-    nodes = [(drawn, start[0], _rate(system, start)[0])]
-    for end in (float(lengths.min()), float(lengths.max())):
-        if (end - drawn) * (1.0 if end >= drawn else -1.0) > 0.0:
-            nodes += _follow(system, start, drawn, end)
-    nodes.sort(key=lambda node: node[0])
-    guess = _hermite(nodes, lengths)
+    path = _Path(loops)
+    q = np.zeros(loops.columns)
+    nodes = path.follow(q, loops.drawn_drives, drives[0])
+    out = np.empty((len(drives), loops.columns))
+    out[0] = nodes[-1].q
+    for a, b in pairwise(_waypoints(drives)):
+        nodes = path.follow(out[a], drives[a], drives[b])
+        out[a + 1 : b + 1] = _guess(loops, nodes, drives[a + 1 : b + 1], drives[a], drives[b])
     try:
-        return _newton(system, guess, lengths, np.inf)
-    except _Lost:
-        raise _unreachable(system, float(nodes[-1][0]), float(lengths.max())) from None
+        return _newton(loops, out, drives)
+    except (_Lost, _Open):
+        last = _last_good(loops, out, drives)
+        raise impasse(loops, out[last], drives[last], drives[-1]) from None
 
 
-def _rate(system: Constraints, q: Floats) -> Floats:
-    """Derivative of the state by the driven length, (T, items + ground, 3)."""
-    b = np.zeros((len(q), system.rows))
-    b[:, -1] = 1.0
-    return system.spread(least_squares(system.jacobian(q), b))
+def _waypoints(drives: Floats) -> Ints:
+    """Instants between which the drives go straight: their turning points, when there is one."""
+    count = len(drives)
+    if drives.shape[1] > 1:
+        return np.unique(np.linspace(0, count - 1, min(count, MOST_WAYPOINTS)).astype(np.int64))
+    step = np.sign(np.diff(drives[:, 0]))
+    moving = np.flatnonzero(step)
+    turns = moving[1:][np.diff(step[moving]) != 0]
+    return np.unique(np.concatenate([[0], turns, [count - 1]])).astype(np.int64)
 
 
-def _follow(
-    system: Constraints, q: Floats, length: float, end: float
-) -> list[tuple[float, Floats, Floats]]:
-    """Nodes (length, state, rate) from `length` to `end`."""
-    nodes = []
-    smallest = 1e-9 * abs(end - length)
-    step = end - length
-    scale = np.array([system.linkage.length_scale] * 2 + [1.0])
-    while length != end:
-        condition = np.linalg.cond(system.jacobian(q)[0])
-        if condition > WORST_CONDITION:
-            raise _unreachable(system, length, end)
-        rate = _rate(system, q)
-        limit = LARGEST_TURN / max(float(np.abs(rate / scale).max()), 1e-300)
-        step = float(np.clip(step, -limit, limit))
-        if abs(step) >= abs(end - length):
-            step = end - length
-        try:
-            q = _newton(system, q + step * rate, np.array([length + step]), abs(step) / limit)
-        except _Lost:
-            step /= 2.0
-            if abs(step) < smallest:
-                raise _unreachable(system, length, end) from None
-            continue
-        length = end if step == end - length else length + step
-        nodes.append((length, q[0], _rate(system, q)[0]))
-        step *= 2.0
-    return nodes
+class _Path:
+    """Continuation along straight lines in the drives' values."""
+
+    def __init__(self, loops: Loops) -> None:
+        self.loops = loops
+
+    def follow(self, q: Floats, start: Floats, end: Floats) -> list[_Node]:
+        """Nodes from q, at the drives' values `start`, to `end`."""
+        loops = self.loops
+        run = end - start
+        part, step, factors = 0.0, 1.0, self._factors(q)
+        nodes = [_Node(0.0, q, self._rate(factors, run))]
+        while part < 1.0 and run.any():
+            here = nodes[-1]
+            fastest = float(np.abs(here.rate * loops.scale).max()) / loops.linkage.length_scale
+            limit = LARGEST_TURN / max(fastest, 1e-300)
+            step = min(step, limit, 1.0 - part)
+            there = start + (part + step) * run
+            try:
+                q = _step(loops, here.q + step * here.rate, there, step / limit)
+            except (_Lost, _Open) as problem:
+                step /= 2.0
+                if step < 1e-9:
+                    at = start + part * run
+                    opened = problem.q if isinstance(problem, _Open) else None
+                    raise impasse(loops, here.q, at, end, opened) from None
+                continue
+            J = loops.jacobian(loops.pose(q[None]))
+            if factors.turn_to(J)[0] < 0.0:
+                raise self._crossed(here, q, start, run, part + step, end)
+            factors = Factors(J)
+            if factors.weakest[0] < WEAKEST:
+                raise impasse(loops, q, there, end)
+            part = 1.0 if step >= 1.0 - part else part + step
+            nodes.append(_Node(part, q, self._rate(factors, run)))
+            step *= 2.0
+        return nodes
+
+    def _factors(self, q: Floats) -> Factors:
+        return Factors(self.loops.jacobian(self.loops.pose(q[None])))
+
+    def _rate(self, factors: Factors, run: Floats) -> Floats:
+        side = self.loops.drive_side(run[None])
+        return np.asarray(factors.solve(side)[0] / self.loops.scale)
+
+    def _crossed(
+        self, here: _Node, q: Floats, start: Floats, run: Floats, part: float, end: Floats
+    ) -> Impasse:
+        """The place between two nodes where rank was lost and another path crosses, by halving."""
+        low, high = here.part, part
+        at, factors = here.q, self._factors(here.q)
+        for _ in range(40):
+            middle = 0.5 * (low + high)
+            weight = (middle - here.part) / (part - here.part)
+            try:
+                between = _newton(
+                    self.loops,
+                    ((1.0 - weight) * here.q + weight * q)[None],
+                    (start + middle * run)[None],
+                )
+            except (_Lost, _Open, np.linalg.LinAlgError):
+                break
+            J = self.loops.jacobian(self.loops.pose(between))
+            if factors.turn_to(J)[0] < 0.0:
+                high = middle
+            else:
+                low, at = middle, between[0]
+        return impasse(self.loops, at, start + low * run, end)
 
 
-def _newton(system: Constraints, q: Floats, lengths: Floats, reach: float) -> Floats:
-    """Newton from `q`; the first correction must stay below a tenth of `reach` steps of
-    LARGEST_TURN, and every next one contract.
+def _step(loops: Loops, q: Floats, drives: Floats, reach: float) -> Floats:
+    """One step's Newton: the first correction must stay below a tenth of `reach` steps of
+    LARGEST_TURN, so that no other branch can be what it finds.
     """
-    scale = system.linkage.length_scale
-    before = 0.1 * reach * LARGEST_TURN * scale / CONTRACTION
+    first = 0.1 * reach * LARGEST_TURN * loops.linkage.length_scale
+    return np.asarray(_newton(loops, q[None], drives[None], first)[0])
+
+
+def _newton(loops: Loops, q: Floats, drives: Floats, first: float = np.inf) -> Floats:
+    """Newton from q (T, n); every correction must be a part of the one before, the first below
+    `first` (m). Factors are kept while corrections fall fast.
+    """
+    scale = loops.linkage.length_scale
+    before, factors = first / CONTRACTION, None
     for _ in range(12):
+        pose = loops.pose(q)
+        gap = loops.residual(q, pose, drives)
         with np.errstate(all="ignore"):
             try:
-                x = least_squares(system.jacobian(q), -system.residual(q, lengths))
+                if factors is None:
+                    factors = Factors(loops.jacobian(pose))
+                x = factors.solve(-gap)
             except np.linalg.LinAlgError:
                 raise _Lost from None
         size = float(np.abs(x).max())
         if not np.isfinite(size):
             raise _Lost
-        q = q + system.spread(x)
+        q = q + x / loops.scale
         if size <= NEWTON_TOLERANCE * scale:
-            if np.abs(system.residual(q, lengths)).max() > 1e-11 * scale:
-                raise _Lost  # the least-squares point of equations that contradict each other
+            if np.abs(loops.residual(q, loops.pose(q), drives)).max() > CLOSURE * scale:
+                raise _Open(q[-1])
             return q
         if size > CONTRACTION * before and size > 1e-9 * scale:
             raise _Lost
+        if size > 1e-2 * scale:
+            factors = None
         before = size
     raise _Lost
 
 
-def _hermite(nodes: list[tuple[float, Floats, Floats]], lengths: Floats) -> Floats:
-    """Cubic Hermite interpolation of the states at `lengths`."""
-    x = np.array([n[0] for n in nodes])
-    if len(x) == 1:
-        return np.repeat(nodes[0][1][None], len(lengths), axis=0)
-    values, rates = (np.stack([n[i] for n in nodes]) for i in (1, 2))
-    k = np.clip(np.searchsorted(x, lengths) - 1, 0, len(x) - 2)
-    h = (x[k + 1] - x[k])[:, None, None]
-    s = ((lengths - x[k]) / (x[k + 1] - x[k]))[:, None, None]
-    return np.asarray(
+def _guess(loops: Loops, nodes: list[_Node], drives: Floats, start: Floats, end: Floats) -> Floats:
+    """Coordinates near the path of `nodes` for drives (T, D): Hermite's cubic along it, and the
+    rate of the nearest node across it.
+    """
+    weight = np.array([loops.drive_scale(k) ** 2 for k in range(drives.shape[1])])
+    run = end - start
+    length = float(weight @ run**2)
+    if length == 0.0 or len(nodes) < 2:
+        return np.repeat(nodes[-1].q[None], len(drives), axis=0)
+    part = np.clip((drives - start) @ (weight * run) / length, 0.0, 1.0)
+    x = np.array([n.part for n in nodes])
+    values, rates = np.stack([n.q for n in nodes]), np.stack([n.rate for n in nodes])
+    k = np.clip(np.searchsorted(x, part) - 1, 0, len(x) - 2)
+    h = (x[k + 1] - x[k])[:, None]
+    s = (part - x[k])[:, None] / h
+    along = (
         (1 + 2 * s) * (1 - s) ** 2 * values[k]
         + s * (1 - s) ** 2 * h * rates[k]
         + s**2 * (3 - 2 * s) * values[k + 1]
         - s**2 * (1 - s) * h * rates[k + 1]
     )
+    if drives.shape[1] == 1:
+        return np.asarray(along)
+    factors = Factors(loops.jacobian(loops.pose(values[k])))
+    off = loops.drive_side(drives - (start + part[:, None] * run))
+    return np.asarray(along + factors.solve(off) / loops.scale)
 
 
-def _unreachable(system: Constraints, reached: float, wanted: float) -> UnreachableError:
-    slider = system.linkage.driven_slider
-    return UnreachableError(slider.name, slider.drawn_length, reached, wanted)
+def _last_good(loops: Loops, guess: Floats, drives: Floats) -> int:
+    """The last instant before the first at which Newton fails by itself."""
+    for t in range(len(drives)):
+        try:
+            _newton(loops, guess[t : t + 1], drives[t : t + 1])
+        except (_Lost, _Open):
+            return max(t - 1, 0)
+    return len(drives) - 1

@@ -1,157 +1,96 @@
-"""From a study to the nouns of the rooms: pins, materials, the linkage, the loads of each case."""
+"""From a study's cases to the reactions on its pins."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fea.material import Material
-from geometry.pin import GeometryError, Pin, Segment
 from loads import (
     Applied,
-    Body,
-    Connection,
-    CosineDrive,
     Dynamics,
-    Joint,
+    Impasse,
     Linkage,
     LinkageError,
+    Motion,
     Reactions,
-    Sharing,
-    Slider,
+    StateDrive,
     TableError,
-    UnreachableError,
     given_reactions,
     impulse_force,
     motion_reactions,
     move,
     read_reactions,
-    static_reactions,
 )
+from loads.linkage import Floats
 from pinstress.errors import InputError
-from pinstress.schema import ApplyTable, GivenCase, MotionCase, StaticCase
+from pinstress.mechanism import laws, span, state
+from pinstress.schema import (
+    ApplyTable,
+    GivenCase,
+    ImpulseTable,
+    InstantCase,
+    MechanismCase,
+    MotionCase,
+    StaticCase,
+)
 from pinstress.study import Study
 
-STANDARD_GRAVITY = 9.80665
+
+@dataclass(frozen=True)
+class ImpulseRange:
+    """Reactions over pairs of impulse time (s) and velocity change (m/s), an instant each: times
+    and velocities (P,), forces (P,) N.
+    """
+
+    times: Floats
+    velocities: Floats
+    forces: Floats
+    reactions: Reactions
 
 
 @dataclass(frozen=True)
 class CaseLoads:
-    """The reactions of one case, with the dynamics behind them where a mechanism made them."""
+    """The reactions of one case, with the dynamics behind them where a mechanism made them.
+
+    note: how the loads came about. at: reactions at other times (T,) s of the same motion. range:
+    over the ranges of an impulse.
+    """
 
     reactions: Reactions
-    dynamics: Dynamics | None
-    note: str
-
-
-def material(study: Study, name: str) -> Material:
-    """A material of the study."""
-    m = study.table.material[name]
-    return Material(name, m.youngs_modulus, m.poisson_ratio, m.density, m.yield_strength)
-
-
-def pin(study: Study, name: str) -> Pin:
-    """A pin of the study. Raises: InputError for a shape that cannot be, or an unknown clamp."""
-    p = study.table.pin[name]
-    segments = tuple(
-        Segment(s.length, s.diameter, s.bore, s.name, s.connection, s.fillet) for s in p.profile
-    )
-    try:
-        made = Pin(name, segments, p.fillet)
-        for clamp in (
-            *p.clamp,
-            *(c for k in study.table.case.values() for c in k.clamp.get(name, ())),
-        ):
-            made.surface(clamp)
-    except GeometryError as error:
-        raise InputError(f"{study.path}: {error}") from None
-    return made
-
-
-def linkage(study: Study) -> Linkage:
-    """The study's mechanism. Raises: InputError when it contradicts itself."""
-    mechanism = study.table.mechanism
-    if mechanism is None:
-        raise InputError(f"{study.path}: there is no [mechanism]")
-    g = float(np.hypot(*mechanism.gravity)) or STANDARD_GRAVITY
-    joints = mechanism.joint
-    try:
-        return Linkage(
-            bodies=tuple(
-                Body(
-                    name,
-                    b.mass if b.mass is not None else (b.weight or 0.0) / g,
-                    b.centre,
-                    b.inertia,
-                )
-                for name, b in mechanism.body.items()
-            ),
-            joints=tuple(
-                Joint(
-                    name,
-                    j.at,
-                    tuple(Connection(c, body) for c, body in j.connections.items()),
-                    j.fixed_in,
-                    _pin_mass(study, name, j.weight, g) if j.fixed_in is None else 0.0,
-                )
-                for name, j in joints.items()
-            ),
-            sliders=tuple(
-                Slider(name, *s.bodies, joints[s.joints[0]].at, joints[s.joints[1]].at)
-                for name, s in mechanism.slider.items()
-            ),
-            driven=mechanism.drive.slider,
-            gravity=mechanism.gravity,
-            sharing=tuple(
-                Sharing(tuple(s.connections), tuple(s.stiffness)) for s in mechanism.sharing
-            ),
-        )
-    except LinkageError as error:
-        raise InputError(f"{study.path}: mechanism: {error}") from None
-
-
-def _pin_mass(study: Study, joint: str, weight: float | None, gravity: float) -> float:
-    """Mass of a floating pin: as stated, or of the profile of that name, or nothing."""
-    if weight is not None:
-        return weight / gravity
-    if joint not in study.table.pin:
-        return 0.0
-    density = study.table.material[study.table.pin[joint].material].density
-    return density * pin(study, joint).volume if density else 0.0
-
-
-def drive(study: Study) -> CosineDrive:
-    """The law of the study's drive."""
-    mechanism = study.table.mechanism
-    assert mechanism is not None
-    d = mechanism.drive
-    return CosineDrive(d.start, d.end, d.duration, d.position_offset)
+    dynamics: Dynamics | None = None
+    note: str = ""
+    at: Callable[[Floats], Reactions] | None = None
+    range: ImpulseRange | None = None
 
 
 def case_loads(study: Study, name: str, mechanism: Linkage | None) -> CaseLoads:
     """Reactions of a case. Raises: InputError for what the study or its tables got wrong."""
     case = study.table.case[name]
     try:
-        match case:
-            case GivenCase():
-                return CaseLoads(_given(study, name, case), None, "")
-            case MotionCase():
-                assert mechanism is not None
-                law = drive(study)
-                times = np.linspace(0.0, law.duration, case.samples)
-                dynamics = motion_reactions(name, move(mechanism, law, times))
-                return CaseLoads(dynamics.reactions, dynamics, "")
-            case StaticCase():
-                assert mechanism is not None
-                return _static(study, name, case, mechanism)
+        if isinstance(case, GivenCase):
+            return CaseLoads(_given(study, name, case))
+        assert mechanism is not None
+        if isinstance(case, MotionCase):
+            return _motion(study, name, case, mechanism)
+        return _held(study, name, case, mechanism)
     except TableError as error:
         raise InputError(str(error)) from None
-    except UnreachableError as error:
-        unit, factor = study.system.length, study.system.factor("length")
-        raise InputError(f"{study.path}: case.{name}: {error.message(unit, factor)}") from None
+    except Impasse as error:
+        raise InputError(f"{study.path}: case.{name}: {error.message(_shown(study))}") from None
     except LinkageError as error:
         raise InputError(f"{study.path}: case.{name}: {error}") from None
+
+
+def _shown(study: Study) -> Callable[[float, bool], str]:
+    unit, factor = study.system.length, study.system.factor("length")
+
+    def show(value: float, slides: bool) -> str:
+        return f"{value / factor:.6g} {unit}" if slides else f"{math.degrees(value):.6g} deg"
+
+    return show
 
 
 def _given(study: Study, name: str, case: GivenCase) -> Reactions:
@@ -167,37 +106,101 @@ def _given(study: Study, name: str, case: GivenCase) -> Reactions:
     )
 
 
-def _static(study: Study, name: str, case: StaticCase, mechanism: Linkage) -> CaseLoads:
-    applied, notes = [], []
-    for load in case.apply:
-        force, note = _applied_force(study, load)
-        at = load.at
-        if isinstance(at, str):
-            at = next(j.at for j in mechanism.joints if j.name == at)
-        applied.append(Applied(load.body, at, force))
-        notes.append(note)
-    length = case.drive_length or mechanism.driven_slider.drawn_length
-    dynamics = static_reactions(name, mechanism, length, tuple(applied))
-    return CaseLoads(dynamics.reactions, dynamics, " ".join(n for n in notes if n))
+def _motion(study: Study, name: str, case: MotionCase, mechanism: Linkage) -> CaseLoads:
+    course = laws(study)
+    applied, note = _applied(study, case, mechanism)
+
+    def dynamics(times: Floats) -> Dynamics:
+        return motion_reactions(name, move(mechanism, course, times), applied)
+
+    found = dynamics(np.linspace(0.0, span(study), case.samples))
+    return CaseLoads(found.reactions, found, note, lambda times: dynamics(times).reactions)
 
 
-def _applied_force(study: Study, load: ApplyTable) -> tuple[tuple[float, float], str]:
-    """An applied force (N) and, for an impulse estimate, how it came about."""
-    if load.force is not None:
-        return load.force, ""
+def _held(study: Study, name: str, case: StaticCase | InstantCase, mechanism: Linkage) -> CaseLoads:
+    applied, note = _applied(study, case, mechanism)
+    held = [StateDrive(*values) for values in state(study, name, case, mechanism)]
+    motion = move(mechanism, held, np.zeros(1))
+    found = motion_reactions(name, motion, applied, timed=False)
+    return CaseLoads(found.reactions, found, note, range=_range(study, name, case, motion))
+
+
+def _applied(
+    study: Study, case: MechanismCase, mechanism: Linkage
+) -> tuple[tuple[Applied, ...], str]:
+    """The loads of a case, and how impulses among them came about."""
+    loads = tuple(_load(load, mechanism, _force(load)) for load in case.apply)
+    notes = [_told(study, load) for load in case.apply if load.impulse is not None]
+    return loads, " ".join(notes)
+
+
+def _load(load: ApplyTable, mechanism: Linkage, force: tuple[float, float]) -> Applied:
+    at = load.at
+    if at is None:
+        at = next(b.centre for b in mechanism.bodies if b.name == load.body)
+    elif isinstance(at, str):
+        at = mechanism.joint(at).at
+    return Applied(load.body, at, force, load.couple, load.follows)
+
+
+def _force(load: ApplyTable) -> tuple[float, float]:
+    if load.impulse is None:
+        return load.force or (0.0, 0.0)
+    impulse = load.impulse
+    return _directed(impulse, _size(impulse, impulse.velocity_change, impulse.impulse_time))
+
+
+def _size(impulse: ImpulseTable, velocity: float, time: float) -> float:
+    mass = impulse.mass
+    if mass is None:
+        mass = (impulse.weight or 0.0) / impulse.gravity
+    return impulse_force(mass, velocity, time, impulse.pulse)
+
+
+def _directed(impulse: ImpulseTable, size: float) -> tuple[float, float]:
+    x, y = np.array(impulse.direction) / np.hypot(*impulse.direction)
+    return float(size * x), float(size * y)
+
+
+def _told(study: Study, load: ApplyTable) -> str:
     impulse = load.impulse
     assert impulse is not None
-    gravity = impulse.gravity if impulse.mass is None else 1.0
-    size = impulse_force(
-        impulse.weight if impulse.mass is None else impulse.mass,  # type: ignore[arg-type]
-        gravity,
-        impulse.velocity_change,
-        impulse.impulse_time,
-    )
-    x, y = np.array(impulse.direction) / np.hypot(*impulse.direction)
+    size = _size(impulse, impulse.velocity_change, impulse.impulse_time)
     unit, factor = study.system.force, study.system.factor("force")
-    note = (
-        f"Impulse estimate on {load.body}: {size / factor:,.1f} {unit}, the mean force over "
+    mean = "the mean force" if impulse.pulse == "rectangular" else f"the peak of a {impulse.pulse}"
+    return (
+        f"Impulse estimate on {load.body}: {size / factor:,.1f} {unit}, {mean} over "
         f"{impulse.impulse_time:g} s."
     )
-    return (float(size * x), float(size * y)), note
+
+
+def _range(
+    study: Study, name: str, case: StaticCase | InstantCase, motion: Motion
+) -> ImpulseRange | None:
+    """The case again for every pair in the ranges of its impulse."""
+    ranged = [load for load in case.apply if load.impulse and load.impulse.range]
+    if not ranged:
+        return None
+    if len(ranged) > 1:
+        raise InputError(f"{study.path}: case.{name}: only one impulse may have a range")
+    impulse = ranged[0].impulse
+    assert impulse is not None
+    assert impulse.range is not None
+    times, velocities = (
+        x.ravel() for x in np.meshgrid(impulse.range.impulse_time, impulse.range.velocity_change)
+    )
+    mechanism = motion.linkage
+    others = [_load(x, mechanism, _force(x)) for x in case.apply if x is not ranged[0]]
+    sizes = np.array([_size(impulse, v, t) for t, v in zip(times, velocities, strict=True)])
+    found = [
+        motion_reactions(
+            name, motion, [*others, _load(ranged[0], mechanism, _directed(impulse, size))], False
+        ).reactions
+        for size in sizes
+    ]
+    forces, moments, turn = (
+        np.concatenate([getattr(r, key) for r in found]) for key in ("forces", "moments", "turn")
+    )
+    return ImpulseRange(
+        times, velocities, sizes, replace(found[0], forces=forces, moments=moments, turn=turn)
+    )

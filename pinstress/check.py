@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from loads import Linkage, mobility
-from pinstress import build
+from loads.four_bar import four_bar
+from pinstress.build import case_loads
 from pinstress.errors import InputError
 from pinstress.limits import require_built
+from pinstress.mechanism import laws, linkage, span, state
+from pinstress.pins import pin as pin_of
 from pinstress.published import read_published
 from pinstress.schema import GivenCase, MotionCase
 from pinstress.study import Study
@@ -17,13 +20,13 @@ def describe(study: Study) -> str:
     require_built(study, table.analysis.model)
     read_published(study)
     lines = [f"{study.path}: {table.title}", f"units {system.name}"]
-    mechanism = build.linkage(study) if table.mechanism else None
+    mechanism = linkage(study) if table.mechanism else None
     if mechanism is not None:
-        lines.append(_mechanism(study, mechanism))
+        lines += _mechanism(study, mechanism)
     for name in table.case:
-        lines.append(f"case {name}: {_case(study, name)}")
+        lines.append(f"case {name}: {_case(study, name, mechanism)}")
     for name, p in table.pin.items():
-        pin = build.pin(study, name)
+        pin = pin_of(study, name)
         ways = dict.fromkeys(study.clamps(name, case) for case in table.case)
         held = " or ".join(", ".join(w) or "nothing: loads must be in balance" for w in ways)
         density = table.material[p.material].density
@@ -41,39 +44,49 @@ def describe(study: Study) -> str:
     return "\n".join(lines)
 
 
-def _mechanism(study: Study, mechanism: Linkage) -> str:
+def _mechanism(study: Study, mechanism: Linkage) -> list[str]:
     found = mobility(mechanism)
     if found.free:
         raise InputError(
-            f"{study.path}: mechanism: with the drive held it can still move in "
-            f"{found.free} way(s): {', '.join(found.loose)} not guided; add the missing connection"
+            f"{study.path}: mechanism: with the drives held it can still move in "
+            f"{found.free} way(s): {', '.join(found.loose)} not guided; add the missing connection "
+            "or drive"
         )
-    text = (
+    laws(study)
+    lines = [
         f"mechanism: {len(mechanism.bodies)} bodies, {len(mechanism.joints)} joints, "
-        f"{len(mechanism.connections)} connections, driven by slider {mechanism.driven}"
-    )
+        f"{len(mechanism.connections)} connections, driven by {', '.join(mechanism.driven)}"
+    ]
+    counted = f"mobility {found.degrees}"
+    if found.kutzbach != found.degrees:
+        counted += f" by rank, {found.kutzbach} by counting (Kutzbach)"
+    if ring := four_bar(mechanism):
+        counted += f"; four-bar {'-'.join(ring.joints)}: {ring.kind}, assembled {ring.branch}"
     if not found.redundant:
-        return text
-    if not mechanism.sharing:
+        return [*lines, counted]
+    if found.shared and not mechanism.sharing:
         raise InputError(
             f"{study.path}: mechanism: the forces at {', '.join(found.shared)} are not determined "
             "by rigid-body statics; say how they share in [[mechanism.sharing]]"
         )
     rule = ", ".join(f"{'/'.join(s.connections)}" for s in mechanism.sharing)
-    return (
-        f"{text}; {found.redundant} redundant: the forces at {', '.join(found.shared)} follow the "
-        f"sharing rule for {rule}"
-    )
+    return [
+        *lines,
+        f"{counted}; {found.redundant} redundant: the forces at {', '.join(found.shared)} follow "
+        f"the sharing rule for {rule}",
+    ]
 
 
-def _case(study: Study, name: str) -> str:
+def _case(study: Study, name: str, mechanism: Linkage | None) -> str:
     case = study.table.case[name]
     if isinstance(case, GivenCase):
-        reactions = build.case_loads(study, name, None).reactions
+        reactions = case_loads(study, name, None).reactions
         many = f"{len(reactions)} instants" if reactions.times is not None else "one instant"
         return f"given, {many}, connections {', '.join(reactions.connections)}"
+    assert mechanism is not None
+    loads = ", ".join(f"{load.body}" for load in case.apply)
     if isinstance(case, MotionCase):
-        law = build.drive(study)
-        return f"motion, {case.samples} instants over {law.duration:g} s"
-    loads = ", ".join(f"{load.body}" for load in case.apply) or "gravity alone"
-    return f"static, loads on {loads}"
+        also = f", loads on {loads}" if loads else ""
+        return f"motion, {case.samples} instants over {span(study):g} s{also}"
+    state(study, name, case, mechanism)
+    return f"{case.kind}, {f'loads on {loads}' if loads else 'gravity alone'}"

@@ -7,7 +7,7 @@ import numpy as np
 from fea.beam_check import beam_check as compare_with_beam
 from fea.material import Material
 from fea.refine import Solution
-from loads import Lever
+from loads import GROUND, Lever, Linkage, Slider
 from pinstress.build import CaseLoads
 from pinstress.errors import InputError
 from pinstress.published import Published
@@ -80,9 +80,10 @@ def motion_check(
     if case.dynamics is None or case.reactions.times is None:
         raise InputError(f"{study.path}: motion_check.case: {check.case!r} is not a motion")
     motion, unit = case.dynamics.motion, study.system.factor
-    lever, radius = _lever(study, check)
+    lever, radius = _lever(study, check, motion.linkage)
     _, v, a = motion.joint(check.joint)
-    closed_v, closed_a = lever.point(radius, motion.length, motion.speed, motion.rate)
+    driven = (motion.drives[:, 0], motion.speeds[:, 0], motion.rates[:, 0])
+    closed_v, closed_a = lever.point(radius, *driven)
     speed, acceleration = np.linalg.norm(v, axis=1), np.linalg.norm(a, axis=1)
     rows = []
     for t, their_v, their_a in published.motion:
@@ -101,18 +102,17 @@ def motion_check(
     )
 
 
-def _lever(study: Study, check: MotionCheckTable) -> tuple[Lever, float]:
-    mechanism = study.table.mechanism
-    assert mechanism is not None
-    joints = mechanism.joint
-    pivot, joint = joints[check.pivot], joints[check.joint]
-    if pivot.fixed_in != "ground":
+def _lever(study: Study, check: MotionCheckTable, linkage: Linkage) -> tuple[Lever, float]:
+    pivot, joint = linkage.joint(check.pivot), linkage.joint(check.joint)
+    if pivot.fixed_in != GROUND:
         raise InputError(
             f"{study.path}: motion_check.pivot: {check.pivot} is not fixed in the ground"
         )
-    start, end = (joints[j].at for j in mechanism.slider[mechanism.drive.slider].joints)
+    slider = linkage.drives[0]
+    if len(linkage.drives) != 1 or not isinstance(slider, Slider):
+        raise InputError(f"{study.path}: motion_check: it needs one drive, of a slider")
 
-    def distance(a: tuple[float, float]) -> float:
-        return float(np.hypot(a[0] - pivot.at[0], a[1] - pivot.at[1]))
+    def distance(at: tuple[float, float]) -> float:
+        return float(np.hypot(at[0] - pivot.at[0], at[1] - pivot.at[1]))
 
-    return Lever(distance(start), distance(end)), distance(joint.at)
+    return Lever(distance(slider.start), distance(slider.end)), distance(joint.at)

@@ -9,10 +9,9 @@ import numpy as np
 from fea.peak import Peak
 from fea.refine import Solution
 from fea.stress import von_mises
-from loads import energy
-from pinstress import build
 from pinstress.build import CaseLoads
-from pinstress.checks import motion_check
+from pinstress.gather_loads import drive_position, mechanics
+from pinstress.pins import material as material_of
 from pinstress.published import Published
 from pinstress.study import Study
 from pinstress.tasks import Task
@@ -41,14 +40,8 @@ def results(
         tolerance=tolerance,
         pins=tuple(_pin_result(study, loads, task, s.peak, published) for task, s in solutions),
         shapes=tuple(_shape(study, tasks[name]) for name in table.pin if name in tasks),
-        reactions=tuple(_reactions(study, name, case, published) for name, case in loads.items()),
-        drive=tuple(
-            _drive(study, name, case)
-            for name, case in loads.items()
-            if case.dynamics is not None and case.reactions.times is not None
-        ),
+        **mechanics(study, loads, published),
         beam_check=beam,
-        motion_check=motion_check(study, loads, published),
         provenance=tuple(plain.Provenance(s.key, s.kind, s.note) for s in study.provenance),
         published_source=table.published.source if table.published else "",
         assumptions=tuple(table.assumptions),
@@ -64,7 +57,7 @@ def _pin_result(
     published: Published,
 ) -> plain.PinResult:
     unit = study.system.factor
-    material = build.material(study, study.table.pin[peak.pin].material)
+    material = material_of(study, study.table.pin[peak.pin].material)
     required = study.table.analysis.required_safety_factor
     factor = peak.safety_factor(material.yield_strength)
     meets = None
@@ -72,11 +65,9 @@ def _pin_result(
         # a peak that is no value decides nothing, whichever side of the limit it is on
         meets = factor >= required if peak.verdict != "unconverged" else None
     case = loads[peak.case]
-    times, dynamics = case.reactions.times, case.dynamics
-    position = None
-    if times is not None and dynamics is not None:
-        offset = build.drive(study).offset
-        position = float(dynamics.motion.length[peak.instant] - offset) / unit("length")
+    times = case.reactions.times
+    positions = drive_position(study, case)
+    position = None if positions is None else float(positions[peak.instant])
     theirs = published.peaks.get((peak.pin, peak.case), (None, None))
     return plain.PinResult(
         pin=peak.pin,
@@ -112,7 +103,7 @@ def _scaled(value: float | None, factor: float) -> float | None:
 def _shape(study: Study, task: Task) -> plain.PinShape:
     unit = study.system.factor
     pin, name = task.pin, study.table.pin[task.pin.name].material
-    density = build.material(study, name).density
+    density = material_of(study, name).density
     held = {pin.surface(c) for c in task.clamps}
     segments = []
     for s, label in zip(pin.segments, pin.labels, strict=True):
@@ -122,50 +113,6 @@ def _shape(study: Study, task: Task) -> plain.PinShape:
         segments.append((*sizes, named, kind))
     weight = pin.weight(density) / unit("force") if density else None
     return plain.PinShape(pin.name, tuple(segments), name, weight)  # type: ignore[arg-type]
-
-
-def _reactions(
-    study: Study, name: str, case: CaseLoads, published: Published
-) -> plain.ReactionTable:
-    unit = study.system.factor
-    r, dynamics = case.reactions, case.dynamics
-    on = {c: p for p in study.table.pin for c in study.connections(p)}
-    position = None
-    if dynamics is not None and r.times is not None:
-        position = (dynamics.motion.length - build.drive(study).offset) / unit("length")
-    return plain.ReactionTable(
-        case=name,
-        times=None if r.times is None else r.times / unit("time"),
-        position=position,
-        connections=r.connections,
-        bodies=r.bodies,
-        pins=tuple(on.get(c, "") for c in r.connections),
-        forces=r.forces / unit("force"),
-        moments=r.moments / unit("energy"),
-        shared=dynamics.shared if dynamics else (),
-        published={c: f for (k, c), f in published.reactions.items() if k == name},
-        note=case.note,
-    )
-
-
-def _drive(study: Study, name: str, case: CaseLoads) -> plain.DriveTable:
-    unit = study.system.factor
-    dynamics = case.dynamics
-    assert dynamics is not None
-    motion = dynamics.motion
-    stored = energy(motion)
-    return plain.DriveTable(
-        case=name,
-        time=motion.times / unit("time"),
-        position=(motion.length - build.drive(study).offset) / unit("length"),
-        velocity=motion.speed / unit("velocity"),
-        acceleration=motion.rate / unit("acceleration"),
-        force=dynamics.drive / unit("force"),
-        power=dynamics.power / unit("power"),
-        work=dynamics.work / unit("energy"),
-        kinetic_energy=stored.kinetic / unit("energy"),
-        potential_energy=(stored.potential - stored.potential[0]) / unit("energy"),
-    )
 
 
 def field(study: Study, solution: Solution) -> plain.Field | None:

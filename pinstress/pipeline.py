@@ -8,10 +8,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from fea.refine import Solution, refine
-from pinstress import build, checks, gather
-from pinstress.build import CaseLoads
+from pinstress import checks, gather
+from pinstress.build import CaseLoads, case_loads
 from pinstress.errors import InputError
+from pinstress.gather_loads import mechanics
 from pinstress.limits import require_built
+from pinstress.mechanism import linkage
+from pinstress.pins import material as material_of
 from pinstress.published import Published, read_published
 from pinstress.study import Study
 from pinstress.tasks import Task, tasks
@@ -36,8 +39,8 @@ def select(names: Iterable[str], wanted: Iterable[str] | None, what: str) -> lis
 
 def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
     """The reactions of every case, by name."""
-    mechanism = build.linkage(study) if study.table.mechanism else None
-    return {name: build.case_loads(study, name, mechanism) for name in cases}
+    mechanism = linkage(study) if study.table.mechanism else None
+    return {name: case_loads(study, name, mechanism) for name in cases}
 
 
 @dataclass(frozen=True)
@@ -72,7 +75,7 @@ def prepare(
     require_built(study, model or study.table.analysis.model)
     published = read_published(study)
     loads = all_loads(study, select(study.table.case, cases, "case"))
-    checks.motion_check(study, loads, published)  # a mistake there should not wait for the stresses
+    mechanics(study, loads, published)  # a mistake there should not wait for the stresses
     todo = tasks(study, select(study.table.pin, pins, "pin"), loads)
     check, checked = study.table.beam_check, None
     if check is not None:
@@ -103,7 +106,7 @@ def solve(
         def tell(message: str, part: float = i / len(plan.tasks)) -> None:
             progress(message, part)
 
-        material = build.material(study, study.table.pin[task.pin.name].material)
+        material = material_of(study, study.table.pin[task.pin.name].material)
         found = refine(task.pin, material, task.clamps, task.loads, plan.tolerance, progress=tell)
         for solution in found:
             if (field := gather.field(study, solution)) is not None:

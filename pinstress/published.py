@@ -11,16 +11,30 @@ from pinstress.study import Study
 
 
 @dataclass(frozen=True)
+class PublishedRow:
+    """A published value of a quantity of what is called `name`; where: its place in the table."""
+
+    case: str
+    time: float | None
+    quantity: str
+    name: str
+    value: float
+    reason: str
+    where: str
+
+
+@dataclass(frozen=True)
 class Published:
     """Published values in the study's units.
 
     peaks: (maximum von Mises, safety factor) by pin and case. reactions: magnitude by case and
-    connection. motion: rows of time, speed, acceleration.
+    connection. motion: rows of time, speed, acceleration. values: single quantities.
     """
 
     peaks: dict[tuple[str, str], tuple[float, float]] = field(default_factory=dict)
     reactions: dict[tuple[str, str], float] = field(default_factory=dict)
     motion: tuple[tuple[float, float, float], ...] = ()
+    values: tuple[PublishedRow, ...] = ()
 
 
 def read_published(study: Study) -> Published:
@@ -35,7 +49,24 @@ def read_published(study: Study) -> Published:
         peaks={(names[0], names[1]): (v[0], v[1]) for names, v in peaks},
         reactions={(names[0], names[1]): v[0] for names, v in reactions},
         motion=tuple((v[0], v[1], v[2]) for _, v in motion),
+        values=_values(study, named.values),
     )
+
+
+def _values(study: Study, name: str | None) -> tuple[PublishedRow, ...]:
+    columns = ("case", "time", "quantity", "name", "reason")
+    found = []
+    for i, (text, (value,)) in enumerate(_rows(study, name, columns, ("published",)), 2):
+        case, when, quantity, what, reason = text
+        where = f"{study.beside(name or '')}, line {i}"
+        if case not in study.table.case:
+            raise InputError(f"{where}: the study has no case {case!r}")
+        try:
+            time = float(when) if when else None
+        except ValueError:
+            raise InputError(f"{where}: time {when!r} is not a number") from None
+        found.append(PublishedRow(case, time, quantity, what, value, reason, where))
+    return tuple(found)
 
 
 def _rows(

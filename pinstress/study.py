@@ -13,7 +13,9 @@ from typing import Any
 from pydantic import ValidationError
 
 from pinstress.errors import InputError
-from pinstress.schema import KINDS, GivenCase, StudyTable
+from pinstress.quantities import KINDS
+from pinstress.schema import GivenCase, StudyTable
+from pinstress.schema_mechanism import MechanismTable, SliderDrive
 from pinstress.units import SYSTEMS, UnitSystem
 
 
@@ -122,9 +124,9 @@ def _explain(error: ValidationError) -> list[str]:
     wrong = []
     for item in error.errors():
         key = ""
-        for part in item["loc"]:
-            if part in ("given", "motion", "static"):
-                continue  # the union's tag, not a key of the file
+        for i, part in enumerate(item["loc"]):
+            if str(part).startswith("<") or (i == 2 and item["loc"][0] == "case"):
+                continue  # a union's tag, not a key of the file
             key += f"[{part + 1}]" if isinstance(part, int) else f"{'.' if key else ''}{part}"
         message = item["msg"].removeprefix("Value error, ")
         value = item.get("input")
@@ -183,6 +185,20 @@ def _cross_references(table: StudyTable) -> Iterable[str]:
                 yield f"{key}.{field}: no {field} {name!r}; " + _near(name, pool)
 
 
+def named_joints(mechanism: MechanismTable) -> Iterable[tuple[str, str]]:
+    """Every place below [mechanism] that names a joint, with the name."""
+    for name, slider in mechanism.slider.items():
+        for joint in slider.joints:
+            if isinstance(joint, str):
+                yield f"slider.{name}.joints", joint
+    for name, body in mechanism.body.items():
+        for joint in body.bar.joints if body.bar is not None else ():
+            yield f"body.{name}.bar.joints", joint
+    for i, drive in enumerate(mechanism.drive, 1):
+        for joint in () if isinstance(drive, SliderDrive) else drive.line:
+            yield f"drive[{i}].line" if len(mechanism.drive) > 1 else "drive.line", joint
+
+
 def _mechanism_references(table: StudyTable, bears: dict[str, str]) -> Iterable[str]:
     mechanism = table.mechanism
     if mechanism is None:
@@ -195,16 +211,21 @@ def _mechanism_references(table: StudyTable, bears: dict[str, str]) -> Iterable[
                 f"pin.{pin}: connection {connection!r} is not in the mechanism; "
                 + _near(connection, have)
             )
-    for name, slider in mechanism.slider.items():
-        for joint in slider.joints:
-            if joint not in mechanism.joint:
-                yield f"mechanism.slider.{name}.joints: no joint {joint!r}; " + _near(
-                    joint, mechanism.joint
+    bodies = ["ground", *mechanism.body]
+    for where, joint in named_joints(mechanism):
+        if joint not in mechanism.joint:
+            yield f"mechanism.{where}: no joint {joint!r}; " + _near(joint, mechanism.joint)
+    for i, drive in enumerate(mechanism.drive, 1):
+        where = "mechanism.drive" + (f"[{i}]" if len(mechanism.drive) > 1 else "")
+        if isinstance(drive, SliderDrive):
+            if drive.slider not in mechanism.slider:
+                yield f"{where}.slider: no slider {drive.slider!r}; " + _near(
+                    drive.slider, mechanism.slider
                 )
-    if mechanism.drive.slider not in mechanism.slider:
-        yield f"mechanism.drive.slider: no slider {mechanism.drive.slider!r}; " + _near(
-            mechanism.drive.slider, mechanism.slider
-        )
+            continue
+        for key, body in (("body", drive.body), ("against", drive.against)):
+            if body not in bodies:
+                yield f"{where}.{key}: no body {body!r}; " + _near(body, bodies)
     for name, case in table.case.items():
         for i, load in enumerate(getattr(case, "apply", ()), 1):
             where = f"case.{name}.apply[{i}]"

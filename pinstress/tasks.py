@@ -8,9 +8,9 @@ import numpy as np
 
 from fea.solid import PinLoads
 from geometry import Pin
-from pinstress import build
 from pinstress.build import CaseLoads
 from pinstress.errors import InputError
+from pinstress.pins import pin as pin_of
 from pinstress.study import Study
 
 
@@ -34,7 +34,7 @@ def tasks(study: Study, pins: list[str], loads: dict[str, CaseLoads]) -> list[Ta
     """
     out = []
     for name in pins:
-        pin = build.pin(study, name)
+        pin = pin_of(study, name)
         ways = dict.fromkeys(study.clamps(name, case) for case in loads)
         for clamps in ways:
             task = _task(study, pin, clamps, loads)

@@ -23,7 +23,13 @@ DIMENSIONS: dict[str, tuple[tuple[int, int, int], str]] = {
     "acceleration": ((1, 0, -2), "9.81 m/s^2"),
     "energy": ((1, 1, 0), "3 J"),
     "power": ((1, 1, -1), "3 W"),
+    "moment": ((1, 1, 0), "12 N m"),
+    "angle": ((0, 0, 0), "45 deg"),
+    "angular velocity": ((0, 0, -1), "2 rad/s"),
+    "angular acceleration": ((0, 0, -2), "3 rad/s^2"),
 }
+
+UNIT_NEEDED = ("angle", "angular velocity", "angular acceleration")  # degrees or radians?
 
 
 LARGEST = 1e18  # in SI: beyond any modulus, and its fourth power is still a number
@@ -83,6 +89,16 @@ USUAL: dict[str, tuple[str, float]] = {
     "g/cm^3": ("density", 1e3),
     "lb/in^3": ("density", 0.45359237 / 0.0254**3),
     "kg m^2": ("inertia", 1.0),
+    "lb in^2": ("inertia", 0.45359237 * 0.0254**2),
+    "g": ("mass", 1e-3),
+    "N m": ("moment", 1.0),
+    "N cm": ("moment", 0.01),
+    "deg": ("angle", math.pi / 180.0),
+    "rad": ("angle", 1.0),
+    "rad/s": ("angular velocity", 1.0),
+    "deg/s": ("angular velocity", math.pi / 180.0),
+    "rpm": ("angular velocity", math.pi / 30.0),
+    "rad/s^2": ("angular acceleration", 1.0),
     "m/s": ("velocity", 1.0),
     "ft/s": ("velocity", 0.3048),
     "m/s^2": ("acceleration", 1.0),
@@ -120,12 +136,19 @@ def to_si(value: object, dimension: str, system: UnitSystem) -> float:
     if isinstance(value, str):
         si = _parse(value, dimension, system)
     else:
-        si = float(value) * system.factor(dimension)
+        si = _plain(float(value), dimension, system)
     if not math.isfinite(si):
         raise ValueError(f"{value!r} is not finite")
     if abs(si) > LARGEST:
         raise ValueError(f"{value!r} is too large to calculate with")
     return si
+
+
+def _plain(number: float, dimension: str, system: UnitSystem) -> float:
+    if dimension in UNIT_NEEDED:
+        _, example = DIMENSIONS[dimension]
+        raise ValueError(f"{number:g} needs its unit; write for instance {example!r}")
+    return number * system.factor(dimension)
 
 
 def _parse(text: str, dimension: str, system: UnitSystem) -> float:
@@ -135,7 +158,7 @@ def _parse(text: str, dimension: str, system: UnitSystem) -> float:
         raise ValueError(f"{text!r} does not begin with a number; write for instance {example!r}")
     number, unit = float(match[1]), match[2]
     if not unit:
-        return number * system.factor(dimension)
+        return _plain(number, dimension, system)
     return number * _unit_factor(unit, dimension, text)
 
 

@@ -223,6 +223,22 @@ class MotionCheck:
 
 
 @dataclass(frozen=True)
+class PublishedValue:
+    """A published number with ours: of a `quantity` of what is called `name` in a case (at a time,
+    or None), in `unit`; reason: why they differ.
+    """
+
+    case: str
+    time: float | None
+    quantity: str
+    name: str
+    ours: float
+    published: float
+    unit: str
+    reason: str
+
+
+@dataclass(frozen=True)
 class Field:
     """A solid mesh with results at its nodes: points (N, 3), tetra10 cells (M, 10; VTK order),
     displacement (N, 3), stress (N, 6: xx, yy, zz, yz, xz, xy), von_mises (N,), and envelope (N,):
@@ -277,6 +293,7 @@ class Results:
     motion: tuple[LinkageMotion, ...] = ()
     beam_check: BeamCheck | None = None
     motion_check: MotionCheck | None = None
+    published: tuple[PublishedValue, ...] = ()
     provenance: tuple[Provenance, ...] = ()
     published_source: str = ""
     assumptions: tuple[str, ...] = ()

@@ -9,7 +9,8 @@ import pytest
 from fea.material import Material
 from geometry import Pin, Segment
 from loads import Linkage
-from pinstress import build, load_study
+from pinstress import load_study
+from pinstress.mechanism import linkage
 from pinstress.study import Study
 
 ROOT = Path(__file__).parent.parent
@@ -26,7 +27,7 @@ def gear() -> Study:
 
 @pytest.fixture(scope="session")
 def gear_linkage(gear: Study) -> Linkage:
-    return build.linkage(gear)
+    return linkage(gear)
 
 
 @pytest.fixture(scope="session")

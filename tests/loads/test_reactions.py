@@ -56,4 +56,4 @@ def test_the_pins_own_axes_turn_with_it() -> None:
 
 def test_the_published_impulse() -> None:
     """37,500 lbf at 32.2 ft/s^2 stopped from 25 ft/s in 0.15 s: 194,099.4 lbf (Grenier, eq. L2)."""
-    assert impulse_force(37500.0, 32.2, 25.0, 0.15) == pytest.approx(194099.3788819876, rel=1e-15)
+    assert impulse_force(37500.0 / 32.2, 25.0, 0.15) == pytest.approx(194099.3788819876, rel=1e-15)

@@ -1,0 +1,75 @@
+"""Coulomb friction at sliders: which signs of the contact forces agree with themselves.
+
+Friction opposes sliding with mu times the size of each contact force n, and changes the contact
+forces in turn: n = n0 - B |n|, with n0 the forces without friction and B what one newton of |n|
+takes from them. Every pattern of signs gives a linear system; the patterns that its solution has
+are the answers. With weak friction there is always exactly one. When there is none, no forces agree
+with the motion; when there are two, rigid-body mechanics does not decide between them (Painleve):
+the slider jams.
+"""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+
+from loads.linkage import Floats, LinkageError
+from loads.loops import Ints
+
+MOST_CONTACTS = 8  # 256 patterns of signs
+SAME = 1e-9  # of the largest contact force: what counts as zero and as the same answer
+
+
+class JammingError(LinkageError):
+    """Friction has no answer, or several.
+
+    instants: numbers of those concerned. none: whether there is none at the first of them. grip:
+    largest part of a contact force that its own friction brings back (1 or more can jam).
+    """
+
+    def __init__(
+        self, instants: Ints, none: bool, grip: float, when: str = "", sliders: str = ""
+    ) -> None:
+        self.instants, self.none, self.grip = instants, none, grip
+        self.sliders = sliders
+        what = (
+            "no friction force agrees with the motion"
+            if none
+            else "two friction forces agree with the motion, and rigid bodies do not decide"
+        )
+        where = f"friction jams {sliders or 'a slider'}{' at ' + when if when else ''}"
+        super().__init__(
+            f"{where}: {what} (each newton on the guide brings {grip:.3g} N more of itself by "
+            "friction; below 1 it slides); lower the friction, lengthen the bearing, drive from "
+            "the other end, or avoid this part of the motion"
+        )
+
+
+def contact_forces(free: Floats, feedback: Floats) -> Floats:
+    """Contact forces n (T, K) with n = free - feedback |n|; feedback (T, K, K).
+
+    Raises: JammingError where none or several exist.
+    """
+    count = free.shape[1]
+    found = np.zeros_like(free)
+    answers = np.zeros(len(free), dtype=int)
+    size = np.abs(free).max(axis=1, initial=0.0) + 1e-300
+    for signs in product((1.0, -1.0), repeat=count):
+        s = np.array(signs)
+        matrix = np.eye(count) + feedback * s
+        possible = np.abs(np.linalg.det(matrix)) > SAME
+        n = np.linalg.solve(
+            np.where(possible[:, None, None], matrix, np.eye(count)), free[..., None]
+        )[..., 0]
+        slack = SAME * np.maximum(size, np.abs(n).max(axis=1))
+        agrees = possible & np.all(n * s >= -slack[:, None], axis=1)
+        known = (answers > 0) & np.all(np.abs(n - found) <= slack[:, None], axis=1)
+        new = agrees & ~known
+        found[new & (answers == 0)] = n[new & (answers == 0)]
+        answers += new
+    wrong = np.flatnonzero(answers != 1)
+    if len(wrong):
+        grip = float(np.abs(np.diagonal(feedback[wrong], axis1=1, axis2=2)).max())
+        raise JammingError(wrong, bool(answers[wrong[0]] == 0), grip)
+    return found

@@ -1,0 +1,268 @@
+"""From a study's mechanism to the linkage and the laws of its drives."""
+
+from __future__ import annotations
+
+import csv
+import math
+
+import numpy as np
+
+from loads import (
+    GROUND,
+    Body,
+    Connection,
+    ConstantDrive,
+    CosineDrive,
+    CycloidalDrive,
+    Joint,
+    Law,
+    Linkage,
+    LinkageError,
+    Sharing,
+    Slider,
+    TableDrive,
+    Turn,
+)
+from loads.bar import flat_bar, round_bar
+from pinstress.errors import InputError
+from pinstress.layout import LayoutError, Point, places
+from pinstress.pins import pin
+from pinstress.schema import Coordinates, InstantCase, StaticCase
+from pinstress.schema_mechanism import (
+    BodyTable,
+    MechanismTable,
+    RotaryDrive,
+    SliderDrive,
+    SliderTable,
+)
+from pinstress.study import Study
+from pinstress.units import to_si
+
+STANDARD_GRAVITY = 9.80665
+LAWS: dict[str, type[CosineDrive | CycloidalDrive | ConstantDrive]] = {
+    "cosine": CosineDrive,
+    "cycloidal": CycloidalDrive,
+    "constant": ConstantDrive,
+}
+AnyDriveTable = SliderDrive | RotaryDrive
+
+
+def linkage(study: Study) -> Linkage:
+    """The study's mechanism. Raises: InputError when it contradicts itself."""
+    mechanism = _mechanism(study)
+    g = float(np.hypot(*mechanism.gravity)) or STANDARD_GRAVITY
+    try:
+        at = places(mechanism)
+        return Linkage(
+            bodies=tuple(_body(mechanism, name, b, at, g) for name, b in mechanism.body.items()),
+            joints=tuple(
+                Joint(
+                    name,
+                    at[name],
+                    tuple(Connection(c, body) for c, body in j.connections.items()),
+                    j.fixed_in,
+                    _pin_mass(study, name, j.weight, g) if j.fixed_in is None else 0.0,
+                )
+                for name, j in mechanism.joint.items()
+            ),
+            sliders=tuple(_slider(name, s, at) for name, s in mechanism.slider.items()),
+            turns=tuple(_turn(study, d, at) for d in mechanism.drive if isinstance(d, RotaryDrive)),
+            driven=tuple(drive_name(d) for d in mechanism.drive),
+            gravity=mechanism.gravity,
+            sharing=tuple(
+                Sharing(tuple(s.connections), tuple(s.stiffness)) for s in mechanism.sharing
+            ),
+        )
+    except LayoutError as error:
+        raise InputError(f"{study.path}: {error}") from None
+    except LinkageError as error:
+        raise InputError(f"{study.path}: mechanism: {error}") from None
+
+
+def _mechanism(study: Study) -> MechanismTable:
+    if study.table.mechanism is None:
+        raise InputError(f"{study.path}: there is no [mechanism]")
+    return study.table.mechanism
+
+
+def drive_name(drive: AnyDriveTable) -> str:
+    """What a drive is called: its slider, or its own name or that of the body it turns."""
+    return drive.slider if isinstance(drive, SliderDrive) else drive.name or drive.body
+
+
+def _slider(name: str, s: SliderTable, at: dict[str, Point]) -> Slider:
+    start, end = (at[p] if isinstance(p, str) else p for p in s.joints)
+    base, moving = s.bodies
+    return Slider(name, base, moving, start, end, s.direction, s.friction, s.bearing)
+
+
+def _turn(study: Study, drive: RotaryDrive, at: dict[str, Point]) -> Turn:
+    """The driven angle; of its values a turn apart, the drawn one is nearest to the start."""
+    (x1, y1), (x2, y2) = (at[j] for j in drive.line)
+    drawn = math.atan2(y2 - y1, x2 - x1)
+    start = drive.start if drive.law != "table" else _table(study, drive).values[0]
+    if start is not None:
+        drawn += 2.0 * math.pi * round((start - drawn) / (2.0 * math.pi))
+    return Turn(drive_name(drive), drive.body, drawn, drive.against)
+
+
+def _body(
+    mechanism: MechanismTable, name: str, b: BodyTable, at: dict[str, Point], g: float
+) -> Body:
+    if b.bar is not None:
+        (x1, y1), (x2, y2) = (at[j] for j in b.bar.joints)
+        length = math.hypot(x2 - x1, y2 - y1)
+        if b.bar.section is not None:
+            mass, inertia = flat_bar(length, *b.bar.section, b.bar.density)
+        else:
+            mass, inertia = round_bar(length, b.bar.diameter or 0.0, b.bar.density)
+        middle = (0.5 * (x1 + x2), 0.5 * (y1 + y2))
+        return Body(name, mass, middle, inertia if b.inertia is None else b.inertia)
+    mass = b.mass if b.mass is not None else (b.weight or 0.0) / g
+    centre = b.centre
+    if centre is None:
+        on = [
+            at[key]
+            for key, j in mechanism.joint.items()
+            if j.fixed_in == name or name in j.connections.values()
+        ]
+        if len(on) not in (1, 2):
+            raise LinkageError(f"body {name}: it has {len(on)} joints, so give its centre")
+        centre = (sum(x for x, _ in on) / len(on), sum(y for _, y in on) / len(on))
+    return Body(name, mass, centre, b.inertia)
+
+
+def _pin_mass(study: Study, joint: str, weight: float | None, gravity: float) -> float:
+    """Mass of a floating pin: as stated, or of the profile of that name, or nothing."""
+    if weight is not None:
+        return weight / gravity
+    if joint not in study.table.pin:
+        return 0.0
+    density = study.table.material[study.table.pin[joint].material].density
+    return density * pin(study, joint).volume if density else 0.0
+
+
+def laws(study: Study) -> tuple[Law, ...]:
+    """The law of every drive. Raises: InputError for a table that cannot be used."""
+    return tuple(_law(study, d) for d in _mechanism(study).drive)
+
+
+def offsets(study: Study) -> tuple[float, ...]:
+    """What is taken from each drive's length to show its position, m."""
+    drives = _mechanism(study).drive
+    return tuple(getattr(d, "position_offset", 0.0) for d in drives)
+
+
+def _law(study: Study, drive: AnyDriveTable) -> Law:
+    if drive.law == "table":
+        return _table(study, drive)
+    assert drive.start is not None
+    assert drive.end is not None
+    assert drive.duration is not None
+    return LAWS[drive.law](drive.start, drive.end, drive.duration, drive.begin)
+
+
+def span(study: Study) -> float:
+    """When the last drive is done, s."""
+    return max(float(law.finish) for law in laws(study))  # type: ignore[attr-defined]
+
+
+def _table(study: Study, drive: AnyDriveTable) -> TableDrive:
+    path = study.beside(drive.table or "")
+    slides = isinstance(drive, SliderDrive)
+    length, time = study.system.factor("length"), study.system.factor("time")
+    value = "position" if slides else "position_deg"
+    unit = length if slides else math.pi / 180.0
+    try:
+        reader = csv.DictReader(path.read_text(encoding="utf-8-sig").splitlines())
+        columns = [c.strip() for c in reader.fieldnames or []]
+        reader.fieldnames = columns
+        for c in ("time", value):
+            if c not in columns:
+                raise InputError(f"{path}: column {c!r} is missing; needed are time,{value}")
+        exact = [c for c in columns if c in ("velocity", "acceleration")]
+        if len(exact) == 1:
+            raise InputError(f"{path}: give both velocity and acceleration, or neither")
+        rates = length if slides else 1.0
+        rows = [
+            [
+                float(row["time"]) * time,
+                float(row[value]) * unit,
+                *(
+                    float(row[c]) * rates / time ** (i + 1)
+                    for i, c in enumerate(sorted(exact)[::-1])
+                ),
+            ]
+            for row in reader
+        ]
+        data = np.array(rows, dtype=float)
+        if not np.isfinite(data).all():
+            raise ValueError("not finite")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: cannot be read ({error})") from None
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{path}: every cell must be a finite number ({error})") from None
+    try:
+        return TableDrive(*(tuple(column) for column in data.T.tolist()))
+    except LinkageError as error:
+        raise InputError(f"{path}: {error}") from None
+
+
+def state(
+    study: Study, name: str, case: StaticCase | InstantCase, drawn: Linkage
+) -> list[tuple[float, float, float]]:
+    """Position, velocity and acceleration of every drive in a case, SI. Raises: InputError."""
+    drives = _mechanism(study).drive
+    rates = (case.velocity, case.acceleration) if isinstance(case, InstantCase) else (0.0, 0.0)
+    return [
+        (
+            _coordinate(study, name, "position", case.position, drive, drawn.drives[k].drawn),
+            _coordinate(study, name, "velocity", rates[0], drive, 0.0),
+            _coordinate(study, name, "acceleration", rates[1], drive, 0.0),
+        )
+        for k, drive in enumerate(drives)
+    ]
+
+
+DIMENSION = {
+    "position": ("length", "angle"),
+    "velocity": ("velocity", "angular velocity"),
+    "acceleration": ("acceleration", "angular acceleration"),
+}
+
+
+def _coordinate(
+    study: Study,
+    case: str,
+    key: str,
+    value: Coordinates | None,
+    drive: AnyDriveTable,
+    default: float,
+) -> float:
+    where = f"{study.path}: case.{case}.{key}"
+    names = [drive_name(d) for d in _mechanism(study).drive]
+    if isinstance(value, dict):
+        unknown = [n for n in value if n not in names]
+        if unknown:
+            raise InputError(f"{where}: no drive {unknown[0]!r}; there are {', '.join(names)}")
+        value = value.get(drive_name(drive))
+    elif value not in (None, 0.0) and len(names) > 1:
+        raise InputError(f"{where}: say for which drive: {{ {names[0]} = ..., {names[1]} = ... }}")
+    if value is None or (value == 0.0 and key != "position"):
+        return default
+    slides = isinstance(drive, SliderDrive)
+    try:
+        found = to_si(value, DIMENSION[key][0 if slides else 1], study.system)
+    except ValueError as error:
+        raise InputError(f"{where}: {error}") from None
+    if key == "position" and not slides:
+        found += 2.0 * math.pi * round((default - found) / (2.0 * math.pi))
+    return found
+
+
+def ground_joint(linkage: Linkage) -> str:
+    """The joint about which moments on the ground are taken: the first that stands still."""
+    for joint in linkage.joints:
+        if joint.fixed_in == GROUND or any(c.body == GROUND for c in joint.connections):
+            return joint.name
+    return linkage.joints[0].name

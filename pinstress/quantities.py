@@ -1,0 +1,122 @@
+"""The study file's words: quantities with units, names, tables that know their keys."""
+
+import difflib
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, model_validator
+from pydantic_core import core_schema
+
+from pinstress.units import DIMENSIONS, SYSTEMS, to_si
+
+KINDS = ("given", "derived", "fitted", "assumed")
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Marks a float that is read from a number or a string with a unit, and kept in SI."""
+
+    dimension: str
+
+    def __get_pydantic_core_schema__(self, *_: object) -> core_schema.CoreSchema:
+        return core_schema.with_info_plain_validator_function(self._read)
+
+    def __get_pydantic_json_schema__(self, *_: object) -> dict[str, Any]:
+        plain: list[dict[str, Any]] = [
+            {"type": "number"},
+            {"type": "string", "examples": [DIMENSIONS[self.dimension][1]]},
+        ]
+        return {"anyOf": [*plain, sourced(plain)], "description": self.dimension}
+
+    def _read(self, value: object, info: core_schema.ValidationInfo) -> float:
+        system = (info.context or {}).get("system", SYSTEMS["m-N-s"])
+        return to_si(value, self.dimension, system)
+
+
+PROVENANCE: dict[str, Any] = {
+    "provenance": {"enum": list(KINDS), "description": "where the numbers here come from"},
+    "note": {"type": "string", "description": "why, in words"},
+}
+
+
+def _allow_provenance(schema: dict[str, Any]) -> None:
+    schema["properties"].update(PROVENANCE)
+
+
+def sourced(value: list[dict[str, Any]]) -> dict[str, Any]:
+    """JSON Schema of { value = ..., provenance = "given", note = "..." }."""
+    return {
+        "type": "object",
+        "properties": {
+            "value": {"anyOf": value},
+            **PROVENANCE,
+        },
+        "required": ["value", "provenance"],
+        "additionalProperties": False,
+    }
+
+
+def positive(value: float) -> float:
+    if not value > 0.0:
+        raise ValueError("must be positive")
+    return value
+
+
+def pin_sized(value: float) -> float:
+    if not 1e-6 < value < 1e3:
+        raise ValueError("must lie between 1e-6 m and 1000 m")
+    return value
+
+
+def not_negative(value: float) -> float:
+    if value < 0.0:
+        raise ValueError("must not be negative")
+    return value
+
+
+def usable_name(name: str) -> str:
+    if not name or len(name) > 64 or name[0] in ". " or any(c in '/\\:*?"<>|' for c in name):
+        raise ValueError(f"{name!r} cannot be part of a file name; use letters, digits, - and _")
+    if not name.isprintable():
+        raise ValueError(f"{name!r} contains characters that cannot be printed")
+    return name
+
+
+Length = Annotated[float, Quantity("length")]
+Force = Annotated[float, Quantity("force")]
+PositiveLength = Annotated[Length, AfterValidator(positive), AfterValidator(pin_sized)]
+NotNegativeLength = Annotated[Length, AfterValidator(not_negative)]
+Stress = Annotated[Annotated[float, Quantity("stress")], AfterValidator(positive)]
+Density = Annotated[Annotated[float, Quantity("density")], AfterValidator(positive)]
+Weight = Annotated[Force, AfterValidator(not_negative)]
+Mass = Annotated[Annotated[float, Quantity("mass")], AfterValidator(not_negative)]
+Inertia = Annotated[Annotated[float, Quantity("inertia")], AfterValidator(not_negative)]
+Duration = Annotated[Annotated[float, Quantity("time")], AfterValidator(positive)]
+Velocity = Annotated[float, Quantity("velocity")]
+Acceleration = Annotated[float, Quantity("acceleration")]
+Angle = Annotated[float, Quantity("angle")]
+Moment = Annotated[float, Quantity("moment")]
+Time = Annotated[float, Quantity("time")]
+Name = Annotated[str, AfterValidator(usable_name)]
+Point = tuple[Length, Length]
+
+
+class Table(BaseModel):
+    """A table of the study file: unknown keys are errors.
+
+    Any table may also have `provenance` and `note`; they are taken out before validation.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True, json_schema_extra=_allow_provenance)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _known_keys(cls, data: Any) -> Any:
+        if isinstance(data, dict):
+            for key in data:
+                if key not in cls.model_fields:
+                    near = difflib.get_close_matches(str(key), cls.model_fields, n=1, cutoff=0.5)
+                    known = ", ".join(cls.model_fields)
+                    hint = f"did you mean {near[0]!r}?" if near else f"known here: {known}"
+                    raise ValueError(f"unknown key {key!r}; {hint}")
+        return data
