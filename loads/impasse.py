@@ -18,6 +18,7 @@ from loads.loops import Loops
 from loads.mobility import moving_bodies, stressed_connections
 
 Kind = Literal["dead point", "change point", "open"]
+SNAPS = 1e-2  # of the fastest: a body this slow near a dead point is still at it
 MOST_NAMES = 6  # in a message
 Show = Callable[[float, bool], str]
 
@@ -68,8 +69,8 @@ class Impasse(LinkageError):
         if self.kind == "open":
             return (
                 f"the linkage does not close beyond {at(self.reached)} (wanted: "
-                f"{at(self.wanted)}): {connections} do not meet, because its redundant links do not fit each other; "
-                "check the coordinates of the joints"
+                f"{at(self.wanted)}): {connections} do not meet, because its redundant links do "
+                "not fit each other; check the coordinates of the joints"
             )
         unbounded = f"the forces at {connections} have no bound there"
         if self.kind == "change point":
@@ -112,6 +113,6 @@ def impasse(
         kind,
         reached,
         wanted,
-        moving_bodies(loops, pose, motion[None] / loops.scale),
+        moving_bodies(loops, pose, motion[None] / loops.scale, SNAPS),
         stressed_connections(loops, force[:, None]),
     )

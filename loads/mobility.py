@@ -76,8 +76,12 @@ def _rank(singular: Floats) -> int:
     return int(np.sum(singular > RANK_TOLERANCE * singular[0]))
 
 
-def moving_bodies(loops: Loops, pose: Pose, rates: Floats) -> tuple[str, ...]:
-    """Bodies that take part in motions given as rates (k, n) at one pose."""
+def moving_bodies(
+    loops: Loops, pose: Pose, rates: Floats, least: float = TAKES_PART
+) -> tuple[str, ...]:
+    """Bodies that take part in motions given as rates (k, n) at one pose; `least`: how fast, of
+    the fastest.
+    """
     if not len(rates):
         return ()
     linkage, angles = loops.linkage, loops.frames - 1
@@ -89,7 +93,7 @@ def moving_bodies(loops: Loops, pose: Pose, rates: Floats) -> tuple[str, ...]:
             speed[:, i] += linkage.length_scale * np.abs(rates[:, f - 1])
     largest = speed.max(axis=0)
     return tuple(
-        b.name for b, v in zip(linkage.bodies, largest, strict=True) if _counts(v, largest)
+        b.name for b, v in zip(linkage.bodies, largest, strict=True) if v > least * largest.max()
     )
 
 
@@ -102,11 +106,7 @@ def stressed_connections(loops: Loops, multipliers: Floats) -> tuple[str, ...]:
     nothing = np.zeros((len(closing), len(loops.linkage.items)), dtype=complex)
     size = np.abs(connection_members(loops).forces(nothing, closing)).max(axis=0)
     names = [c.name for _, c in loops.linkage.connections]
-    return tuple(n for n, f in zip(names, size, strict=True) if _counts(f, size))
-
-
-def _counts(value: float, all_values: Floats) -> bool:
-    return bool(value > TAKES_PART * all_values.max(initial=0.0))
+    return tuple(n for n, f in zip(names, size, strict=True) if f > TAKES_PART * size.max())
 
 
 def require_determined(linkage: Linkage) -> Mobility:
