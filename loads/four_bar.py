@@ -64,24 +64,17 @@ def four_bar(linkage: Linkage) -> FourBar | None:
     joints = (o2, a, b, o4)
     at = [linkage.joint(name).at for name in joints]
     lengths = (_far(at[0], at[3]), _far(at[0], at[1]), _far(at[1], at[2]), _far(at[2], at[3]))
-    return FourBar(lengths, (driven, coupler, follower), joints, _branch(lengths, at))
+    return FourBar(lengths, (driven, coupler, follower), joints, _branch(at))
 
 
 def _far(a: Point, b: Point) -> float:
     return float(np.hypot(a[0] - b[0], a[1] - b[1]))
 
 
-def _branch(lengths: tuple[float, ...], at: list[Point]) -> Literal["open", "crossed"]:
-    """Crossed when the two links beside the shortest cross each other (Norton, sec. 4.5)."""
-    sides = [(at[0], at[3]), (at[0], at[1]), (at[1], at[2]), (at[2], at[3])]
-    beside = {0: (1, 3), 1: (0, 2), 2: (1, 3), 3: (0, 2)}[lengths.index(min(lengths))]
-    (p, q), (r, s) = sides[beside[0]], sides[beside[1]]
-    return (
-        "crossed"
-        if _side(p, q, r) * _side(p, q, s) < 0 > _side(r, s, p) * _side(r, s, q)
-        else "open"
-    )
-
-
-def _side(p: Point, q: Point, r: Point) -> float:
-    return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
+def _branch(at: list[Point]) -> Literal["open", "crossed"]:
+    """Open when, seen with the ground pointing right, the coupler's end lies left of the line from
+    the crank's end to the follower's pivot (Norton, sec. 4.5); one turn of a crank keeps it there.
+    """
+    (_, a, b, o4) = at
+    left = (o4[0] - a[0]) * (b[1] - a[1]) - (o4[1] - a[1]) * (b[0] - a[0]) > 0.0
+    return "open" if left else "crossed"

@@ -52,7 +52,8 @@ def _mechanism(study: Study, mechanism: Linkage) -> list[str]:
             f"{found.free} way(s): {', '.join(found.loose)} not guided; add the missing connection "
             "or drive"
         )
-    laws(study)
+    if any(isinstance(case, MotionCase) for case in study.table.case.values()):
+        laws(study)  # reads the drives' tables
     lines = [
         f"mechanism: {len(mechanism.bodies)} bodies, {len(mechanism.joints)} joints, "
         f"{len(mechanism.connections)} connections, driven by {', '.join(mechanism.driven)}"

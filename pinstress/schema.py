@@ -109,8 +109,8 @@ class ImpulseTable(Table):
 
 
 class ApplyTable(Table):
-    """A load on a body, at a joint (by name) or a point as drawn: a force or an impulse, a couple
-    (counter-clockwise), or both. follows: the force turns with the body.
+    """A load on a body, at a joint (by name), a point as drawn or its centre of mass: a force or an
+    impulse, a couple (counter-clockwise), or both. follows: the force turns with the body.
     """
 
     body: str
@@ -126,8 +126,6 @@ class ApplyTable(Table):
             raise ValueError("give either force = [fx, fy] or impulse = { ... }")
         if self.force is None and self.impulse is None and not self.couple:
             raise ValueError("give force = [fx, fy], impulse = { ... } or couple")
-        if self.at is None and (self.force is not None or self.impulse is not None):
-            raise ValueError("at is missing: where the force acts")
         return self
 
 

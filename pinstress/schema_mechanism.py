@@ -126,7 +126,8 @@ class SliderTable(Table):
 
 class LawTable(Table):
     """What laws of motion share: from start to end in `duration`, beginning at `begin`, or a table
-    (CSV: time,position and, for exact rates, velocity,acceleration).
+    (CSV: time,position and, for exact rates, velocity,acceleration). Without a course the drive
+    only serves cases that state their instant.
     """
 
     name: str | None = None
@@ -141,9 +142,16 @@ class LawTable(Table):
         if self.law == "table":
             if self.table is None or any(v is not None for v in course):
                 raise ValueError('law "table" needs table = "file.csv" and no start, end, duration')
-        elif self.table is not None or any(v is None for v in course):
+        elif self.table is not None:
+            raise ValueError(f'table is for law = "table", not {self.law!r}')
+        elif len({v is None for v in course}) > 1:
             raise ValueError(f"law {self.law!r} needs start, end and duration")
         return self
+
+    @property
+    def moves(self) -> bool:
+        """Whether a course is given."""
+        return self.table is not None or self.duration is not None
 
 
 class SliderDrive(LawTable):

@@ -14,7 +14,7 @@ from pydantic import ValidationError
 
 from pinstress.errors import InputError
 from pinstress.quantities import KINDS
-from pinstress.schema import GivenCase, StudyTable
+from pinstress.schema import GivenCase, MotionCase, StudyTable
 from pinstress.schema_mechanism import MechanismTable, SliderDrive
 from pinstress.units import SYSTEMS, UnitSystem
 
@@ -227,6 +227,8 @@ def _mechanism_references(table: StudyTable, bears: dict[str, str]) -> Iterable[
             if body not in bodies:
                 yield f"{where}.{key}: no body {body!r}; " + _near(body, bodies)
     for name, case in table.case.items():
+        if isinstance(case, MotionCase) and not all(d.moves for d in mechanism.drive):
+            yield f"case.{name}: a motion needs start, end and duration in [mechanism.drive]"
         for i, load in enumerate(getattr(case, "apply", ()), 1):
             where = f"case.{name}.apply[{i}]"
             if load.body not in mechanism.body:

@@ -11,7 +11,7 @@ def circles(p: complex, a: float, q: complex, b: float, side: float) -> complex:
     """The point at distances a from p and b from q, left (side 1) or right (-1) of p to q."""
     d = abs(q - p)
     along = (a * a - b * b + d * d) / (2.0 * d)
-    return p + (q - p) / d * (along + 1j * side * np.sqrt(a * a - along * along))
+    return complex(p + (q - p) / d * (along + 1j * side * np.sqrt(a * a - along * along)))
 
 
 def xy(z: complex) -> tuple[float, float]:
