@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import sys
 
-from benchmarks import accuracy, speed
+from benchmarks import accuracy, motion_accuracy, speed
 
 ALL = {
     "motion": speed.motion,
+    "motion-accuracy": motion_accuracy.motion_accuracy,
     "assembly": speed.assembly,
     "solvers": speed.solvers,
     "fillet": accuracy.fillet,
