@@ -21,15 +21,19 @@ from loads.linkage import (
 from loads.mobility import Mobility, mobility
 from loads.motion import Motion, energy, move
 from loads.reactions import Reactions, TableError, given_reactions, read_reactions
+from loads.spatial_leg import Contact, LegDynamics, LegMotion, SpatialLeg, leg_dynamics
 
 __all__ = [
     "GROUND",
     "Applied",
     "Body",
     "Connection",
+    "Contact",
     "CosineDrive",
     "Dynamics",
     "Joint",
+    "LegDynamics",
+    "LegMotion",
     "Lever",
     "Linkage",
     "LinkageError",
@@ -38,11 +42,13 @@ __all__ = [
     "Reactions",
     "Sharing",
     "Slider",
+    "SpatialLeg",
     "TableError",
     "UnreachableError",
     "energy",
     "given_reactions",
     "impulse_force",
+    "leg_dynamics",
     "mobility",
     "motion_reactions",
     "move",
