@@ -31,6 +31,7 @@ from loads.linkage import (
 from loads.mobility import Mobility, mobility
 from loads.motion import Motion, at_rest, move
 from loads.reactions import Reactions, TableError, given_reactions, read_reactions
+from loads.spatial_leg import Contact, LegDynamics, LegMotion, SpatialLeg, leg_dynamics
 
 __all__ = [
     "GROUND",
@@ -38,6 +39,7 @@ __all__ = [
     "Body",
     "Connection",
     "ConstantDrive",
+    "Contact",
     "CosineDrive",
     "CycloidalDrive",
     "Dynamics",
@@ -47,6 +49,8 @@ __all__ = [
     "Joint",
     "Law",
     "Ledger",
+    "LegDynamics",
+    "LegMotion",
     "Lever",
     "Linkage",
     "LinkageError",
@@ -55,6 +59,7 @@ __all__ = [
     "Reactions",
     "Sharing",
     "Slider",
+    "SpatialLeg",
     "StateDrive",
     "TableDrive",
     "TableError",
@@ -64,6 +69,7 @@ __all__ = [
     "given_reactions",
     "impulse_force",
     "ledger",
+    "leg_dynamics",
     "mobility",
     "motion_reactions",
     "move",

@@ -1,0 +1,221 @@
+"""The spatial leg and its wheel as particles carried by rotation matrices.
+
+Nothing here knows a formula of velocity, acceleration, inertia or rate of momentum: positions are
+products of matrices, and everything else is their numerical derivative, taken over a circle of
+complex times (Cauchy's integral), which is exact to rounding for these analytic motions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loads import LegMotion, SpatialLeg
+
+Floats = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Function = Callable[[Complex], Complex]
+
+CIRCLE = 32
+RADIUS = 0.25  # s; the motions below stay moderate this far from the real times
+
+
+def derivative(f: Function, t: Complex, order: int = 1) -> Complex:
+    """Derivative at complex times t (T,) of f: (T,) -> (T, ...)."""
+    turn = np.exp(2j * np.pi * np.arange(CIRCLE) / CIRCLE)
+    values = f((t[:, None] + RADIUS * turn).ravel())
+    values = values.reshape(len(t), CIRCLE, *values.shape[1:])
+    weights = turn ** (-order) * np.prod(np.arange(1, order + 1)) / RADIUS**order / CIRCLE
+    return np.asarray(np.moveaxis(values, 1, -1) @ weights)
+
+
+@dataclass(frozen=True)
+class Wave:
+    """offset + rate t + sum of amplitude sin(frequency t + phase)."""
+
+    offset: complex
+    rate: float
+    amplitude: Floats
+    frequency: Floats
+    phase: Floats
+
+    def __call__(self, t: Complex) -> Complex:
+        angle = self.frequency * t[:, None] + self.phase
+        return np.asarray(self.offset + self.rate * t + np.sin(angle) @ self.amplitude)
+
+
+def turn(axis: int, angle: Complex) -> Complex:
+    """(T, 3, 3): rotation matrices about a coordinate axis."""
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    matrix = np.zeros((len(angle), 3, 3), dtype=complex)
+    matrix[:, axis, axis] = 1.0
+    matrix[:, i, i] = matrix[:, j, j] = np.cos(angle)
+    matrix[:, j, i] = np.sin(angle)
+    matrix[:, i, j] = -matrix[:, j, i]
+    return matrix
+
+
+def cloud_inertia(mass: Floats, at: Floats) -> Floats:
+    """(3, 3) of particles (N,) at (N, 3), about the origin."""
+    square = np.sum(at**2, axis=1)
+    return np.asarray(np.sum(mass * square) * np.eye(3) - (at.T * mass) @ at)
+
+
+@dataclass(frozen=True)
+class Particles:
+    """One leg, one motion. masses (N,) kg, offsets (N, 3) m from D or C.
+
+    follow: how far A's course follows the yaw: 1 entirely, 0 not at all.
+    """
+
+    leg: SpatialLeg
+    leg_masses: Floats
+    leg_offsets: Floats
+    wheel_masses: Floats
+    wheel_offsets: Floats
+    speed: Wave
+    heading: Wave
+    beta: Wave
+    spin: Wave
+    follow: float
+
+    def motion(self, times: Floats) -> LegMotion:
+        """The motion as the program takes it."""
+        t = times.astype(complex)
+
+        def rates(wave: Wave) -> tuple[Floats, Floats, Floats]:
+            return wave(t).real, derivative(wave, t).real, derivative(wave, t, 2).real
+
+        v_v, a_v, _ = rates(self.speed)
+        heading, omega_g, alpha_g = rates(self.heading)
+        beta, omega_i, alpha_i = rates(self.beta)
+        _, omega_w, alpha_w = rates(self.spin)
+        return LegMotion(
+            v_v=v_v,
+            a_v=a_v,
+            omega_g=omega_g,
+            alpha_g=alpha_g,
+            beta=beta,
+            omega_i=omega_i,
+            alpha_i=alpha_i,
+            omega_w=omega_w,
+            alpha_w=alpha_w,
+            course_rate=self.follow * omega_g,
+            heading=heading,
+        )
+
+    def aircraft(self, t: Complex) -> Complex:
+        """(T, 3, 3): primed axes to the world."""
+        return turn(0, np.full_like(t, self.leg.slope)) @ turn(2, self.heading(t))
+
+    def a(self, now: float) -> Function:
+        """World position of A, which at `now` moves along y'."""
+
+        def position(t: Complex) -> Complex:
+            # Gauss-Legendre over the straight line from 0 to the complex time.
+            node, weight = np.polynomial.legendre.leggauss(20)
+            instants = (0.5 * (1.0 + node) * t[:, None]).ravel()
+            base = self.heading(np.array([now + 0j]))[0]
+            course = base + self.follow * (self.heading(instants) - base)
+            velocity = self.speed(instants)[:, None] * turn(2, course)[:, :, 1]
+            path = 0.5 * np.einsum("tkc,k->tc", velocity.reshape(len(t), -1, 3), weight)
+            return np.asarray(
+                (turn(0, np.full_like(t, self.leg.slope)) @ (t[:, None] * path)[..., None])[..., 0]
+            )
+
+        return position
+
+    def carried(self, now: float, body: str) -> Function:
+        """World positions (T, N, 3): body "B", "C", "D", "leg" or "wheel"."""
+        leg = self.leg
+        hinge = np.array([leg.l1, 0.0, leg.l2])
+        wheel_centre = np.array([-leg.l4, 0.0, -leg.l3])
+        leg_centre = np.array([-0.25 * leg.l4, 0.0, -0.75 * leg.l3])
+        fixed = {
+            "B": np.zeros((1, 3)),
+            "C": wheel_centre[None],
+            "D": leg_centre[None],
+            "leg": leg_centre + self.leg_offsets,
+        }
+        origin = self.a(now)
+
+        def position(t: Complex) -> Complex:
+            aircraft = self.aircraft(t)
+            fold = turn(1, self.beta(t))
+            arms: Complex
+            if body == "wheel":
+                spun = np.einsum("tij,nj->tni", turn(0, -self.spin(t)), self.wheel_offsets)
+                arms = wheel_centre + spun
+            else:
+                arms = np.tile(fixed[body], (len(t), 1, 1))
+            in_primed = hinge + np.einsum("tij,tnj->tni", fold, arms)
+            return np.asarray(origin(t)[:, None] + np.einsum("tij,tnj->tni", aircraft, in_primed))
+
+        return position
+
+    def state(self, times: Floats, body: str) -> tuple[Floats, Floats, Floats]:
+        """Position, velocity, acceleration in the world, (T, N, 3) each."""
+        found = []
+        for time in times:
+            f, t = self.carried(float(time), body), np.array([time + 0j])
+            found.append((f(t)[0].real, derivative(f, t)[0].real, derivative(f, t, 2)[0].real))
+        r, v, a = (np.stack(part) for part in zip(*found, strict=True))
+        return r, v, a
+
+
+def random_particles(seed: int, follow: float | None = None) -> Particles:
+    """A random leg, not symmetric, with a wheel of three rings and a hub, on a random motion."""
+    rng = np.random.default_rng(seed)
+
+    def wave(offset: float, rate: float, size: float) -> Wave:
+        return Wave(
+            offset,
+            rate,
+            size * rng.uniform(-1.0, 1.0, 3),
+            rng.uniform(0.5, 2.0, 3),
+            rng.uniform(0.0, 6.0, 3),
+        )
+
+    leg_masses = rng.uniform(1.0, 9.0, 9)
+    leg_offsets = rng.uniform(-0.5, 0.5, (9, 3))
+    leg_offsets -= leg_masses @ leg_offsets / leg_masses.sum()
+    ring = 2.0 * np.pi * np.arange(5) / 5.0
+    around = np.stack([0.0 * ring, np.cos(ring), np.sin(ring)], axis=1)
+    width, radius = rng.uniform(0.05, 0.3, 2)
+    rings = [0.3 * around + [x, 0.0, 0.0] for x in (-width, width)]
+    wheel_offsets = np.concatenate([*rings, radius * around, np.zeros((1, 3))])
+    wheel_masses = np.repeat(rng.uniform(0.5, 3.0, 3), [10, 5, 1])
+    axial, transverse = np.diag(cloud_inertia(wheel_masses, wheel_offsets))[:2]
+    l1, l2, l3, l4 = rng.uniform(-1.5, 1.5, 4)
+    leg = SpatialLeg(
+        l1=l1,
+        l2=l2,
+        l3=l3,
+        l4=l4,
+        leg_mass=float(leg_masses.sum()),
+        wheel_mass=float(wheel_masses.sum()),
+        leg_inertia=_symmetric(cloud_inertia(leg_masses, leg_offsets)),
+        wheel_axial=float(axial),
+        wheel_transverse=float(transverse),
+        slope=rng.uniform(-0.6, 0.6),
+        gravity=rng.uniform(1.0, 20.0),
+    )
+    return Particles(
+        leg=leg,
+        leg_masses=leg_masses,
+        leg_offsets=leg_offsets,
+        wheel_masses=wheel_masses,
+        wheel_offsets=wheel_offsets,
+        speed=wave(6.0, 1.0, 2.0),
+        heading=wave(rng.uniform(0.0, 6.0), 0.5, 0.5),
+        beta=wave(rng.uniform(0.0, 6.0), 0.7, 0.6),
+        spin=wave(0.0, rng.uniform(5.0, 15.0), 1.0),
+        follow=float(rng.uniform(0.0, 1.0)) if follow is None else follow,
+    )
+
+
+def _symmetric(matrix: Floats) -> Floats:
+    return np.asarray(0.5 * (matrix + matrix.T))
