@@ -1,4 +1,4 @@
-"""Speed against accuracy of the motion: samples, closed form, Newton, and integration with drift."""
+"""Speed against accuracy of the motion: samples, closed form, Newton, integration with drift."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ STEPS = (20, 40, 80, 160, 320)
 
 
 def motion_accuracy() -> str:
-    """Peak reactions by samples, and point F by three methods; draws docs/images/motion_accuracy."""
+    """Peak reactions by samples, and point F by three methods; draws the chart in docs/images."""
     study = load_study(STUDY)
     linkage, laws = mechanism.linkage(study), mechanism.laws(study)
     span = mechanism.span(study)
@@ -49,7 +49,7 @@ def motion_accuracy() -> str:
 def _peaks(at: Callable[[Floats], Reactions], span: float) -> list[tuple[float, ...]]:
     """Largest relative error of all connections' peaks: from samples alone, and refined."""
     exact = np.array([p.force for p in peak_forces(at(np.linspace(0.0, span, 4001)), at)])
-    rows = []
+    rows: list[tuple[float, ...]] = []
     for n in SAMPLES:
         times = np.linspace(0.0, span, n)
         sampled = at(times)

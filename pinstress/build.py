@@ -12,6 +12,7 @@ from loads import (
     Applied,
     Dynamics,
     Impasse,
+    LegDynamics,
     Linkage,
     LinkageError,
     Motion,
@@ -26,12 +27,14 @@ from loads import (
 )
 from loads.linkage import Floats
 from pinstress.errors import InputError
+from pinstress.leg import AXES, dynamics, hinge_reactions
 from pinstress.mechanism import laws, span, state
 from pinstress.schema import (
     ApplyTable,
     GivenCase,
     ImpulseTable,
     InstantCase,
+    LegCase,
     MechanismCase,
     MotionCase,
     StaticCase,
@@ -56,7 +59,7 @@ class CaseLoads:
     """The reactions of one case, with the dynamics behind them where a mechanism made them.
 
     note: how the loads came about. at: reactions at other times (T,) s of the same motion. range:
-    over the ranges of an impulse.
+    over the ranges of an impulse. leg: of a spatial leg.
     """
 
     reactions: Reactions
@@ -64,6 +67,7 @@ class CaseLoads:
     note: str = ""
     at: Callable[[Floats], Reactions] | None = None
     range: ImpulseRange | None = None
+    leg: LegDynamics | None = None
 
 
 def case_loads(study: Study, name: str, mechanism: Linkage | None) -> CaseLoads:
@@ -72,6 +76,8 @@ def case_loads(study: Study, name: str, mechanism: Linkage | None) -> CaseLoads:
     try:
         if isinstance(case, GivenCase):
             return CaseLoads(_given(study, name, case))
+        if isinstance(case, LegCase):
+            return _leg(study, name, case)
         assert mechanism is not None
         if isinstance(case, MotionCase):
             return _motion(study, name, case, mechanism)
@@ -106,15 +112,21 @@ def _given(study: Study, name: str, case: GivenCase) -> Reactions:
     )
 
 
+def _leg(study: Study, name: str, case: LegCase) -> CaseLoads:
+    times, found = dynamics(study, case)
+    note = f"Axes of the hinge: {AXES}. The moment about z is the actuator's, not the pin's."
+    return CaseLoads(hinge_reactions(study, name, times, found), note=note, leg=found)
+
+
 def _motion(study: Study, name: str, case: MotionCase, mechanism: Linkage) -> CaseLoads:
     course = laws(study)
     applied, note = _applied(study, case, mechanism)
 
-    def dynamics(times: Floats) -> Dynamics:
+    def solved(times: Floats) -> Dynamics:
         return motion_reactions(name, move(mechanism, course, times), applied)
 
-    found = dynamics(np.linspace(0.0, span(study), case.samples))
-    return CaseLoads(found.reactions, found, note, lambda times: dynamics(times).reactions)
+    found = solved(np.linspace(0.0, span(study), case.samples))
+    return CaseLoads(found.reactions, found, note, lambda times: solved(times).reactions)
 
 
 def _held(study: Study, name: str, case: StaticCase | InstantCase, mechanism: Linkage) -> CaseLoads:

@@ -10,7 +10,7 @@ from pinstress.limits import require_built
 from pinstress.mechanism import laws, linkage, span, state
 from pinstress.pins import pin as pin_of
 from pinstress.published import read_published
-from pinstress.schema import GivenCase, MotionCase
+from pinstress.schema import GivenCase, LegCase, MotionCase
 from pinstress.study import Study
 
 
@@ -79,11 +79,14 @@ def _mechanism(study: Study, mechanism: Linkage) -> list[str]:
 
 
 def _case(study: Study, name: str, mechanism: Linkage | None) -> str:
-    case = study.table.case[name]
+    case, table = study.table.case[name], study.table.spatial_leg
     if isinstance(case, GivenCase):
         reactions = case_loads(study, name, None).reactions
         many = f"{len(reactions)} instants" if reactions.times is not None else "one instant"
         return f"given, {many}, connections {', '.join(reactions.connections)}"
+    if isinstance(case, LegCase):
+        assert table is not None
+        return f"spatial leg, {case.samples} instants over {table.fold.duration:g} s"
     assert mechanism is not None
     loads = ", ".join(f"{load.body}" for load in case.apply)
     if isinstance(case, MotionCase):

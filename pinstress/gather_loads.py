@@ -18,6 +18,26 @@ from pinstress.published import Published
 from pinstress.study import Study
 from reports import results as plain
 
+LEG_VECTORS = {  # of loads.LegDynamics, and what they are
+    "wheel_omega": "omega",
+    "wheel_alpha": "alpha",
+    "v_C": "v",
+    "v_D": "v",
+    "a_C": "a",
+    "a_D": "a",
+    "coriolis_C": "a",
+    "p_leg": "p",
+    "p_leg_rate": "p_rate",
+    "p_wheel": "p",
+    "p_wheel_rate": "p_rate",
+    "L_leg": "L",
+    "L_leg_rate": "L_rate",
+    "L_wheel": "L",
+    "L_wheel_rate": "L_rate",
+    "F_B": "p_rate",
+    "M_B": "L_rate",
+}
+
 
 def mechanics(study: Study, loads: dict[str, CaseLoads], published: Published) -> dict[str, Any]:
     """The parts of plain.Results that need no stresses."""
@@ -29,6 +49,7 @@ def mechanics(study: Study, loads: dict[str, CaseLoads], published: Published) -
         "motion": tuple(_motion(study, n, d) for n, d in made.items()),
         "motion_check": motion_check(study, loads, published),
         "published": published_values(study, loads, published),
+        "legs": tuple(_leg(study, n, c) for n, c in loads.items() if c.leg is not None),
     }
 
 
@@ -152,6 +173,35 @@ def _motion(study: Study, name: str, dynamics: Dynamics) -> plain.LinkageMotion:
             violation=powers.violation,
         ),
     )
+
+
+def _leg(study: Study, name: str, case: CaseLoads) -> plain.LegTable:
+    s, found, times = study.system, case.leg, case.reactions.times
+    assert found is not None
+    assert times is not None
+    momentum = s.factor("force") * s.factor("time")
+    units = {
+        "omega": ("rad/s", 1.0),
+        "alpha": ("rad/s^2", 1.0),
+        "v": (f"{s.length}/{s.time}", s.factor("velocity")),
+        "a": (f"{s.length}/{s.time}^2", s.factor("acceleration")),
+        "p": (f"{s.force} {s.time}", momentum),
+        "p_rate": (s.force, s.factor("force")),
+        "L": (f"{s.force} {s.length} {s.time}", momentum * s.factor("length")),
+        "L_rate": (f"{s.force} {s.length}", s.factor("energy")),
+    }
+    vectors = {}
+    for key, kind in LEG_VECTORS.items():
+        unit, factor = units[kind]
+        vectors[key] = (getattr(found, key) / factor, unit)
+    scalars = {
+        "beta": (np.degrees(found.motion.beta), "deg"),
+        "actuator": (found.actuator / s.factor("energy"), f"{s.force} {s.length}"),
+        "spin_moment": (found.spin_moment / s.factor("energy"), f"{s.force} {s.length}"),
+        "kinetic_energy": (found.kinetic_energy / s.factor("energy"), f"{s.force} {s.length}"),
+    }
+    axes = "x' to the aircraft's right, y' ahead, z' up from the slope"
+    return plain.LegTable(name, times / s.factor("time"), vectors, scalars, axes)
 
 
 def _joints_to_draw(linkage: Linkage, body: str) -> tuple[str, ...]:

@@ -21,6 +21,7 @@ from pinstress.quantities import (
     Weight,
     positive,
 )
+from pinstress.schema_leg import SpatialLegTable
 from pinstress.schema_mechanism import MechanismTable
 
 
@@ -165,6 +166,13 @@ class InstantCase(MechanismCase):
     acceleration: Coordinates = 0.0
 
 
+class LegCase(CaseTable):
+    """The leg that folds in space, over its fold."""
+
+    kind: Literal["spatial_leg"]
+    samples: Annotated[int, Field(ge=2, le=100_001)] = 201
+
+
 class AnalysisTable(Table):
     """What is asked of the analysis."""
 
@@ -217,12 +225,14 @@ class StudyTable(Table):
         dict[
             Name,
             Annotated[
-                GivenCase | MotionCase | StaticCase | InstantCase, Field(discriminator="kind")
+                GivenCase | MotionCase | StaticCase | InstantCase | LegCase,
+                Field(discriminator="kind"),
             ],
         ],
         Field(min_length=1),
     ]
     mechanism: MechanismTable | None = None
+    spatial_leg: SpatialLegTable | None = None
     analysis: AnalysisTable = AnalysisTable()
     beam_check: BeamCheckTable | None = None
     motion_check: MotionCheckTable | None = None

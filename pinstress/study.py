@@ -14,7 +14,7 @@ from pydantic import ValidationError
 
 from pinstress.errors import InputError
 from pinstress.quantities import KINDS
-from pinstress.schema import GivenCase, MotionCase, StudyTable
+from pinstress.schema import GivenCase, LegCase, MotionCase, StudyTable
 from pinstress.schema_mechanism import MechanismTable, SliderDrive
 from pinstress.units import SYSTEMS, UnitSystem
 
@@ -172,6 +172,9 @@ def _cross_references(table: StudyTable) -> Iterable[str]:
                     yield f"case.{name}.forces: no pin has a connection {connection!r}; " + _near(
                         connection, bears
                     )
+        elif isinstance(case, LegCase):
+            if table.spatial_leg is None:
+                yield f"case.{name}: kind 'spatial_leg' needs a [spatial_leg]"
         elif table.mechanism is None:
             yield f"case.{name}: kind {case.kind!r} needs a [mechanism]"
     yield from _mechanism_references(table, bears)
@@ -204,7 +207,7 @@ def _mechanism_references(table: StudyTable, bears: dict[str, str]) -> Iterable[
     if mechanism is None:
         return
     have = {c for joint in mechanism.joint.values() for c in joint.connections}
-    driven = any(not isinstance(case, GivenCase) for case in table.case.values())
+    driven = any(not isinstance(case, GivenCase | LegCase) for case in table.case.values())
     for connection, pin in bears.items():
         if driven and connection not in have:
             yield (

@@ -223,6 +223,19 @@ class MotionCheck:
 
 
 @dataclass(frozen=True)
+class LegTable:
+    """The dynamics of a spatial leg: vectors (T, 3) and scalars (T,) by name with their units;
+    axes: of the components.
+    """
+
+    case: str
+    time: Floats
+    vectors: dict[str, tuple[Floats, str]]
+    scalars: dict[str, tuple[Floats, str]]
+    axes: str
+
+
+@dataclass(frozen=True)
 class PublishedValue:
     """A published number with ours: of a `quantity` of what is called `name` in a case (at a time,
     or None), in `unit`; reason: why they differ.
@@ -294,6 +307,7 @@ class Results:
     beam_check: BeamCheck | None = None
     motion_check: MotionCheck | None = None
     published: tuple[PublishedValue, ...] = ()
+    legs: tuple[LegTable, ...] = ()
     provenance: tuple[Provenance, ...] = ()
     published_source: str = ""
     assumptions: tuple[str, ...] = ()
