@@ -98,12 +98,18 @@ def _slider(name: str, s: SliderTable, at: dict[str, Point]) -> Slider:
 
 def _turn(study: Study, drive: RotaryDrive, at: dict[str, Point]) -> Turn:
     """The driven angle; of its values a turn apart, the drawn one is nearest to the start."""
-    (x1, y1), (x2, y2) = (at[j] for j in drive.line)
-    drawn = math.atan2(y2 - y1, x2 - x1)
+    drawn = _direction(drive.line, at)
+    if drive.against_line is not None:
+        drawn -= _direction(drive.against_line, at)
     start = drive.start if drive.law != "table" else _table(study, drive).values[0]
     if start is not None:
         drawn += 2.0 * math.pi * round((start - drawn) / (2.0 * math.pi))
     return Turn(drive_name(drive), drive.body, drawn, drive.against)
+
+
+def _direction(line: tuple[str, str], at: dict[str, Point]) -> float:
+    (x1, y1), (x2, y2) = (at[j] for j in line)
+    return math.atan2(y2 - y1, x2 - x1)
 
 
 def _body(

@@ -219,8 +219,8 @@ class StudyTable(Table):
 
     title: str
     units: Literal["in-lbf-s", "mm-N-s", "m-N-s"]
-    material: Annotated[dict[str, MaterialTable], Field(min_length=1)]
-    pin: Annotated[dict[Name, PinTable], Field(min_length=1)]
+    material: dict[str, MaterialTable] = {}
+    pin: dict[Name, PinTable] = {}
     case: Annotated[
         dict[
             Name,

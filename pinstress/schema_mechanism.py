@@ -165,14 +165,22 @@ class SliderDrive(LawTable):
 
 class RotaryDrive(LawTable):
     """A drive of a body's angle: the direction of the line from one of its joints to another,
-    counter-clockwise from x (against that of the body `against`, if given).
+    counter-clockwise from x; or, for a drive between two bodies, from the line `against_line` of
+    the body `against`.
     """
 
     body: str
     line: tuple[str, str]
     against: str = "ground"
+    against_line: tuple[str, str] | None = None
     start: Angle | None = None
     end: Angle | None = None
+
+    @model_validator(mode="after")
+    def _both(self) -> "RotaryDrive":
+        if (self.against == "ground") != (self.against_line is None):
+            raise ValueError("against (a body) and against_line (two of its joints) go together")
+        return self
 
 
 def _kind_of_drive(value: object) -> str:

@@ -15,7 +15,7 @@ from pydantic import ValidationError
 from pinstress.errors import InputError
 from pinstress.quantities import KINDS
 from pinstress.schema import GivenCase, LegCase, MotionCase, StudyTable
-from pinstress.schema_mechanism import MechanismTable, SliderDrive
+from pinstress.schema_mechanism import MechanismTable, RotaryDrive, SliderDrive
 from pinstress.units import SYSTEMS, UnitSystem
 
 
@@ -198,8 +198,12 @@ def named_joints(mechanism: MechanismTable) -> Iterable[tuple[str, str]]:
         for joint in body.bar.joints if body.bar is not None else ():
             yield f"body.{name}.bar.joints", joint
     for i, drive in enumerate(mechanism.drive, 1):
-        for joint in () if isinstance(drive, SliderDrive) else drive.line:
+        for joint in () if isinstance(drive, SliderDrive) else _lines(drive):
             yield f"drive[{i}].line" if len(mechanism.drive) > 1 else "drive.line", joint
+
+
+def _lines(drive: RotaryDrive) -> tuple[str, ...]:
+    return drive.line + (drive.against_line or ())
 
 
 def _mechanism_references(table: StudyTable, bears: dict[str, str]) -> Iterable[str]:

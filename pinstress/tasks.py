@@ -40,6 +40,10 @@ def tasks(study: Study, pins: list[str], loads: dict[str, CaseLoads]) -> list[Ta
             task = _task(study, pin, clamps, loads)
             if task.loads:
                 out.append(task)
+    if not study.table.pin:
+        raise InputError(
+            f"{study.path}: the study has no pins; pinstress loads gives the reactions alone"
+        )
     if not out:
         raise InputError(f"{study.path}: none of the cases loads any of the pins")
     return out

@@ -1,0 +1,175 @@
+"""Mechanisms in study files: places by distances, bars, several drives, tables, and mistakes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pinstress import InputError, load_study
+from pinstress.build import case_loads
+from pinstress.check import describe
+from pinstress.mechanism import laws, linkage
+
+STUDIES = Path(__file__).parents[2] / "studies"
+BOWMAN = (STUDIES / "bowman2019.toml").read_text(encoding="utf-8").replace("bowman2019/", "")
+CRANK = (STUDIES / "slider_crank.toml").read_text(encoding="utf-8")
+
+
+def write(tmp_path: Path, text: str) -> Path:
+    (tmp_path / "published.csv").write_bytes((STUDIES / "bowman2019/published.csv").read_bytes())
+    path = tmp_path / "study.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def every_case(path: Path) -> None:
+    study = load_study(path)
+    drawn = linkage(study)
+    for case in study.table.case:
+        case_loads(study, case, drawn)
+
+
+@pytest.mark.parametrize("name", ["bowman2019", "matrix_four_bar", "slider_crank", "kuleuven2014"])
+def test_every_study_that_ships_is_described(name: str) -> None:
+    text = describe(load_study(STUDIES / f"{name}.toml"))
+    assert "case " in text
+    assert "pin " in text
+
+
+def test_check_says_what_the_four_bar_is() -> None:
+    text = describe(load_study(STUDIES / "bowman2019.toml"))
+    assert "four-bar O2-A-B-O4: crank-rocker (Grashof), assembled open" in text
+    assert "mobility 1;" in text
+
+
+@pytest.mark.parametrize(
+    ("text", "old", "new", "message"),
+    [
+        (BOWMAN, "distances = [30, 26]", "distances = [3, 4]", "no point is at these distances"),
+        (BOWMAN, 'origins = ["A", "O4"]', 'origins = ["A", "B"]', "from each other in a circle"),
+        (BOWMAN, 'origins = ["A", "O4"]', 'origins = ["A", "Q"]', "there is no joint 'Q'"),
+        (BOWMAN, 'side = "left"', 'side = "up"', "'left' or 'right'"),
+        (BOWMAN, 'angle = "315 deg"', "angle = 315", "315 needs its unit.*45 deg"),
+        (BOWMAN, 'line = ["O2", "A"]', 'line = ["O2", "X"]', "drive.line: no joint 'X'"),
+        (BOWMAN, 'body = "crank"', 'body = "krank"', "no body 'krank'; did you mean 'crank'"),
+        (BOWMAN, 'velocity = "0.824 rad/s"', "velocity = 0.824", "0.824 needs its unit"),
+        (BOWMAN, 'law = "cycloidal"', 'law = "cycloid"', "'cosine', 'cycloidal'"),
+        (BOWMAN, 'value = "360 deg"', 'value = "360 in"', "not a angle|not an angle"),
+        (BOWMAN, 'position = "315 deg"', "position = { arm = 3 }", "no drive 'arm'; there are"),
+        (CRANK, 'duration = 0.25 ', "samples = 4", "unknown key 'samples'"),
+        (CRANK, "direction = [1, 0]", "direction = [0, 0]", "must not be zero"),
+        (CRANK, "section = [40, 20],", "", "give either diameter or section"),
+        (CRANK, "direction = [1, 0]", "direction = [0, 1]", "still move|dead point|can still"),
+        (CRANK, 'law = "constant"', 'law = "table"', 'needs table = "file.csv"'),
+        (CRANK, 'end = "380 deg"', "", "needs start, end and duration"),
+    ],
+)  # fmt: skip
+def test_each_mistake_is_told(tmp_path: Path, text: str, old: str, new: str, message: str) -> None:
+    assert old in text
+    path = write(tmp_path, text.replace(old, new, 1))
+    with pytest.raises(InputError, match=message) as caught:
+        every_case(path)
+    assert str(path) in str(caught.value)
+
+
+def test_jamming_is_told_with_time_and_remedy() -> None:
+    study = load_study(STUDIES / "slider_crank_jammed.toml")
+    with pytest.raises(
+        InputError, match=r"friction jams slider guide at t = .* lower the friction"
+    ):
+        case_loads(study, "turn", linkage(study))
+
+
+def test_a_motion_needs_a_course(tmp_path: Path) -> None:
+    text = CRANK
+    for line in ('start = "20 deg"\n', 'end = "380 deg"\n'):
+        text = text.replace(line, "")
+    text = text.replace("duration = 0.25                       # 240 turns a minute\n", "")
+    with pytest.raises(InputError, match=r"case.turn: a motion needs start, end and duration"):
+        load_study(write(tmp_path, text))
+
+
+def test_a_drive_may_follow_a_table(tmp_path: Path) -> None:
+    times = np.linspace(0.0, 0.25, 41)
+    rows = "\n".join(f"{t},{20 + 360 * t / 0.25}" for t in times)
+    (tmp_path / "turn.csv").write_text(f"time,position_deg\n{rows}\n", encoding="utf-8")
+    text = CRANK.replace('law = "constant"', 'law = "table"\ntable = "turn.csv"')
+    for line in ('start = "20 deg"\n', 'end = "380 deg"\n'):
+        text = text.replace(line, "")
+    text = text.replace("duration = 0.25                       # 240 turns a minute\n", "")
+    study = load_study(write(tmp_path, text))
+    (law,) = laws(study)
+    _, rate, _ = law(np.array([0.1]))
+    assert rate[0] == pytest.approx(2 * np.pi / 0.25)
+    (tmp_path / "turn.csv").write_text("time,position\n0,1\n", encoding="utf-8")
+    with pytest.raises(InputError, match="column 'position_deg' is missing"):
+        laws(study)
+
+
+def test_two_drives_in_a_row(tmp_path: Path) -> None:
+    """An arm of two bars: first the boom turns, then the stick against it."""
+    text = """
+title = "arm"
+units = "m-N-s"
+
+[case.dig]
+kind = "motion"
+samples = 11
+
+[case.held]
+kind = "static"
+position = { boom = "40 deg", stick = "-60 deg" }
+
+[[mechanism.drive]]
+body = "boom"
+line = ["O", "P"]
+start = "30 deg"
+end = "50 deg"
+duration = 1
+
+[[mechanism.drive]]
+body = "stick"
+against = "boom"
+against_line = ["O", "P"]
+line = ["P", "Q"]
+start = "-30 deg"
+end = "-75 deg"
+duration = 1
+begin = 1
+
+[mechanism.joint.O]
+at = [0, 0]
+fixed_in = "ground"
+connections = { O = "boom" }
+
+[mechanism.joint.P]
+at = { origin = "O", distance = 2, angle = "30 deg" }
+fixed_in = "boom"
+connections = { P = "stick" }
+
+[mechanism.joint.Q]
+at = { origin = "P", distance = 1, angle = "0 deg" }
+fixed_in = "stick"
+connections = { Q = "load" }
+
+[mechanism.body.boom]
+bar = { joints = ["O", "P"], diameter = 0.1, density = 7850 }
+
+[mechanism.body.stick]
+bar = { joints = ["P", "Q"], diameter = 0.1, density = 7850 }
+
+[mechanism.body.load]
+mass = 50
+"""
+    study = load_study(write(tmp_path, text))
+    found = case_loads(study, "dig", linkage(study)).dynamics
+    assert found is not None
+    angle = np.degrees(found.motion.drives)
+    assert angle[0] == pytest.approx([30.0, -30.0])
+    assert angle[5] == pytest.approx([50.0, -30.0])
+    assert angle[-1] == pytest.approx([50.0, -75.0])
+    q, _, _ = found.motion.joint("Q")
+    wanted = 2 * np.exp(1j * np.radians(50)) + np.exp(-1j * np.radians(25))
+    assert q[-1] @ [1.0, 1.0j] == pytest.approx(wanted)
