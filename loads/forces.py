@@ -279,9 +279,7 @@ class _Balance:
         grips = np.abs(np.diagonal(feedback[t]))
         which = self.loops.linkage.sliders[owner[int(grips.argmax())]]
         when = f"t = {self.motion.times[t]:.6g} s" if len(self.motion) > 1 else ""
-        return JammingError(
-            error.instants, error.none, float(grips.max()), when, f"slider {which.name}"
-        )
+        return JammingError(error.instants, error.none, error.grip, when, f"slider {which.name}")
 
     def _reactions(self, case: str, f: Floats, timed: bool) -> Reactions:
         motion, linkage = self.motion, self.motion.linkage

@@ -25,7 +25,8 @@ class JammingError(LinkageError):
     """Friction has no answer, or several.
 
     instants: numbers of those concerned. none: whether there is none at the first of them. grip:
-    largest part of a contact force that its own friction brings back (1 or more can jam).
+    how much of themselves the contact forces bring back by their friction there (from 1 on it can
+    jam).
     """
 
     def __init__(
@@ -70,6 +71,6 @@ def contact_forces(free: Floats, feedback: Floats) -> Floats:
         answers += new
     wrong = np.flatnonzero(answers != 1)
     if len(wrong):
-        grip = float(np.abs(np.diagonal(feedback[wrong], axis1=1, axis2=2)).max())
+        grip = float(np.abs(np.linalg.eigvals(np.abs(feedback[wrong[0]]))).max())
         raise JammingError(wrong, bool(answers[wrong[0]] == 0), grip)
     return found
