@@ -117,6 +117,26 @@ def run(
 
 
 @commands.command(
+    help=example("pinstress loads studies/bowman2019.toml")
+    + "\nThe mechanism alone: reactions, drives, motion, plots and an animation of every case."
+)
+@click.argument("study", type=click.Path(path_type=Path))
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="Folder to write [out/<study's name>-loads]."
+)
+@click.option("--cases", callback=_names, metavar="X,Y", help="These cases only.")
+@click.option("--no-pictures", is_flag=True, help="No plots: faster.")
+def loads(study: Path, out: Path | None, cases: list[str] | None, no_pictures: bool) -> int:
+    from pinstress.study import load_study
+
+    loaded = load_study(study)
+    from pinstress.write import loads_and_write
+
+    directory = out or Path("out") / f"{loaded.name}-loads"
+    return loads_and_write(loaded, directory, plots=not no_pictures, cases=cases)
+
+
+@commands.command(
     help=example("pinstress check studies/grenier2008.toml")
     + "\nRead and validate everything without solving; say what would be run."
 )

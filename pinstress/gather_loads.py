@@ -9,6 +9,7 @@ import numpy as np
 from loads import GROUND, Dynamics, Linkage, Slider, energy, ledger
 from loads.linkage import Floats
 from loads.loops import pairs
+from loads.peaks import peak_forces
 from loads.transmission import transmission_angles
 from pinstress.build import CaseLoads
 from pinstress.checks import motion_check
@@ -90,6 +91,19 @@ def _reactions(
         shared=dynamics.shared if dynamics else (),
         published={c: f for (k, c), f in published.reactions.items() if k == name},
         note=case.note,
+        peaks=_peaks(study, case),
+        turn=r.turn,
+    )
+
+
+def _peaks(study: Study, case: CaseLoads) -> tuple[plain.PeakReaction, ...]:
+    if case.at is None or len(case.reactions) < 3:
+        return ()
+    unit = study.system.factor
+    found = peak_forces(case.reactions, case.at)
+    return tuple(
+        plain.PeakReaction(p.connection, p.force / unit("force"), p.time / unit("time"))
+        for p in found
     )
 
 

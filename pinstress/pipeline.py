@@ -11,8 +11,8 @@ from fea.refine import Solution, refine
 from pinstress import checks, gather
 from pinstress.build import CaseLoads, case_loads
 from pinstress.errors import InputError
-from pinstress.gather_loads import mechanics
 from pinstress.limits import require_built
+from pinstress.measures import published_values
 from pinstress.mechanism import linkage
 from pinstress.pins import material as material_of
 from pinstress.published import Published, read_published
@@ -75,7 +75,8 @@ def prepare(
     require_built(study, model or study.table.analysis.model)
     published = read_published(study)
     loads = all_loads(study, select(study.table.case, cases, "case"))
-    mechanics(study, loads, published)  # a mistake there should not wait for the stresses
+    checks.motion_check(study, loads, published)  # mistakes there should not wait for the stresses
+    published_values(study, loads, published)
     todo = tasks(study, select(study.table.pin, pins, "pin"), loads)
     check, checked = study.table.beam_check, None
     if check is not None:
@@ -119,6 +120,13 @@ def solve(
     pins, cases = list(study.table.pin), list(plan.loads)
     solutions.sort(key=lambda s: (pins.index(s[1].peak.pin), cases.index(s[1].peak.case)))
     return gather.results(study, plan.loads, solutions, beam, plan.published, plan.tolerance)
+
+
+def loads_only(study: Study, cases: Iterable[str] | None = None) -> Results:
+    """The mechanics of a study without stresses. Raises: InputError for bad input."""
+    published = read_published(study)
+    loads = all_loads(study, select(study.table.case, cases, "case"))
+    return gather.results(study, loads, [], None, published, study.table.analysis.tolerance)
 
 
 def run(study: Study, **chosen: Any) -> Results:

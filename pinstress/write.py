@@ -12,12 +12,13 @@ import click
 from rich.console import Console
 
 from pinstress.output import replacing, require_replaceable
-from pinstress.pipeline import Progress, prepare, solve
+from pinstress.pipeline import Progress, loads_only, prepare, solve
 from pinstress.study import Study
 from reports.results import Field, Results, Units
 from reports.terminal import print_safety_factors
+from reports.terminal_loads import print_loads
 from reports.vtk import render_pin, renderer_problem, write_vtu
-from reports.write import write_reports
+from reports.write import write_loads, write_reports
 
 
 def run_and_write(study: Study, directory: Path, *, pictures: bool, **chosen: Any) -> int:
@@ -48,13 +49,28 @@ def run_and_write(study: Study, directory: Path, *, pictures: bool, **chosen: An
             results = solve(plan, keep, progress)
             progress("report", 1.0)
             write_reports(results, staging, drawn, plots=pictures)
-    wide = {} if sys.stdout.isatty() else {"width": 120}  # a file has no width of its own
-    print_safety_factors(results, Console(**wide))  # type: ignore[arg-type]
+    print_safety_factors(results, _console())
     _tell_left_out(results)
     if problem is not None:
         click.echo(f"No pictures of the pins: {problem}", err=True)
     click.echo(f"Report: {directory / 'report.html'}", err=True)
     return _tell_not_reached(results)
+
+
+def loads_and_write(study: Study, directory: Path, *, plots: bool, cases: list[str] | None) -> int:
+    """The mechanics of a study into a folder; returns the exit status. Raises: InputError."""
+    require_replaceable(directory)
+    results = loads_only(study, cases)
+    with replacing(directory) as staging:
+        write_loads(results, staging, plots=plots)
+    print_loads(results, _console())
+    click.echo(f"Written: {directory}", err=True)
+    return 0
+
+
+def _console() -> Console:
+    wide = {} if sys.stdout.isatty() else {"width": 120}  # a file has no width of its own
+    return Console(**wide)  # type: ignore[arg-type]
 
 
 def _tell_left_out(results: Results) -> None:

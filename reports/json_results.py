@@ -7,8 +7,11 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from reports.numbers import finite
-from reports.results import PinResult, Results
+from reports.results import PinResult, ReactionTable, Results
+from reports.terminal_loads import largest
 
 SCHEMA = "pinstress-results/1"
 
@@ -25,6 +28,7 @@ def to_json(results: Results) -> dict[str, Any]:
         "tolerance": finite(results.tolerance),
         "versions": {name: results.versions[name] for name in sorted(results.versions)},
         "pins": [_pin(pin) for pin in results.pins],
+        "loads": [_loads(results, table) for table in results.reactions],
         "provenance": [asdict(entry) for entry in results.provenance],
     }
 
@@ -33,6 +37,33 @@ def write_json(results: Results, path: Path) -> None:
     """Write results.json: strict JSON in UTF-8 with every digit of every number."""
     text = json.dumps(to_json(results), indent=2, ensure_ascii=False, allow_nan=False)
     path.write_text(text + "\n", encoding="utf-8")
+
+
+def _loads(results: Results, table: ReactionTable) -> dict[str, Any]:
+    """One case's mechanics: largest forces, drives, and the checks that were made."""
+    moved = next((m for m in results.motion if m.case == table.case), None)
+    return {
+        "case": table.case,
+        "note": table.note,
+        "shared": list(table.shared),
+        "largest_forces": [
+            {"connection": name, "force": finite(force), "time": finite(time)}
+            for name, (force, time) in largest(table).items()
+        ],
+        "drives": [
+            {
+                "drive": d.name,
+                "kind": d.kind,
+                "largest": finite(float(np.abs(d.force).max())),
+                "mean": finite(d.mean),
+                "rms": finite(d.rms),
+            }
+            for d in results.drive
+            if d.case == table.case
+        ],
+        "power_violation": finite(moved.ledger.violation) if moved else None,
+        "largest_condition": finite(float(moved.condition.max())) if moved else None,
+    }
 
 
 def _pin(pin: PinResult) -> dict[str, Any]:

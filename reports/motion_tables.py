@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from reports.csv_files import Cell, write_csv
-from reports.results import BeamCheck, MotionCheck, ReactionTable, Results
+from reports.results import BeamCheck, Floats, MotionCheck, ReactionTable, Results
 
 REACTIONS = ("case", "time", "connection", "body", "fx", "fy", "fz", "mx", "my", "mz")
 DRIVE = (
@@ -42,6 +45,22 @@ def write_reactions(results: Results, path: Path) -> None:
     write_csv(path, REACTIONS, (row for table in results.reactions for row in _instants(table)))
 
 
+def write_reactions_pin_axes(results: Results, path: Path) -> None:
+    """Write the same in the axes of each pin, which turn with the body that carries it."""
+    turned = (
+        replace(t, forces=_in_pin_axes(t, t.forces), moments=_in_pin_axes(t, t.moments))
+        for t in results.reactions
+    )
+    write_csv(path, REACTIONS, (row for table in turned for row in _instants(table)))
+
+
+def _in_pin_axes(table: ReactionTable, vectors: Floats) -> Floats:
+    turn = np.zeros(vectors.shape[:2]) if table.turn is None else table.turn
+    c, s = np.cos(turn), np.sin(turn)
+    x, y, z = np.moveaxis(vectors, 2, 0)
+    return np.stack([c * x + s * y, c * y - s * x, z], axis=2)
+
+
 def _instants(table: ReactionTable) -> Iterator[list[Cell]]:
     for t in range(len(table.forces)):
         time = None if table.times is None else float(table.times[t])
@@ -52,11 +71,16 @@ def _instants(table: ReactionTable) -> Iterator[list[Cell]]:
 def write_drive(results: Results, path: Path) -> None:
     """Write the drive along every motion, with the case in the first column."""
     rows: Iterator[list[Cell]] = (
-        [table.case, *(float(getattr(table, name)[t]) for name in DRIVE)]
+        [
+            table.case,
+            *(float(getattr(table, name)[t]) for name in DRIVE),
+            table.name,
+            table.kind,
+        ]
         for table in results.drive
         for t in range(len(table.time))
     )
-    write_csv(path, ("case", *DRIVE), rows)
+    write_csv(path, ("case", *DRIVE, "drive", "kind"), rows)
 
 
 def write_beam_check(check: BeamCheck, path: Path) -> None:

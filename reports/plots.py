@@ -6,6 +6,7 @@ from pathlib import Path
 
 from reports.plot_checks import beam_plots, motion_plot
 from reports.plot_drive import drive_plot
+from reports.plot_leg import leg_plots
 from reports.plot_reactions import bars, motion_plots
 from reports.plot_refinement import refinement_plot
 from reports.results import PinResult, Results
@@ -21,6 +22,8 @@ def save_plots(results: Results, directory: Path) -> list[Path]:
         paths += (motion_plots if moving else bars)(table, units, directory)
     for drive in results.drive:
         paths += drive_plot(drive, units, directory)
+    for leg in results.legs:
+        paths += leg_plots(leg, units, directory)
     if results.beam_check is not None:
         paths += beam_plots(results.beam_check, units, directory)
     if results.motion_check is not None:

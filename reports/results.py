@@ -60,12 +60,22 @@ class PinResult:
 
 
 @dataclass(frozen=True)
+class PeakReaction:
+    """A connection's largest force along a motion and when, refined between the instants."""
+
+    connection: str
+    force: float
+    time: float
+
+
+@dataclass(frozen=True)
 class ReactionTable:
     """One case's forces on the pins, world axes: forces, moments (T, C, 3).
 
     times, position (T,): None without a motion. pins: (C,) the pin on which each connection bears.
     shared: connections whose forces follow the study's sharing rule. published: magnitudes by
-    connection. note: how the case came about (an impulse estimate, say).
+    connection. note: how the case came about (an impulse estimate, say). peaks: along a motion, of
+    every connection. turn: (T, C) rad, how far each pin's own axes are turned about z.
     """
 
     case: str
@@ -79,6 +89,8 @@ class ReactionTable:
     shared: tuple[str, ...] = ()
     published: dict[str, float] = field(default_factory=dict)
     note: str = ""
+    peaks: tuple[PeakReaction, ...] = ()
+    turn: Floats | None = None
 
     @property
     def magnitudes(self) -> Floats:

@@ -11,6 +11,7 @@ from reports.motion_tables import (
     write_drive,
     write_motion_check,
     write_reactions,
+    write_reactions_pin_axes,
 )
 from reports.numbers import DASH, engineering, finite, ratio, short
 from reports.published import write_published_reactions
@@ -24,6 +25,7 @@ __all__ = [
     "write_motion_check",
     "write_published_reactions",
     "write_reactions",
+    "write_reactions_pin_axes",
     "write_safety_factors",
 ]
 

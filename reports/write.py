@@ -5,7 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from reports.json_results import write_json
+from reports.leg_tables import write_legs
+from reports.linkage_tables import write_linkage
 from reports.page import write_page
+from reports.published_values import write_published_values
 from reports.results import Results
 from reports.tables import (
     write_beam_check,
@@ -13,6 +16,7 @@ from reports.tables import (
     write_motion_check,
     write_published_reactions,
     write_reactions,
+    write_reactions_pin_axes,
     write_safety_factors,
 )
 
@@ -24,21 +28,32 @@ def write_reports(
 
     pictures: of pins, by pin and case. plots: whether to draw them, which takes seconds.
     """
-    directory.mkdir(parents=True, exist_ok=True)
-    write_json(results, directory / "results.json")
+    drawn = write_loads(results, directory, plots)
     write_safety_factors(results, directory)
-    write_published_reactions(results, directory)
-    if results.reactions:
-        write_reactions(results, directory / "reactions.csv")
-    if results.drive:
-        write_drive(results, directory / "drive.csv")
     if results.beam_check is not None:
         write_beam_check(results.beam_check, directory / "beam_check.csv")
+    return write_page(results, directory, pictures, drawn)
+
+
+def write_loads(results: Results, directory: Path, plots: bool = True) -> list[Path]:
+    """Write results.json and all that needs no stresses; returns the plots."""
+    directory.mkdir(parents=True, exist_ok=True)
+    write_json(results, directory / "results.json")
+    write_published_reactions(results, directory)
+    write_published_values(results, directory)
+    if results.reactions:
+        write_reactions(results, directory / "reactions.csv")
+        write_reactions_pin_axes(results, directory / "reactions_pin_axes.csv")
+    if results.drive:
+        write_drive(results, directory / "drive.csv")
+    if results.motion:
+        write_linkage(results, directory)
+    if results.legs:
+        write_legs(results.legs, directory / "leg.csv")
     if results.motion_check is not None:
         write_motion_check(results.motion_check, directory / "motion_check.csv")
-    drawn: list[Path] = []
-    if plots:
-        from reports.plots import save_plots
+    if not plots:
+        return []
+    from reports.plots import save_plots
 
-        drawn = save_plots(results, directory / "plots")
-    return write_page(results, directory, pictures, drawn)
+    return save_plots(results, directory / "plots")
