@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from benchmarks import accuracy, motion_accuracy, speed
+from benchmarks import accuracy, motion_accuracy, publications, speed
 
 ALL = {
     "motion": speed.motion,
@@ -13,6 +13,7 @@ ALL = {
     "solvers": speed.solvers,
     "fillet": accuracy.fillet,
     "demo": speed.demo,
+    "publications": publications.publications,
 }
 
 

@@ -1,0 +1,233 @@
+"""docs/publications.md: every published number beside ours, from the studies themselves."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from loads import LegDynamics, leg_dynamics
+from loads.spatial_leg import t1, t2
+from pinstress import load_study, run
+from pinstress.leg import dynamics
+from pinstress.pipeline import loads_only
+from pinstress.schema import LegCase
+from reports import markdown
+from reports.numbers import engineering, ratio
+from reports.published import published_reactions
+from reports.published_values import published_table
+from reports.results import Results
+
+ROOT = Path(__file__).parent.parent
+STUDIES = ROOT / "studies"
+PAGE = ROOT / "docs" / "publications.md"
+HEAD = """# The publications, beside ours
+
+Written by `python -m benchmarks publications` from the studies; nothing here is typed. Ratios are
+ours over theirs.
+"""
+UNKNOWNS = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y", "T2")
+
+
+def publications() -> str:
+    """Write the page, the stresses included, which takes minutes; returns where it is."""
+    stresses = run(load_study(STUDIES / "grenier2008.toml"))
+    PAGE.write_text(page(stresses), encoding="utf-8")
+    return f"written: {PAGE.relative_to(ROOT)}"
+
+
+def page(stresses: Results) -> str:
+    """The page; `stresses` are the results of the whole run of grenier2008.toml."""
+    parts = [HEAD, grenier_peaks(stresses), *mechanics()]
+    return "\n".join(part.rstrip() + "\n" for part in parts)
+
+
+def mechanics() -> list[str]:
+    """The parts that need no stresses."""
+    return [grenier(), bowman(), four_bar(), leg()]
+
+
+def grenier_peaks(results: Results) -> str:
+    """Maximum von Mises stress and factor of safety by pin and case."""
+    rows = [
+        [
+            p.pin,
+            p.case,
+            engineering(p.published_max_von_mises),
+            engineering(p.max_von_mises),
+            engineering(ratio(p.max_von_mises, p.published_max_von_mises), 3),
+            engineering(p.published_safety_factor),
+            engineering(p.safety_factor),
+            p.verdict,
+        ]
+        for p in results.pins
+    ]
+    head = (
+        *("pin", "case", "published [psi]", "ours [psi]", "ratio"),
+        *("published factor", "our factor", "verdict"),
+    )
+    table = markdown.table(head, rows, (False, False, True, True, True, True, True, False))
+    return (
+        f"## Landing-gear pins: {results.published_source}\n\n{table}\n\n"
+        "Both peaks sit at sharp corners and clamp edges, where no value exists; "
+        "[](grenier2008.md) says pin by pin what the ratios hang on.\n"
+    )
+
+
+def grenier() -> str:
+    """Reactions in landing and the motion of pin F."""
+    results = loads_only(load_study(STUDIES / "grenier2008.toml"))
+    rows = [
+        [r.connection, *(engineering(x, 7) for x in (r.published, r.ours)), f"{r.ratio:.6f}"]
+        for r in published_reactions(results)
+    ]
+    forces = markdown.table(
+        ("connection", "published [lbf]", "ours [lbf]", "ratio"), rows, (False, True, True, True)
+    )
+    check = results.motion_check
+    assert check is not None
+    moved = markdown.table(
+        ("time [s]", "speed, published [in/s]", "ours", "acceleration, published [in/s²]", "ours "),
+        [[f"{t:g}", *(engineering(x, 5) for x in (v, ov, a, oa))] for t, v, a, ov, oa in
+         check.published],
+        (True,) * 5,
+    )  # fmt: skip
+    return (
+        "### Reactions in landing (table 4)\n\n"
+        f"{forces}\n\nThe linkage is rebuilt from the printed forces; J3 alone, the weight of a body "
+        f"that the drawings would show, hangs on a small difference.\n\n### Motion of pin F (appendix A-5)\n\n{moved}\n"
+    )
+
+
+def bowman() -> str:
+    """The snapshot, and the printed system with its errors put right one after the other."""
+    results = loads_only(load_study(STUDIES / "bowman2019.toml"))
+    retract = next(m for m in results.motion if m.case == "retract")
+    (drive,) = results.drive
+    return (
+        f"## Four-bar landing gear: {results.published_source}\n\n"
+        f"{published_table(results.published)}\n\n"
+        "### The printed system, corrected step by step\n\n"
+        f"{markdown.table(('correction', *UNKNOWNS), _corrected(results), (False, *[True] * 9))}"
+        "\n\nForces in lbf, the torque in lbf in. The last row is ours, from geometry and the "
+        "crank's motion. Over the whole motion its powers balance to "
+        f"{10.0 ** np.ceil(np.log10(max(retract.ledger.violation, 1e-12))):.0e}; torque mean {engineering(drive.mean)}, RMS "
+        f"{engineering(drive.rms)} lbf in. The publication itself says that its snapshot and its "
+        "sweep disagree; the sweep's program takes r14x from r32y and does not divide A12 by 12.\n"
+    )
+
+
+def _table(study: str, name: str) -> list[dict[str, str]]:
+    path = STUDIES / study / name
+    return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
+
+
+def _corrected(results: Results) -> list[list[str]]:
+    table = _table("bowman2019", "printed_system.csv")
+    A = np.array([[float(r[u]) for u in UNKNOWNS] for r in table])
+    b = np.array([float(r["right"]) for r in table])
+
+    def row(name: str, values: Any) -> list[str]:
+        return [name, *(f"{v:.2f}" for v in values)]
+
+    rows = [row("as printed", np.linalg.solve(A, b))]
+    for r in _table("bowman2019", "corrections.csv"):
+        i, value = int(r["row"]) - 1, float(r["right_value"])
+        if r["column"] == "right":
+            b[i] = value
+        else:
+            A[i, UNKNOWNS.index(r["column"])] = value
+        place = "right-hand side" if r["column"] == "right" else r["column"]
+        rows.append(row(f"row {r['row']}, {place}: {r['error']}", np.linalg.solve(A, b)))
+    ours = {v.name + v.quantity[-1]: v.ours for v in results.published if "force" in v.quantity}
+    torque = next(v.ours for v in results.published if v.quantity == "drive_torque")
+    return [*rows, row("ours", [*(ours[u] for u in UNKNOWNS[:-1]), torque])]
+
+
+def four_bar() -> str:
+    """The printed solution, and what the crank's motion alone gives."""
+    results = loads_only(load_study(STUDIES / "matrix_four_bar.toml"))
+    return (
+        f"## Four-bar worked by matrices: {results.published_source}\n\n"
+        "`printed` works with the print's own inertia forces and couples (d'Alembert); `motion` "
+        f"from geometry and the crank's motion alone.\n\n{published_table(results.published)}\n"
+    )
+
+
+def leg() -> str:
+    """The wrong terms of the publication, each with its value and the right one's."""
+    found = _halfway()
+    symbols = _symbols(found)
+    rows = []
+    for r in _table("kuleuven2014", "errors.csv"):
+        printed, right = (_value(r[key], symbols) for key in ("printed", "right"))
+        rows.append(
+            [
+                *(r["equation"], r["quantity"], f"`{r['printed']}`", printed),
+                *(f"`{r['right']}`", right, r["why"]),
+            ]
+        )
+    head = ("equation", "quantity", "printed term", "value", "right term", "value ", "why")
+    table = markdown.table(head, rows, (False, False, False, True, False, True, False))
+    return (
+        "## Leg in space with a spinning wheel: KU Leuven (2014)\n\n"
+        "The publication has no numbers; its wrong terms are evaluated halfway through the fold of "
+        "`studies/kuleuven2014.toml` (SI, heading 0). Every right term is tested against numerical "
+        f"differentiation of the motion (`tests/validation/test_kuleuven2014.py`).\n\n{table}\n"
+    )
+
+
+def _halfway() -> LegDynamics:
+    study = load_study(STUDIES / "kuleuven2014.toml")
+    case = study.table.case["fold"]
+    assert isinstance(case, LegCase)
+    _, found = dynamics(study, case)
+    middle = slice(case.samples // 2, case.samples // 2 + 1)
+    motion = found.motion
+    here = {
+        name: getattr(motion, name)[middle]
+        for name in motion.__dataclass_fields__
+        if name != "heading"
+    }
+    return leg_dynamics(found.leg, replace(motion, **here, heading=None))
+
+
+def _symbols(found: LegDynamics) -> dict[str, Any]:
+    """What the terms of errors.csv are written in."""
+    leg, motion = found.leg, found.motion
+    L = found.to_leg(found.L_wheel)[0]
+    names: dict[str, Any] = {
+        **{key: getattr(motion, key)[0] for key in motion.__dataclass_fields__ if key != "heading"},
+        **{key: getattr(leg, key) for key in ("l1", "l2", "l3", "l4")},
+        **{key: getattr(found, key)[0] for key in ("r_BC", "r_BD", "v_B", "v_C", "v_D")},
+        **{key: getattr(found, key)[0] for key in ("a_C", "a_D")},
+        "alpha": leg.slope,
+        "m_D": leg.leg_mass,
+        "m_C": leg.wheel_mass,
+        "G_D": found.weight_leg[0],
+        "G_C": found.weight_wheel[0],
+        "dL_D": found.L_leg_rate[0],
+        "dL_C": found.L_wheel_rate[0],
+        "T1": t1(leg.slope),
+        "T2": t2(motion.beta)[0],
+        "cross": np.cross,
+        "inv": np.linalg.inv,
+        "sin": np.sin,
+        "cos": np.cos,
+    }
+    for i, axis in enumerate("xyz"):
+        names[f"L_{axis}"] = L[i]
+        names[f"I_{axis}"] = leg.wheel_inertia[i, i]
+        names[f"J_{axis}"] = leg.leg_inertia[i, i]
+    return names
+
+
+def _value(term: str, symbols: dict[str, Any]) -> str:
+    """A term's value; a vector's components; nothing for a matrix."""
+    value = np.asarray(eval(term, {"__builtins__": {}}, symbols))  # our own table, not a user's
+    if value.ndim == 2:
+        return ""
+    return "; ".join(engineering(float(x)) for x in np.atleast_1d(value))

@@ -1,0 +1,12 @@
+"""docs/publications.md is what its command writes (the stresses take minutes and are left out)."""
+
+from __future__ import annotations
+
+from benchmarks.publications import HEAD, PAGE, mechanics
+
+
+def test_the_page_is_up_to_date() -> None:
+    text = PAGE.read_text(encoding="utf-8")
+    assert text.startswith(HEAD)
+    for part in mechanics():
+        assert part.rstrip() in text, "run: python -m benchmarks publications"
