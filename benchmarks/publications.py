@@ -97,8 +97,9 @@ def grenier() -> str:
     )  # fmt: skip
     return (
         "### Reactions in landing (table 4)\n\n"
-        f"{forces}\n\nThe linkage is rebuilt from the printed forces; J3 alone, the weight of a body "
-        f"that the drawings would show, hangs on a small difference.\n\n### Motion of pin F (appendix A-5)\n\n{moved}\n"
+        f"{forces}\n\nThe linkage is rebuilt from the printed forces; J3 alone, the weight of a "
+        "body that the drawings would show, hangs on a small difference.\n\n"
+        f"### Motion of pin F (appendix A-5)\n\n{moved}\n"
     )
 
 
@@ -107,6 +108,7 @@ def bowman() -> str:
     results = loads_only(load_study(STUDIES / "bowman2019.toml"))
     retract = next(m for m in results.motion if m.case == "retract")
     (drive,) = results.drive
+    closed = 10.0 ** np.ceil(np.log10(max(retract.ledger.violation, 1e-12)))
     return (
         f"## Four-bar landing gear: {results.published_source}\n\n"
         f"{published_table(results.published)}\n\n"
@@ -114,7 +116,7 @@ def bowman() -> str:
         f"{markdown.table(('correction', *UNKNOWNS), _corrected(results), (False, *[True] * 9))}"
         "\n\nForces in lbf, the torque in lbf in. The last row is ours, from geometry and the "
         "crank's motion. Over the whole motion its powers balance to "
-        f"{10.0 ** np.ceil(np.log10(max(retract.ledger.violation, 1e-12))):.0e}; torque mean {engineering(drive.mean)}, RMS "
+        f"{closed:.0e}; torque mean {engineering(drive.mean)}, RMS "
         f"{engineering(drive.rms)} lbf in. The publication itself says that its snapshot and its "
         "sweep disagree; the sweep's program takes r14x from r32y and does not divide A12 by 12.\n"
     )
