@@ -100,7 +100,7 @@ def beam_check(
 
 def axial_stress(fields: UnitFields, c: Floats, radius: float, angle: float, z: Floats) -> Floats:
     """Axial stress (Z,) in Pa at z (m) on the surface line at `angle` (rad) of a cylinder of
-    `radius` (m), under loads c (L,) in N: linear between the nodes of the unrolled surface.
+    `radius` (m), under loads c (L,) in N or N m: linear between the nodes of the unrolled surface.
     """
     from scipy.interpolate import LinearNDInterpolator
 

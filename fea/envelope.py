@@ -30,7 +30,7 @@ class Envelope:
 
     scatter: half its range over the directions, Pa. location: where it is (m) with the loads as
     they are. field: (S,) each surface node's largest over all instants, Pa, and coefficients: (L,)
-    loads at the governing instant, N, with the loads as they are.
+    loads at the governing instant, N or N m, with the loads as they are.
     """
 
     maximum: float
@@ -44,7 +44,7 @@ class Envelope:
 def envelope(fields: UnitFields, loads: PinLoads, directions: int = DIRECTIONS) -> Envelope:
     """Largest von Mises stress over the surface and all instants of a case.
 
-    fields: with unit loads along both x and y wherever `loads` has a force.
+    fields: with all the unit loads of which `loads` are made.
     """
     nodes = fields.surface.nodes
     s = fields.stress[nodes]

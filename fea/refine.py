@@ -90,14 +90,13 @@ def _unit_fields(
     size: MeshSize,
 ) -> UnitFields:
     """Unit fields for all that the cases load; the mesh is finer at edges of bands and clamps."""
-    axes = (0, 1, 2) if any(c.axial for c in cases) else (0, 1)
     names = tuple(dict.fromkeys(name for c in cases for name in c.surfaces))
     edges = tuple(z for name in names for z in (pin.band(name).z0, pin.band(name).z1))
     edges += tuple(z for _, z in clamp_edges(pin, held))
     mesh = solid_mesh(pin, size, tuple(dict.fromkeys(edges)))
-    return SolidModel(pin, mesh, material, held).solve(
-        tuple((name, axis) for name in names for axis in axes)
-    )
+    units = tuple(dict.fromkeys(unit for c in cases for unit in c.units))
+    units = units or ((names[0], 0),)  # when all loads are nought, so is a field times nought
+    return SolidModel(pin, mesh, material, held).solve(units)
 
 
 def _refusal(pin: Pin, clamps: tuple[str, ...], loads: PinLoads) -> str | None:
@@ -109,7 +108,7 @@ def _refusal(pin: Pin, clamps: tuple[str, ...], loads: PinLoads) -> str | None:
         return None
     return (
         f"nothing holds the pin and its loads are not in balance (resultant {force:.2g} of the "
-        f"largest force, couple {couple:.2g} of that times the length): name what holds it in "
+        f"largest load, couple {couple:.2g} of that times the length): name what holds it in "
         f"pin.{pin.name}.clamp"
     )
 

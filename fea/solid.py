@@ -1,12 +1,13 @@
 """The solid model: a pin in quadratic tetrahedra under unit loads on its bands.
 
 One factorisation per mesh; each band gets a unit force along each axis, spread as a uniform
-traction. The stress at any instant of any case is a linear combination of these unit fields.
+traction, and a unit moment about each axis where any acts. The stress at any instant of any case is
+a linear combination of these unit fields.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -18,57 +19,81 @@ from fea.elasticity import Discretisation
 from fea.linear import SolveError, factorize
 from fea.material import Material
 from fea.stress import nodal_stress, with_known_traction
-from fea.surface import Surface, held_nodes, surface, uniform_share
+from fea.surface import Patch, Surface, held_nodes, resultants, surface
 from geometry import Pin
 from geometry.solid_mesh import SolidMesh
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+UnitLoad = tuple[str, int]  # surface; axis: 0, 1, 2 a force along, 3, 4, 5 a moment about x, y, z
+
 RESULTANT_TOLERANCE = 1e-10
 
 
 @dataclass(frozen=True)
 class PinLoads:
-    """Forces on one pin in one case: forces (T, C, 3) N in the pin's axes, one per surface name."""
+    """Loads on one pin in one case, in the pin's axes: at each surface (by name) a force at its
+    middle, forces (T, C, 3) N, and moments (T, C, 3) N m, or what broadcasts to that shape.
+    """
 
     case: str
     surfaces: tuple[str, ...]
     forces: Floats
+    moments: Floats = field(default_factory=lambda: np.zeros(3))
+
+    def __post_init__(self) -> None:
+        moments = np.broadcast_to(self.moments, self.forces.shape)
+        object.__setattr__(self, "moments", moments)
 
     @property
-    def axial(self) -> bool:
-        """Whether any force has a part along the pin."""
-        return bool(np.any(self.forces[..., 2]))
+    def components(self) -> Floats:
+        """Forces and moments, (T, C, 6)."""
+        return np.concatenate([self.forces, self.moments], axis=2)
+
+    @property
+    def units(self) -> tuple[UnitLoad, ...]:
+        """The unit loads of which these are made, whichever way they are turned about z."""
+        acts = np.any(self.components, axis=0)
+        for x, y in ((0, 1), (3, 4)):
+            acts[:, x] = acts[:, y] = acts[:, x] | acts[:, y]
+        return tuple((self.surfaces[c], int(axis)) for c, axis in np.argwhere(acts))
 
     def turned(self, angle: float) -> PinLoads:
-        """The same forces, all turned about the pin's axis by `angle` (rad)."""
+        """The same loads, all turned about the pin's axis by `angle` (rad)."""
         c, s = np.cos(angle), np.sin(angle)
         about_z = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-        return PinLoads(self.case, self.surfaces, self.forces @ about_z)
+        return PinLoads(self.case, self.surfaces, self.forces @ about_z, self.moments @ about_z)
 
 
 @dataclass(frozen=True)
 class UnitFields:
-    """Fields per newton of each load: displacement (N, 3, L) in m/N, stress (N, 6, L) in Pa/N.
+    """Fields per newton, or newton metre, of each of L loads: displacement (N, 3, L) in m, stress
+    (N, 6, L) in Pa.
 
-    loads: the L (surface, axis) pairs. support: (L, 3) force of the clamps per newton, from the
-    residual of the system; minus the load when all is well.
+    support: (6, L) force and moment of the clamps about (0, 0, 0), from the residual of the system;
+    minus those of the load when all is well.
     """
 
     space: Discretisation
     surface: Surface
-    loads: tuple[tuple[str, int], ...]
+    loads: tuple[UnitLoad, ...]
     displacement: Floats
     stress: Floats
     support: Floats
 
     def coefficients(self, loads: PinLoads) -> Floats:
-        """Newtons of each unit load at each instant, (T, L)."""
+        """Newtons or newton metres of each unit load at each instant, (T, L).
+
+        Raises: ValueError when there is no field for a part of the loads.
+        """
+        missing = set(loads.units) - set(self.loads)
+        if missing:
+            raise ValueError(f"case {loads.case}: no unit fields for {sorted(missing)}")
         out = np.zeros((len(loads.forces), len(self.loads)))
         for k, (name, axis) in enumerate(self.loads):
             if name in loads.surfaces:
-                out[:, k] = loads.forces[:, loads.surfaces.index(name), axis]
+                out[:, k] = loads.components[:, loads.surfaces.index(name), axis]
         return out
 
 
@@ -79,7 +104,7 @@ class SolidModel:
     which cancel where loads are in balance, and six unknowns are held against rigid motions.
 
     Leaves out: plasticity, contact and clearance (loads are tractions), the pin's own weight and
-    inertia, moments at connections.
+    inertia.
     """
 
     def __init__(
@@ -106,26 +131,26 @@ class SolidModel:
             return (3 * nodes[:, None] + np.arange(3)).ravel()
         return _isostatic(self.space.nodes)
 
-    def solve(self, loads: tuple[tuple[str, int], ...]) -> UnitFields:
-        """Unit fields for (surface, axis) pairs.
+    def solve(self, loads: tuple[UnitLoad, ...]) -> UnitFields:
+        """Unit fields for (surface, axis) pairs; moments act on bands only.
 
         Raises: SolveError when the pin is not held or a check fails.
         """
         boundary = surface(self.space)
-        shares, areas = {}, {}
+        traction = np.zeros((*boundary.normals.shape, len(loads)))
+        F = np.zeros((*self.space.nodes.shape, len(loads)))
         for name in dict.fromkeys(name for name, _ in loads):
-            shares[name], areas[name] = uniform_share(self.space, boundary, name)
-            self._check_share(name, shares[name], areas[name])
-        F = np.zeros((self.unknowns, len(loads)))
-        for k, (name, axis) in enumerate(loads):
-            F[axis::3, k] = shares[name]
-        u, support = self._displace(F)
-        n_nodes = self.unknowns // 3
-        displacement = u.reshape(n_nodes, 3, -1)
-        traction = np.zeros((len(boundary.facets), 3, len(loads)))
-        for k, (name, axis) in enumerate(loads):
-            on = np.isin(boundary.facets, self.space.mesh.boundaries[name])
-            traction[on, axis, k] = 1.0 / areas[name]
+            patch = Patch(self.space, boundary, name)
+            self._check_area(name, patch.area)
+            here = [(k, axis) for k, (other, axis) in enumerate(loads) if other == name]
+            units = patch.forces()
+            if any(axis > 2 for _, axis in here):
+                units = np.concatenate([units, patch.moments(self.pin.band(name).middle)], axis=3)
+            for k, axis in here:
+                traction[patch.rows, ..., k] = units[..., axis]
+            F[..., [k for k, _ in here]] = patch.nodal_forces(units[..., [a for _, a in here]])
+        self._check_resultants(loads, F)
+        displacement, support = self._displace(F)
         held = np.zeros(len(boundary.facets), dtype=bool)
         for name in self.clamps:
             held |= np.isin(boundary.facets, self.space.mesh.boundaries[name])
@@ -134,7 +159,10 @@ class SolidModel:
         return UnitFields(self.space, boundary, loads, displacement, stress, support)
 
     def _displace(self, F: Floats) -> tuple[Floats, Floats]:
-        """Displacements (n, L) under F (n, L), and the clamps' resultant force (L, 3)."""
+        """Displacements (N, 3, L) under nodal forces F (N, 3, L), and the clamps' force and moment
+        (6, L).
+        """
+        shape, F = F.shape, F.reshape(self.unknowns, -1)
         free = np.setdiff1d(np.arange(self.unknowns), self.fixed)
         K = self.stiffness
         if not self.clamps:
@@ -144,19 +172,35 @@ class SolidModel:
         u[free] = factorize(K[free][:, free], free // 3)(F[free])
         reaction = np.zeros_like(F)
         reaction[self.fixed] = K[self.fixed] @ u - F[self.fixed]
-        support = reaction.reshape(-1, 3, F.shape[1]).sum(axis=0).T
-        applied = F.reshape(-1, 3, F.shape[1]).sum(axis=0).T
-        lost = float(np.abs(support + applied).max())
-        if self.clamps and lost > 1e-6:
+        F = F.reshape(shape)
+        support = resultants(self.space.nodes, reaction.reshape(shape))
+        lost = self._part(support + resultants(self.space.nodes, F), F).max()
+        if not lost < 1e-6:
             raise SolveError(
                 f"pin {self.pin.name}: clamps and loads differ by {lost:.1e} of the load; "
                 "the solution is not in equilibrium"
             )
-        return u, support
+        return u.reshape(shape), support
 
-    def _check_share(self, name: str, share: Floats, area: float) -> None:
-        if abs(share.sum() - 1.0) > RESULTANT_TOLERANCE:
-            raise SolveError(f"pin {self.pin.name}: the load on {name} does not sum to its force")
+    def _part(self, resultant: Floats, F: Floats) -> Floats:
+        """Forces and moments (6, L) as parts of the size of the nodal forces F (N, 3, L), the
+        moments also of the pin's length.
+        """
+        arm = np.repeat([1.0, self.pin.length], 3)
+        return np.asarray(np.abs(resultant) / arm[:, None] / np.abs(F).sum(axis=(0, 1)))
+
+    def _check_resultants(self, loads: tuple[UnitLoad, ...], F: Floats) -> None:
+        found = resultants(self.space.nodes, F)
+        wrong = self._part(found - np.eye(6)[:, [axis for _, axis in loads]], F)
+        for k, (name, axis) in enumerate(loads):
+            # a force also has a moment; a moment has no force, so it is the same about any point
+            if not wrong[: 3 if axis < 3 else 6, k].max() < RESULTANT_TOLERANCE:
+                what = "force" if axis < 3 else "moment"
+                raise SolveError(
+                    f"pin {self.pin.name}: the load on {name} does not sum to its {what}"
+                )
+
+    def _check_area(self, name: str, area: float) -> None:
         exact = next((b.area for b in self.pin.bands if b.name == name), area)
         if abs(area / exact - 1.0) > 0.01:
             raise SolveError(
@@ -184,12 +228,14 @@ def _isostatic(nodes: Floats) -> Ints:
 
 
 def out_of_balance(pin: Pin, loads: PinLoads) -> tuple[float, float]:
-    """Largest resultant force and couple (over the pin's length) as parts of the largest force.
+    """Largest resultant force and couple (over the pin's length) as parts of the largest load: a
+    force, or a moment over the pin's length.
 
     A pin that nothing holds can only be analysed when both vanish.
     """
     z = np.array([pin.band(name).middle for name in loads.surfaces])
-    largest = float(np.abs(loads.forces).max()) or 1.0
-    force = np.abs(loads.forces.sum(axis=1)).max()
-    couple = np.abs(np.einsum("tca,c->ta", loads.forces[..., :2], z)).max()
-    return float(force) / largest, float(couple) / (largest * pin.length)
+    arms = z[:, None] * [0.0, 0.0, 1.0]
+    couples = (np.cross(arms, loads.forces) + loads.moments) / pin.length
+    largest = float(max(np.abs(loads.forces).max(), np.abs(loads.moments).max() / pin.length))
+    force, couple = (np.abs(x.sum(axis=1)).max() for x in (loads.forces, couples))
+    return float(force) / (largest or 1.0), float(couple) / (largest or 1.0)

@@ -58,7 +58,8 @@ def nodal_stress(space: Discretisation, material: Material, displacement: Floats
 def with_known_traction(
     stress: Floats, surface: Surface, traction: Floats, held: NDArray[np.bool_]
 ) -> Floats:
-    """Stress (N, 6, L) corrected on the surface to carry the traction (F, 3, L) of its facets, Pa.
+    """Stress (N, 6, L) corrected on the surface to carry the traction (F, 6, 3, L) at the nodes of
+    its facets, Pa.
 
     held: (F,) facets whose traction is unknown. Nodes there and on edges of the body stay as they
     are; where two tractions meet on a smooth surface their mean is taken.
@@ -80,7 +81,7 @@ def with_known_traction(
     for k in range(stress.shape[2]):
         t = np.stack(
             [
-                np.bincount(node, np.repeat(traction[:, a, k], 6), minlength=n_nodes) / on
+                np.bincount(node, traction[:, :, a, k].ravel(), minlength=n_nodes) / on
                 for a in range(3)
             ],
             axis=1,

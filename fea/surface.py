@@ -1,4 +1,4 @@
-"""The boundary of a solid mesh: its curved facets, their nodes and outward normals."""
+"""The boundary of a solid mesh: its curved facets, their nodes and normals, and loads on it."""
 
 from __future__ import annotations
 
@@ -68,17 +68,54 @@ def held_nodes(space: Discretisation, surfaces: tuple[str, ...]) -> Ints:
     return np.unique(np.concatenate(found)).astype(np.int64)
 
 
-def uniform_share(space: Discretisation, boundary: Surface, name: str) -> tuple[Floats, float]:
-    """Share (N,) of each node in a uniform traction on the named surface, and its area (m^2).
+class Patch:
+    """One named surface and the tractions that load it.
 
-    The shares sum to one: multiplied by a force they are consistent nodal forces.
+    rows: (P,) its facets among the boundary's. area: m^2. Tractions (P, 6, 3, L) are values at the
+    nodes of its facets, in Pa for each unit of load, and quadratic between them.
     """
-    corners = boundary.corners[np.isin(boundary.facets, space.mesh.boundaries[name])]
-    (x, y), weight = get_quadrature(RefTri, 4)
-    size = np.linalg.norm(_area_vectors(space.nodes[corners], x, y), axis=2) * weight
-    share = np.bincount(corners.ravel(), (size @ _shapes(x, y)).ravel(), minlength=space.basis.N)
-    area = float(size.sum())
-    return share / area, area
+
+    def __init__(self, space: Discretisation, boundary: Surface, name: str) -> None:
+        self.rows = np.flatnonzero(np.isin(boundary.facets, space.mesh.boundaries[name]))
+        self._corners = boundary.corners[self.rows]
+        self._nodes = space.nodes
+        (x, y), weight = get_quadrature(RefTri, 4)
+        size = np.linalg.norm(_area_vectors(space.nodes[self._corners], x, y), axis=2) * weight
+        shapes = _shapes(x, y)
+        self._mass = np.einsum("pq,qi,qj->pij", size, shapes, shapes)
+        self.area = float(size.sum())
+
+    def nodal_forces(self, traction: Floats) -> Floats:
+        """Consistent nodal forces (N, 3, L) of a traction."""
+        out = np.zeros((len(self._nodes), *traction.shape[2:]))
+        np.add.at(out, self._corners, np.einsum("pij,pjal->pial", self._mass, traction))
+        return out
+
+    def forces(self) -> Floats:
+        """Uniform tractions (P, 6, 3, 3) of one newton along x, y and z."""
+        return np.tile(np.eye(3) / self.area, (*self._corners.shape, 1, 1))
+
+    def moments(self, middle: float) -> Floats:
+        """Tractions (P, 6, 3, 3) of one newton metre about x, y and z, and no force.
+
+        About x and y through z = `middle` (m): transverse, linear in z. About z: tangential, of
+        constant size. The mesh's surface is not quite round, so these have small resultants of
+        other kinds, which small parts of the others and of uniform tractions cancel.
+        """
+        x = self._nodes[self._corners] - [0.0, 0.0, middle]
+        trial = np.zeros((*x.shape, 6))
+        trial[..., :3] = np.eye(3)
+        trial[..., 1, 3], trial[..., 0, 4] = -x[..., 2], x[..., 2]
+        r = np.hypot(x[..., 0], x[..., 1])
+        trial[..., 0, 5], trial[..., 1, 5] = -x[..., 1] / r, x[..., 0] / r
+        found = resultants(self._nodes, self.nodal_forces(trial), middle)
+        return np.asarray(trial @ np.linalg.inv(found)[:, 3:])
+
+
+def resultants(nodes: Floats, forces: Floats, z: float = 0.0) -> Floats:
+    """Force and moment (6, L), in N and N m, of nodal forces (N, 3, L) about (0, 0, z)."""
+    moments = np.cross((nodes - [0.0, 0.0, z])[:, :, None], forces, axisa=1, axisb=1, axisc=1)
+    return np.concatenate([forces.sum(axis=0), moments.sum(axis=0)])
 
 
 def _area_vectors(x: Floats, at_x: Floats, at_y: Floats) -> Floats:

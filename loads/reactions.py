@@ -11,6 +11,8 @@ import numpy as np
 
 from loads.linkage import Floats
 
+Components = dict[str, tuple[float, ...]]
+
 
 class TableError(ValueError):
     """A table of reactions cannot be used; the message names the file, the line and the remedy."""
@@ -52,34 +54,52 @@ class Reactions:
 
     def in_pin_axes(self, connection: str) -> Floats:
         """Force on the pin in its own axes, (T, 3) N."""
+        return self._turned_back(self.forces, connection)
+
+    def moment_in_pin_axes(self, connection: str) -> Floats:
+        """Moment on the pin in its own axes, (T, 3) N m."""
+        return self._turned_back(self.moments, connection)
+
+    def _turned_back(self, vectors: Floats, connection: str) -> Floats:
         c = self.connections.index(connection)
         cos, sin = np.cos(self.turn[:, c]), np.sin(self.turn[:, c])
-        fx, fy, fz = self.forces[:, c].T
-        return np.stack([cos * fx + sin * fy, cos * fy - sin * fx, fz], axis=1)
+        x, y, z = vectors[:, c].T
+        return np.stack([cos * x + sin * y, cos * y - sin * x, z], axis=1)
 
 
-def given_reactions(case: str, forces: dict[str, tuple[float, ...]]) -> Reactions:
-    """One instant of stated forces (N) per connection, in the pin's own axes: (fx, fy[, fz])."""
-    values = np.array([(*f, 0.0)[:3] for f in forces.values()], dtype=float)
-    names = tuple(forces)
+def given_reactions(case: str, forces: Components, moments: Components | None = None) -> Reactions:
+    """One instant of stated forces (N) and moments (N m) by connection, in the pin's own axes:
+    (x, y[, z]). What is not named is nought.
+    """
+    moments = moments or {}
+    names = tuple(dict.fromkeys((*forces, *moments)))
+    force, moment = (
+        np.array([(*given.get(n, ()), 0.0, 0.0, 0.0)[:3] for n in names], dtype=float)
+        for given in (forces, moments)
+    )
     return Reactions(
         case=case,
         times=None,
         connections=names,
         bodies=("",) * len(names),
-        forces=values[None],
-        moments=np.zeros((1, len(names), 3)),
+        forces=force[None],
+        moments=moment[None],
         turn=np.zeros((1, len(names))),
     )
 
 
 def read_reactions(
-    case: str, path: Path, force_unit: float, time_unit: float, known: set[str]
+    case: str,
+    path: Path,
+    force_unit: float,
+    moment_unit: float,
+    time_unit: float,
+    known: set[str],
 ) -> Reactions:
-    """Reactions from a CSV with the columns connection, fx, fy and optionally fz and time.
+    """Reactions from a CSV with the columns connection, fx, fy and optionally fz, mx, my, mz, time.
 
-    force_unit, time_unit: the table's units in N and s. known: the connections of the study. With
-    a time column the case is a sweep: every connection must be given at every time.
+    force_unit, moment_unit, time_unit: the table's units in N, N m and s. known: the connections of
+    the study. With a time column the case is a sweep: every connection must be given at every time.
 
     Raises: TableError.
     """
@@ -95,10 +115,12 @@ def read_reactions(
     if missing:
         raise TableError(
             f"{path}: column {missing[0]!r} is missing; needed are connection,fx,fy "
-            "and, if there are any, fz and time"
+            "and, if there are any, fz, mx, my, mz and time"
         )
     rows.fieldnames = columns
-    data: dict[float | None, dict[str, tuple[float, float, float]]] = {}
+    units = dict.fromkeys(("fx", "fy", "fz"), force_unit)
+    units |= dict.fromkeys(("mx", "my", "mz"), moment_unit)
+    data: dict[float | None, dict[str, list[float]]] = {}
     for row in rows:
         where = f"{path}, line {rows.line_num}"
         name = (row["connection"] or "").strip()
@@ -108,12 +130,12 @@ def read_reactions(
                 f"{', '.join(sorted(known))}"
             )
         time = _number(row, "time", where) * time_unit if "time" in columns else None
-        fz = _number(row, "fz", where) if "fz" in columns else 0.0
-        force = (_number(row, "fx", where), _number(row, "fy", where), fz)
         instant = data.setdefault(time, {})
         if name in instant:
             raise TableError(f"{where}: connection {name} is given twice at the same instant")
-        instant[name] = (force[0] * force_unit, force[1] * force_unit, force[2] * force_unit)
+        instant[name] = [
+            _number(row, c, where) * unit if c in columns else 0.0 for c, unit in units.items()
+        ]
     if not data:
         raise TableError(f"{path}: the table has no rows")
     names = list(next(iter(data.values())))
@@ -126,12 +148,12 @@ def read_reactions(
             )
     first = given_reactions(case, dict.fromkeys(names, (0.0, 0.0)))
     order = sorted(data, key=lambda t: t or 0.0)
-    forces = np.array([[data[t][n] for n in names] for t in order])
+    forces, moments = np.split(np.array([[data[t][n] for n in names] for t in order]), 2, axis=2)
     return replace(
         first,
         times=np.array(order, dtype=float) if "time" in columns else None,
         forces=forces,
-        moments=np.zeros_like(forces),
+        moments=moments,
         turn=np.zeros(forces.shape[:2]),
     )
 

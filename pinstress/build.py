@@ -100,13 +100,18 @@ def _shown(study: Study) -> Callable[[float, bool], str]:
 
 
 def _given(study: Study, name: str, case: GivenCase) -> Reactions:
-    if case.forces is not None:
-        return given_reactions(name, {c: tuple(f) for c, f in case.forces.items()})
+    if case.table is None:
+        forces, moments = (
+            {c: tuple(values) for c, values in (given or {}).items()}
+            for given in (case.forces, case.moments)
+        )
+        return given_reactions(name, forces, moments)
     known = {c for p in study.table.pin for c in study.connections(p)}
     return read_reactions(
         name,
-        study.beside(case.table or ""),
+        study.beside(case.table),
         study.system.factor("force"),
+        study.system.factor("moment"),
         study.system.factor("time"),
         known,
     )

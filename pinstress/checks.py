@@ -20,10 +20,10 @@ from reports import results as plain
 def require_cantilever(study: Study, task: Task, case: str) -> None:
     """Raises: InputError if the pin of the beam check is no cantilever with one load."""
     loads = next(c for c in task.loads if c.case == case)
-    if task.clamps != ("start",) or len(loads.surfaces) != 1:
+    if task.clamps != ("start",) or len(loads.surfaces) != 1 or loads.moments.any():
         raise InputError(
             f"{study.path}: beam_check: pin {task.pin.name} must be clamped at its start face "
-            "alone and loaded on one band to be a cantilever"
+            "alone and loaded on one band, by forces alone, to be a cantilever"
         )
 
 
@@ -52,7 +52,7 @@ def beam_check(study: Study, task: Task, material: Material, at: Solution) -> pl
         band=(z0 / unit("length"), z1 / unit("length")),
         z=found.beam.z / unit("length"),
         shear=found.beam.shear / unit("force"),
-        moment=found.beam.moment / unit("energy"),
+        moment=found.beam.moment / unit("moment"),
         beam_axial_stress=found.beam.stress / unit("stress"),
         fea_axial_stress=found.surface_load / unit("stress"),
         fea_axial_stress_axis_load=found.axis_load / unit("stress"),

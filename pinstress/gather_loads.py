@@ -87,7 +87,7 @@ def _reactions(
         bodies=r.bodies,
         pins=tuple(on.get(c, "") for c in r.connections),
         forces=r.forces / unit("force"),
-        moments=r.moments / unit("energy"),
+        moments=r.moments / unit("moment"),
         shared=dynamics.shared if dynamics else (),
         published={c: f for (k, c), f in published.reactions.items() if k == name},
         note=case.note,

@@ -62,18 +62,23 @@ class CaseTable(Table):
 
 
 class GivenCase(CaseTable):
-    """Stated forces, or a table of them."""
+    """Stated forces and moments, or a table of them."""
 
     kind: Literal["given"]
     forces: dict[str, Annotated[list[Force], Field(min_length=2, max_length=3)]] | None = None
+    moments: dict[str, Annotated[list[Moment], Field(min_length=2, max_length=3)]] | None = None
     table: str | None = None
 
     @model_validator(mode="after")
     def _one_source(self) -> "GivenCase":
-        if (self.forces is None) == (self.table is None):
-            raise ValueError('give either forces = { ... } or table = "file.csv"')
-        if self.forces is not None and not self.forces:
-            raise ValueError("forces names no connection")
+        stated = {"forces": self.forces, "moments": self.moments}
+        if (self.forces is None and self.moments is None) == (self.table is None):
+            raise ValueError(
+                'give forces = { ... }, moments = { ... } or both, or else table = "file.csv"'
+            )
+        for key, given in stated.items():
+            if given is not None and not given:
+                raise ValueError(f"{key} names no connection")
         return self
 
 

@@ -167,11 +167,13 @@ def _cross_references(table: StudyTable) -> Iterable[str]:
             if pin_name not in table.pin:
                 yield f"case.{name}.clamp: no pin {pin_name!r}; " + _near(pin_name, table.pin)
         if isinstance(case, GivenCase):
-            for connection in case.forces or ():
-                if connection not in bears:
-                    yield f"case.{name}.forces: no pin has a connection {connection!r}; " + _near(
-                        connection, bears
-                    )
+            for key, given in (("forces", case.forces), ("moments", case.moments)):
+                for connection in given or ():
+                    if connection not in bears:
+                        yield (
+                            f"case.{name}.{key}: no pin has a connection {connection!r}; "
+                            + _near(connection, bears)
+                        )
         elif isinstance(case, LegCase):
             if table.spatial_leg is None:
                 yield f"case.{name}: kind 'spatial_leg' needs a [spatial_leg]"

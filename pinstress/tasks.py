@@ -18,7 +18,8 @@ from pinstress.study import Study
 class Task:
     """One pin, held in one way, with its loads in all the cases where it is held so.
 
-    left_out: by case, the connections whose force is not applied because their band is held.
+    left_out: by case, the connections whose force and moment are not applied because their band is
+    held.
     """
 
     pin: Pin
@@ -30,7 +31,7 @@ class Task:
 def tasks(study: Study, pins: list[str], loads: dict[str, CaseLoads]) -> list[Task]:
     """What is to be solved: the pins that any case loads.
 
-    Raises: InputError when nothing is, or when all forces on a pin are at what holds it.
+    Raises: InputError when nothing is, or when all loads on a pin are at what holds it.
     """
     out = []
     for name in pins:
@@ -59,10 +60,11 @@ def _task(study: Study, pin: Pin, clamps: tuple[str, ...], loads: dict[str, Case
         applied = [c for c in here if c not in held]
         if not applied:
             raise InputError(
-                f"{study.path}: case.{case}: every force on pin {pin.name} is at a clamped band "
+                f"{study.path}: case.{case}: every load on pin {pin.name} is at a clamped band "
                 f"({', '.join(here)}), so nothing loads it; clamp something else"
             )
         left_out[case] = tuple(c for c in here if c in held)
         forces = np.stack([given.reactions.in_pin_axes(c) for c in applied], axis=1)
-        cases.append(PinLoads(case, tuple(applied), forces))
+        moments = np.stack([given.reactions.moment_in_pin_axes(c) for c in applied], axis=1)
+        cases.append(PinLoads(case, tuple(applied), forces, moments))
     return Task(pin, clamps, tuple(cases), left_out)

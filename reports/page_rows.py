@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from reports.results import PinResult, PinShape, ReactionTable, Results
 from reports.words import outcome
 
@@ -56,7 +58,7 @@ def pin_parts(
 
 @dataclass(frozen=True)
 class ReactionRow:
-    """A connection's largest force, its components then, and when."""
+    """A connection's largest force, its components then, and when; and its largest moment."""
 
     connection: str
     body: str
@@ -65,6 +67,7 @@ class ReactionRow:
     largest: float
     components: tuple[float, float, float]
     time: float | None
+    moment: float
 
 
 def reaction_tables(results: Results) -> list[tuple[ReactionTable, list[ReactionRow]]]:
@@ -86,6 +89,7 @@ def _rows(table: ReactionTable) -> list[ReactionRow]:
                 largest=float(table.magnitudes[t, c]),
                 components=(x, y, z),
                 time=None if table.times is None else float(table.times[t]),
+                moment=float(np.linalg.norm(table.moments[:, c], axis=1).max()),
             )
         )
     return rows

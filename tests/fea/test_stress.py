@@ -49,10 +49,15 @@ def bar(steel: Material) -> UnitFields:
 
 
 def test_clamps_answer_every_unit_load(bar: UnitFields) -> None:
-    expected = np.zeros((4, 3))
-    for k, (_, axis) in enumerate(bar.loads):
-        expected[k, axis] = -1.0
-    assert bar.support == pytest.approx(expected, abs=1e-9)
+    """With its force and its moment about z = 0: the bands' middles are at 0.05 and 0.07 m, on the
+    mesh's surface to 1e-6 m.
+    """
+    expected = np.zeros((6, 4))
+    for k, (name, axis) in enumerate(bar.loads):
+        force, arm = -np.eye(3)[axis], {"B": 0.05, "C": 0.07}[name]
+        expected[:, k] = [*force, *np.cross([0.0, 0.0, arm], force)]
+    assert bar.support[:3] == pytest.approx(expected[:3], abs=1e-9)
+    assert bar.support[3:] == pytest.approx(expected[3:], abs=1e-6)
 
 
 def test_the_free_surface_carries_no_traction(bar: UnitFields) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fea.elasticity import Discretisation
-from fea.surface import surface, uniform_share
+from fea.surface import Patch, surface
 from geometry import Pin, Segment, meridian
 from geometry import solid_mesh as module
 from geometry.gmsh_session import gmsh_model
@@ -39,8 +39,7 @@ def test_volume_area_names_and_elements(name: str) -> None:
     assert solid.jacobian > 0.1
     # quadratic facets on a circle in 12 parts or more: 1e-4 is twice what is seen
     assert space.weights.sum() == pytest.approx(pin.volume, rel=1e-4)
-    _, area = uniform_share(space, surface(space), "B")
-    assert area == pytest.approx(pin.band("B").area, rel=1e-4)
+    assert Patch(space, surface(space), "B").area == pytest.approx(pin.band("B").area, rel=1e-4)
     facets = np.concatenate(list(solid.mesh.boundaries.values()))
     assert np.array_equal(np.sort(facets), np.sort(solid.mesh.boundary_facets()))
     expected = {e.name for e in meridian(pin) if e.name}

@@ -14,22 +14,43 @@ from loads import TableError, given_reactions, impulse_force, read_reactions
 def read(tmp_path: Path, text: str) -> object:
     path = tmp_path / "table.csv"
     path.write_text(text)
-    return read_reactions("case", path, 2.0, 1.0, {"B", "C"})
+    return read_reactions("case", path, 2.0, 3.0, 1.0, {"B", "C"})
 
 
 def test_a_sweep(tmp_path: Path) -> None:
     path = tmp_path / "table.csv"
     path.write_text("connection, fx, fy, time\nB,1,2,0.5\nC,3,4,0.5\nB,5,6,0\nC,7,8,0\n")
-    found = read_reactions("case", path, 2.0, 1.0, {"B", "C"})
+    found = read_reactions("case", path, 2.0, 3.0, 1.0, {"B", "C"})
     assert found.times is not None
     assert found.times.tolist() == [0.0, 0.5]
     assert found.force("B").tolist() == [[10.0, 12.0, 0.0], [2.0, 4.0, 0.0]]
+    assert found.moments.shape == (2, 2, 3)
+    assert not found.moments.any()
+
+
+def test_a_table_with_moments(tmp_path: Path) -> None:
+    """In the table's own units; columns in any order, those that are absent are nought."""
+    path = tmp_path / "table.csv"
+    path.write_text(
+        "connection,mz,fx,fy,mx,time\nB,1,2,3,4,0\nC,5,6,7,8,0\nB,0,0,0,9,1\nC,0,0,0,0,1\n"
+    )
+    found = read_reactions("case", path, 2.0, 3.0, 1.0, {"B", "C"})
+    assert found.connections == ("B", "C")
+    assert found.forces[0].tolist() == [[4.0, 6.0, 0.0], [12.0, 14.0, 0.0]]
+    assert found.moments.tolist() == [
+        [[12.0, 0.0, 3.0], [24.0, 0.0, 15.0]],
+        [[27.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
+    ]
 
 
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("connection,fx\nB,1\n", "column 'fy' is missing"),
+        ("connection,fx\nB,1\n", "column 'fy' is missing; .* any, fz, mx, my, mz and time"),
+        ("connection,mx,my\nB,1,2\n", "column 'fx' is missing"),
+        ("connection,fx,fy,mx\nB,1,2,twist\n", "line 2: mx = 'twist' is not a number"),
+        ("connection,fx,fy,mx,mz\nB,1,2,3,nan\n", "line 2: mz = nan is not finite"),
+        ("connection,fx,fy,mx,my\nB,1,2,3\n", "line 2: my = None is not a number"),
         ("connection,fx,fy\nX,1,2\n", "line 2: unknown connection 'X'; the study's pins have B, C"),
         ("connection,fx,fy\nB,1,inf\n", "line 2: fy = inf is not finite"),
         ("connection,fx,fy\nB,one,2\n", "line 2: fx = 'one' is not a number"),
@@ -46,12 +67,22 @@ def test_a_bad_table_is_refused(tmp_path: Path, text: str, message: str) -> None
 
 def test_a_missing_table_is_named(tmp_path: Path) -> None:
     with pytest.raises(TableError, match=r"gone\.csv: no such file"):
-        read_reactions("case", tmp_path / "gone.csv", 1.0, 1.0, {"B"})
+        read_reactions("case", tmp_path / "gone.csv", 1.0, 1.0, 1.0, {"B"})
 
 
 def test_the_pins_own_axes_turn_with_it() -> None:
-    found = replace(given_reactions("case", {"B": (0.0, 3.0, 1.0)}), turn=np.array([[np.pi / 2]]))
+    given = given_reactions("case", {"B": (0.0, 3.0, 1.0)}, {"B": (2.0, 0.0, 4.0)})
+    found = replace(given, turn=np.array([[np.pi / 2]]))
     assert found.in_pin_axes("B")[0] == pytest.approx([3.0, 0.0, 1.0])
+    assert found.moment_in_pin_axes("B")[0] == pytest.approx([0.0, -2.0, 4.0])
+
+
+def test_a_connection_may_have_a_force_a_moment_or_both() -> None:
+    found = given_reactions("case", {"B": (1.0, 2.0)}, {"C": (3.0, 4.0, 5.0), "B": (6.0, 7.0)})
+    assert found.connections == ("B", "C")
+    assert found.bodies == ("", "")
+    assert found.forces.tolist() == [[[1.0, 2.0, 0.0], [0.0, 0.0, 0.0]]]
+    assert found.moments.tolist() == [[[6.0, 7.0, 0.0], [3.0, 4.0, 5.0]]]
 
 
 def test_the_published_impulse() -> None:

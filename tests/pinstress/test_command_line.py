@@ -70,6 +70,21 @@ def test_reactions_have_the_contracts_columns(run_once: tuple[Path, str, str]) -
     assert float(row["fy"]) == pytest.approx(-988.86, rel=1e-14)
 
 
+def test_moments_reach_the_pin_and_the_tables(tmp_path: Path) -> None:
+    """500 lbf in bend a 2 in shaft to 32 M / (pi d^3) = 637 psi, its fillet to somewhat more."""
+    text = QUICK.replace("forces = { B = [0.0, -988.86] }", 'moments = { B = ["0 N m", 500.0] }')
+    (tmp_path / "study.toml").write_text(text)
+    done = pinstress("run", "study.toml", "--no-pictures", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    out = tmp_path / "out" / "study"
+    (row,) = csv.DictReader((out / "reactions.csv").read_text().splitlines())
+    found = [float(row[k]) for k in ("fx", "fy", "fz", "mx", "my", "mz")]
+    assert found == pytest.approx([0.0, 0.0, 0.0, 0.0, 500.0, 0.0])
+    (pin,) = json.loads((out / "results.json").read_text())["pins"]
+    assert 637.0 < pin["max_von_mises"] < 1.5 * 637.0
+    assert 1.5 < pin["location"][2] < 2.0  # in the fillet
+
+
 def test_the_same_study_gives_the_same_numbers(run_once: tuple[Path, str, str]) -> None:
     folder = run_once[0]
     first = json.loads((folder / "out" / "study" / "results.json").read_text())

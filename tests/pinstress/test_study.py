@@ -126,6 +126,15 @@ def test_values_carry_their_provenance() -> None:
         ("forces = { B =", "forces = { D =", "no pin has a connection 'D'"),
         ("-988.86]", "-988.86, 0, 0]", "forces.B: list should have at most 3 items"),
         ("-988.86]", "inf]", "forces.B.2.: inf is not finite"),
+        ("forces = { B =", "moments = { D =", "case.landing.moments: no pin has a connection 'D'"),
+        ("forces = { B = [0.0,", "moments = { B = ['1 N',", r"moments.B.1.: '1 N' is not a moment"),
+        ("forces = { B = [0.0, -988.86] }", "moments = {}", "moments names no connection"),
+        ("forces = { B = [0.0, -988.86] }", "", "give forces = .*, moments = .* or both, or else"),
+        (
+            "forces =",
+            "table = 't.csv'\nmoments =",
+            "give forces = .*, moments = .* or both, or else",
+        ),
         ('kind = "given"', 'kind = "motion"', "unknown key 'forces'"),
         ('kind = "given"', 'kind = "gven"', "case.landing: .*'given', 'motion', 'static'"),
         ("tolerance = 0.05", "tolerance = 2", "tolerance: input should be less than 1, not 2"),
@@ -144,6 +153,32 @@ def test_each_mistake_is_told(tmp_path: Path, old: str, new: str, message: str) 
     with pytest.raises(InputError, match=message) as caught:
         pin_of(load_study(path), "B")
     assert str(path) in str(caught.value)
+
+
+def test_moments_go_to_the_pin_with_the_forces(tmp_path: Path) -> None:
+    """Stated, or in a table, in the study's units; at a clamped band they are left out."""
+    from pinstress.pipeline import prepare
+
+    text = ONE_PIN.replace('name = "root"', 'connection = "R"').replace('["start"]', '["R"]')
+    stated = 'forces = { R = [7, 8] }\nmoments = { R = [1, 2, 3], B = ["0 N m", 500.0] }'
+    text = text.replace("forces = { B = [0.0, -988.86] }", stated)
+    text += '\n[case.table]\nkind = "given"\ntable = "t.csv"\n'
+    (tmp_path / "t.csv").write_text("connection,fx,fy,my\nB,0,0,500\nR,7,8,0\n")
+    (task,) = prepare(load_study(write(tmp_path, text))).tasks
+    assert task.left_out == {"landing": ("R",), "table": ("R",)}
+    for loads in task.loads:
+        assert loads.surfaces == ("B",)
+        assert loads.forces.tolist() == [[[0.0, 0.0, 0.0]]]
+        assert loads.moments[0, 0] == pytest.approx([0.0, 500.0 * LBF * INCH, 0.0])
+
+
+def test_a_beam_check_is_for_forces_alone(tmp_path: Path) -> None:
+    from pinstress.pipeline import prepare
+
+    text = ONE_PIN.replace("forces =", "moments = { B = [0, 1] }\nforces =")
+    text += '\n[beam_check]\npin = "B"\ncase = "landing"\naxis_bore = 0.1\n'
+    with pytest.raises(InputError, match="on one band, by forces alone, to be a cantilever"):
+        prepare(load_study(write(tmp_path, text)))
 
 
 def test_all_mistakes_are_told_at_once(tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from reports.drawing import draw_pin
@@ -138,6 +139,17 @@ def test_names_are_shown_and_not_run(small: Results, tmp_path: Path) -> None:
     assert "script" not in page.tags
     assert "i" not in page.tags
     assert EVIL in page.text
+
+
+def test_moments_are_shown_where_there_are_any(small: Results, tmp_path: Path) -> None:
+    table = small.reactions[0]
+    moments = np.zeros_like(table.forces)
+    for size, shown in ((0.0, False), (987.6, True)):
+        moments[-1, 0] = [0.6 * size, 0.0, -0.8 * size]
+        with_moments = replace(small, reactions=(replace(table, moments=moments),))
+        text = parse(write_page(with_moments, tmp_path, {})).text
+        assert (f"moment [{small.units.force}·{small.units.length}]" in text) is shown
+        assert ("987.6" in text) is shown
 
 
 def test_empty_results_make_a_page(small: Results, tmp_path: Path) -> None:
