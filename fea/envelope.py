@@ -26,7 +26,8 @@ DIRECTIONS = 9  # an odd number: opposite loads give the same von Mises stress
 
 @dataclass(frozen=True)
 class Envelope:
-    """maximum: largest von Mises stress (Pa) at the governing `instant`, mean over directions.
+    """maximum: largest von Mises stress (Pa) at the governing `instant`, mean over directions;
+    maxima: (T,) the same at every instant.
 
     scatter: half its range over the directions, Pa. location: where it is (m) with the loads as
     they are. field: (S,) each surface node's largest over all instants, Pa, and coefficients: (L,)
@@ -39,6 +40,7 @@ class Envelope:
     location: tuple[float, float, float]
     field: Floats
     coefficients: Floats
+    maxima: Floats
 
 
 def envelope(fields: UnitFields, loads: PinLoads, directions: int = DIRECTIONS) -> Envelope:
@@ -64,13 +66,15 @@ def envelope(fields: UnitFields, loads: PinLoads, directions: int = DIRECTIONS) 
         ]
     )
     peaks = np.sqrt(np.maximum(peaks, 0.0))  # (directions, T)
-    instant = int(peaks.mean(axis=0).argmax())
+    maxima = peaks.mean(axis=0)
+    instant = int(maxima.argmax())
     x, y, z = fields.space.nodes[nodes[as_is[:, instant].argmax()]]
     return Envelope(
-        maximum=float(peaks[:, instant].mean()),
+        maximum=float(maxima[instant]),
         scatter=float(np.ptp(peaks[:, instant])) / 2.0,
         instant=instant,
         location=(float(x), float(y), float(z)),
         field=np.sqrt(np.maximum(as_is.max(axis=1), 0.0)),
         coefficients=fields.coefficients(loads)[instant],
+        maxima=maxima,
     )

@@ -45,13 +45,14 @@ from pinstress.study import Study
 @dataclass(frozen=True)
 class ImpulseRange:
     """Reactions over pairs of impulse time (s) and velocity change (m/s), an instant each: times
-    and velocities (P,), forces (P,) N.
+    and velocities (P,), forces (P,) N. nominal: the case's own pair.
     """
 
     times: Floats
     velocities: Floats
     forces: Floats
     reactions: Reactions
+    nominal: tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -219,5 +220,9 @@ def _range(
         np.concatenate([getattr(r, key) for r in found]) for key in ("forces", "moments", "turn")
     )
     return ImpulseRange(
-        times, velocities, sizes, replace(found[0], forces=forces, moments=moments, turn=turn)
+        times,
+        velocities,
+        sizes,
+        replace(found[0], forces=forces, moments=moments, turn=turn),
+        (impulse.impulse_time, impulse.velocity_change),
     )

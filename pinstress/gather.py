@@ -6,6 +6,7 @@ from importlib.metadata import version
 
 import numpy as np
 
+from fea.envelope import envelope
 from fea.peak import Peak
 from fea.refine import Solution
 from fea.stress import von_mises
@@ -113,6 +114,29 @@ def _shape(study: Study, task: Task) -> plain.PinShape:
         segments.append((*sizes, named, kind))
     weight = pin.weight(density) / unit("force") if density else None
     return plain.PinShape(pin.name, tuple(segments), name, weight)  # type: ignore[arg-type]
+
+
+def landing_range(
+    study: Study, loads: dict[str, CaseLoads], task: Task, solution: Solution
+) -> plain.LandingRange | None:
+    """A pin over the ranges of its landing's impulse: unit fields superposed, nothing solved."""
+    case, over = solution.peak.case, loads[solution.peak.case].range
+    if over is None or solution.fields is None:
+        return None
+    unit = study.system.factor
+    maxima = envelope(solution.fields, task.ranges[case]).maxima
+    strength = material_of(study, study.table.pin[task.pin.name].material).yield_strength
+    return plain.LandingRange(
+        pin=task.pin.name,
+        case=case,
+        impulse_time=over.times / unit("time"),
+        velocity_change=over.velocities / unit("velocity"),
+        force=over.forces / unit("force"),
+        max_von_mises=maxima / unit("stress"),
+        safety_factor=None if strength is None else strength / maxima,
+        nominal=(over.nominal[0] / unit("time"), over.nominal[1] / unit("velocity")),
+        verdict=solution.peak.verdict,
+    )
 
 
 def field(study: Study, solution: Solution) -> plain.Field | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from fea.refine import Solution, refine
@@ -18,7 +18,7 @@ from pinstress.pins import material as material_of
 from pinstress.published import Published, read_published
 from pinstress.study import Study
 from pinstress.tasks import Task, tasks
-from reports.results import Field, Results
+from reports.results import Field, LandingRange, Results
 
 Progress = Callable[[str, float], None]
 Keep = Callable[[Field], None]
@@ -101,6 +101,7 @@ def solve(
     """
     study = plan.study
     solutions: list[tuple[Task, Solution]] = []
+    landing: list[LandingRange] = []
     beam = None
     for i, task in enumerate(plan.tasks):
 
@@ -116,10 +117,12 @@ def solve(
             tell(f"pin {task.pin.name}, beam check")
             at = next(s for s in found if s.peak.case == study.table.beam_check.case)
             beam = checks.beam_check(study, task, material, at)
+        landing += [r for s in found if (r := gather.landing_range(study, plan.loads, task, s))]
         solutions += [(task, Solution(s.peak, None, None)) for s in found]  # fields are large
     pins, cases = list(study.table.pin), list(plan.loads)
     solutions.sort(key=lambda s: (pins.index(s[1].peak.pin), cases.index(s[1].peak.case)))
-    return gather.results(study, plan.loads, solutions, beam, plan.published, plan.tolerance)
+    results = gather.results(study, plan.loads, solutions, beam, plan.published, plan.tolerance)
+    return replace(results, landing=tuple(landing))
 
 
 def loads_only(study: Study, cases: Iterable[str] | None = None) -> Results:

@@ -8,6 +8,7 @@ import numpy as np
 
 from fea.solid import PinLoads
 from geometry import Pin
+from loads import Reactions
 from pinstress.build import CaseLoads
 from pinstress.errors import InputError
 from pinstress.pins import pin as pin_of
@@ -19,13 +20,14 @@ class Task:
     """One pin, held in one way, with its loads in all the cases where it is held so.
 
     left_out: by case, the connections whose force and moment are not applied because their band is
-    held.
+    held. ranges: by case, the loads over the ranges of its impulse.
     """
 
     pin: Pin
     clamps: tuple[str, ...]
     loads: tuple[PinLoads, ...]
     left_out: dict[str, tuple[str, ...]]
+    ranges: dict[str, PinLoads]
 
 
 def tasks(study: Study, pins: list[str], loads: dict[str, CaseLoads]) -> list[Task]:
@@ -52,7 +54,9 @@ def tasks(study: Study, pins: list[str], loads: dict[str, CaseLoads]) -> list[Ta
 
 def _task(study: Study, pin: Pin, clamps: tuple[str, ...], loads: dict[str, CaseLoads]) -> Task:
     held = {pin.surface(c) for c in clamps}
-    cases, left_out = [], {}
+    cases: list[PinLoads] = []
+    left_out: dict[str, tuple[str, ...]] = {}
+    ranges: dict[str, PinLoads] = {}
     for case, given in loads.items():
         here = [c for c in pin.connections if c in given.reactions.connections]
         if not here or study.clamps(pin.name, case) != clamps:
@@ -64,7 +68,13 @@ def _task(study: Study, pin: Pin, clamps: tuple[str, ...], loads: dict[str, Case
                 f"({', '.join(here)}), so nothing loads it; clamp something else"
             )
         left_out[case] = tuple(c for c in here if c in held)
-        forces = np.stack([given.reactions.in_pin_axes(c) for c in applied], axis=1)
-        moments = np.stack([given.reactions.moment_in_pin_axes(c) for c in applied], axis=1)
-        cases.append(PinLoads(case, tuple(applied), forces, moments))
-    return Task(pin, clamps, tuple(cases), left_out)
+        cases.append(_loads(case, applied, given.reactions))
+        if given.range is not None:
+            ranges[case] = _loads(case, applied, given.range.reactions)
+    return Task(pin, clamps, tuple(cases), left_out, ranges)
+
+
+def _loads(case: str, applied: list[str], reactions: Reactions) -> PinLoads:
+    forces = np.stack([reactions.in_pin_axes(c) for c in applied], axis=1)
+    moments = np.stack([reactions.moment_in_pin_axes(c) for c in applied], axis=1)
+    return PinLoads(case, tuple(applied), forces, moments)

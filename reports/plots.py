@@ -6,6 +6,7 @@ from pathlib import Path
 
 from reports.plot_checks import beam_plots, motion_plot
 from reports.plot_drive import drive_plot
+from reports.plot_landing import landing_plot
 from reports.plot_leg import leg_plots
 from reports.plot_reactions import bars, motion_plots
 from reports.plot_refinement import refinement_plot
@@ -28,6 +29,9 @@ def save_plots(results: Results, directory: Path) -> list[Path]:
         paths += beam_plots(results.beam_check, units, directory)
     if results.motion_check is not None:
         paths += motion_plot(results.motion_check, units, directory)
+    for case in dict.fromkeys(r.case for r in results.landing):
+        members = [r for r in results.landing if r.case == case]
+        paths += landing_plot(case, members, results.required_safety_factor, units, directory)
     for case in dict.fromkeys(pin.case for pin in results.pins):
         refined = [pin for pin in results.pins if pin.case == case and _can_be_drawn(pin)]
         if refined:

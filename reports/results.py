@@ -235,6 +235,24 @@ class MotionCheck:
 
 
 @dataclass(frozen=True)
+class LandingRange:
+    """One pin over the ranges of a landing's impulse, (P,) pairs each: impulse time, velocity
+    change, force, maximum von Mises and factor of safety (None without a yield strength). nominal:
+    the pair of the case itself. verdict: of the case, which holds for all pairs.
+    """
+
+    pin: str
+    case: str
+    impulse_time: Floats
+    velocity_change: Floats
+    force: Floats
+    max_von_mises: Floats
+    safety_factor: Floats | None
+    nominal: tuple[float, float]
+    verdict: str
+
+
+@dataclass(frozen=True)
 class LegTable:
     """The dynamics of a spatial leg: vectors (T, 3) and scalars (T,) by name with their units;
     axes: of the components.
@@ -320,6 +338,7 @@ class Results:
     motion_check: MotionCheck | None = None
     published: tuple[PublishedValue, ...] = ()
     legs: tuple[LegTable, ...] = ()
+    landing: tuple[LandingRange, ...] = ()
     provenance: tuple[Provenance, ...] = ()
     published_source: str = ""
     assumptions: tuple[str, ...] = ()

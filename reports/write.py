@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from reports.json_results import write_json
+from reports.landing import write_landing
 from reports.leg_tables import write_legs
 from reports.linkage_tables import write_linkage
 from reports.page import write_page
@@ -30,6 +31,7 @@ def write_reports(
     """
     drawn = write_loads(results, directory, plots)
     write_safety_factors(results, directory)
+    write_landing(results, directory)
     if results.beam_check is not None:
         write_beam_check(results.beam_check, directory / "beam_check.csv")
     return write_page(results, directory, pictures, drawn)

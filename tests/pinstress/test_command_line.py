@@ -212,11 +212,12 @@ def test_check_says_what_would_be_run_and_loads_no_heavy_library(tmp_path: Path)
 def test_schema_is_json_and_knows_every_table() -> None:
     done = pinstress("schema", cwd=ROOT)
     made = json.loads(done.stdout)
-    assert {"title", "units", "material", "pin", "case"} <= set(made["required"])
+    assert {"title", "units", "case"} <= set(made["required"])
+    assert {"material", "pin", "spatial_leg"} <= set(made["properties"])
     assert "mechanism" in made["properties"]
 
 
-@pytest.mark.parametrize("command", ["run", "check", "init", "schema"])
+@pytest.mark.parametrize("command", ["run", "loads", "check", "init", "schema"])
 def test_help_begins_with_an_example(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert run_command_line([command, "--help"]) == 0
     body = capsys.readouterr().out.split("\n\n")[1]

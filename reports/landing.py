@@ -1,0 +1,68 @@
+"""Factors of safety over the ranges of a landing's impulse, as tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from reports import markdown
+from reports.csv_files import Cell, write_csv
+from reports.numbers import engineering, short
+from reports.results import LandingRange, Results
+from reports.words import word
+
+COLUMNS = (
+    *("pin", "case", "impulse_time", "velocity_change", "force", "max_von_mises"),
+    *("safety_factor", "meets_required", "verdict"),
+)
+
+
+def write_landing(results: Results, directory: Path) -> None:
+    """Write landing_range.csv and .md; nothing where no impulse has a range."""
+    if not results.landing:
+        return
+    write_csv(directory / "landing_range.csv", COLUMNS, _rows(results))
+    parts = [
+        f"# Landing: safety factors over the impulse\n\n{markdown.escaped(results.title)}",
+        landing_tables(results),
+        "One solution for all: the unit fields of each pin are superposed for every pair. The "
+        "verdict is that of the case itself; a factor of an unconverged peak is no value.",
+    ]
+    (directory / "landing_range.md").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
+
+
+def landing_tables(results: Results) -> str:
+    """Markdown tables by case and velocity change: a row per pin, a column per impulse time."""
+    units, parts = results.units, []
+    for case in dict.fromkeys(r.case for r in results.landing):
+        members = [r for r in results.landing if r.case == case]
+        for speed in dict.fromkeys(members[0].velocity_change.tolist()):
+            here = [i for i, v in enumerate(members[0].velocity_change) if v == speed]
+            head = ["pin", "verdict"]
+            head += [f"{short(members[0].impulse_time[i])} {units.time}" for i in here]
+            body = [
+                [r.pin, word(r.verdict), *(engineering(_factors(r)[i], 3) for i in here)]
+                for r in members
+            ]
+            title = f"{case}, velocity change {short(speed)} {units.length}/{units.time}"
+            parts.append(f"## {markdown.escaped(title)}")
+            parts.append(markdown.table(tuple(head), body, (False, False, *[True] * len(here))))
+    return "\n\n".join(parts)
+
+
+def _factors(r: LandingRange) -> list[float | None]:
+    if r.safety_factor is None:
+        return [None] * len(r.force)
+    return [float(x) for x in r.safety_factor]
+
+
+def _rows(results: Results) -> Iterator[list[Cell]]:
+    required = results.required_safety_factor
+    for r in results.landing:
+        for i, factor in enumerate(_factors(r)):
+            meets = None
+            if r.verdict == "converged" and factor is not None and required is not None:
+                meets = factor >= required
+            values = (r.impulse_time, r.velocity_change, r.force, r.max_von_mises)
+            numbers = (float(v[i]) for v in values)
+            yield [r.pin, r.case, *numbers, factor, meets, r.verdict]

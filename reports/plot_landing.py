@@ -1,0 +1,57 @@
+"""Plots of the factor of safety over the ranges of a landing's impulse."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from reports.numbers import short
+from reports.plot_names import plot_name
+from reports.results import LandingRange, Units
+from reports.style import GREY, label_ends, line_style, panels, plain_numbers, save
+
+
+def landing_plot(
+    case: str, members: list[LandingRange], required: float | None, units: Units, directory: Path
+) -> list[Path]:
+    """Factor against impulse time: a panel per velocity change, a line per pin, logarithmic."""
+    members = [m for m in members if m.safety_factor is not None]
+    if not members:
+        return []
+    speeds = sorted({float(v) for v in members[0].velocity_change})
+    shown = speeds if len(speeds) <= 2 else [speeds[0], speeds[-1]]
+    with panels(len(shown), height=2.9) as (figure, axes):
+        for panel, speed in zip(axes, shown, strict=True):
+            lines = []
+            for order, m in enumerate(members):
+                assert m.safety_factor is not None
+                here = np.isclose(m.velocity_change, speed)
+                rank = np.argsort(m.impulse_time[here])
+                lines += panel.semilogy(
+                    m.impulse_time[here][rank], m.safety_factor[here][rank], **line_style(order)
+                )
+            for level, text in ((1.0, "yield"), (required, "required")):
+                if level is not None:
+                    panel.axhline(level, color=GREY, linewidth=0.9)
+                    panel.annotate(
+                        text,
+                        (0.0, level),
+                        xycoords=("axes fraction", "data"),
+                        xytext=(3, 2),
+                        textcoords="offset points",
+                        fontsize=8,
+                        color=GREY,
+                    )
+            panel.margins(x=0.0)
+            panel.set(
+                title=f"velocity change {short(speed)} {units.length}/{units.time}",
+                xlabel=f"impulse time [{units.time}]",
+                ylabel="factor of safety",
+            )
+            plain_numbers(panel)
+            label_ends(figure, panel, lines, [f"pin {m.pin}" for m in members])
+        loose = [m.pin for m in members if m.verdict != "converged"]
+        note = f"\n(no values: the peaks of {', '.join(loose)} did not converge)" if loose else ""
+        figure.suptitle(f"{case}: factors over the impulse{note}", x=0.01, ha="left")
+        return save(figure, directory, plot_name("landing-range", case))
