@@ -1,0 +1,91 @@
+"""Every study that ships runs from file to safety factors; `loads` writes its mechanics."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from pathlib import Path
+
+import pytest
+
+from pinstress.cli import run_command_line
+from tests.conftest import ROOT
+
+STUDIES = ROOT / "studies"
+MECHANISMS = ["grenier2008", "bowman2019", "matrix_four_bar", "slider_crank"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("study", "pin"),
+    [("bowman2019", "A"), ("matrix_four_bar", "C"), ("slider_crank", "A")]
+    + [("kuleuven2014", "trunnion")],
+)  # fmt: skip
+def test_the_whole_pipeline(tmp_path: Path, study: str, pin: str) -> None:
+    out = tmp_path / "out"
+    command = ["run", str(STUDIES / f"{study}.toml"), "--pins", pin, "--out", str(out)]
+    assert run_command_line([*command, "--tolerance", "0.1", "--no-pictures"]) == 0
+    found = json.loads((out / "results.json").read_text(encoding="utf-8"))
+    for result in found["pins"]:
+        assert result["pin"] == pin
+        assert result["verdict"] == "converged"
+        assert result["meets_required"] is True
+    assert (out / "report.html").is_file()
+
+
+@pytest.mark.parametrize("study", MECHANISMS)
+def test_loads_alone(tmp_path: Path, study: str, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "out"
+    command = ["loads", str(STUDIES / f"{study}.toml"), "--out", str(out), "--no-pictures"]
+    assert run_command_line(command) == 0
+    printed = capsys.readouterr().out
+    assert "powers balance" in printed
+    rows = list(csv.DictReader((out / "reactions.csv").read_text().splitlines()))
+    turned = list(csv.DictReader((out / "reactions_pin_axes.csv").read_text().splitlines()))
+    assert len(rows) == len(turned) > 0
+    for world, own in zip(rows, turned, strict=True):  # turning does not change the size
+        sizes = [math.hypot(float(r["fx"]), float(r["fy"])) for r in (world, own)]
+        assert sizes[0] == pytest.approx(sizes[1], rel=1e-12, abs=1e-9)
+    found = json.loads((out / "results.json").read_text(encoding="utf-8"))
+    assert found["pins"] == []
+    for case in found["loads"]:
+        assert case["power_violation"] < 1e-9
+    for name in ("motion.csv", "joints.csv", "transmission.csv", "linkage.csv"):
+        assert len((out / name).read_text().splitlines()) > 1
+    if study != "matrix_four_bar":  # which has instants only
+        assert (out / "drive.csv").is_file()
+
+
+def test_the_leg_in_space(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    command = ["loads", str(STUDIES / "kuleuven2014.toml"), "--out", str(out), "--no-pictures"]
+    assert run_command_line(command) == 0
+    rows = list(csv.DictReader((out / "leg.csv").read_text().splitlines()))
+    pins = list(csv.DictReader((out / "reactions.csv").read_text().splitlines()))
+    for leg, pin in zip(rows, pins, strict=True):
+        # hinge axes x = z'', y = x'', z = y''; the moment about the hinge is the actuator's
+        for ours, theirs in (("fx", "F_B_z"), ("fy", "F_B_x"), ("fz", "F_B_y")):
+            assert float(pin[ours]) == float(leg[f"{theirs} [N]"])
+        for ours, theirs in (("mx", "M_B_z"), ("my", "M_B_x")):
+            assert float(pin[ours]) == float(leg[f"{theirs} [N m]"])
+        assert float(pin["mz"]) == 0.0
+        assert float(leg["actuator [N m]"]) == -float(leg["M_B_y [N m]"])
+
+
+def test_a_jammed_guide_ends_with_a_message(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    command = ["loads", str(STUDIES / "slider_crank_jammed.toml"), "--out", str(out)]
+    assert run_command_line(command) == 2
+    assert "friction jams slider guide" in capsys.readouterr().err
+    assert not out.exists()
+
+
+def test_the_linkage_of_the_docs_runs(tmp_path: Path) -> None:
+    text = (ROOT / "docs" / "mechanisms.md").read_text(encoding="utf-8")
+    study = tmp_path / "four_bar.toml"
+    study.write_text(text.split("```toml\n")[1].split("```")[0], encoding="utf-8")
+    out = tmp_path / "out"
+    assert run_command_line(["loads", str(study), "--out", str(out), "--no-pictures"]) == 0
