@@ -164,8 +164,7 @@ class _Balance:
 
     def _generalised(self) -> Floats:
         """What the bodies need as forces along the coordinates, (T, n) N (N m for angles)."""
-        loops = self.loops
-        slopes = loops.partials(self.motion.pose, loops.centres)
+        loops, slopes = self.loops, self.motion.centre_slopes
         out = np.real(np.conj(slopes) @ self.needed[..., None])[..., 0]
         for i in range(len(loops.linkage.items)):
             if f := loops.frame[i]:

@@ -50,7 +50,9 @@ class Motion:
 
     def follow(self, points: Points) -> tuple[Complex, Complex, Complex]:
         """Positions, velocities, accelerations (T, N) of points."""
-        slopes = self.loops.partials(self.pose, points)
+        return self._course(points, self.loops.partials(self.pose, points))
+
+    def _course(self, points: Points, slopes: Complex) -> tuple[Complex, Complex, Complex]:
         bends = self.loops.bends(self.pose, self.v, points)
         return (
             self.loops.place(self.pose, points),
@@ -59,9 +61,14 @@ class Motion:
         )
 
     @cached_property
+    def centre_slopes(self) -> Complex:
+        """(T, n, items) derivatives of the centres of mass by the coordinates."""
+        return self.loops.partials(self.pose, self.loops.centres)
+
+    @cached_property
     def centres(self) -> tuple[Complex, Complex, Complex]:
         """Position, velocity, acceleration (T, items) of the centres of mass."""
-        return self.follow(self.loops.centres)
+        return self._course(self.loops.centres, self.centre_slopes)
 
     def point(self, item: str, drawn: Point) -> tuple[Floats, Floats, Floats]:
         """Position, velocity, acceleration (T, 2) of the item's point at `drawn` (m, as drawn)."""

@@ -14,10 +14,13 @@ from loads.loops import Ints, Loops
 
 NEWTON_TOLERANCE = 1e-10  # last correction, of the length scale: the error is its square
 CLOSURE = 1e-11  # largest gap of a closed loop, of the length scale
-LARGEST_TURN = 0.15  # rad (or length scales) that a step of the continuation may move a coordinate
+LARGEST_TURN = 0.25  # rad (or length scales) that a step of the continuation may move a coordinate
 CONTRACTION = 0.25  # each Newton correction must be at most this part of the one before
 WEAKEST = 1e-10  # pivot, of the largest: below it rank is lost
 MOST_WAYPOINTS = 129  # when several drives move together
+
+
+_COURSE = ("q", "rate", "bend")
 
 
 class _Lost(Exception):
@@ -34,11 +37,12 @@ class _Open(Exception):
 
 @dataclass(frozen=True)
 class _Node:
-    """A point of the path: part of the way, coordinates, their rate per part."""
+    """A point of the path: part of the way, coordinates, their first and second rate per part."""
 
     part: float
     q: Floats
     rate: Floats
+    bend: Floats
 
 
 def positions(loops: Loops, drives: Floats) -> Floats:
@@ -46,7 +50,7 @@ def positions(loops: Loops, drives: Floats) -> Floats:
 
     The path is followed from the drawn position to the first instant and on, in steps so small
     that Newton contracts from the first iteration on: another branch is never in reach. Every
-    instant then starts from the cubic through the path's nodes and is polished by Newton, all at
+    instant then starts from the quintic through the path's nodes and is polished by Newton, all at
     once.
 
     Raises: Impasse where the linkage cannot follow.
@@ -88,7 +92,7 @@ class _Path:
         loops = self.loops
         run = end - start
         part, step, factors = 0.0, 1.0, self._factors(q)
-        nodes = [_Node(0.0, q, self._rate(factors, run))]
+        nodes = [self._node(0.0, q, factors, run)]
         while part < 1.0 and run.any():
             here = nodes[-1]
             fastest = float(np.abs(here.rate * loops.scale).max()) / loops.linkage.length_scale
@@ -96,7 +100,8 @@ class _Path:
             step = min(step, limit, 1.0 - part)
             there = start + (part + step) * run
             try:
-                q = _step(loops, here.q + step * here.rate, there, step / limit)
+                ahead = here.q + step * here.rate + 0.5 * step**2 * here.bend
+                q = _step(loops, ahead, there, step / limit)
             except (_Lost, _Open) as problem:
                 step /= 2.0
                 if step < 1e-9:
@@ -111,16 +116,18 @@ class _Path:
             if factors.weakest[0] < WEAKEST:
                 raise impasse(loops, q, there, end)
             part = 1.0 if step >= 1.0 - part else part + step
-            nodes.append(_Node(part, q, self._rate(factors, run)))
+            nodes.append(self._node(part, q, factors, run))
             step *= 2.0
         return nodes
 
     def _factors(self, q: Floats) -> Factors:
         return Factors(self.loops.jacobian(self.loops.pose(q[None])))
 
-    def _rate(self, factors: Factors, run: Floats) -> Floats:
-        side = self.loops.drive_side(run[None])
-        return np.asarray(factors.solve(side)[0] / self.loops.scale)
+    def _node(self, part: float, q: Floats, factors: Factors, run: Floats) -> _Node:
+        loops = self.loops
+        rate = factors.solve(loops.drive_side(run[None])) / loops.scale
+        bend = factors.solve(loops.bend_side(loops.pose(q[None]), rate)) / loops.scale
+        return _Node(part, q, rate[0], bend[0])
 
     def _crossed(
         self, here: _Node, q: Floats, start: Floats, run: Floats, part: float, end: Floats
@@ -131,13 +138,11 @@ class _Path:
         for _ in range(40):
             middle = 0.5 * (low + high)
             weight = (middle - here.part) / (part - here.part)
+            guess = (1.0 - weight) * here.q + weight * q
             try:
-                between = _newton(
-                    self.loops,
-                    ((1.0 - weight) * here.q + weight * q)[None],
-                    (start + middle * run)[None],
-                )
-            except (_Lost, _Open, np.linalg.LinAlgError):
+                between = _newton(self.loops, guess[None], (start + middle * run)[None])
+            except (_Lost, _Open):
+                low, at = middle, guess  # Newton fails between two good nodes: it is here
                 break
             J = self.loops.jacobian(self.loops.pose(between))
             if factors.turn_to(J)[0] < 0.0:
@@ -188,7 +193,7 @@ def _newton(loops: Loops, q: Floats, drives: Floats, first: float = np.inf) -> F
 
 
 def _guess(loops: Loops, nodes: list[_Node], drives: Floats, start: Floats, end: Floats) -> Floats:
-    """Coordinates near the path of `nodes` for drives (T, D): Hermite's cubic along it, and the
+    """Coordinates near the path of `nodes` for drives (T, D): Hermite's quintic along it, and the
     rate of the nearest node across it.
     """
     weight = np.array([loops.drive_scale(k) ** 2 for k in range(drives.shape[1])])
@@ -198,15 +203,18 @@ def _guess(loops: Loops, nodes: list[_Node], drives: Floats, start: Floats, end:
         return np.repeat(nodes[-1].q[None], len(drives), axis=0)
     part = np.clip((drives - start) @ (weight * run) / length, 0.0, 1.0)
     x = np.array([n.part for n in nodes])
-    values, rates = np.stack([n.q for n in nodes]), np.stack([n.rate for n in nodes])
+    values, rates, bends = (np.stack([getattr(n, c) for n in nodes]) for c in _COURSE)
     k = np.clip(np.searchsorted(x, part) - 1, 0, len(x) - 2)
     h = (x[k + 1] - x[k])[:, None]
     s = (part - x[k])[:, None] / h
+    t, cube = 1.0 - s, s**3
     along = (
-        (1 + 2 * s) * (1 - s) ** 2 * values[k]
-        + s * (1 - s) ** 2 * h * rates[k]
-        + s**2 * (3 - 2 * s) * values[k + 1]
-        - s**2 * (1 - s) * h * rates[k + 1]
+        t**3 * (1.0 + 3.0 * s + 6.0 * s**2) * values[k]
+        + t**3 * s * (1.0 + 3.0 * s) * h * rates[k]
+        + 0.5 * t**3 * s**2 * h**2 * bends[k]
+        + cube * (1.0 + 3.0 * t + 6.0 * t**2) * values[k + 1]
+        - cube * t * (1.0 + 3.0 * t) * h * rates[k + 1]
+        + 0.5 * cube * t**2 * h**2 * bends[k + 1]
     )
     if drives.shape[1] == 1:
         return np.asarray(along)

@@ -19,9 +19,13 @@ MECHANISMS = ["grenier2008", "bowman2019", "matrix_four_bar", "slider_crank"]
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("study", "pin"),
-    [("bowman2019", "A"), ("matrix_four_bar", "C"), ("slider_crank", "A")]
-    + [("kuleuven2014", "trunnion")],
-)  # fmt: skip
+    [
+        ("bowman2019", "A"),
+        ("matrix_four_bar", "C"),
+        ("slider_crank", "A"),
+        ("kuleuven2014", "trunnion"),
+    ],
+)
 def test_the_whole_pipeline(tmp_path: Path, study: str, pin: str) -> None:
     out = tmp_path / "out"
     command = ["run", str(STUDIES / f"{study}.toml"), "--pins", pin, "--out", str(out)]
