@@ -160,6 +160,8 @@ def _integrate(
 
 
 def _chart(peaks: list[tuple[float, ...]], ways: list[tuple[object, ...]]) -> None:
+    from matplotlib.ticker import NullFormatter
+
     from reports.style import line_style, panels, save
 
     with panels(1, 2, height=3.4) as (figure, (left, right)):
@@ -169,7 +171,7 @@ def _chart(peaks: list[tuple[float, ...]], ways: list[tuple[object, ...]]) -> No
             left.loglog(n, errors, marker="o", ms=4, label=name, **line_style(order))
         left.axhline(1e-10, color="#8a8a8a", linewidth=0.8)
         left.set(xlabel="instants of the motion", ylabel="largest error of a peak reaction")
-        left.legend()
+        left.annotate("1e-10", (n[-1], 1.6e-10), ha="right", fontsize=8, color="#8a8a8a")
         steps = [row for row in ways if isinstance(row[1], int) and isinstance(row[2], float)]
         right.loglog(
             [float(row[4]) for row in steps],  # type: ignore[arg-type]
@@ -190,6 +192,12 @@ def _chart(peaks: list[tuple[float, ...]], ways: list[tuple[object, ...]]) -> No
                 color=line_style(order)["color"],
             )
         right.set(xlabel="time [s]", ylabel="error of the speed of F")
-        right.legend()
+        right.set_xlim(2e-5, 1.0)
+        right.set_ylim(1e-17, 1e-2)
+        for axes in (left, right):
+            axes.legend(loc="center left", bbox_to_anchor=(0.02, 0.42))
+            for axis in (axes.xaxis, axes.yaxis):
+                axis.set_major_formatter(lambda v, _: f"1e{round(np.log10(v))}")
+                axis.set_minor_formatter(NullFormatter())
         figure.suptitle("Landing gear, retract: speed against accuracy", x=0.01, ha="left")
         save(figure, CHART.parent, CHART.name)
