@@ -7,7 +7,7 @@ from loads.four_bar import four_bar
 from pinstress.build import case_loads
 from pinstress.errors import InputError
 from pinstress.limits import require_built
-from pinstress.mechanism import laws, linkage, span, state
+from pinstress.mechanism import linkage, span
 from pinstress.pins import pin as pin_of
 from pinstress.published import read_published
 from pinstress.schema import GivenCase, LegCase, MotionCase
@@ -52,8 +52,6 @@ def _mechanism(study: Study, mechanism: Linkage) -> list[str]:
             f"{found.free} way(s): {', '.join(found.loose)} not guided; add the missing connection "
             "or drive"
         )
-    if any(isinstance(case, MotionCase) for case in study.table.case.values()):
-        laws(study)  # reads the drives' tables
     lines = [
         f"mechanism: {len(mechanism.bodies)} bodies, {len(mechanism.joints)} joints, "
         f"{len(mechanism.connections)} connections, driven by {', '.join(mechanism.driven)}"
@@ -80,8 +78,8 @@ def _mechanism(study: Study, mechanism: Linkage) -> list[str]:
 
 def _case(study: Study, name: str, mechanism: Linkage | None) -> str:
     case, table = study.table.case[name], study.table.spatial_leg
+    reactions = case_loads(study, name, mechanism).reactions  # the mechanism can follow
     if isinstance(case, GivenCase):
-        reactions = case_loads(study, name, None).reactions
         many = f"{len(reactions)} instants" if reactions.times is not None else "one instant"
         return f"given, {many}, connections {', '.join(reactions.connections)}"
     if isinstance(case, LegCase):
@@ -92,5 +90,4 @@ def _case(study: Study, name: str, mechanism: Linkage | None) -> str:
     if isinstance(case, MotionCase):
         also = f", loads on {loads}" if loads else ""
         return f"motion, {case.samples} instants over {span(study):g} s{also}"
-    state(study, name, case, mechanism)
     return f"{case.kind}, {f'loads on {loads}' if loads else 'gravity alone'}"
