@@ -28,7 +28,7 @@ def player_data(scene: Scene, drives: list[DriveTable], units: Units) -> dict[st
     at = scene.instants
     time = scene.motion.time
     return {
-        "time": digits(np.arange(len(at)) * 1.0 if time is None else time[at], 7),
+        "time": digits(np.arange(len(at), dtype=np.float64) if time is None else time[at], 7),
         "places": {"left": scene.view.left, "top": scene.view.top, "scale": scene.view.scale},
         "units": {"length": units.length, "force": units.force, "time": units.time},
         "joints": list(scene.motion.joints),

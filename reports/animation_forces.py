@@ -1,4 +1,4 @@
-"""The forces on the pins in an animation: arrows, the table beside them, how numbers are written."""
+"""The forces on the pins in an animation: arrows, the table beside them, their digits."""
 
 from __future__ import annotations
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
@@ -121,11 +122,11 @@ class Scene:
         members = self.members[self.motion.bodies.index(body)]
         at = self.joints[0]
 
-        def clear(pair: tuple[int, int]) -> float:
+        def clear(pair: Sequence[int]) -> float:
             middle = 0.5 * (at[pair[0]] + at[pair[1]])
             return float(np.linalg.norm(at[members] - middle, axis=1).min())
 
-        return list(max(combinations(members, 2), key=clear))
+        return max((list(pair) for pair in combinations(members, 2)), key=clear)
 
     def colour(self, body: str) -> str:
         """The class of a body; what is no body of the linkage is ground."""

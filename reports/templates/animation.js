@@ -15,7 +15,7 @@
   const LEFT = 70, RIGHT = 946; // of the strips' curves
   const HEAD = 10; // length of an arrow's head
   const PAUSE = 600; // ms at the end before it starts again
-  let now = time[0], playing = false, direction = 1, before = 0, rest = 0;
+  let now = time[0], playing = false, direction = 1, before = 0, rest = 0, request = 0;
   let root = false; // square-root arrows
   let pinned = null, pointed = null;
 
@@ -184,25 +184,25 @@
     playing = on && last > 0;
     document.body.classList.toggle("playing", playing);
     play?.setAttribute("aria-label", playing ? "Pause" : "Play");
+    cancelAnimationFrame(request);
     if (!playing) return;
     if (direction > 0 && now >= time[last]) now = time[0];
     if (direction < 0 && now <= time[0]) direction = 1;
     before = rest = 0;
-    requestAnimationFrame(run);
+    request = requestAnimationFrame(run);
   };
 
   const run = (moment) => {
-    if (!playing) return;
     const passed = before ? Math.min(100, moment - before) : 0;
     before = moment;
-    requestAnimationFrame(run);
+    request = requestAnimationFrame(run);
     if (rest > 0) {
       rest -= passed;
       if (rest > 0) return;
       if (one("#end").value === "repeat") { now = time[0]; draw(); return; }
     }
     now += (direction * passed * Number(one("#speed").value)) / 1000;
-    if (now > time[0] && now < time[last]) { draw(); return; }
+    if (direction > 0 ? now < time[last] : now > time[0]) { draw(); return; }
     const end = one("#end").value;
     now = direction > 0 ? time[last] : time[0];
     if (end === "stop") turn(false);
