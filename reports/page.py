@@ -15,9 +15,9 @@ from reports.plot_names import SVG, plot_name
 from reports.published import published_reactions
 from reports.results import Results
 from reports.tables import TEXTS, safety_factor_rows, shown, shown_columns
+from reports.template import environment
 from reports.words import READING, outcome, summary, word
 
-TEMPLATES = Path(__file__).parent / "templates"
 TYPES = {".svg": "image/svg+xml", ".png": "image/png", ".jpg": "image/jpeg"}
 
 
@@ -53,18 +53,11 @@ def write_page(
 
 def render(results: Results, pictures: dict[tuple[str, str], Path], plots: dict[str, Path]) -> str:
     """The page as text; plots by name (reports.plot_names)."""
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
     from markupsafe import Markup
 
-    environment = Environment(
-        loader=FileSystemLoader(TEMPLATES),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters.update(eng=engineering, short=_short, word=word, like=like)
-    template = environment.get_template("report.html.j2")
+    templates = environment()
+    templates.filters.update(eng=engineering, short=_short, word=word, like=like)
+    template = templates.get_template("report.html.j2")
     drawings: dict[str, str] = {s.pin: Markup(draw_pin(s, results.units)) for s in results.shapes}
     return template.render(
         results=results,

@@ -12,6 +12,11 @@ def plot_name(kind: str, *names: str) -> str:
     return ".".join((kind, *(_safe(name) for name in names)))
 
 
+def animation_name(case: str) -> str:
+    """The file name of a case's animation."""
+    return f"animation_{_safe(case)}.html"
+
+
 def _safe(name: str) -> str:
     # A dot parts the names, so it is no letter of one.
     return quote(name, safe="").replace(".", "%2E")

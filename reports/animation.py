@@ -1,0 +1,90 @@
+"""animation_CASE.html: a linkage that moves, with the forces on its pins; one file, no network."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from reports.animation_data import player_data, script_json, speeds
+from reports.animation_forces import Shown, arrows, key, rows
+from reports.animation_frames import frames, nice
+from reports.animation_scene import Scene
+from reports.animation_strip import Strip, strip
+from reports.numbers import short
+from reports.plot_names import animation_name
+from reports.results import DriveTable, LinkageMotion, Results, Units
+from reports.template import environment
+
+BAR = 0.2  # of the linkage's size, about: the bar that shows a length
+
+
+def write_animations(results: Results, directory: Path) -> list[Path]:
+    """Write a file for every case whose linkage is known; returns their paths."""
+    paths = []
+    for motion in results.motion:
+        path = directory / animation_name(motion.case)
+        path.write_text(render_animation(motion, results), encoding="utf-8")
+        paths.append(path)
+    return paths
+
+
+def render_animation(motion: LinkageMotion, results: Results) -> str:
+    """The file's text."""
+    table = next((t for t in results.reactions if t.case == motion.case), None)
+    drives = [d for d in results.drive if d.case == motion.case]
+    scene = Scene(motion, frames(motion, table, drives), table)
+    shown = Shown.of(scene, drives, results.units)
+    data = player_data(scene, drives, results.units)
+    data["fixed"] = {
+        "force": vars(shown.force),
+        "drives": [[vars(position), vars(force)] for position, force in shown.drives],
+    }
+    return (
+        environment()
+        .get_template("animation.html.j2")
+        .render(
+            title=results.title,
+            case=motion.case,
+            note="" if table is None else table.note,
+            units=results.units,
+            scene=scene,
+            moving=len(scene.instants) > 1,
+            arrows=arrows(scene),
+            key=key(scene),
+            short=short,
+            shown=shown,
+            bar=_bar(scene, results.units),
+            rows=rows(scene, shown),
+            drives=drives,
+            strips=_strips(scene, drives, shown, results.units),
+            speeds=speeds(motion.time),
+            data=script_json(data),
+        )
+    )
+
+
+def _bar(scene: Scene, units: Units) -> tuple[float, str]:
+    """A bar's length on the picture, and the round length for which it stands."""
+    reach = float(np.ptp(scene.motion.joint_position.reshape(-1, 2), axis=0).max())
+    length = nice(BAR * reach)
+    return length * scene.view.scale, f"{short(length)} {units.length}"
+
+
+def _strips(scene: Scene, drives: list[DriveTable], shown: Shown, units: Units) -> list[Strip]:
+    """Forces on the pins against time, then a panel for each drive."""
+    time, at = scene.motion.time, scene.instants
+    if time is None or len(at) < 2:
+        return []
+    strips = []
+    if scene.table is not None and scene.tails:
+        curves = list(scene.table.magnitudes[at].T)
+        colours = [scene.colour(body) for _, body, _ in scene.motion.connections]
+        title = f"forces on the pins [{shown.force.unit}]"
+        note = f"time [{units.time}]"
+        strips.append(strip(title, note, 122.0, time[at], curves, colours, shown.force.factor))
+    for d, (_, force) in zip(drives, shown.drives, strict=True):
+        title = f"drive {d.name}: {'torque' if d.kind == 'rotary' else 'force'} [{force.unit}]"
+        note = f"mean {force(d.mean)}, RMS {force(d.rms)}"
+        strips.append(strip(title, note, 82.0, time[at], [d.force[at]], ["plain"], force.factor))
+    return strips

@@ -1,0 +1,264 @@
+"use strict";
+(() => {
+  const data = JSON.parse(document.getElementById("data").textContent);
+  const all = (selector) => [...document.querySelectorAll(selector)];
+  const one = (selector) => document.querySelector(selector);
+  const parts = {
+    joints: all("[data-joint]"), links: all("[data-link]"), slides: all("[data-slide]"),
+    centres: all("[data-centre]"), arrows: all("[data-arrow]"), rows: all("[data-row]"),
+    curves: all("[data-curve]"), strips: all("[data-strip]"), cursors: all(".cursor"),
+    positions: all("[data-position]"), forces: all("output[data-force]"),
+    names: all("[data-between]"),
+  };
+  const time = data.time, last = time.length - 1, span = time[last] - time[0];
+  const seek = one("#seek"), play = one("#play"), callout = one("#callout"), key = one("#key");
+  const LEFT = 70, RIGHT = 946; // of the strips' curves
+  const HEAD = 10; // length of an arrow's head
+  const PAUSE = 600; // ms at the end before it starts again
+  let now = time[0], playing = false, direction = 1, before = 0, rest = 0, request = 0;
+  let root = false; // square-root arrows
+  let pinned = null, pointed = null;
+
+  // --- numbers -------------------------------------------------------------------------------
+
+  const written = (value, fixed) => {
+    if (value === null || !Number.isFinite(value)) return "–";
+    const d = fixed.decimals;
+    let text = (value / fixed.factor).toLocaleString("en-US", { minimumFractionDigits: d, maximumFractionDigits: d });
+    if (/^-[0.,]*$/.test(text)) text = text.slice(1);
+    return text.replace("-", "−");
+  };
+  const plain = (value) => written(value, { factor: 1, decimals: Math.min(8, Math.max(0, 3 - Math.floor(Math.log10(Math.abs(value) || 1)))) });
+  const decimals = span > 0 ? Math.min(9, Math.max(0, 3 - Math.floor(Math.log10(span)))) : 3;
+
+  // The frame before the present time, and how far it is to the next.
+  const frame = () => {
+    let low = 0, high = last;
+    while (high - low > 1) {
+      const middle = (low + high) >> 1;
+      if (time[middle] <= now) low = middle; else high = middle;
+    }
+    const step = time[high] - time[low];
+    return { i: low, u: step > 0 ? Math.min(1, Math.max(0, (now - time[low]) / step)) : 0 };
+  };
+  const at = (values, { i, u }, width = 1, k = 0) => {
+    const a = values[i * width + k];
+    if (u === 0) return a;
+    const b = values[Math.min(i + 1, last) * width + k];
+    return a === null || b === null ? null : a + (b - a) * u;
+  };
+  const nearest = () => { const { i, u } = frame(); return u > 0.5 ? i + 1 : i; };
+
+  // --- picture -------------------------------------------------------------------------------
+
+  const place = (x, y) => `translate(${x.toFixed(2)} ${y.toFixed(2)})`;
+  const line = (points, closed) => "M" + points.map((p) => p[0].toFixed(2) + "," + p[1].toFixed(2)).join(" ") + (closed ? "Z" : "");
+
+  const stretch = (arrow, length) => {
+    const head = Math.min(HEAD, 0.6 * length);
+    arrow.setAttribute("visibility", length < 1 ? "hidden" : "visible");
+    arrow.querySelector("line").setAttribute("x2", (length - 0.8 * head).toFixed(2));
+    arrow.querySelector("path").setAttribute("transform", `translate(${length.toFixed(2)}) scale(${(head / HEAD).toFixed(3)})`);
+  };
+  const length = (force) => {
+    const part = data.arrow.largest > 0 ? force / data.arrow.largest : 0;
+    return data.arrow.longest * (root ? Math.sqrt(part) : part);
+  };
+
+  const draw = () => {
+    const f = frame();
+    const joints = data.xy.map((xy) => [at(xy, f, 2, 0), at(xy, f, 2, 1)]);
+    parts.joints.forEach((g, j) => g.setAttribute("transform", place(...joints[j])));
+    parts.links.forEach((g, b) => {
+      if (data.links[b].length < 2) return;
+      const d = line(data.links[b].map((j) => joints[j]), data.links[b].length > 2);
+      for (const path of g.children) path.setAttribute("d", d);
+    });
+    parts.names.forEach((text) => {
+      const [p, q] = text.dataset.between.split(" ").map((j) => joints[j]);
+      text.setAttribute("transform", place((p[0] + q[0]) / 2, (p[1] + q[1]) / 2));
+    });
+    parts.slides.forEach((g, s) => {
+      const slide = data.slides[s];
+      const [ax, ay, bx, by] = [0, 1, 2, 3].map((k) => at(slide.ends, f, 4, k));
+      if (slide.rail) {
+        g.firstElementChild.setAttribute("transform", `${place(bx, by)} rotate(${slide.angle})`);
+        return;
+      }
+      const whole = Math.hypot(bx - ax, by - ay), part = whole > 0 ? Math.min(1, slide.cylinder / whole) : 0;
+      const [rod, rim, core] = g.children;
+      rod.setAttribute("d", line([[ax, ay], [bx, by]]));
+      const barrel = line([[ax, ay], [ax + part * (bx - ax), ay + part * (by - ay)]]);
+      rim.setAttribute("d", barrel);
+      core.setAttribute("d", barrel);
+    });
+    parts.centres.forEach((g, b) => g.setAttribute("transform", place(at(data.centres[b], f, 2, 0), at(data.centres[b], f, 2, 1))));
+    data.connections.forEach((c, n) => {
+      const fx = at(c.fx, f), fy = at(c.fy, f), force = at(c.f, f);
+      const angle = (Math.atan2(-fy, fx) * 180) / Math.PI;
+      parts.arrows[n].setAttribute("transform", `${place(...joints[c.joint])} rotate(${angle.toFixed(2)})`);
+      stretch(parts.arrows[n], length(Math.hypot(fx, fy)));
+      const cells = parts.rows[n].children;
+      cells[2].textContent = written(fx, data.fixed.force);
+      cells[3].textContent = written(fy, data.fixed.force);
+      cells[4].textContent = written(force, data.fixed.force);
+    });
+    data.drives.forEach((d, n) => {
+      if (!parts.positions[n]) return;
+      parts.positions[n].textContent = written(at(d.position, f), data.fixed.drives[n][0]);
+      parts.forces[n].textContent = written(at(d.force, f), data.fixed.drives[n][1]);
+    });
+    const x = LEFT + (span > 0 ? (now - time[0]) / span : 0) * (RIGHT - LEFT);
+    for (const cursor of parts.cursors) { cursor.setAttribute("x1", x.toFixed(1)); cursor.setAttribute("x2", x.toFixed(1)); }
+    if (seek) {
+      const text = written(now, { factor: 1, decimals });
+      one("#time").textContent = text;
+      seek.value = nearest();
+      seek.setAttribute("aria-valuetext", `${text} ${data.units.time}`);
+    }
+    tell(f, joints);
+  };
+
+  // --- the joint that is looked at -------------------------------------------------------------
+
+  const chosen = () => pointed ?? pinned;
+
+  const element = (name, text) => { const e = document.createElement(name); e.textContent = text; return e; };
+
+  const tell = (f, joints) => {
+    const j = chosen();
+    callout.hidden = j === null;
+    if (j === null) return;
+    const [x, y] = joints[j], { left, top, scale } = data.places;
+    const box = element("div", "");
+    box.append(element("b", data.joints[j]), element("small", `x ${plain((x - left) / scale)}, y ${plain((top - y) / scale)} ${data.units.length}`));
+    const table = element("table", "");
+    data.connections.forEach((c, n) => {
+      if (c.joint !== j) return;
+      const row = table.insertRow();
+      row.className = parts.rows[n].className.replace("hot", "");
+      const head = element("th", "");
+      head.append(element("i", ""), c.body ? `${c.name}, ${c.body}` : c.name);
+      const angle = (Math.atan2(at(c.fy, f), at(c.fx, f)) * 180) / Math.PI;
+      row.append(head, element("td", written(at(c.f, f), data.fixed.force)), element("td", `${written(angle, { factor: 1, decimals: 0 })}°`));
+      row.cells[1].className = row.cells[2].className = "n";
+    });
+    if (table.rows.length) box.append(table, element("small", "on the pin; direction from x"));
+    callout.replaceChildren(...box.childNodes);
+    // In the corner that is further from the joint.
+    callout.classList.toggle("right", x < one("#scene").viewBox.baseVal.width / 2);
+  };
+
+  const mark = () => {
+    const j = chosen();
+    parts.joints.forEach((g, n) => { g.classList.toggle("hot", n === j); g.setAttribute("aria-pressed", String(n === pinned)); });
+    data.connections.forEach((c, n) => {
+      parts.rows[n].classList.toggle("hot", c.joint === j);
+      parts.curves[n]?.classList.toggle("hot", c.joint === j);
+    });
+    parts.strips[0]?.classList.toggle("chosen", data.connections.some((c) => c.joint === j));
+    draw();
+  };
+  const point = (j) => { pointed = j; mark(); };
+  const pin = (j) => { pinned = pinned === j ? null : j; mark(); };
+
+  parts.joints.forEach((g, j) => {
+    g.addEventListener("pointerenter", () => point(j));
+    g.addEventListener("pointerleave", () => point(null));
+    g.addEventListener("focus", () => { if (g.matches(":focus-visible")) point(j); });
+    g.addEventListener("blur", () => point(null));
+    g.addEventListener("click", () => pin(j));
+    g.addEventListener("keydown", (event) => { if (event.key === "Enter") { event.preventDefault(); pin(j); } });
+  });
+  parts.rows.forEach((row, n) => {
+    row.addEventListener("pointerenter", () => point(data.connections[n].joint));
+    row.addEventListener("pointerleave", () => point(null));
+    row.addEventListener("click", () => pin(data.connections[n].joint));
+  });
+
+  // --- time ------------------------------------------------------------------------------------
+
+  const go = (to) => { now = Math.min(time[last], Math.max(time[0], to)); draw(); };
+
+  const turn = (on) => {
+    playing = on && last > 0;
+    document.body.classList.toggle("playing", playing);
+    play?.setAttribute("aria-label", playing ? "Pause" : "Play");
+    cancelAnimationFrame(request);
+    if (!playing) return;
+    if (direction > 0 && now >= time[last]) now = time[0];
+    if (direction < 0 && now <= time[0]) direction = 1;
+    before = rest = 0;
+    request = requestAnimationFrame(run);
+  };
+
+  const run = (moment) => {
+    const passed = before ? Math.min(100, moment - before) : 0;
+    before = moment;
+    request = requestAnimationFrame(run);
+    if (rest > 0) {
+      rest -= passed;
+      if (rest > 0) return;
+      if (one("#end").value === "repeat") { now = time[0]; draw(); return; }
+    }
+    now += (direction * passed * Number(one("#speed").value)) / 1000;
+    if (direction > 0 ? now < time[last] : now > time[0]) { draw(); return; }
+    const end = one("#end").value;
+    now = direction > 0 ? time[last] : time[0];
+    if (end === "stop") turn(false);
+    else rest = PAUSE;
+    direction = end === "return" ? -direction : 1;
+    draw();
+  };
+
+  const step = (by) => { turn(false); go(time[Math.min(last, Math.max(0, nearest() + by))]); };
+
+  if (seek) {
+    play.addEventListener("click", () => turn(!playing));
+    one("#back").addEventListener("click", () => step(-1));
+    one("#on").addEventListener("click", () => step(1));
+    one("#end").addEventListener("change", () => { direction = 1; });
+    seek.addEventListener("input", () => { turn(false); go(time[Number(seek.value)]); });
+    document.addEventListener("keydown", (event) => {
+      if (event.ctrlKey || event.altKey || event.metaKey || event.target.matches("select")) return;
+      const by = event.shiftKey ? 10 : 1;
+      if (event.key === " " && !event.target.matches("button, input[type=checkbox]")) turn(!playing);
+      else if (event.key === "ArrowLeft") step(-by);
+      else if (event.key === "ArrowRight") step(by);
+      else if (event.key === "Home") step(-last);
+      else if (event.key === "End") step(last);
+      else return;
+      event.preventDefault();
+    });
+  }
+  document.addEventListener("keydown", (event) => { if (event.key === "Escape") { pinned = pointed = null; mark(); } });
+  for (const strip of parts.strips) {
+    const drag = (event) => {
+      const spot = new DOMPoint(event.clientX, event.clientY).matrixTransform(strip.getScreenCTM().inverse());
+      turn(false);
+      go(time[0] + (span * (spot.x - LEFT)) / (RIGHT - LEFT));
+      go(time[nearest()]);
+    };
+    strip.addEventListener("pointerdown", (event) => { strip.setPointerCapture(event.pointerId); drag(event); });
+    strip.addEventListener("pointermove", (event) => { if (event.buttons & 1) drag(event); });
+  }
+
+  // --- choices ---------------------------------------------------------------------------------
+
+  const rescale = () => {
+    root = one("#scale").value === "sqrt";
+    if (key) { const l = length(Number(key.dataset.size)); stretch(key, l); key.querySelector("text").setAttribute("x", (l + 8).toFixed(2)); }
+    draw();
+  };
+  one("#scale").addEventListener("change", rescale);
+  const show = (box) => document.body.classList.toggle(`with-${box.dataset.show}`, box.checked);
+  for (const box of all("[data-show]")) { box.addEventListener("change", () => show(box)); show(box); }
+  addEventListener("resize", draw);
+
+  for (const part of all(".controls, .help")) part.hidden = false;
+  rescale();
+  // animation_x.html#t=1.5 opens at that time; otherwise it plays, unless less motion is asked for.
+  const asked = /^#t=([-+.\deE]+)$/.exec(location.hash);
+  if (asked && Number.isFinite(Number(asked[1]))) go(Number(asked[1]));
+  else if (last > 0 && !matchMedia("(prefers-reduced-motion: reduce)").matches) turn(true);
+})();
