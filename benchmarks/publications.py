@@ -72,7 +72,7 @@ def grenier_peaks(results: Results) -> str:
     table = markdown.table(head, rows, (False, False, True, True, True, True, True, False))
     return (
         f"## Landing-gear pins: {results.published_source}\n\n{table}\n\n"
-        "Both peaks sit at sharp corners and clamp edges, where no value exists; "
+        "These peaks sit at sharp corners and clamp edges, where no value exists; "
         "[](grenier2008.md) says pin by pin what the ratios hang on.\n"
     )
 

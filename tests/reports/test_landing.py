@@ -1,0 +1,82 @@
+"""Factors of safety over a landing's impulse; single published values; names are harmless."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from reports.landing import landing_tables, write_landing
+from reports.plot_landing import landing_plot
+from reports.published_values import write_published_values
+from reports.results import LandingRange, PublishedValue, Results
+
+
+def ranged(pin: str, verdict: str = "converged", factor: float = 4.0) -> LandingRange:
+    times, speeds = (x.ravel() for x in np.meshgrid([0.1, 0.2], [10.0, 25.0]))
+    force = speeds / times
+    return LandingRange(
+        pin=pin,
+        case="landing",
+        impulse_time=times,
+        velocity_change=speeds,
+        force=force,
+        max_von_mises=10.0 * force,
+        safety_factor=factor * 100.0 / force,
+        nominal=(0.1, 10.0),
+        verdict=verdict,
+    )
+
+
+def test_every_pair_is_a_row(results: Results, tmp_path: Path) -> None:
+    some = replace(results, landing=(ranged("A"), ranged("B", "unconverged")))
+    write_landing(some, tmp_path)
+    rows = list(csv.DictReader((tmp_path / "landing_range.csv").read_text().splitlines()))
+    assert len(rows) == 8
+    first = rows[0]
+    assert [float(first[k]) for k in ("impulse_time", "velocity_change", "force")] == [0.1, 10, 100]
+    assert float(first["safety_factor"]) == pytest.approx(4.0)
+    # 1.5 is required; a factor of a peak that did not converge decides nothing
+    assert [r["meets_required"] for r in rows] == ["yes", "yes", "yes", "yes", "", "", "", ""]
+    text = landing_tables(some)
+    assert "## landing, velocity change 25 in/s" in text
+    assert "| A   | converged   |" in text
+    assert "0.2 s" in text
+
+
+def test_nothing_is_written_without_ranges(results: Results, tmp_path: Path) -> None:
+    write_landing(results, tmp_path)
+    write_published_values(results, tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_material_without_strength_has_no_factors(results: Results, tmp_path: Path) -> None:
+    weak = replace(ranged("A"), safety_factor=None)
+    write_landing(replace(results, landing=(weak,)), tmp_path)
+    rows = list(csv.DictReader((tmp_path / "landing_range.csv").read_text().splitlines()))
+    assert {r["safety_factor"] for r in rows} == {""}
+    assert landing_plot("landing", [weak], 1.5, results.units, tmp_path) == []
+
+
+def test_the_plot_is_the_same_twice(results: Results, tmp_path: Path) -> None:
+    members = [ranged("A"), ranged("$B$", "unconverged", 2.0)]
+    for name in ("one", "two"):
+        (tmp_path / name).mkdir()
+        assert len(landing_plot("<x>", members, 1.5, results.units, tmp_path / name)) == 2
+    (a,), (b,) = ([p.read_bytes() for p in (tmp_path / n).glob("*.svg")] for n in ("one", "two"))
+    assert a == b
+
+
+def test_published_values_stand_beside_ours(results: Results, tmp_path: Path) -> None:
+    value = PublishedValue("snap", None, "force_x", "=F|1", 2.0, 4.0, "lbf", "a slip")
+    write_published_values(replace(results, published=(value,)), tmp_path)
+    (row,) = csv.DictReader((tmp_path / "published.csv").read_text().splitlines())
+    assert row["name"] == "'=F|1"
+    assert float(row["ratio"]) == 0.5
+    text = (tmp_path / "published.md").read_text()
+    assert "force x" in text
+    assert "a slip" in text
+    assert "F|1" not in text  # the bar would split the table
