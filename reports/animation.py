@@ -9,7 +9,7 @@ import numpy as np
 from reports.animation_data import player_data, script_json, speeds
 from reports.animation_forces import Shown, arrows, key, rows
 from reports.animation_frames import frames, nice
-from reports.animation_scene import Scene
+from reports.animation_scene import Scene, clipped
 from reports.animation_strip import Strip, strip
 from reports.numbers import short
 from reports.plot_names import animation_name
@@ -53,6 +53,7 @@ def render_animation(motion: LinkageMotion, results: Results) -> str:
             arrows=arrows(scene),
             key=key(scene),
             short=short,
+            clipped=clipped,
             shown=shown,
             bar=_bar(scene, results.units),
             rows=rows(scene, shown),

@@ -10,13 +10,14 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from reports.animation_frames import View
+from reports.animation_frames import WIDTH, View
 from reports.label_places import label_offsets
 from reports.results import Floats, LinkageMotion, ReactionTable
 
 LONGEST = 120.0  # arrow
 COLOURS = 10  # in animation.css
 LETTER, LINE, GAP = 7.6, 15.0, 13.0  # of joints' names
+LETTERS = 14  # of a name on the picture
 LONG, SHORT = 0.85, 0.3  # of a slider's shortest and longest length: its cylinder
 BEYOND = 30.0  # that a rail goes on past the block
 
@@ -117,8 +118,10 @@ class Scene:
         """(F, 2) of a joint."""
         return self.joints[:, self.motion.joints.index(joint)]
 
-    def named_between(self, body: str) -> list[int]:
-        """The two joints of a body between which its name is furthest from any joint."""
+    def named_between(self, body: str) -> list[int] | None:
+        """The two joints of a body between which its name is furthest from any joint; None where
+        the name is too long.
+        """
         members = self.members[self.motion.bodies.index(body)]
         at = self.joints[0]
 
@@ -126,7 +129,9 @@ class Scene:
             middle = 0.5 * (at[pair[0]] + at[pair[1]])
             return float(np.linalg.norm(at[members] - middle, axis=1).min())
 
-        return max((list(pair) for pair in combinations(members, 2)), key=clear)
+        pairs = [list(pair) for pair in combinations(members, 2)]
+        best = max(pairs, key=clear, default=None)
+        return best if best and 2.0 * clear(best) > LETTER * len(body) else None
 
     def colour(self, body: str) -> str:
         """The class of a body; what is no body of the linkage is ground."""
@@ -169,7 +174,7 @@ class Scene:
     @cached_property
     def names(self) -> Floats:
         """(J, 2) from each joint to the middle of its name."""
-        wide = [LETTER * len(name) + 4.0 for name in self.motion.joints]
+        wide = [LETTER * len(clipped(name)) + 4.0 for name in self.motion.joints]
         few = np.unique(np.linspace(0, len(self.instants) - 1, 12).round().astype(int))
         pairs = [
             (a, b)
@@ -181,4 +186,10 @@ class Scene:
         lines += [slide.ends[few] for slide in self.slides]
         inked = np.stack(lines, axis=1) if lines else np.zeros((len(few), 0, 2, 2))
         sizes = np.column_stack([wide, np.full(len(wide), LINE)])
-        return label_offsets(self.joints[few], sizes, inked, GAP)
+        picture = (WIDTH, self.view.height)
+        return label_offsets(self.joints[few], sizes, inked, GAP, picture)
+
+
+def clipped(name: str) -> str:
+    """A name that is short enough for the picture."""
+    return name if len(name) <= LETTERS else name[: LETTERS - 1] + "…"

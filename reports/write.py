@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from reports.animation import write_animations
 from reports.json_results import write_json
 from reports.landing import write_landing
 from reports.leg_tables import write_legs
 from reports.linkage_tables import write_linkage
+from reports.loads_summary import write_loads_summary
 from reports.page import write_page
 from reports.published_values import write_published_values
 from reports.results import Results
@@ -46,10 +48,12 @@ def write_loads(results: Results, directory: Path, plots: bool = True) -> list[P
     if results.reactions:
         write_reactions(results, directory / "reactions.csv")
         write_reactions_pin_axes(results, directory / "reactions_pin_axes.csv")
+        write_loads_summary(results, directory / "loads.md")
     if results.drive:
         write_drive(results, directory / "drive.csv")
     if results.motion:
         write_linkage(results, directory)
+        write_animations(results, directory)
     if results.legs:
         write_legs(results.legs, directory / "leg.csv")
     if results.motion_check is not None:

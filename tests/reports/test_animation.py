@@ -1,0 +1,298 @@
+"""The animation, on a four-bar whose positions are known in closed form."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from reports.animation import render_animation, write_animations
+from reports.animation_data import speeds
+from reports.animation_frames import MOST, frames, nice
+from reports.animation_strip import ticks
+from reports.fixed import Fixed
+from reports.label_places import label_offsets
+from reports.results import Results, Units
+from tests.reports.four_bar import COUPLER, CRANK, ROCKER, chain, four_bar, linkage
+
+EVIL = "</script><i onload='x'>&quot;\"\\u003c{{ 1 }}<!--"
+
+
+class Reader(HTMLParser):
+    """Collects tags with their attributes, and what stands in scripts and elsewhere."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tags: list[tuple[str, dict[str, str]]] = []
+        self.scripts: list[str] = []
+        self.text = ""
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, {name: value or "" for name, value in attrs}))
+        if tag == "script":
+            self.scripts.append("")
+
+    def handle_data(self, data: str) -> None:
+        if self.tags and self.tags[-1][0] == "script" and not self.scripts[-1]:
+            self.scripts[-1] = data
+        else:
+            self.text += data
+
+    @property
+    def data(self) -> dict[str, Any]:
+        found: dict[str, Any] = json.loads(self.scripts[0])
+        return found
+
+    def having(self, attribute: str) -> list[dict[str, str]]:
+        return [attrs for _, attrs in self.tags if attribute in attrs]
+
+
+def render(results: Results) -> str:
+    return render_animation(results.motion[0], results)
+
+
+@pytest.fixture(scope="module")
+def moving() -> Results:
+    return four_bar()
+
+
+def test_places_are_those_of_the_closed_form(moving: Results) -> None:
+    data = Reader(render(moving)).data
+    xy = np.array(data["xy"]).reshape(4, -1, 2)
+    places = data["places"]
+    found = (
+        np.stack([(xy[..., 0] - places["left"]), (places["top"] - xy[..., 1])], axis=-1)
+        / places["scale"]
+    )
+    # Rounded to a hundredth of a pixel.
+    assert np.abs(found - np.moveaxis(moving.motion[0].joint_position, 1, 0)).max() < (
+        0.0051 / places["scale"]
+    )
+    for (p, q), length in zip(((0, 1), (1, 2), (2, 3)), (CRANK, COUPLER, ROCKER), strict=True):
+        assert np.linalg.norm(found[p] - found[q], axis=1) == pytest.approx(length, abs=1e-3)
+
+
+def test_forces_and_drive_have_five_digits(moving: Results) -> None:
+    data = Reader(render(moving)).data
+    table = moving.reactions[0]
+    for c, found in enumerate(data["connections"]):
+        assert (found["name"], found["joint"]) == (table.connections[c], c)
+        assert np.abs(np.array(found["fx"]) - table.forces[:, c, 0]).max() < 0.01
+        assert np.abs(np.array(found["f"]) - table.magnitudes[:, c]).max() < 0.01
+    assert data["drives"][0]["position"][-1] == pytest.approx(360.0)
+    assert data["fixed"]["drives"][0][1]["unit"] == "N·mm"
+
+
+def test_the_script_finds_an_element_for_every_number(moving: Results) -> None:
+    page = Reader(render(moving))
+    data = page.data
+    for attribute, values in (
+        ("data-joint", data["joints"]),
+        ("data-link", data["links"]),
+        ("data-centre", data["links"]),
+        ("data-arrow", data["connections"]),
+        ("data-row", data["connections"]),
+        ("data-curve", data["connections"]),
+        ("data-position", data["drives"]),
+    ):
+        assert [int(a[attribute]) for a in page.having(attribute)] == list(range(len(values)))
+    ids = {attrs["id"] for attrs in page.having("id")}
+    assert set(re.findall(r'one\("#(\w+)"\)', page.scripts[1])) <= ids
+
+
+def test_the_picture_stands_without_the_script(moving: Results) -> None:
+    page = Reader(render(moving))
+    data = page.data
+    crank = page.tags[[("data-link" in a) for _, a in page.tags].index(True) + 1][1]["d"]
+    ends = np.array(re.findall(r"-?[\d.]+", crank), dtype=float)
+    assert ends == pytest.approx([*data["xy"][0][:2], *data["xy"][1][:2]])
+    assert "Scripts are off" in page.text
+    assert [a["hidden"] for _, a in page.tags if "controls" in a.get("class", "")] == ["", ""]
+
+
+def test_all_stays_on_the_picture() -> None:
+    results = four_bar()
+    page = Reader(render(results))
+    data = page.data
+    box = next(a["viewbox"] for _, a in page.tags if a.get("id") == "scene").split()
+    width, height = float(box[2]), float(box[3])
+    longest, largest = data["arrow"]["longest"], data["arrow"]["largest"]
+    for c in data["connections"]:
+        at = np.array(data["xy"][c["joint"]]).reshape(-1, 2)
+        force = np.column_stack([c["fx"], np.negative(c["fy"])])
+        size = np.linalg.norm(force, axis=1, keepdims=True)
+        for tips in (
+            at + longest * force / largest,
+            at + longest * force / np.sqrt(size * largest),
+        ):
+            assert tips.min() > 0.0
+            assert tips[:, 0].max() < width
+            assert tips[:, 1].max() < height
+
+
+def test_no_network_and_no_foreign_code(moving: Results) -> None:
+    text = render(moving)
+    assert "default-src 'none'" in text
+    assert not re.search(r"https?://", text.replace("http://www.w3.org/2000/svg", ""))
+    tags = Reader(text).tags
+    assert not [t for t, _ in tags if t in ("link", "img", "iframe")]
+    assert not [a for _, a in tags if "src" in a or "href" in a]
+
+
+def test_names_are_shown_and_not_run(tmp_path: Path) -> None:
+    plain = four_bar(5)
+    joints = tuple(EVIL + n for n in "ABCD")
+    motion = replace(
+        plain.motion[0],
+        case=EVIL,
+        bodies=tuple(EVIL + b for b in plain.motion[0].bodies),
+        joints=joints,
+        links=tuple(pairwise(joints)),
+        ground=(joints[0], joints[3]),
+        connections=tuple(
+            (EVIL + c, EVIL + b, EVIL + j) for c, b, j in plain.motion[0].connections
+        ),
+    )
+    table = replace(
+        plain.reactions[0],
+        case=EVIL,
+        note=EVIL,
+        connections=tuple(EVIL + c for c in plain.reactions[0].connections),
+    )
+    drive = replace(plain.drive[0], case=EVIL, name=EVIL)
+    odd = replace(
+        plain,
+        title=EVIL,
+        units=Units("<i>", "<i>", "<i>", "<i>"),
+        motion=(motion,),
+        reactions=(table,),
+        drive=(drive,),
+    )
+    (path,) = write_animations(odd, tmp_path)
+    assert path.parent == tmp_path
+    text = path.read_text(encoding="utf-8")
+    page = Reader(text)
+    assert text.count("</script>") == 2
+    assert "<!--" not in text
+    assert len(page.scripts) == 2
+    assert not [a for t, a in page.tags if t == "i" and a]  # the tables' own marks have none
+    assert not page.having("onload")
+    assert page.data["joints"] == list(joints)
+    assert page.data["connections"][0]["name"] == EVIL + "F12"
+    assert EVIL in page.text
+    assert page.having("aria-label")
+
+
+def test_one_instant_is_a_still_picture_with_arrows(moving: Results) -> None:
+    motion, table = moving.motion[0], moving.reactions[0]
+    held = replace(
+        linkage("held", None, motion.joints, motion.joint_position[7:8]), links=motion.links
+    )
+    still = replace(
+        table,
+        case="held",
+        times=None,
+        position=None,
+        forces=table.forces[7:8],
+        moments=table.moments[7:8],
+    )
+    page = Reader(render(replace(moving, motion=(held,), reactions=(still,), drive=())))
+    assert len(page.having("data-arrow")) == 3
+    assert not page.having("data-strip")
+    assert not [a for a in page.having("id") if a["id"] in ("play", "seek")]
+    assert not [t for t, _ in page.tags if t == "option" and "real time" in page.text]
+
+
+def test_a_motion_without_forces_is_drawn(moving: Results) -> None:
+    page = Reader(render(replace(moving, reactions=(), drive=())))
+    assert page.data["connections"] == []
+    assert not page.having("data-arrow")
+    assert not [a for a in page.having("id") if a["id"] == "key"]
+
+
+def test_forces_that_are_zero_have_no_arrow(moving: Results) -> None:
+    table = replace(moving.reactions[0], forces=np.zeros((181, 3, 3)))
+    page = Reader(render(replace(moving, reactions=(table,))))
+    assert {a["visibility"] for a in page.having("data-arrow")} == {"hidden"}
+
+
+def test_sliders_are_cylinders_or_run_on_rails(moving: Results) -> None:
+    motion = moving.motion[0]
+    b, c = (motion.joint_position[:, motion.joints.index(n)] for n in "BC")
+    origin = np.zeros_like(b)
+    straight = np.stack([np.linspace(2.0, 5.0, len(b)), np.zeros(len(b))], axis=1)
+    slides = {"jack": np.stack([b, c], axis=1), "guide": np.stack([origin, straight], axis=1)}
+    page = Reader(render(replace(moving, motion=(replace(motion, slides=slides),))))
+    jack, guide = page.data["slides"]
+    assert (jack["rail"], guide["rail"]) == (False, True)
+    ends = np.array(guide["ends"]).reshape(-1, 2, 2)
+    length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    assert length == pytest.approx(
+        np.linspace(2.0, 5.0, 181) * page.data["places"]["scale"], abs=0.02
+    )
+    assert len(page.having("data-slide")) == 2
+
+
+def test_many_bodies_make_a_small_file_with_the_peaks() -> None:
+    results = chain(13, 2001)
+    table = results.reactions[0]
+    text = render(results)
+    data = Reader(text).data
+    assert len(text.encode()) < 1_000_000
+    assert len(data["time"]) <= MOST
+    for c, found in enumerate(data["connections"]):
+        assert max(found["f"]) == pytest.approx(table.magnitudes[:, c].max(), rel=1e-4)
+    at = frames(results.motion[0], table, [])
+    assert (at[0], at[-1]) == (0, 2000)
+    assert np.diff(at).max() < 20
+
+
+def test_the_same_bytes_twice(moving: Results, tmp_path: Path) -> None:
+    first, second = tmp_path / "a", tmp_path / "b"
+    for directory in (first, second):
+        directory.mkdir()
+        write_animations(moving, directory)
+    (path,) = first.iterdir()
+    assert path.name == "animation_turn.html"
+    assert path.read_bytes() == (second / path.name).read_bytes()
+
+
+def test_names_do_not_overlap() -> None:
+    points = np.array([[[0.0, 0.0], [12.0, 0.0], [24.0, 0.0], [36.0, 4.0]]])
+    sizes = np.tile([30.0, 14.0], (4, 1))
+    lines = np.array([[[[-50.0, 0.0], [90.0, 0.0]]]])
+    at = points[0] + label_offsets(points + 60.0, sizes, lines + 60.0, 13.0, (200.0, 120.0))
+    for i in range(4):
+        for j in range(i):
+            assert np.any(np.abs(at[i] - at[j]) >= sizes[0])
+
+
+def test_numbers_that_stand_still() -> None:
+    force = Fixed.of(np.array([12.5, -1234.5]), "N")
+    assert (force(-1234.5), force(0.2), force(-0.2)) == ("−1,234", "0", "0")
+    assert Fixed.of(np.array([np.nan]), "N")(np.nan) == "–"
+    large = Fixed.of(np.array([3.2e7]), "N")
+    assert (large.unit, large(3.2e7)) == ("10⁶ N", "32.00")
+    assert Fixed.of(np.array([3.2e-5]), "m")(1.6e-5) == "16.00"
+
+
+def test_speeds_play_in_seconds() -> None:
+    assert speeds(None) == []
+    for duration in (0.01, 0.25, 4.0, 3600.0):
+        chosen = [s for s, _, first in speeds(np.array([0.0, duration])) if first]
+        assert len(chosen) == 1
+        assert 2.0 <= duration / chosen[0] <= 12.0
+    assert (1.0, "1× (real time)", True) in speeds(np.array([0.0, 4.0]))
+
+
+def test_ticks_are_round() -> None:
+    assert ticks(0.0, 4.0, 8) == [0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0]
+    assert [nice(x) for x in (0.0, 0.7, 5.0, 9.9)] == [1.0, 0.5, 5.0, 5.0]
