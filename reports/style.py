@@ -91,6 +91,11 @@ def plain_numbers(axes: Axes, which: str = "both") -> None:
             axis.set_major_formatter(FuncFormatter(formatter))
 
 
+def clipped(name: str, most: int = 24) -> str:
+    """A name short enough for a label."""
+    return name if len(name) <= most else name[: most - 1] + "…"
+
+
 def label_ends(figure: Figure, axes: Axes, lines: Sequence[Line2D], texts: Sequence[str]) -> None:
     """Write each line's text right of its end, spread so that none overlap."""
     figure.draw_without_rendering()
