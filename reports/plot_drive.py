@@ -5,14 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from reports.numbers import engineering
-from reports.plot_names import plot_name
+from reports.plot_names import drive_names, plot_name
 from reports.results import DriveTable, Units
 from reports.style import GREY, INK, clipped, label_ends, line_style, panels, plain_numbers, save
-
-
-def drive_name(table: DriveTable) -> str:
-    """The plot's name: of the case and, where it has one, of the drive."""
-    return plot_name("drive", table.case, *([table.name] if table.name else []))
 
 
 def drive_plot(table: DriveTable, units: Units, directory: Path) -> list[Path]:
@@ -27,10 +22,13 @@ def drive_plot(table: DriveTable, units: Units, directory: Path) -> list[Path]:
     )
     with panels(4, height=1.75, sharex=True) as (figure, axes):
         axes[0].plot(table.time, table.position, **line_style(0))
-        axes[0].set_ylabel(f"angle [deg]" if rotary else f"position [{units.length}]")
+        axes[0].set_ylabel("angle [deg]" if rotary else f"position [{units.length}]")
         levels = axes[1].plot(table.time, table.force, **line_style(0))
         texts = [what]
-        for name, level, dash in (("mean", table.mean, (0, (7, 2))), ("RMS", table.rms, (0, (1, 1.2)))):
+        for name, level, dash in (
+            ("mean", table.mean, (0, (7, 2))),
+            ("RMS", table.rms, (0, (1, 1.2))),
+        ):
             ends = table.time[[0, -1]]
             levels += axes[1].plot(ends, [level] * 2, color=INK, linewidth=0.9, linestyle=dash)
             texts.append(f"{name} {engineering(level)}")
@@ -46,10 +44,10 @@ def drive_plot(table: DriveTable, units: Units, directory: Path) -> list[Path]:
             panel.margins(x=0.0)
             plain_numbers(panel)
         for panel in axes[1:]:
-            panel.axhline(0.0, color=GREY, linewidth=0.8)
+            panel.axhline(0.0, color=GREY, linewidth=0.8, zorder=1.0)
         figure.align_ylabels()
         drive = f"drive {clipped(table.name)}" if table.name else "the drive"
         figure.suptitle(f"{table.case}: {drive}; energies of the whole linkage", x=0.01, ha="left")
         label_ends(figure, axes[1], levels, texts)
-        label_ends(figure, axes[3], lines, [name for name, _ in energies])
-        return save(figure, directory, drive_name(table))
+        label_ends(figure, axes[3], lines, [name for name, _ in energies], settled=True)
+        return save(figure, directory, plot_name("drive", *drive_names(table)))

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from reports.numbers import short
 from reports.plot_names import plot_name
 from reports.results import Floats, LinkageMotion, Units
-from reports.style import GREY, INK, clipped, line_style, panels, plain_numbers, save
+from reports.style import INK, clipped, line_style, panels, plain_numbers, save
 from reports.text_places import Label, place_texts
 
 BETWEEN = 5  # positions between the first and the last
@@ -27,10 +27,13 @@ def linkage_plot(motion: LinkageMotion, units: Units, directory: Path) -> list[P
         plain_numbers(axes)
         last = len(motion.condition) - 1
         if motion.time is not None:
+            between = "in between"
             _paths(axes, motion)
             for k in np.linspace(0, last, BETWEEN + 2)[1:-1]:
                 shade = f"{0.80 - 0.28 * k / last:.3f}"
-                _position(axes, motion, round(k), color=shade, linewidth=1.1, zorder=2.0)
+                style = {"color": shade, "linewidth": 1.1, "zorder": 2.0}
+                _position(axes, motion, round(k), between, **style)
+                between = ""
         texts = _emphasised(axes, motion, units)
         axes.set_title(_title(motion), pad=8)
         handles, labels = axes.get_legend_handles_labels()
@@ -87,21 +90,23 @@ def _position(  # type: ignore[no-untyped-def]
         label = ""
         if fill and len(joints) > 2:
             axes.fill(*np.transpose(ring), color=style["color"], alpha=0.10, linewidth=0.0)
+    slider = "slider" if k == 0 else ""
     thin = style | {"linewidth": 0.6 * style["linewidth"]}
     for ends in motion.slides.values():
-        axes.plot(*ends[k].T, **(thin | {"linestyle": (0, (8, 2, 1.5, 2))}), label=label or None)
-        label = ""
+        dashed = thin | {"linestyle": (0, (8, 2, 1.5, 2))}
+        axes.plot(*ends[k].T, **dashed, label=slider or None)
+        slider = ""
         if fill:
             axes.plot(*ends[k, 1], "s", ms=9, mfc="none", mec=style["color"], zorder=5.5)
     if fill:
         moving = np.array([p for j, p in at.items() if j not in motion.ground]).reshape(-1, 2)
         axes.plot(*moving.T, "o", ms=5, mfc="white", mec=style["color"], mew=1.3, zorder=6.0)
-        _ground(axes, motion, at)
+        _ground(axes, motion, at, "stands still" if k == 0 else None)
 
 
-def _ground(axes: Axes, motion: LinkageMotion, at: dict[str, Floats]) -> None:
+def _ground(axes: Axes, motion: LinkageMotion, at: dict[str, Floats], label: str | None) -> None:
     still = np.array([at[j] for j in motion.ground]).reshape(-1, 2)
-    axes.plot(*still.T, "^", ms=13, mfc="#bbbbbb", mec=INK, mew=0.9, zorder=5.8)
+    axes.plot(*still.T, "^", ms=13, mfc="#bbbbbb", mec=INK, mew=0.9, zorder=5.8, label=label)
     axes.plot(*still.T, "o", ms=5, mfc="white", mec=INK, mew=1.3, zorder=6.1)
 
 
@@ -121,11 +126,13 @@ def _name(figure: Figure, axes: Axes, motion: LinkageMotion, instants: list[int]
         ends = motion.joint_position[instants, j]
         for k, point in enumerate(ends):
             if k == 0 or name not in motion.ground:
-                joints.append(Label(clipped(name), *point.tolist(), {"color": INK, "weight": "bold"}))
+                joints.append(
+                    Label(clipped(name), *point.tolist(), {"color": INK, "weight": "bold"})
+                )
     at = dict(zip(motion.joints, motion.joint_position[0], strict=True))
     for body, ends in zip(motion.bodies, motion.links, strict=True):
-        if len(ends) > 1 and body != "".join(ends):
+        if len(ends) > 1 and sorted(body) != sorted("".join(ends)):  # EF is named by E and F
             middle = np.mean([at[j] for j in ends], axis=0)
-            style = {"color": GREY if body == "" else "#555555", "style": "italic"}
+            style = {"color": "#555555", "style": "italic"}
             bodies.append(Label(clipped(body), *middle.tolist(), style))
     place_texts(figure, axes, joints + bodies)

@@ -6,15 +6,13 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from reports.numbers import ten_to
+from reports.plot_curves import curves, finish
 from reports.plot_names import plot_name
 from reports.results import Floats, LinkageMotion, Units
-from reports.style import (
-    COLOURS, GREY, INK, clipped, label_ends, line_style, panels, plain_numbers, save,
-)  # fmt: skip
+from reports.style import COLOURS, GREY, INK, clipped, line_style, panels, save
 
 GUIDANCE = 40.0  # degrees; designers keep transmission angles above
 NEGLIGIBLE = 1e-9
@@ -42,16 +40,22 @@ def _bodies(motion: LinkageMotion, time: Floats, units: Units, directory: Path) 
             for panel, values, heading in (
                 (axes[0], motion.angle, "angle [deg]"),
                 (axes[1], motion.angular_velocity, f"angular velocity\n[rad/{units.time}]"),
-                (axes[2], motion.angular_acceleration, f"angular acceleration\n[rad/{units.time}²]"),
+                (
+                    axes[2],
+                    motion.angular_acceleration,
+                    f"angular acceleration\n[rad/{units.time}²]",
+                ),
             ):
                 panel.set_ylabel(heading)
-                _curves(panel, time, {motion.bodies[b]: values[:, b] for b in shown})
+                curves(panel, time, {motion.bodies[b]: values[:, b] for b in shown})
             title = f"{motion.case}: bodies that turn"
             if len(turning) > MOST:
                 title += f", {part + 1} of {-(-len(turning) // MOST)}"
             if still:
-                title += f"\n(without {', '.join(still)})"
-            _finish(figure, axes, units, title)
+                names = ", ".join(still)
+                names = names if len(names) < 70 else f"{len(still)} bodies"
+                title += f"\n({names}: not turning)"
+            finish(figure, axes, units, title)
             name = "bodies" if part == 0 else f"bodies-{part + 1}"
             paths += save(figure, directory, plot_name(name, motion.case))
     return paths
@@ -72,10 +76,14 @@ def _transmission(motion: LinkageMotion, time: Floats, units: Units, directory: 
     rows = 2 if angles else 1
     with panels(rows, height=max(2.2, 0.22 * len(angles)), sharex=True) as (figure, axes):
         if angles:
-            axes[0].set(ylim=(0.0, 92.0), yticks=range(0, 91, 15), ylabel="transmission angle [deg]")
-            axes[0].plot(time[[0, -1]], [GUIDANCE] * 2, color=INK, linewidth=0.9, linestyle=(0, (1, 1)))
+            axes[0].set(
+                ylim=(0.0, 92.0), yticks=range(0, 91, 15), ylabel="transmission angle [deg]"
+            )
+            axes[0].plot(
+                time[[0, -1]], [GUIDANCE] * 2, color=INK, linewidth=0.9, linestyle=(0, (1, 1))
+            )
             axes[0].fill_between(time[[0, -1]], 0.0, GUIDANCE, color="#f0f0f0", linewidth=0.0)
-            _curves(axes[0], time, angles, zero=False)
+            curves(axes[0], time, angles, zero=False)
         condition = np.where(np.isfinite(motion.condition), motion.condition, np.nan)
         axes[-1].plot(time, condition, **line_style(0))
         axes[-1].set_ylabel("condition number [1]\nlogarithmic")
@@ -83,7 +91,7 @@ def _transmission(motion: LinkageMotion, time: Floats, units: Units, directory: 
         title = f"{motion.case}: transmission angles and conditioning"
         if angles:
             title += f"\n(shaded: under {GUIDANCE:.0f} deg, where forces grow quickly)"
-        _finish(figure, axes, units, title)
+        finish(figure, axes, units, title)
         return save(figure, directory, plot_name("transmission", motion.case))
 
 
@@ -101,31 +109,41 @@ def _shaking(motion: LinkageMotion, time: Floats, units: Units, directory: Path)
     with panels(2, height=2.2, sharex=True) as (figure, axes):
         axes[0].set_ylabel(f"force [{units.force}]")
         force = motion.shaking_force
-        _curves(axes[0], time, {"Fx": force[:, 0], "Fy": force[:, 1]})
-        axes[1].set_ylabel(f"moment about {clipped(motion.shaking_about)}\n[{units.force}·{units.length}]")
+        curves(axes[0], time, {"Fx": force[:, 0], "Fy": force[:, 1]})
+        axes[1].set_ylabel(
+            f"moment about {clipped(motion.shaking_about)}\n[{units.force}·{units.length}]"
+        )
         axes[1].plot(time, motion.shaking_moment, **line_style(0))
-        _finish(figure, axes, units, f"{motion.case}: force and moment of the linkage on its ground")
+        finish(figure, axes, units, f"{motion.case}: force and moment of the linkage on its ground")
         return save(figure, directory, plot_name("shaking", motion.case))
 
 
 def _ledger(motion: LinkageMotion, time: Floats, units: Units, directory: Path) -> list[Path]:
     p = motion.ledger
     power = f"[{units.force}·{units.length}/{units.time}]"
-    given = {"drives": p.drives, "gravity": p.gravity, "applied loads": p.applied, "friction": p.friction}
+    given = {
+        "drives": p.drives,
+        "gravity": p.gravity,
+        "applied loads": p.applied,
+        "friction": p.friction,
+    }
     largest = max(float(np.abs(v).max()) for v in (*given.values(), p.kinetic_rate))
     acting = {n: v for n, v in given.items() if np.abs(v).max() > NEGLIGIBLE * largest}
     with panels(2, height=2.2, sharex=True) as (figure, axes):
         axes[0].set_ylabel(f"power {power}")
-        _curves(axes[0], time, acting)
+        curves(axes[0], time, acting)
         axes[1].set_ylabel(f"sum and rate {power}")
-        rate = axes[1].plot(time, p.kinetic_rate, color="#9dbbe0", linewidth=4.5)
-        total = axes[1].plot(time, sum(given.values()), color=INK, linestyle=(0, (5, 3)))
-        _finish(
+        both = {"gid": "curve"}
+        pale = {"color": "#7d9cbf", "linewidth": 4.5, "label": "rate of\nkinetic energy"}
+        axes[1].plot(time, p.kinetic_rate, **both, **pale)  # type: ignore[arg-type]
+        dashed = {"color": INK, "linestyle": (0, (5, 3)), "label": "sum of powers"}
+        axes[1].plot(time, sum(given.values()), **both, **dashed)
+        axes[1].axhline(0.0, color=GREY, linewidth=0.8, zorder=1.0)
+        finish(
             figure, axes, units,
             f"{motion.case}: powers in, and the rate of kinetic energy they leave\n"
             f"(largest violation {_tiny(p.violation)} of the largest term)",
         )  # fmt: skip
-        label_ends(figure, axes[1], [*total, *rate], ["sum of powers", "rate of\nkinetic energy"])
         return save(figure, directory, plot_name("ledger", motion.case))
 
 
@@ -134,37 +152,3 @@ def _tiny(value: float) -> str:
         return f"{value:g}"
     digits, power = f"{value:.1e}".split("e")
     return f"{digits}×{ten_to(int(power))}"
-
-
-def _curves(axes: Axes, time: Floats, curves: dict[str, Floats], zero: bool = True) -> None:
-    """Curves, each with a label to be written at its end; those that coincide share one."""
-    span = max((float(np.nanmax(np.abs(v))) for v in curves.values() if np.isfinite(v).any()), default=0.0)
-    groups: list[tuple[int, list[str], Floats]] = []
-    for order, (name, values) in enumerate(curves.items()):
-        if not np.isfinite(values).any():
-            continue
-        for _, names, other in groups:
-            if np.allclose(values, other, rtol=0.0, atol=1e-6 * span, equal_nan=True):
-                names.append(clipped(name))
-                break
-        else:
-            groups.append((order, [clipped(name)], values))
-    for order, names, values in groups:
-        text = ", ".join(names)
-        label = text if len(text) < 24 else ",\n".join(names)
-        axes.plot(time, values, label=label, gid="curve", **line_style(order))
-    if zero:
-        axes.axhline(0.0, color=GREY, linewidth=0.8)
-
-
-def _finish(figure: Figure, axes: list[Axes], units: Units, title: str) -> None:
-    for panel in axes:
-        panel.margins(x=0.0)
-        plain_numbers(panel)
-    axes[-1].set_xlabel(f"time [{units.time}]")
-    figure.align_ylabels()
-    figure.suptitle(title, x=0.01, ha="left")
-    for panel in axes:
-        lines = [line for line in panel.lines if line.get_gid() == "curve"]
-        if lines:
-            label_ends(figure, panel, lines, [str(line.get_label()) for line in lines])

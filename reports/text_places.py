@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from reports.results import Floats
 SIZE = 8.5
 REACHES = (5.0, 9.0, 14.0, 20.0, 28.0)  # points from the point to the text's nearer edge
 DIRECTIONS = 16
+CLEAR = 2.5  # points around a text
 STEP = 2.0  # points between the samples of a line
 
 
@@ -52,12 +54,13 @@ def place_texts(figure: Figure, axes: Axes, labels: list[Label]) -> None:
 def _best(at: Floats, half: Floats, drawn: Floats, frame: Floats, taken: list[Floats]) -> Floats:
     angles = np.radians(45.0 + 360.0 / DIRECTIONS * np.arange(DIRECTIONS))
     found, least = np.zeros(2), np.inf
+    drawn = drawn[np.all(np.abs(drawn - at) < REACHES[-1] + 2.0 * half + 2.0 * CLEAR, axis=1)]
     for reach in REACHES:
         for angle in angles:
             way = np.array([np.cos(angle), np.sin(angle)])
             # The box's edge, not its middle, is `reach` away.
             offset = way * (reach + float(np.min(half / np.maximum(np.abs(way), 1e-9))))
-            low, high = at + offset - half - 1.0, at + offset + half + 1.0
+            low, high = at + offset - half - CLEAR, at + offset + half + CLEAR
             cost = float(np.all((drawn > low) & (drawn < high), axis=1).sum()) + 0.2 * reach
             cost += 1e3 * sum(bool(np.all((b[1] > low) & (b[0] < high))) for b in taken)
             cost += 1e3 * float(np.any(low < frame[0]) or np.any(high > frame[1]))
@@ -73,11 +76,13 @@ def _samples(axes: Axes) -> Floats:
         ends = np.asarray(line.get_transform().transform(line.get_xydata()))
         weight = 3 if line.get_linewidth() > 2.0 else 1
         if line.get_marker() not in ("None", None, ""):
-            ring = 0.4 * line.get_markersize() * np.array([[1, 1], [1, -1], [-1, 1], [-1, -1], [0, 0]])
+            ring = (
+                0.4 * line.get_markersize() * np.array([[1, 1], [1, -1], [-1, 1], [-1, -1], [0, 0]])
+            )
             parts += [point + ring for point in ends] * 4
         if line.get_linestyle() == "None":
             continue
-        for a, b in zip(ends[:-1], ends[1:], strict=True):
+        for a, b in pairwise(ends):
             number = max(int(np.hypot(*(b - a)) / STEP), 1)
             part = np.linspace(0.0, 1.0, number, endpoint=False)[:, None]
             parts += [a + part * (b - a)] * weight
