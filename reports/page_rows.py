@@ -10,7 +10,7 @@ from reports.words import outcome
 
 @dataclass(frozen=True)
 class PinCase:
-    """A pin's result in one case, with one word for it, its picture's address, the drive position's unit."""
+    """A pin's result in one case, one word for it, its picture's address, its position's unit."""
 
     result: PinResult
     outcome: str

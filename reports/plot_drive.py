@@ -47,7 +47,11 @@ def drive_plot(table: DriveTable, units: Units, directory: Path) -> list[Path]:
             panel.axhline(0.0, color=GREY, linewidth=0.8, zorder=1.0)
         figure.align_ylabels()
         drive = f"drive {clipped(table.name)}" if table.name else "the drive"
-        figure.suptitle(f"{table.case}: {drive}; energies of the whole linkage", x=0.01, ha="left")
+        figure.suptitle(
+            f"{table.case}: {drive}; kinetic and potential energy of the whole linkage",
+            x=0.01,
+            ha="left",
+        )
         label_ends(figure, axes[1], levels, texts)
         label_ends(figure, axes[3], lines, [name for name, _ in energies], settled=True)
         return save(figure, directory, plot_name("drive", *drive_names(table)))

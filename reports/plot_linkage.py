@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -31,7 +32,7 @@ def linkage_plot(motion: LinkageMotion, units: Units, directory: Path) -> list[P
             _paths(axes, motion)
             for k in np.linspace(0, last, BETWEEN + 2)[1:-1]:
                 shade = f"{0.80 - 0.28 * k / last:.3f}"
-                style = {"color": shade, "linewidth": 1.1, "zorder": 2.0}
+                style: Any = {"color": shade, "linewidth": 1.1, "zorder": 2.0}
                 _position(axes, motion, round(k), between, **style)
                 between = ""
         texts = _emphasised(axes, motion, units)
@@ -52,7 +53,9 @@ def _title(motion: LinkageMotion) -> str:
 
 def _height(motion: LinkageMotion) -> float:
     wide, high = np.ptp(_all_points(motion), axis=0) + 1e-12
-    return float(np.clip(6.2 * high / wide + 0.6, LOWEST, HIGHEST))
+    return float(
+        np.clip(6.2 * high / wide + (0.6 if motion.time is None else 1.1), LOWEST, HIGHEST)
+    )
 
 
 def _all_points(motion: LinkageMotion) -> Floats:
@@ -72,14 +75,13 @@ def _emphasised(axes: Axes, motion: LinkageMotion, units: Units) -> list[int]:
     first = f"start, {start}, and end, {end}" if same else f"start, {start}"
     _position(axes, motion, 0, first, **line_style(0), linewidth=2.2, zorder=4.0, fill=True)
     if not same:
-        # Shifted dashes would hide in the start's line where both lie on each other.
         dashed = {"color": "#c8501e", "linestyle": (0, (4, 1.6))}
         _position(axes, motion, -1, f"end, {end}", **dashed, linewidth=2.2, zorder=5.0, fill=True)
     return [0] if same else [0, -1]
 
 
-def _position(  # type: ignore[no-untyped-def]
-    axes: Axes, motion: LinkageMotion, k: int, label: str = "", fill: bool = False, **style
+def _position(
+    axes: Axes, motion: LinkageMotion, k: int, label: str = "", fill: bool = False, **style: Any
 ) -> None:
     at = dict(zip(motion.joints, motion.joint_position[k], strict=True))
     for joints in motion.links:
@@ -101,7 +103,7 @@ def _position(  # type: ignore[no-untyped-def]
     if fill:
         moving = np.array([p for j, p in at.items() if j not in motion.ground]).reshape(-1, 2)
         axes.plot(*moving.T, "o", ms=5, mfc="white", mec=style["color"], mew=1.3, zorder=6.0)
-        _ground(axes, motion, at, "stands still" if k == 0 else None)
+        _ground(axes, motion, at, "ground joint" if k == 0 else None)
 
 
 def _ground(axes: Axes, motion: LinkageMotion, at: dict[str, Floats], label: str | None) -> None:
@@ -111,28 +113,27 @@ def _ground(axes: Axes, motion: LinkageMotion, at: dict[str, Floats], label: str
 
 
 def _paths(axes: Axes, motion: LinkageMotion) -> None:
-    dots = {"color": INK, "linestyle": (0, (1, 1.6)), "linewidth": 0.9, "zorder": 3.0}
+    dots: Any = {"color": INK, "linestyle": (0, (1, 1.6)), "linewidth": 0.9, "zorder": 3.0}
     label: str | None = "path of a joint"
     for j, name in enumerate(motion.joints):
         if name not in motion.ground:
-            axes.plot(*motion.joint_position[:, j].T, label=label, **dots)  # type: ignore[arg-type]
+            axes.plot(*motion.joint_position[:, j].T, label=label, **dots)
             label = None
 
 
 def _name(figure: Figure, axes: Axes, motion: LinkageMotion, instants: list[int]) -> None:
     """Names of joints at the first position drawn, of moved ones at the last, then of bodies."""
-    joints, bodies = [], []
+    labels = []
+    least = SAME * float(np.ptp(_all_points(motion), axis=0).max())
+    bold, italic = {"color": INK, "weight": "bold"}, {"color": "#555555", "style": "italic"}
     for j, name in enumerate(motion.joints):
-        ends = motion.joint_position[instants, j]
-        for k, point in enumerate(ends):
-            if k == 0 or name not in motion.ground:
-                joints.append(
-                    Label(clipped(name), *point.tolist(), {"color": INK, "weight": "bold"})
-                )
+        first, *others = motion.joint_position[instants, j]
+        moved = [point for point in others if np.abs(point - first).max() > least]
+        for x, y in (first, *moved):
+            labels.append(Label(clipped(name), float(x), float(y), bold))
     at = dict(zip(motion.joints, motion.joint_position[0], strict=True))
-    for body, ends in zip(motion.bodies, motion.links, strict=True):
-        if len(ends) > 1 and sorted(body) != sorted("".join(ends)):  # EF is named by E and F
-            middle = np.mean([at[j] for j in ends], axis=0)
-            style = {"color": "#555555", "style": "italic"}
-            bodies.append(Label(clipped(body), *middle.tolist(), style))
-    place_texts(figure, axes, joints + bodies)
+    for body, joints in zip(motion.bodies, motion.links, strict=True):
+        if len(joints) > 1 and sorted(body) != sorted("".join(joints)):  # EF tells of E and F
+            x, y = np.mean([at[j] for j in joints], axis=0)
+            labels.append(Label(clipped(body), float(x), float(y), italic))
+    place_texts(figure, axes, labels)

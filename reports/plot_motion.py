@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -133,10 +134,10 @@ def _ledger(motion: LinkageMotion, time: Floats, units: Units, directory: Path) 
         axes[0].set_ylabel(f"power {power}")
         curves(axes[0], time, acting)
         axes[1].set_ylabel(f"sum and rate {power}")
-        both = {"gid": "curve"}
-        pale = {"color": "#7d9cbf", "linewidth": 4.5, "label": "rate of\nkinetic energy"}
-        axes[1].plot(time, p.kinetic_rate, **both, **pale)  # type: ignore[arg-type]
-        dashed = {"color": INK, "linestyle": (0, (5, 3)), "label": "sum of powers"}
+        both: Any = {"gid": "curve"}
+        pale: Any = {"color": "#7d9cbf", "linewidth": 4.5, "label": "rate of\nkinetic energy"}
+        axes[1].plot(time, p.kinetic_rate, **both, **pale)
+        dashed: Any = {"color": INK, "linestyle": (0, (5, 3)), "label": "sum of powers"}
         axes[1].plot(time, sum(given.values()), **both, **dashed)
         axes[1].axhline(0.0, color=GREY, linewidth=0.8, zorder=1.0)
         finish(

@@ -9,14 +9,17 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 
 from reports.results import Floats
 
 SIZE = 8.5
 REACHES = (5.0, 9.0, 14.0, 20.0, 28.0)  # points from the point to the text's nearer edge
 DIRECTIONS = 16
-CLEAR = 2.5  # points around a text
-STEP = 2.0  # points between the samples of a line
+FAR = 0.4  # samples that a point more of distance is worth
+CLEAR = 1.5  # points around a text
+HALO = withStroke(linewidth=2.2, foreground="white")
+STEP = 4.0  # pixels between the samples of a line one point thick
 
 
 @dataclass(frozen=True)
@@ -40,7 +43,7 @@ def place_texts(figure: Figure, axes: Axes, labels: list[Label]) -> None:
         at = np.asarray(axes.transData.transform((label.x, label.y))) * points
         text = axes.annotate(
             label.text, (label.x, label.y), (0.0, 0.0), textcoords="offset points",
-            ha="center", va="center", fontsize=SIZE, zorder=8.0, **label.style,
+            ha="center", va="center", fontsize=SIZE, zorder=8.0, path_effects=[HALO], **label.style,
         )  # fmt: skip
         # What lies in the axes shall not move them.
         text.set_in_layout(False)
@@ -61,7 +64,7 @@ def _best(at: Floats, half: Floats, drawn: Floats, frame: Floats, taken: list[Fl
             # The box's edge, not its middle, is `reach` away.
             offset = way * (reach + float(np.min(half / np.maximum(np.abs(way), 1e-9))))
             low, high = at + offset - half - CLEAR, at + offset + half + CLEAR
-            cost = float(np.all((drawn > low) & (drawn < high), axis=1).sum()) + 0.2 * reach
+            cost = float(np.all((drawn > low) & (drawn < high), axis=1).sum()) + FAR * reach
             cost += 1e3 * sum(bool(np.all((b[1] > low) & (b[0] < high))) for b in taken)
             cost += 1e3 * float(np.any(low < frame[0]) or np.any(high > frame[1]))
             if cost < least:
@@ -70,11 +73,10 @@ def _best(at: Floats, half: Floats, drawn: Floats, frame: Floats, taken: list[Fl
 
 
 def _samples(axes: Axes) -> Floats:
-    """(N, 2) pixels, evenly along every line and at every marker."""
+    """(N, 2) pixels, evenly along every line, more of thick ones, and at every marker."""
     parts = [np.empty((0, 2))]
     for line in axes.lines:
         ends = np.asarray(line.get_transform().transform(line.get_xydata()))
-        weight = 3 if line.get_linewidth() > 2.0 else 1
         if line.get_marker() not in ("None", None, ""):
             ring = (
                 0.4 * line.get_markersize() * np.array([[1, 1], [1, -1], [-1, 1], [-1, -1], [0, 0]])
@@ -83,7 +85,7 @@ def _samples(axes: Axes) -> Floats:
         if line.get_linestyle() == "None":
             continue
         for a, b in pairwise(ends):
-            number = max(int(np.hypot(*(b - a)) / STEP), 1)
+            number = max(int(np.hypot(*(b - a)) * line.get_linewidth() / STEP), 1)
             part = np.linspace(0.0, 1.0, number, endpoint=False)[:, None]
-            parts += [a + part * (b - a)] * weight
+            parts.append(a + part * (b - a))
     return np.concatenate(parts)
