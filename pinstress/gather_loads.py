@@ -73,6 +73,14 @@ def drive_position(study: Study, case: CaseLoads) -> Floats | None:
     return _drive_positions(study, dynamics)[:, 0]
 
 
+def _position_unit(study: Study, case: CaseLoads) -> str:
+    """Unit of what `drive_position` gives; empty without it."""
+    if drive_position(study, case) is None or case.dynamics is None:
+        return ""
+    (drive,) = case.dynamics.motion.linkage.drives
+    return study.system.length if isinstance(drive, Slider) else "deg"
+
+
 def _reactions(
     study: Study, name: str, case: CaseLoads, published: Published
 ) -> plain.ReactionTable:
@@ -93,6 +101,7 @@ def _reactions(
         note=case.note,
         peaks=_peaks(study, case),
         turn=r.turn,
+        position_unit=_position_unit(study, case),
     )
 
 

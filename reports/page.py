@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from reports.drawing import draw_pin
-from reports.numbers import DASH, engineering, like, short
+from reports.numbers import DASH, engineering, like, ratio, short
+from reports.page_motion import motion_parts
 from reports.page_rows import pin_parts, reaction_tables
-from reports.plot_names import SVG, plot_name
+from reports.plot_names import SVG, drive_names, plot_name
 from reports.published import published_reactions
 from reports.results import Results
 from reports.tables import TEXTS, safety_factor_rows, shown, shown_columns
@@ -44,15 +45,18 @@ def write_page(
     """
     found = (directory / "plots").glob("*.svg") if plots is None else plots
     path = directory / "report.html"
-    path.write_text(
-        render(results, pictures, {p.name.removesuffix(SVG): p for p in found if p.suffix == SVG}),
-        encoding="utf-8",
-    )
+    files = {p.name.removesuffix(SVG): p for p in found if p.suffix == SVG}
+    path.write_text(render(results, pictures, files, directory), encoding="utf-8")
     return path
 
 
-def render(results: Results, pictures: dict[tuple[str, str], Path], plots: dict[str, Path]) -> str:
-    """The page as text; plots by name (reports.plot_names)."""
+def render(
+    results: Results,
+    pictures: dict[tuple[str, str], Path],
+    plots: dict[str, Path],
+    directory: Path,
+) -> str:
+    """The page as text; plots by name (reports.plot_names); directory: where it will be."""
     from markupsafe import Markup
 
     templates = environment()
@@ -65,6 +69,10 @@ def render(results: Results, pictures: dict[tuple[str, str], Path], plots: dict[
         summary=summary(results),
         reading=READING,
         plot=_Plots(plots).uri,
+        drive_names=drive_names,
+        ratio=ratio,
+        motion=motion_parts(results, _Plots(plots).uri, directory),
+        timed=any(v.time is not None for v in results.published),
         pins=pin_parts(results, drawings, {k: data_uri(p) for k, p in pictures.items()}),
         published=published_reactions(results),
         reactions=reaction_tables(results),

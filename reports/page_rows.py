@@ -12,11 +12,12 @@ from reports.words import outcome
 
 @dataclass(frozen=True)
 class PinCase:
-    """A pin's result in one case, with one word for it and its picture's address."""
+    """A pin's result in one case, one word for it, its picture's address, its position's unit."""
 
     result: PinResult
     outcome: str
     picture: str | None
+    position_unit: str
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,7 @@ def pin_parts(
     results: Results, drawings: dict[str, str], pictures: dict[tuple[str, str], str]
 ) -> list[PinPart]:
     """The pins in the order of the results, then those that are only drawn."""
+    positions = {t.case: t.position_unit for t in results.reactions}
     shapes = {shape.pin: shape for shape in results.shapes}
     names = dict.fromkeys([p.pin for p in results.pins] + list(shapes))
     return [
@@ -44,7 +46,12 @@ def pin_parts(
             shape=shapes.get(name),
             drawing=drawings.get(name, ""),
             cases=tuple(
-                PinCase(p, outcome(p), pictures.get((p.pin, p.case)))
+                PinCase(
+                    p,
+                    outcome(p),
+                    pictures.get((p.pin, p.case)),
+                    positions.get(p.case) or results.units.length,
+                )
                 for p in results.pins
                 if p.pin == name
             ),

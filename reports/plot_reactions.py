@@ -16,7 +16,7 @@ NEGLIGIBLE = 1e-9
 LOG_SPAN = 100.0
 
 
-def motion_plots(table: ReactionTable, units: Units, directory: Path) -> list[Path]:
+def reaction_plots(table: ReactionTable, units: Units, directory: Path) -> list[Path]:
     """For each pin its connections' components and magnitudes along the motion."""
     paths = []
     for pin in dict.fromkeys(table.pins):
@@ -28,7 +28,7 @@ def motion_plots(table: ReactionTable, units: Units, directory: Path) -> list[Pa
 def along(table: ReactionTable, units: Units) -> tuple[Floats, str]:
     """What a motion's plots are drawn against: the drive's position, or time without one."""
     if table.position is not None:
-        return table.position, f"drive position [{units.length}]"
+        return table.position, f"drive position [{table.position_unit or units.length}]"
     if table.times is None:
         return np.arange(len(table.forces), dtype=float), "instant"
     return table.times, f"time [{units.time}]"

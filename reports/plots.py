@@ -8,7 +8,9 @@ from reports.plot_checks import beam_plots, motion_plot
 from reports.plot_drive import drive_plot
 from reports.plot_landing import landing_plot
 from reports.plot_leg import leg_plots
-from reports.plot_reactions import bars, motion_plots
+from reports.plot_linkage import linkage_plot
+from reports.plot_motion import motion_plots
+from reports.plot_reactions import bars, reaction_plots
 from reports.plot_refinement import refinement_plot
 from reports.results import PinResult, Results
 
@@ -20,9 +22,12 @@ def save_plots(results: Results, directory: Path) -> list[Path]:
     paths = []
     for table in results.reactions:
         moving = table.times is not None
-        paths += (motion_plots if moving else bars)(table, units, directory)
+        paths += (reaction_plots if moving else bars)(table, units, directory)
     for drive in results.drive:
         paths += drive_plot(drive, units, directory)
+    for motion in results.motion:
+        paths += linkage_plot(motion, units, directory)
+        paths += motion_plots(motion, units, directory)
     for leg in results.legs:
         paths += leg_plots(leg, units, directory)
     if results.beam_check is not None:

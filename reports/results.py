@@ -76,6 +76,7 @@ class ReactionTable:
     shared: connections whose forces follow the study's sharing rule. published: magnitudes by
     connection. note: how the case came about (an impulse estimate, say). peaks: along a motion, of
     every connection. turn: (T, C) rad, how far each pin's own axes are turned about z.
+    position_unit: of `position`; the study's length where empty.
     """
 
     case: str
@@ -91,6 +92,7 @@ class ReactionTable:
     note: str = ""
     peaks: tuple[PeakReaction, ...] = ()
     turn: Floats | None = None
+    position_unit: str = ""
 
     @property
     def magnitudes(self) -> Floats:

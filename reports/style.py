@@ -91,9 +91,24 @@ def plain_numbers(axes: Axes, which: str = "both") -> None:
             axis.set_major_formatter(FuncFormatter(formatter))
 
 
-def label_ends(figure: Figure, axes: Axes, lines: Sequence[Line2D], texts: Sequence[str]) -> None:
-    """Write each line's text right of its end, spread so that none overlap."""
-    figure.draw_without_rendering()
+def clipped(name: str, most: int = 24) -> str:
+    """A name short enough for a label."""
+    return name if len(name) <= most else name[: most - 1] + "…"
+
+
+def label_ends(
+    figure: Figure,
+    axes: Axes,
+    lines: Sequence[Line2D],
+    texts: Sequence[str],
+    settled: bool = False,
+) -> None:
+    """Write each line's text right of its end, spread so that none overlap.
+
+    settled: the figure has been laid out since its curves were drawn, which takes time.
+    """
+    if not settled:
+        figure.draw_without_rendering()
     height = axes.get_window_extent().height
     gap = 1.35 * 8.5 * figure.dpi / 72.0 / height
     ends = [_end(axes, line) for line in lines]
@@ -114,6 +129,8 @@ def label_ends(figure: Figure, axes: Axes, lines: Sequence[Line2D], texts: Seque
                 "arrowstyle": "-",
                 "color": line.get_color(),
                 "linewidth": 0.7,
+                # From the text's left edge: a leader from its middle crosses its neighbours.
+                "relpos": (0.0, 0.5),
                 "shrinkA": 1.0,
                 "shrinkB": 0.0,
             },

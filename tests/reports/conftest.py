@@ -9,11 +9,16 @@ from reports.results import (
     BeamCheck,
     DriveTable,
     Field,
+    Floats,
+    LegTable,
+    LinkageMotion,
     MeshStep,
     MotionCheck,
     PinResult,
     PinShape,
+    PowerLedger,
     Provenance,
+    PublishedValue,
     ReactionTable,
     Results,
     Units,
@@ -42,6 +47,11 @@ def make_results() -> Results:
         shapes=tuple(shape(name) for name in PINS),
         reactions=(moving(times), static()),
         drive=(drive(times),),
+        motion=(four_bar("retract", times), four_bar("landing", None)),
+        published=(
+            PublishedValue("retract", 2.0, "angular_velocity", "rocker", 0.5, 0.51, "rad/s", "cut"),
+            PublishedValue("landing", None, "force_x", "strut A", 40.0, 40.0, "lbf", ""),
+        ),
         beam_check=beam_check(),
         motion_check=motion_check(times),
         provenance=(
@@ -134,6 +144,70 @@ def static() -> ReactionTable:
         tuple(name[-1] for name in CONNECTIONS), forces, np.zeros_like(forces),
         published={"strut A": 40.0, "strut J": 1.8e4}, note="impulse over 0.1 s",
     )  # fmt: skip
+
+
+def four_bar(case: str, times: np.ndarray | None) -> LinkageMotion:
+    """A parallelogram whose crank swings from 60 to 120 degrees, in closed form.
+
+    Its coupler does not turn, and a roller slides along the ground under joint B.
+    """
+    span = 4.0
+    t = np.array([1.0]) if times is None else times
+    swing, w = np.radians(60.0), np.pi / span
+    angle = np.radians(60.0) + 0.5 * swing * (1.0 - np.cos(w * t))
+    omega, alpha = 0.5 * swing * w * np.sin(w * t), 0.5 * swing * w * w * np.cos(w * t)
+    unit = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    across = np.stack([-np.sin(angle), np.cos(angle)], axis=1)
+    crank = 10.0 * unit
+    speed = 10.0 * omega[:, None] * across
+    rate = 10.0 * (alpha[:, None] * across - (omega**2)[:, None] * unit)
+    zero, aside = np.zeros_like(crank), np.array([25.0, 0.0])
+    turns = np.stack([angle, 0.0 * angle, angle, 0.0 * angle], axis=1)
+    degrees = np.degrees(turns)
+    degrees[:, 3] = np.nan  # the roller is a particle
+    moving = np.array([1.0, 0.0, 1.0, 0.0])
+    kinetic = 3.0 * 10.0**2 * omega * alpha
+    weight = -5.0 * speed[:, 1]
+    flat = np.stack([crank[:, 0] + 25.0, 0.0 * angle], axis=1)
+    return LinkageMotion(
+        case=case,
+        time=times,
+        bodies=("crank", "coupler", "rocker", "roller"),
+        links=(("O", "A"), ("A", "B"), ("Q", "B"), ("R",)),
+        centre=np.stack([0.5 * crank, crank, 0.5 * crank + aside, flat], axis=1),
+        velocity=np.stack([0.5 * speed, speed, 0.5 * speed, zero], axis=1),
+        acceleration=np.stack([0.5 * rate, rate, 0.5 * rate, zero], axis=1),
+        angle=degrees,
+        angular_velocity=omega[:, None] * moving,
+        angular_acceleration=alpha[:, None] * moving,
+        joints=("O", "A", "B", "Q", "R"),
+        ground=("O", "Q"),
+        joint_position=np.stack([zero, crank, crank + aside, zero + aside, flat], axis=1),
+        joint_velocity=np.stack([zero, speed, speed, zero, zero], axis=1),
+        joint_acceleration=np.stack([zero, rate, rate, zero, zero], axis=1),
+        slides={"guide": np.stack([zero + aside, flat], axis=1)},
+        connections=(),
+        transmission={"coupler at B": np.degrees(np.arcsin(np.abs(np.sin(angle))))},
+        condition=2.0 / np.abs(np.sin(angle)),
+        shaking_force=-rate,
+        shaking_moment=-40.0 * alpha,
+        shaking_about="O",
+        ledger=PowerLedger(kinetic - weight, weight, 0.0 * angle, 0.0 * angle, kinetic, 1.2e-15),
+    )
+
+
+def leg(times: np.ndarray) -> LegTable:
+    wave = np.sin(times)[:, None] * np.array([1.0, -0.5, 0.2])
+    names = {
+        "wheel_omega": "rad/s", "wheel_alpha": "rad/s^2", "v_C": "in/s", "v_D": "in/s",
+        "a_C": "in/s^2", "a_D": "in/s^2", "coriolis_C": "in/s^2", "p_leg_rate": "lbf",
+        "p_wheel_rate": "lbf", "L_leg_rate": "lbf in", "L_wheel_rate": "lbf in",
+        "F_B": "lbf", "M_B": "lbf in",
+    }  # fmt: skip
+    scalars: dict[str, tuple[Floats, str]] = {
+        "actuator": (wave[:, 0], "lbf in"), "spin_moment": (wave[:, 1], "lbf in")
+    }  # fmt: skip
+    return LegTable("fold", times, {n: (wave, u) for n, u in names.items()}, scalars, "x', y', z'")
 
 
 def drive(times: np.ndarray) -> DriveTable:

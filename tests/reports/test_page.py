@@ -4,15 +4,18 @@ import re
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
+from urllib.parse import unquote
 
 import numpy as np
 import pytest
 
 from reports.drawing import draw_pin
 from reports.page import write_page
+from reports.plot_names import animation_name, plot_name
 from reports.plots import save_plots
 from reports.results import PinShape, Results, Units
 from reports.write import write_reports
+from tests.reports.conftest import leg
 
 EVIL = '<script>alert("1")</script>&\'='
 
@@ -48,7 +51,9 @@ def parse(path: Path) -> Reader:
 @pytest.fixture(scope="module")
 def small(results: Results) -> Results:
     """Few plots, so that tests are quick."""
-    return replace(results, reactions=results.reactions[1:], pins=results.pins[-9:])
+    return replace(
+        results, reactions=results.reactions[1:], pins=results.pins[-9:], motion=results.motion[1:]
+    )
 
 
 @pytest.fixture(scope="module")
@@ -95,7 +100,7 @@ def test_anchors_lead_somewhere(written: Path) -> None:
 
 def test_page_shows_plots_and_pictures(written: Path) -> None:
     addresses = parse(written).addresses
-    assert sum(a.startswith("data:image/svg+xml") for a in addresses) == 6
+    assert sum(a.startswith("data:image/svg+xml") for a in addresses) == 7
     assert sum(a.startswith("data:image/png") for a in addresses) == 1
 
 
@@ -109,7 +114,7 @@ def test_page_says_the_outcome(written: Path) -> None:
 
 
 def test_without_plots_none_is_shown(small: Results, tmp_path: Path) -> None:
-    save_plots(replace(small, reactions=(), pins=(), drive=()), tmp_path / "plots")
+    save_plots(replace(small, reactions=(), pins=(), drive=(), motion=()), tmp_path / "plots")
     page = write_reports(small, tmp_path, {}, plots=False)
     assert "data:" not in page.read_text(encoding="utf-8")
     assert "data:image/svg" in write_page(small, tmp_path, {}).read_text(encoding="utf-8")
@@ -150,6 +155,58 @@ def test_moments_are_shown_where_there_are_any(small: Results, tmp_path: Path) -
         text = parse(write_page(with_moments, tmp_path, {})).text
         assert (f"moment [{small.units.force}·{small.units.length}]" in text) is shown
         assert ("987.6" in text) is shown
+
+
+@pytest.fixture(scope="module")
+def moving(results: Results, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The page of motions alone: plots are files that merely have their names."""
+    directory = tmp_path_factory.mktemp("moving")
+    case = "up & 100%.down"
+    motion = replace(results.motion[0], case=case)
+    (directory / animation_name(case)).write_text("", encoding="utf-8")
+    kinds = ("linkage", "bodies", "bodies-2", "transmission", "shaking", "ledger")
+    names = [plot_name(kind, case) for kind in kinds]
+    names += [plot_name(kind, "fold") for kind in ("leg-motion", "leg-momenta", "leg-hinge")]
+    drives = tuple(replace(results.drive[0], name=name, kind="rotary") for name in ("a.b", "c"))
+    names += [plot_name("drive", d.case, d.name) for d in drives]
+    (directory / "plots").mkdir()
+    for name in names:
+        (directory / "plots" / f"{name}.svg").write_text(name, encoding="utf-8")
+    legs = (leg(results.drive[0].time),)
+    table = replace(results.reactions[0], position_unit="deg")
+    found = replace(results, motion=(motion,), legs=legs, drive=drives, reactions=(table,))
+    return write_page(found, directory, {})
+
+
+def test_motions_have_a_section(moving: Path) -> None:
+    page, text = parse(moving), moving.read_text(encoding="utf-8")
+    assert {"motion", "motion-check", "published", "drive"} <= set(page.ids)
+    assert len(page.ids) == len(set(page.ids))
+    assert sum(a.startswith("data:image/svg+xml") for a in page.addresses) == 11
+    for alt in (
+        "up &amp; 100%.down: the linkage from start to end, with the paths of its joints",
+        "continued (2)",
+        "moment about O",
+        "fold: force and moment on the hinge",
+        "retract: angle, torque, power and energies of drive a.b",
+    ):
+        assert re.search(f'alt="[^"]*{re.escape(alt)}', text)
+
+
+def test_animation_is_linked_where_there_is_one(moving: Path, written: Path) -> None:
+    (link,) = [a for a in parse(moving).addresses if not a.startswith(("data:", "#"))]
+    assert (moving.parent / unquote(link)).is_file()
+    assert "animat" not in parse(written).text
+
+
+def test_published_values_stand_beside_ours(moving: Path) -> None:
+    text = " ".join(parse(moving).text.split())
+    assert "Published values beside ours" in text
+    assert "angular velocity rocker rad/s 0.510000 0.500000 0.98039 cut" in text.replace("\n", " ")
+
+
+def test_positions_of_a_rotary_drive_are_angles(moving: Path) -> None:
+    assert re.search(r"drive position [\d.]+ deg", parse(moving).text)
 
 
 def test_empty_results_make_a_page(small: Results, tmp_path: Path) -> None:

@@ -1,0 +1,73 @@
+"""What the page shows of each motion: figures of the linkage and of legs, and its animation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import count
+from pathlib import Path
+from urllib.parse import quote
+
+from reports.plot_names import animation_name
+from reports.results import LinkageMotion, Results
+
+Uri = Callable[..., str | None]
+LEG = {
+    "leg-motion": "rotation of the wheel, velocities and accelerations over time",
+    "leg-momenta": "rates of momentum and of angular momentum over time",
+    "leg-hinge": "force and moment on the hinge, the actuator's and the spin moment over time",
+}
+
+
+@dataclass(frozen=True)
+class MotionPart:
+    """A case's motion: address of its animation (empty without), figures with their texts."""
+
+    case: str
+    animation: str
+    figures: tuple[tuple[str, str], ...]
+
+
+def motion_parts(results: Results, uri: Uri, directory: Path) -> list[MotionPart]:
+    """The cases that have figures or an animation beside the page.
+
+    uri: address of a plot by its kind and names, None where it is not there.
+    """
+    parts = [_linkage(m, uri, _animation(m.case, directory)) for m in results.motion]
+    parts += [_part(leg.case, LEG, uri, _animation(leg.case, directory)) for leg in results.legs]
+    return [part for part in parts if part.figures or part.animation]
+
+
+def _linkage(motion: LinkageMotion, uri: Uri, animation: str) -> MotionPart:
+    moving = motion.time is not None
+    texts = {
+        "linkage": "the linkage from start to end, with the paths of its joints"
+        if moving
+        else "the linkage as it is held"
+    }
+    if moving:
+        turning = "angles, angular velocities and angular accelerations of bodies over time"
+        texts["bodies"] = turning
+        for number in count(2):
+            if uri(f"bodies-{number}", motion.case) is None:
+                break
+            texts[f"bodies-{number}"] = f"{turning}, continued ({number})"
+        texts |= {
+            "transmission": "transmission angles, and condition number of the loop equations",
+            "shaking": "force of the linkage on its ground, and moment about "
+            + motion.shaking_about,
+            "ledger": "powers of drives, gravity, applied loads and friction, "
+            "and the rate of kinetic energy",
+        }
+    return _part(motion.case, texts, uri, animation)
+
+
+def _part(case: str, texts: dict[str, str], uri: Uri, animation: str) -> MotionPart:
+    found = ((uri(kind, case), f"{case}: {text}") for kind, text in texts.items())
+    return MotionPart(case, animation, tuple((at, text) for at, text in found if at is not None))
+
+
+def _animation(case: str, directory: Path) -> str:
+    name = animation_name(case)
+    # Percent signs in a file's name are none of its address.
+    return quote(name) if (directory / name).is_file() else ""
