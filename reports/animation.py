@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
-
 from reports.animation_data import player_data, script_json, speeds
 from reports.animation_forces import Shown, arrows, key, rows
 from reports.animation_frames import frames, nice
@@ -67,8 +65,7 @@ def render_animation(motion: LinkageMotion, results: Results) -> str:
 
 def _bar(scene: Scene, units: Units) -> tuple[float, str]:
     """A bar's length on the picture, and the round length for which it stands."""
-    reach = float(np.ptp(scene.motion.joint_position.reshape(-1, 2), axis=0).max())
-    length = nice(BAR * reach)
+    length = nice(BAR * scene.size)
     return length * scene.view.scale, f"{short(length)} {units.length}"
 
 

@@ -60,20 +60,26 @@ class Scene:
     table: ReactionTable | None
 
     @cached_property
-    def view(self) -> View:
+    def points(self) -> Floats:
+        """(N, 2) all that must be seen, in the study's unit."""
         motion = self.motion
         single = [b for b, joints in enumerate(motion.links) if len(joints) < 2]
         parts = [motion.joint_position, motion.centre[:, single], *motion.slides.values()]
+        return np.concatenate([p.reshape(-1, 2) for p in parts])
+
+    @cached_property
+    def size(self) -> float:
+        """Of the linkage, in the study's unit."""
+        return float(np.ptp(self.points, axis=0).max()) or 1.0
+
+    @cached_property
+    def view(self) -> View:
         # With square-root arrows, which are the longer ones.
         size = np.linalg.norm(self.forces, axis=2, keepdims=True)
         longer = np.sqrt(self.largest / np.where(size > 0.0, size, np.inf))
         arrows = LONGEST * longer * self.forces / (self.largest or 1.0)
-        tails = motion.joint_position[self.instants][:, self.tails]
-        return View.of(
-            np.concatenate([p.reshape(-1, 2) for p in parts]),
-            tails.reshape(-1, 2),
-            arrows.reshape(-1, 2),
-        )
+        tails = self.motion.joint_position[self.instants][:, self.tails]
+        return View.of(self.points, tails.reshape(-1, 2), arrows.reshape(-1, 2))
 
     @cached_property
     def forces(self) -> Floats:
@@ -163,13 +169,12 @@ class Scene:
 
     def _owner(self, end: Floats) -> str:
         """Colour of the body of which the end of a slider is a part: whose only joint is there."""
-        size = float(np.ptp(self.motion.joint_position.reshape(-1, 2), axis=0).max()) or 1.0
         for b, members in enumerate(self.members):
             if len(members) == 1:
                 off = self.motion.joint_position[:, members[0]] - end
-                if np.abs(off).max() < 1e-6 * size:
+                if np.abs(off).max() < 1e-6 * self.size:
                     return self.colour(self.motion.bodies[b])
-        return "ground" if np.ptp(end, axis=0).max() < 1e-6 * size else "plain"
+        return "ground" if np.ptp(end, axis=0).max() < 1e-6 * self.size else "plain"
 
     @cached_property
     def names(self) -> Floats:

@@ -241,6 +241,34 @@ def test_sliders_are_cylinders_or_run_on_rails(moving: Results) -> None:
     assert len(page.having("data-slide")) == 2
 
 
+def test_sliders_without_any_joint_are_drawn(moving: Results) -> None:
+    """Wedges, say."""
+    motion = moving.motion[0]
+    ends = motion.joint_position[:, [0, 1]]
+    bare = replace(
+        motion,
+        bodies=("wedge",),
+        links=((),),
+        centre=motion.centre[:, :1],
+        joints=(),
+        ground=(),
+        joint_position=np.zeros((181, 0, 2)),
+        slides={"face": ends},
+        connections=(),
+    )
+    table = replace(
+        moving.reactions[0],
+        connections=(),
+        bodies=(),
+        pins=(),
+        forces=np.zeros((181, 0, 3)),
+        moments=np.zeros((181, 0, 3)),
+    )
+    page = Reader(render(replace(moving, motion=(bare,), reactions=(table,))))
+    assert len(page.having("data-slide")) == 1
+    assert not page.having("data-joint")
+
+
 def test_many_bodies_make_a_small_file_with_the_peaks() -> None:
     results = chain(13, 2001)
     table = results.reactions[0]
