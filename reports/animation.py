@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from reports.animation_data import player_data, script_json, speeds
@@ -11,7 +12,7 @@ from reports.animation_scene import Scene, clipped
 from reports.animation_strip import Strip, strip
 from reports.numbers import short
 from reports.plot_names import animation_name
-from reports.results import DriveTable, LinkageMotion, Results, Units
+from reports.results import DriveTable, LinkageMotion, ReactionTable, Results, Units
 from reports.template import environment
 
 BAR = 0.2  # of the linkage's size, about: the bar that shows a length
@@ -29,7 +30,7 @@ def write_animations(results: Results, directory: Path) -> list[Path]:
 
 def render_animation(motion: LinkageMotion, results: Results) -> str:
     """The file's text."""
-    table = next((t for t in results.reactions if t.case == motion.case), None)
+    table = next((_matched(t, motion) for t in results.reactions if t.case == motion.case), None)
     drives = [d for d in results.drive if d.case == motion.case]
     scene = Scene(motion, frames(motion, table, drives), table)
     shown = Shown.of(scene, drives, results.units)
@@ -60,6 +61,23 @@ def render_animation(motion: LinkageMotion, results: Results) -> str:
             speeds=speeds(motion.time),
             data=script_json(data),
         )
+    )
+
+
+def _matched(table: ReactionTable, motion: LinkageMotion) -> ReactionTable | None:
+    """The table in the order of the linkage's connections; None when some are not in it."""
+    names = [name for name, _, _ in motion.connections]
+    if not set(names) <= set(table.connections):
+        return None
+    at = [table.connections.index(name) for name in names]
+    return replace(
+        table,
+        connections=tuple(names),
+        bodies=tuple(table.bodies[i] for i in at),
+        pins=tuple(table.pins[i] for i in at),
+        forces=table.forces[:, at],
+        moments=table.moments[:, at],
+        turn=None if table.turn is None else table.turn[:, at],
     )
 
 
