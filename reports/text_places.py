@@ -17,9 +17,14 @@ SIZE = 8.5
 REACHES = (5.0, 9.0, 14.0, 20.0, 28.0)  # points from the point to the text's nearer edge
 DIRECTIONS = 16
 FAR = 0.4  # samples that a point more of distance is worth
-CLEAR = 1.5  # points around a text
+CLEAR = 2.0  # points around a text
 HALO = withStroke(linewidth=2.2, foreground="white")
 STEP = 4.0  # pixels between the samples of a line one point thick
+
+# Of a marker's size in points, in pixels.
+RING = 0.6 * np.array(
+    [[1, 1], [1, -1], [-1, 1], [-1, -1], [0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]]
+)
 
 
 @dataclass(frozen=True)
@@ -78,10 +83,8 @@ def _samples(axes: Axes) -> Floats:
     for line in axes.lines:
         ends = np.asarray(line.get_transform().transform(line.get_xydata()))
         if line.get_marker() not in ("None", None, ""):
-            ring = (
-                0.4 * line.get_markersize() * np.array([[1, 1], [1, -1], [-1, 1], [-1, -1], [0, 0]])
-            )
-            parts += [point + ring for point in ends] * 4
+            ring = RING * line.get_markersize()
+            parts += [point + ring for point in ends] * 8
         if line.get_linestyle() == "None":
             continue
         for a, b in pairwise(ends):
