@@ -33,7 +33,17 @@ def write_landing(results: Results, directory: Path) -> None:
 
 def landing_tables(results: Results) -> str:
     """Markdown tables by case and velocity change: a row per pin, a column per impulse time."""
-    units, parts = results.units, []
+    parts = []
+    for title, head, body in landing_blocks(results):
+        parts.append(f"## {markdown.escaped(title)}")
+        columns = (False, False, *[True] * (len(head) - 2))
+        parts.append(markdown.table(tuple(head), body, columns))
+    return "\n\n".join(parts)
+
+
+def landing_blocks(results: Results) -> list[tuple[str, list[str], list[list[str]]]]:
+    """(title, head, rows) by case and velocity change: a row per pin, a column per impulse time."""
+    units, blocks = results.units, []
     for case in dict.fromkeys(r.case for r in results.landing):
         members = [r for r in results.landing if r.case == case]
         for speed in dict.fromkeys(members[0].velocity_change.tolist()):
@@ -45,9 +55,8 @@ def landing_tables(results: Results) -> str:
                 for r in members
             ]
             title = f"{case}, velocity change {short(speed)} {units.length}/{units.time}"
-            parts.append(f"## {markdown.escaped(title)}")
-            parts.append(markdown.table(tuple(head), body, (False, False, *[True] * len(here))))
-    return "\n\n".join(parts)
+            blocks.append((title, head, body))
+    return blocks
 
 
 def _factors(r: LandingRange) -> list[float | None]:

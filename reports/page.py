@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from reports.drawing import draw_pin
+from reports.landing import landing_blocks
 from reports.numbers import DASH, engineering, like, ratio, short
 from reports.page_motion import motion_parts
 from reports.page_rows import pin_parts, reaction_tables
@@ -75,6 +76,8 @@ def render(
         timed=any(v.time is not None for v in results.published),
         pins=pin_parts(results, drawings, {k: data_uri(p) for k, p in pictures.items()}),
         published=published_reactions(results),
+        landing=landing_blocks(results),
+        landed=list(dict.fromkeys(r.case for r in results.landing)),
         reactions=reaction_tables(results),
         cases=list(dict.fromkeys(pin.case for pin in results.pins)),
         **_safety_factors(results),

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from reports.landing import landing_tables, write_landing
+from reports.page import write_page
 from reports.plot_landing import landing_plot
 from reports.published_values import write_published_values
 from reports.results import LandingRange, PublishedValue, Results
@@ -45,6 +46,13 @@ def test_every_pair_is_a_row(results: Results, tmp_path: Path) -> None:
     assert "## landing, velocity change 25 in/s" in text
     assert "| A   | converged   |" in text
     assert "0.2 s" in text
+
+
+def test_the_page_has_the_tables(results: Results, tmp_path: Path) -> None:
+    few = replace(results, landing=(ranged("<A>"),), motion=(), reactions=(), pins=(), drive=())
+    text = write_page(few, tmp_path, {}).read_text(encoding="utf-8")
+    assert '<section id="landing">' in text
+    assert "<td>&lt;A&gt;</td>" in text
 
 
 def test_nothing_is_written_without_ranges(results: Results, tmp_path: Path) -> None:
