@@ -43,7 +43,7 @@ def _linkage(motion: LinkageMotion, uri: Uri, animation: str) -> MotionPart:
     texts = {
         "linkage": "the linkage from start to end, with the paths of its joints"
         if moving
-        else "the linkage as it is held"
+        else "the linkage's position"
     }
     if moving:
         turning = "angles, angular velocities and angular accelerations of bodies over time"

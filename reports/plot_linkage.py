@@ -47,7 +47,7 @@ def linkage_plot(motion: LinkageMotion, units: Units, directory: Path) -> list[P
 
 def _title(motion: LinkageMotion) -> str:
     if motion.time is None:
-        return f"{motion.case}: the linkage as it is held"
+        return f"{motion.case}: the linkage's position"
     return f"{motion.case}: the linkage from start to end, and the paths of its joints"
 
 

@@ -111,7 +111,8 @@ def _magnitudes(table: ReactionTable, pin: str, units: Units, directory: Path) -
         axes.set(xlabel=heading, ylabel=f"force [{units.force}]")
         axes.set_title(f"Pin {pin}, {table.case}: magnitudes; a dot marks each peak", pad=10)
         axes.margins(x=0.0)
-        axes.set_ylim(bottom=0.0)
+        # Room over the highest dot, however little the forces vary.
+        axes.set_ylim(0.0, 1.06 * float(table.magnitudes[:, members].max()) or 1.0)
         plain_numbers(axes)
         label_ends(figure, axes, lines, texts)
         return save(figure, directory, plot_name("magnitudes", table.case, pin))
