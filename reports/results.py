@@ -122,8 +122,9 @@ class DriveTable:
 
     @property
     def mean(self) -> float:
-        """Mean force or torque over the time."""
-        return float(np.trapezoid(self.force, self.time) / np.ptp(self.time))
+        """Mean force or torque over the time; what is only rounding is zero."""
+        mean = float(np.trapezoid(self.force, self.time) / np.ptp(self.time))
+        return mean if abs(mean) > 1e-12 * float(np.abs(self.force).max()) else 0.0
 
     @property
     def rms(self) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -88,3 +89,20 @@ def test_a_connection_may_have_a_force_a_moment_or_both() -> None:
 def test_the_published_impulse() -> None:
     """37,500 lbf at 32.2 ft/s^2 stopped from 25 ft/s in 0.15 s: 194,099.4 lbf (Grenier, eq. L2)."""
     assert impulse_force(37500.0 / 32.2, 25.0, 0.15) == pytest.approx(194099.3788819876, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("pulse", "shape"),
+    [
+        ("rectangular", lambda s: np.ones_like(s)),
+        ("half-sine", lambda s: np.sin(np.pi * s)),
+        ("triangular", lambda s: 1.0 - np.abs(2.0 * s - 1.0)),
+    ],
+)
+def test_every_pulse_takes_the_same_momentum(
+    pulse: str, shape: Callable[[np.ndarray], np.ndarray]
+) -> None:
+    """Its peak times the area under its shape over 0.15 s is mass times velocity change."""
+    s = np.linspace(0.0, 1.0, 20001)
+    area = 0.15 * float(np.trapezoid(shape(s), s))
+    assert impulse_force(1000.0, 7.0, 0.15, pulse) * area == pytest.approx(7000.0, rel=1e-8)
