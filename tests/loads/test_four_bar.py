@@ -163,6 +163,27 @@ def test_the_transmission_angle_is_that_of_the_textbooks() -> None:
     assert angles["coupler", "B"] == pytest.approx(np.minimum(between, np.pi - between))
 
 
+def test_a_four_bar_on_a_moving_arm_keeps_its_transmission_angle() -> None:
+    """Drives are taken one at a time: for that of the crank the arm stands still like a ground; for
+    that of the arm nothing moves against anything.
+    """
+    linkage = four_bar()
+    fixed = tuple(replace(j, fixed_in="arm") if j.fixed_in == GROUND else j for j in linkage.joints)
+    carried = replace(
+        linkage,
+        bodies=(*linkage.bodies, Body("arm", 5.0, (-1.0, 0.0), 1.0)),
+        joints=(*fixed, Joint("R", (-2.0, 0.0), (Connection("R", "arm"),), GROUND)),
+        turns=(Turn("crank", "crank", 0.9, "arm"), Turn("arm", "arm", 0.0)),
+        driven=("crank", "arm"),
+    )
+    times = np.linspace(0.0, 1.0, 9)
+    laws = [ConstantDrive(0.9, 3.0, 1.0), ConstantDrive(0.0, 0.8, 1.0)]
+    alone = transmission_angles(move(linkage, laws[:1], times))
+    both = transmission_angles(move(carried, laws, times))
+    assert list(both) == [("coupler", "B")]
+    assert both["coupler", "B"] == pytest.approx(alone["coupler", "B"])
+
+
 def toggle() -> float:
     """Crank angle at which coupler and rocker of a long-cranked four-bar are in line."""
     crank, ground, reach = 0.9, 1.0, 0.5 + 0.6
