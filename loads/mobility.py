@@ -56,7 +56,7 @@ def kutzbach(linkage: Linkage) -> int:
 
     A pin on which k links meet counts k - 1 times; particles count for nothing.
     """
-    links = {b.name for b in linkage.bodies if not _is_particle(linkage, b.name)} | {GROUND}
+    links = {b.name for b in linkage.bodies if not is_particle(linkage, b.name)} | {GROUND}
     pins = 0
     for joint in linkage.joints:
         meeting = {c.body for c in joint.connections} | {joint.fixed_in}
@@ -64,7 +64,8 @@ def kutzbach(linkage: Linkage) -> int:
     return 3 * (len(links) - 1) - 2 * (pins + len(linkage.sliders))
 
 
-def _is_particle(linkage: Linkage, name: str) -> bool:
+def is_particle(linkage: Linkage, name: str) -> bool:
+    """Whether a body hangs on its connection as a particle."""
     body = next(b for b in linkage.bodies if b.name == name)
     slides = any(name in (s.base, s.moving) for s in linkage.sliders)
     return body.inertia is None and not slides

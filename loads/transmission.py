@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from loads.linkage import GROUND, Body, Floats, Joint, Linkage, Slider
+from loads.mobility import is_particle
 from loads.motion import Motion
 
 STANDS = 1e-9  # of the fastest body: what moves less does not
@@ -86,7 +87,7 @@ def _turns_at(motion: Motion, rates: Floats, link: Body, joint: Joint) -> bool:
     spins = [
         _spin(motion, rates, b.name)
         for b in linkage.bodies
-        if b.name in _bodies(joint) and b.inertia is not None and b != link
+        if b.name in _bodies(joint) and b != link and not is_particle(linkage, b.name)
     ]
     mine = _spin(motion, rates, link.name)
     least = STANDS * np.abs(rates * motion.loops.scale).max() / linkage.length_scale

@@ -31,7 +31,9 @@ def every_case(path: Path) -> None:
         case_loads(study, case, drawn)
 
 
-@pytest.mark.parametrize("name", ["bowman2019", "matrix_four_bar", "slider_crank", "kuleuven2014"])
+@pytest.mark.parametrize(
+    "name", ["bowman2019", "matrix_four_bar", "slider_crank", "kuleuven2014", "excavator"]
+)
 def test_every_study_that_ships_is_described(name: str) -> None:
     text = describe(load_study(STUDIES / f"{name}.toml"))
     assert "case " in text

@@ -13,7 +13,7 @@ from pinstress.cli import run_command_line
 from tests.conftest import ROOT
 
 STUDIES = ROOT / "studies"
-MECHANISMS = ["grenier2008", "bowman2019", "matrix_four_bar", "slider_crank"]
+MECHANISMS = ["grenier2008", "bowman2019", "matrix_four_bar", "slider_crank", "excavator"]
 
 
 @pytest.mark.slow
