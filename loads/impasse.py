@@ -80,7 +80,8 @@ class Impasse(LinkageError):
                 "that guides them"
             )
         return (
-            f"dead point at {at(self.reached)} (wanted: {at(self.wanted)}): the linkage cannot be "
+            f"dead point at {at(self.reached)} (wanted: {at(self.wanted)}; drawn: "
+            f"{at(np.array([d.drawn for d in self.linkage.drives]))}): the linkage cannot be "
             f"driven further, {bodies} would snap through, and {unbounded}; stop the drive short "
             "of it, drive another body, or check the coordinates of the joints"
         )

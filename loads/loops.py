@@ -338,7 +338,10 @@ def _tree(linkage: Linkage) -> tuple[tuple[Edge, ...], tuple[tuple[bool, int], .
         item.name for i, item in enumerate(linkage.items) if joined.of(i) != joined.of(ground)
     ]
     if adrift:
-        raise LinkageError(f"nothing joins {', '.join(adrift)} to the ground; add the connection")
+        raise LinkageError(
+            f"nothing joins {', '.join(adrift)} to the ground, neither a connection nor a slider; "
+            "add it"
+        )
     neighbours: dict[int, list[tuple[tuple[bool, int, int, int], int]]] = {}
     for m in inside:
         neighbours.setdefault(m[2], []).append((m, m[3]))

@@ -116,6 +116,11 @@ def require_determined(linkage: Linkage) -> Mobility:
     Raises: LinkageError naming the bodies that can still move.
     """
     found = mobility(linkage)
+    if 0 < found.degrees < len(linkage.driven):
+        raise LinkageError(
+            f"{len(linkage.driven)} drives ({', '.join(linkage.driven)}) for {found.degrees} "
+            "degree(s) of freedom: take one away"
+        )
     if found.free:
         raise LinkageError(
             f"with the drives held the linkage can still move in {found.free} way(s): "

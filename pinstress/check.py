@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from loads import Linkage, mobility
+from loads import Linkage, LinkageError
 from loads.four_bar import four_bar
+from loads.mobility import require_determined
 from pinstress.build import case_loads
 from pinstress.errors import InputError
 from pinstress.limits import require_built
@@ -45,13 +46,10 @@ def describe(study: Study) -> str:
 
 
 def _mechanism(study: Study, mechanism: Linkage) -> list[str]:
-    found = mobility(mechanism)
-    if found.free:
-        raise InputError(
-            f"{study.path}: mechanism: with the drives held it can still move in "
-            f"{found.free} way(s): {', '.join(found.loose)} not guided; add the missing connection "
-            "or drive"
-        )
+    try:
+        found = require_determined(mechanism)
+    except LinkageError as error:
+        raise InputError(f"{study.path}: mechanism: {error}") from None
     lines = [
         f"mechanism: {len(mechanism.bodies)} bodies, {len(mechanism.joints)} joints, "
         f"{len(mechanism.connections)} connections, driven by {', '.join(mechanism.driven)}"

@@ -237,10 +237,15 @@ def _joints_to_draw(linkage: Linkage, body: str) -> tuple[str, ...]:
 
 
 def _direction(dynamics: Dynamics, body: str) -> Floats:
-    """(T,) degrees from x of the line from the body's first joint to its second; NaN without."""
+    """(T,) degrees from x of the line from the body's first joint to its second, or with fewer
+    joints of the slider it belongs to; NaN for a particle.
+    """
     motion, linkage = dynamics.motion, dynamics.motion.linkage
     joints = linkage.joints_on(body)
-    if len(joints) < 2:
+    lines = [s.axis for s in linkage.sliders if body in (s.base, s.moving)]
+    if len(joints) > 1:
+        lines = [(joints[1].at[0] - joints[0].at[0], joints[1].at[1] - joints[0].at[1])]
+    if not lines:
         return np.full(len(motion), np.nan)
-    (x1, y1), (x2, y2) = joints[0].at, joints[1].at
-    return np.asarray(np.degrees(np.arctan2(y2 - y1, x2 - x1) + motion.angle(body)))
+    x, y = lines[0]
+    return np.asarray(np.degrees(np.arctan2(y, x) + motion.angle(body)))

@@ -65,8 +65,12 @@ def linkage(study: Study) -> Linkage:
                 )
                 for name, j in mechanism.joint.items()
             ),
-            sliders=tuple(_slider(name, s, at) for name, s in mechanism.slider.items()),
-            turns=tuple(_turn(study, d, at) for d in mechanism.drive if isinstance(d, RotaryDrive)),
+            sliders=tuple(_slider(mechanism, name, s, at) for name, s in mechanism.slider.items()),
+            turns=tuple(
+                _turn(study, mechanism, d, at)
+                for d in mechanism.drive
+                if isinstance(d, RotaryDrive)
+            ),
             driven=tuple(drive_name(d) for d in mechanism.drive),
             gravity=mechanism.gravity,
             sharing=tuple(
@@ -90,14 +94,37 @@ def drive_name(drive: AnyDriveTable) -> str:
     return drive.slider if isinstance(drive, SliderDrive) else drive.name or drive.body
 
 
-def _slider(name: str, s: SliderTable, at: dict[str, Point]) -> Slider:
+def _slider(mechanism: MechanismTable, name: str, s: SliderTable, at: dict[str, Point]) -> Slider:
     start, end = (at[p] if isinstance(p, str) else p for p in s.joints)
     base, moving = s.bodies
+    for body, place in zip(s.bodies, s.joints, strict=True):
+        if isinstance(place, str) and body not in (on := _bodies_at(mechanism, place)):
+            raise LinkageError(
+                f"slider {name}: joint {place} is not on {body} but on {', '.join(on)}; put the "
+                "bodies in the order of their joints, or give the place as [x, y]"
+            )
     return Slider(name, base, moving, start, end, s.direction, s.friction, s.bearing)
 
 
-def _turn(study: Study, drive: RotaryDrive, at: dict[str, Point]) -> Turn:
+def _bodies_at(mechanism: MechanismTable, joint: str) -> list[str]:
+    """The bodies that a joint joins, the one that carries the pin among them."""
+    j = mechanism.joint[joint]
+    return ([j.fixed_in] if j.fixed_in else []) + list(j.connections.values())
+
+
+def _turn(
+    study: Study, mechanism: MechanismTable, drive: RotaryDrive, at: dict[str, Point]
+) -> Turn:
     """The driven angle; of its values a turn apart, the drawn one is nearest to the start."""
+    for body, line in ((drive.body, drive.line), (drive.against, drive.against_line or ())):
+        for joint in line:
+            if body not in _bodies_at(mechanism, joint):
+                raise LinkageError(
+                    f"drive {drive_name(drive)}: joint {joint} is not on {body}, whose angle the "
+                    "line tells; name two of its joints"
+                )
+        if len(set(line)) == 1:
+            raise LinkageError(f"drive {drive_name(drive)}: a line needs two different joints")
     drawn = _direction(drive.line, at)
     if drive.against_line is not None:
         drawn -= _direction(drive.against_line, at)

@@ -17,6 +17,7 @@ from pinstress.quantities import (
     Table,
     Time,
     Weight,
+    not_negative,
     positive,
 )
 
@@ -133,7 +134,7 @@ class LawTable(Table):
     name: str | None = None
     law: Literal["cosine", "cycloidal", "constant", "table"] = "cosine"
     duration: Duration | None = None
-    begin: Time = 0.0
+    begin: Annotated[Time, AfterValidator(not_negative)] = 0.0
     table: str | None = None
 
     @model_validator(mode="after")
@@ -158,8 +159,8 @@ class SliderDrive(LawTable):
     """A drive of a slider's length (hydraulic piston, screw)."""
 
     slider: str
-    start: PositiveLength | None = None
-    end: PositiveLength | None = None
+    start: Length | None = None
+    end: Length | None = None
     position_offset: Length = 0.0
 
 

@@ -132,6 +132,9 @@ def _explain(error: ValidationError) -> list[str]:
         value = item.get("input")
         if item["type"] == "missing":
             message = "is missing"
+        elif item["type"] == "union_tag_invalid":
+            kinds = item["ctx"]["expected_tags"]
+            message = f"{item['ctx']['tag']!r} is not a kind; there are {kinds}"
         elif item["type"] not in ("value_error", "union_tag_invalid", "union_tag_not_found"):
             message = f"{message[0].lower()}{message[1:]}"
             if isinstance(value, int | float | str):
@@ -221,9 +224,20 @@ def _mechanism_references(table: StudyTable, bears: dict[str, str]) -> Iterable[
                 + _near(connection, have)
             )
     bodies = ["ground", *mechanism.body]
-    for where, joint in named_joints(mechanism):
-        if joint not in mechanism.joint:
-            yield f"mechanism.{where}: no joint {joint!r}; " + _near(joint, mechanism.joint)
+    for name, joint in mechanism.joint.items():
+        if joint.fixed_in is not None and joint.fixed_in not in bodies:
+            yield f"mechanism.joint.{name}.fixed_in: no body {joint.fixed_in!r}; " + _near(
+                joint.fixed_in, bodies
+            )
+        for connection, body in joint.connections.items():
+            if body not in bodies:
+                yield (
+                    f"mechanism.joint.{name}.connections.{connection}: no body {body!r}; "
+                    + _near(body, bodies)
+                )
+    for where, named in named_joints(mechanism):
+        if named not in mechanism.joint:
+            yield f"mechanism.{where}: no joint {named!r}; " + _near(named, mechanism.joint)
     for i, drive in enumerate(mechanism.drive, 1):
         where = "mechanism.drive" + (f"[{i}]" if len(mechanism.drive) > 1 else "")
         if isinstance(drive, SliderDrive):

@@ -188,4 +188,7 @@ def _by_pint(unit: str, dimension: str, text: str) -> float:
     try:
         return float(parsed.to(_expected(dimension)).magnitude)
     except pint.DimensionalityError:
-        raise ValueError(f"{text!r} is not a {dimension}; write for instance {example!r}") from None
+        article = "an" if dimension[0] in "aeio" else "a"
+        raise ValueError(
+            f"{text!r} is not {article} {dimension}; write for instance {example!r}"
+        ) from None

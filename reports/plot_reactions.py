@@ -14,6 +14,7 @@ from reports.style import GREY, INK, label_ends, line_style, panels, plain_numbe
 
 NEGLIGIBLE = 1e-9
 LOG_SPAN = 100.0
+WITHOUT = "without pin"  # connections that bear on no pin of the study
 
 
 def reaction_plots(table: ReactionTable, units: Units, directory: Path) -> list[Path]:
@@ -32,6 +33,10 @@ def along(table: ReactionTable, units: Units) -> tuple[Floats, str]:
     if table.times is None:
         return np.arange(len(table.forces), dtype=float), "instant"
     return table.times, f"time [{units.time}]"
+
+
+def _whose(pin: str) -> str:
+    return f"Pin {pin}" if pin else "Connections without a pin"
 
 
 def _of_pin(table: ReactionTable, pin: str) -> list[int]:
@@ -56,7 +61,7 @@ def _components(table: ReactionTable, pin: str, units: Units, directory: Path) -
         for unused in axes[len(shown) :]:
             unused.remove()
         figure.align_ylabels()
-        title = f"Pin {pin}, {table.case}: components, world axes; a dot marks each peak"
+        title = f"{_whose(pin)}, {table.case}: components, world axes; a dot marks each peak"
         figure.suptitle(title + "\n(components that stay zero are left out)", x=0.01, ha="left")
         figure.legend(
             *axes[0].get_legend_handles_labels(),
@@ -64,7 +69,7 @@ def _components(table: ReactionTable, pin: str, units: Units, directory: Path) -
             ncols=min(3, len(members)),
             handlelength=3.5,
         )
-        return save(figure, directory, plot_name("reactions", table.case, pin))
+        return save(figure, directory, plot_name("reactions", table.case, pin or WITHOUT))
 
 
 def _components_that_act(
@@ -109,13 +114,13 @@ def _magnitudes(table: ReactionTable, pin: str, units: Units, directory: Path) -
             axes.plot(x[peak], values[peak], "o", color=line_style(order)["color"], ms=5)
             texts.append(f"{_name(table, c)}\n{_peak(table, values, peak, units)}")
         axes.set(xlabel=heading, ylabel=f"force [{units.force}]")
-        axes.set_title(f"Pin {pin}, {table.case}: magnitudes; a dot marks each peak", pad=10)
+        axes.set_title(f"{_whose(pin)}, {table.case}: magnitudes; a dot marks each peak", pad=10)
         axes.margins(x=0.0)
         # Room over the highest dot, however little the forces vary.
         axes.set_ylim(0.0, 1.06 * float(table.magnitudes[:, members].max()) or 1.0)
         plain_numbers(axes)
         label_ends(figure, axes, lines, texts)
-        return save(figure, directory, plot_name("magnitudes", table.case, pin))
+        return save(figure, directory, plot_name("magnitudes", table.case, pin or WITHOUT))
 
 
 def _peak(table: ReactionTable, values: Floats, peak: int, units: Units) -> str:

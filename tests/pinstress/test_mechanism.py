@@ -60,6 +60,12 @@ def test_check_says_what_the_four_bar_is() -> None:
         (BOWMAN, 'law = "cycloidal"', 'law = "cycloid"', "'cosine', 'cycloidal'"),
         (BOWMAN, 'value = "360 deg"', 'value = "360 in"', "not a angle|not an angle"),
         (BOWMAN, 'position = "315 deg"', "position = { arm = 3 }", "no drive 'arm'; there are"),
+        (BOWMAN, 'line = ["O2", "A"]', 'line = ["O4", "B"]', "joint O4 is not on crank"),
+        (BOWMAN, 'line = ["O2", "A"]', 'line = ["A", "A"]', "a line needs two different joints"),
+        (BOWMAN, 'F14 = "ground"', 'F14 = "grund"', "no body 'grund'; did you mean 'ground'"),
+        (BOWMAN, 'kind = "motion"', 'kind = "move"', "'move' is not a kind; there are 'given'"),
+        (CRANK, 'joints = ["O", "C"]', 'joints = ["A", "C"]', "joint A is not on ground but on"),
+        (CRANK, "duration = 0.25 ", "begin = -1\nduration = 0.25 ", "must not be negative"),
         (CRANK, 'duration = 0.25 ', "samples = 4", "unknown key 'samples'"),
         (CRANK, "direction = [1, 0]", "direction = [0, 0]", "must not be zero"),
         (CRANK, "section = [40, 20],", "", "give either diameter or section"),
@@ -175,3 +181,23 @@ mass = 50
     q, _, _ = found.motion.joint("Q")
     wanted = 2 * np.exp(1j * np.radians(50)) + np.exp(-1j * np.radians(25))
     assert q[-1] @ [1.0, 1.0j] == pytest.approx(wanted)
+
+
+def test_a_drive_too_many_and_a_loose_body_are_told(tmp_path: Path) -> None:
+    second = """
+[[mechanism.drive]]
+body = "rocker"
+line = ["O4", "B"]
+start = "301 deg"
+end = "302 deg"
+duration = 5
+"""
+    text = BOWMAN.replace("[mechanism.drive] ", "[[mechanism.drive]] ") + second
+    for case in ("position", "velocity", "acceleration"):
+        lines = [x for x in text.splitlines() if not x.startswith(f"{case} = ")]
+        text = "\n".join(lines) + "\n"
+    with pytest.raises(InputError, match=r"2 drives \(crank, rocker\) for 1 degree"):
+        describe(load_study(write(tmp_path, text)))
+    loose = BOWMAN + "\n[mechanism.body.spare]\nmass = 1\ncentre = [0, 0]\ninertia = 1\n"
+    with pytest.raises(InputError, match="nothing joins spare to the ground"):
+        describe(load_study(write(tmp_path, loose)))

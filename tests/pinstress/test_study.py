@@ -204,19 +204,27 @@ GEAR = (
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ('A = "AE" }', 'A = "AF" }', "connection A: there is no body 'AF'"),
+        ('A = "AE" }', 'A = "AF" }', "joint.A.connections.A: no body 'AF'; there are"),
         ('joints = ["H", "G"]', 'joints = ["H", "K"]', "slider.HG.joints: no joint 'K'"),
         ('slider = "HG"', 'slider = "GH"', "no slider 'GH'; there are HG"),
         ('body = "tyre"', 'body = "tire"', "no body 'tire'; did you mean 'tyre'"),
         ('connections = ["G1", "G3"]', 'connections = ["G1", "G4"]', "names connection 'G4'"),
         ('connections = ["G1", "G3"]', 'connections = ["E1", "E2"]', "does not determine them"),
-        ("value = 41.96,", "value = 44.0,", r"dead point at HG = 43.2.* in \(wanted: HG = 44 in\)"),
+        (
+            "value = 41.96,",
+            "value = 44.0,",
+            r"dead point at HG = 43.2.* in \(wanted: HG = 44 in; drawn: HG = 30.7 in\)",
+        ),
         (
             'connections = { B = "BC" }',
             'connections = { BB = "BC" }',
             "'B' is not in the mechanism",
         ),
-        ('fixed_in = "EBJ"', 'fixed_in = "EJB"', "joint B: there is no body 'EJB'"),
+        (
+            'fixed_in = "EBJ"',
+            'fixed_in = "EJB"',
+            "joint.B.fixed_in: no body 'EJB'; did you mean 'EBJ'",
+        ),
         ('pivot = "D"', 'pivot = "C"', "C is not fixed in the ground"),
     ],
 )
