@@ -14,7 +14,7 @@ from reports.style import GREY, INK, label_ends, line_style, panels, plain_numbe
 
 NEGLIGIBLE = 1e-9
 LOG_SPAN = 100.0
-WITHOUT = "without pin"  # connections that bear on no pin of the study
+WITHOUT = "no-pin"  # connections that bear on no pin of the study
 
 
 def reaction_plots(table: ReactionTable, units: Units, directory: Path) -> list[Path]:
