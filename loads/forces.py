@@ -189,11 +189,8 @@ class _Balance:
         at_connections = self.connections.forces(needed, self._closing(f))
         null = factors.null
         nothing = np.zeros((1, needed.shape[1]), dtype=complex)
-        k = len(self.loops.closing)
-        loose = np.stack(
-            [self.connections.forces(nothing, self._closing(null[:, :, i]))
-             for i in range(null.shape[2])], axis=2,
-        ) if k else np.zeros((*at_connections.shape, 0))  # fmt: skip
+        ways = [self._closing(null[:, :, i]) for i in range(null.shape[2])]
+        loose = np.stack([self.connections.forces(nothing, way) for way in ways], axis=2)
         amounts = _shares(self.loops.linkage, at_connections, loose, self.shared)
         return f + (null @ amounts[..., None])[..., 0]
 

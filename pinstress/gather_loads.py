@@ -195,6 +195,17 @@ def _motion(study: Study, name: str, dynamics: Dynamics) -> plain.LinkageMotion:
             kinetic_rate=powers.kinetic_rate / unit("power"),
             violation=powers.violation,
         ),
+        slider_forces={
+            s.name: np.stack(
+                [
+                    dynamics.sliders.normal[:, k] / unit("force"),
+                    dynamics.sliders.couple[:, k] / unit("energy"),
+                    dynamics.sliders.friction[:, k] / unit("force"),
+                ],
+                axis=1,
+            )
+            for k, s in enumerate(linkage.sliders)
+        },
     )
 
 

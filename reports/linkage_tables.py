@@ -24,12 +24,13 @@ CHECKS = (
 
 
 def write_linkage(results: Results, directory: Path) -> None:
-    """Write motion.csv, joints.csv, transmission.csv and linkage.csv for all cases."""
+    """Write motion, joints, transmission, linkage and sliders (.csv) for all cases."""
     for name, columns, rows in (
         ("motion.csv", ("case", "time", "body", *BODIES), _bodies),
         ("joints.csv", ("case", "time", "joint", *JOINTS), _joints),
         ("transmission.csv", ("case", "time", "link", "degrees"), _transmission),
         ("linkage.csv", ("case", "time", *CHECKS), _checks),
+        ("sliders.csv", ("case", "time", "slider", "normal", "couple", "friction"), _sliders),
     ):
         write_csv(directory / name, columns, (row for m in results.motion for row in rows(m)))
 
@@ -60,6 +61,12 @@ def _transmission(m: LinkageMotion) -> Iterator[list[Cell]]:
     for t, head in _instants(m):
         for link, degrees in m.transmission.items():
             yield [*head, link, float(degrees[t])]
+
+
+def _sliders(m: LinkageMotion) -> Iterator[list[Cell]]:
+    for t, head in _instants(m):
+        for slider, forces in m.slider_forces.items():
+            yield [*head, slider, *(float(x) for x in forces[t])]
 
 
 def _checks(m: LinkageMotion) -> Iterator[list[Cell]]:

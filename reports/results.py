@@ -158,7 +158,9 @@ class LinkageMotion:
     slider, its two ends (T, 2, 2). connections: (name, body, joint) in the order of the case's
     ReactionTable. transmission: by link and joint, (T,) degrees, 90 is best, 0 is a dead point.
     condition: (T,) of the loop equations. shaking_force (T, 2), shaking_moment (T,): of the linkage
-    on its ground, the moment about the joint `shaking_about`.
+    on its ground, the moment about the joint `shaking_about`. slider_forces: by slider
+    (T, 3), of the base on the moving body: normal (left of the axis), couple about the slider's
+    end, friction along the axis.
     """
 
     case: str
@@ -184,6 +186,7 @@ class LinkageMotion:
     shaking_moment: Floats
     shaking_about: str
     ledger: PowerLedger
+    slider_forces: dict[str, Floats] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -77,6 +77,19 @@ def test_the_leg_in_space(tmp_path: Path) -> None:
         assert float(leg["actuator [N m]"]) == -float(leg["M_B_y [N m]"])
 
 
+def test_guides_are_written_with_their_friction(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    command = ["loads", str(STUDIES / "slider_crank.toml"), "--out", str(out), "--no-pictures"]
+    assert run_command_line(command) == 0
+    rows = list(csv.DictReader((out / "sliders.csv").read_text().splitlines()))
+    assert len(rows) == 241
+    for r in rows:
+        bound = 0.15 * abs(float(r["normal"]))
+        assert abs(float(r["friction"])) == pytest.approx(bound, abs=1e-9)
+    assert {float(r["friction"]) > 0 for r in rows} == {True, False}
+    assert {float(r["normal"]) > 0 for r in rows} == {True, False}
+
+
 def test_a_jammed_guide_ends_with_a_message(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
