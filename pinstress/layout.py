@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from pinstress.schema_mechanism import Dyad, JointTable, MechanismTable, Place, Polar
 
 Point = tuple[float, float]
+Show = Callable[[float], str]
 
 
 class LayoutError(ValueError):
     """A joint cannot be placed; the message names its key."""
 
 
-def places(mechanism: MechanismTable) -> dict[str, Point]:
-    """Every joint's place as drawn, m. Raises: LayoutError."""
+def places(mechanism: MechanismTable, show: Show) -> dict[str, Point]:
+    """Every joint's place as drawn, m; `show` writes a length in words. Raises: LayoutError."""
     found: dict[str, Point] = {}
     waiting = dict(mechanism.joint)
     while waiting:
@@ -30,7 +31,7 @@ def places(mechanism: MechanismTable) -> dict[str, Point]:
             )
             raise LayoutError(f"mechanism.joint.{name}.at: {why}")
         for name in ready:
-            found[name] = _placed(name, waiting.pop(name), found)
+            found[name] = _placed(name, waiting.pop(name), found, show)
     return {name: found[name] for name in mechanism.joint}
 
 
@@ -40,7 +41,7 @@ def _origins(joint: JointTable) -> tuple[str, ...]:
     return joint.at.origins if isinstance(joint.at, Dyad) else ()
 
 
-def _placed(name: str, joint: JointTable, found: Mapping[str, Point]) -> Point:
+def _placed(name: str, joint: JointTable, found: Mapping[str, Point], show: Show) -> Point:
     at: Place = joint.at
     if isinstance(at, Polar):
         x, y = found[at.origin]
@@ -53,7 +54,7 @@ def _placed(name: str, joint: JointTable, found: Mapping[str, Point]) -> Point:
     if not abs(a - b) <= base <= a + b or base == 0.0:
         raise LayoutError(
             f"mechanism.joint.{name}.at: no point is at these distances: {at.origins[0]} and "
-            f"{at.origins[1]} are {base:.6g} m apart, the distances {a:.6g} m and {b:.6g} m"
+            f"{at.origins[1]} are {show(base)} apart, the distances {show(a)} and {show(b)}"
         )
     along = (a * a - b * b + base * base) / (2.0 * base)
     across = math.sqrt(max(a * a - along * along, 0.0))

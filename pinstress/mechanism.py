@@ -52,7 +52,8 @@ def linkage(study: Study) -> Linkage:
     mechanism = _mechanism(study)
     g = float(np.hypot(*mechanism.gravity)) or STANDARD_GRAVITY
     try:
-        at = places(mechanism)
+        unit, factor = study.system.length, study.system.factor("length")
+        at = places(mechanism, lambda length: f"{length / factor:.6g} {unit}")
         return Linkage(
             bodies=tuple(_body(mechanism, name, b, at, g) for name, b in mechanism.body.items()),
             joints=tuple(

@@ -49,7 +49,7 @@ def test_check_says_what_the_four_bar_is() -> None:
 @pytest.mark.parametrize(
     ("text", "old", "new", "message"),
     [
-        (BOWMAN, "distances = [30, 26]", "distances = [3, 4]", "no point is at these distances"),
+        (BOWMAN, "distances = [30, 26]", "distances = [3, 4]", "the distances 3 in and 4 in"),
         (BOWMAN, 'origins = ["A", "O4"]', 'origins = ["A", "B"]', "from each other in a circle"),
         (BOWMAN, 'origins = ["A", "O4"]', 'origins = ["A", "Q"]', "there is no joint 'Q'"),
         (BOWMAN, 'side = "left"', 'side = "up"', "'left' or 'right'"),
