@@ -60,8 +60,10 @@ def _beside(study: Study, row: PublishedRow, case: CaseLoads) -> plain.Published
             value = _of_body(row, case.dynamics)[instant]
         else:
             value = _of_drive(row, case.dynamics)[instant]
-    except (KeyError, ValueError):
-        raise InputError(f"{row.where}: case {row.case} has no {of} {row.name!r}") from None
+    except (IndexError, KeyError, ValueError):  # a particle has no angle
+        raise InputError(
+            f"{row.where}: case {row.case} has no {of} {row.name!r} with {row.quantity}"
+        ) from None
     if dimension in ("deg", "rad/s", "rad/s^2"):
         unit, factor = dimension, math.pi / 180.0 if dimension == "deg" else 1.0
     else:

@@ -11,6 +11,7 @@ from pinstress import InputError, load_study
 from pinstress.build import case_loads
 from pinstress.check import describe
 from pinstress.mechanism import laws, linkage
+from pinstress.pipeline import loads_only
 
 STUDIES = Path(__file__).parents[2] / "studies"
 BOWMAN = (STUDIES / "bowman2019.toml").read_text(encoding="utf-8").replace("bowman2019/", "")
@@ -201,3 +202,29 @@ duration = 5
     loose = BOWMAN + "\n[mechanism.body.spare]\nmass = 1\ncentre = [0, 0]\ninertia = 1\n"
     with pytest.raises(InputError, match="nothing joins spare to the ground"):
         describe(load_study(write(tmp_path, loose)))
+
+
+@pytest.mark.parametrize(
+    ("row", "message"),
+    [
+        ("snapshot,,angle,nobody,1,", "has no body 'nobody' with angle"),
+        ("snapshot,,force_x,F99,1,", "has no connection 'F99' with force_x"),
+        ("snapshot,,weight,crank,1,", "no quantity 'weight'; there are force_x"),
+        ("snap,,angle,crank,1,", "line 2: the study has no case 'snap'"),
+        ("snapshot,noon,angle,crank,1,", "time 'noon' is not a number"),
+        ("turn,,angle,bead,1,", "has no body 'bead' with angle"),
+    ],
+)
+def test_published_values_that_name_nothing(tmp_path: Path, row: str, message: str) -> None:
+    bead = "\n[mechanism.body.bead]\nmass = 1\n"
+    text = BOWMAN.replace(
+        'connections = { F12 = "crank" }', 'connections = { F12 = "crank", Z = "bead" }'
+    )
+    path = write(
+        tmp_path,
+        text.replace("[case.snapshot]", '[case.turn]\nkind = "motion"\n\n[case.snapshot]') + bead,
+    )
+    head = "case,time,quantity,name,published,reason"
+    (tmp_path / "published.csv").write_text(f"{head}\n{row}\n", encoding="utf-8")
+    with pytest.raises(InputError, match=message):
+        loads_only(load_study(path))
