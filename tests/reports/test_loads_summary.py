@@ -35,6 +35,7 @@ def test_files_of_a_mechanism_alone(turning: Results, tmp_path: Path) -> None:
         "joints.csv",
         "transmission.csv",
         "linkage.csv",
+        "sliders.csv",
         "loads.md",
         "animation_turn.html",
     }
