@@ -6,6 +6,7 @@ and gmsh and is therefore not imported here.
 
 from geometry.meridian import Arc, Corner, Edge, meridian, sharp_corners
 from geometry.pin import Band, GeometryError, Pin, Segment
+from geometry.vertices import Vertex, vertices
 
 __all__ = [
     "Arc",
@@ -15,6 +16,8 @@ __all__ = [
     "GeometryError",
     "Pin",
     "Segment",
+    "Vertex",
     "meridian",
     "sharp_corners",
+    "vertices",
 ]

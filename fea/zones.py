@@ -1,0 +1,115 @@
+"""Places on a pin where stress has no bound, whatever the mesh, and what would give it one."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from fea.corner import Side, antiplane_exponent, plane_exponent
+from geometry import Pin, Vertex, vertices
+
+Kind = Literal["sharp corner", "edge of a clamp", "edge of a load"]
+
+FLAT = 1e-9  # rad: two surfaces that meet at pi within this are one smooth surface
+FILLET = 0.1  # of the smaller diameter: the radius to try
+LOGARITHM = 0.1  # of the distance of a power: a logarithm is felt that much closer only
+
+
+@dataclass(frozen=True)
+class Place:
+    """A circle at (r, z), m, near which stress grows like d^-theory at the distance d.
+
+    between: the surfaces that meet there. theory: the exponent in plane strain, so for axial and
+    bending loads; 0 at the edge of a load, where it grows like log(1/d). torsion_theory: the
+    exponent in torsion; bending has this part too. radius: how far (m) stress is not to be read.
+    advice: what would make it finite, for people.
+    """
+
+    r: float
+    z: float
+    kind: Kind
+    between: tuple[str, str]
+    theory: float
+    torsion_theory: float
+    radius: float
+    advice: str
+
+
+def singular_places(
+    pin: Pin,
+    clamps: tuple[str, ...],
+    loaded: tuple[str, ...],
+    nu: float,
+    distance: float = 0.1,
+) -> tuple[Place, ...]:
+    """Every such place, in the order of `vertices`.
+
+    clamps: surfaces (by the pin's names) that are held. loaded: those under a traction that does
+    not fade towards their edges; a bearing pressure's shear does. nu: Poisson's ratio. distance: of
+    the local diameter, that is not to be read; a tenth of it at the edge of a load.
+
+    Raises: GeometryError for a surface that the pin has not; ValueError outside -1 < nu < 0.5.
+    """
+    held = {pin.surface(name) for name in clamps}
+    pushed = {pin.surface(name) for name in loaded}
+    found = (_place(pin, v, held, pushed, nu, distance) for v in vertices(pin))
+    return tuple(place for place in found if place is not None)
+
+
+def _place(
+    pin: Pin, v: Vertex, held: set[str], pushed: set[str], nu: float, distance: float
+) -> Place | None:
+    first, second = (_side(name, held) for name in v.between)
+    smooth = abs(v.angle - math.pi) <= FLAT
+    omega = math.pi if smooth else v.angle
+    plane = plane_exponent(omega, nu, first, second)
+    torsion = antiplane_exponent(omega, first, second)
+    reach = distance * 2.0 * v.r
+    kind: Kind
+    if max(plane, torsion) > 0.0:
+        clamped = "clamped" in (first, second)
+        kind = "edge of a clamp" if clamped else "sharp corner"
+        advice = _INSTEAD_OF_CLAMP if clamped else _fillet(pin, v)
+    elif smooth and "clamped" not in (first, second) and pushed & set(v.between):
+        kind, advice, reach = "edge of a load", _INSTEAD_OF_TRACTION, reach * LOGARITHM
+    else:
+        return None
+    return Place(v.r, v.z, kind, v.between, plane, torsion, reach, advice)
+
+
+def _side(name: str, held: set[str]) -> Side:
+    return "clamped" if name in held else "free"
+
+
+_INSTEAD_OF_CLAMP = (
+    "model the hub that holds the pin, or hold the pin by balanced loads instead of a clamp"
+)
+_INSTEAD_OF_TRACTION = (
+    'use distribution = "cosine": a bearing pressure has no jump of shear at its edge'
+)
+_BORE = (
+    "a radius here would make it finite, but the step of a bore cannot be given one; read the "
+    "stress away from it"
+)
+
+
+def _fillet(pin: Pin, v: Vertex) -> str:
+    """What fillet to try at an inner corner, and why not a larger one."""
+    i = min(range(len(pin.segments) - 1), key=lambda i: abs(pin.stations[i + 1] - v.z))
+    left, right = pin.segments[i], pin.segments[i + 1]
+    thin = i if left.diameter < right.diameter else i + 1
+    d = pin.segments[thin].diameter
+    if abs(2.0 * v.r - d) > abs(2.0 * v.r - max(left.bore, right.bore)):
+        return _BORE
+    step = abs(left.diameter - right.diameter) / 2.0
+    band = pin.bands[thin]
+    limit, what = min(
+        (step, "the height of the step"), (band.length / 2.0, f"half the length of {band.name}")
+    )
+    if limit >= FILLET * d:
+        return f"a fillet of at least {FILLET:g} x the smaller diameter here would make it finite"
+    return (
+        f"a fillet here would make it finite, as large as fits: {what}, {limit / d:.2g} x the "
+        f"smaller diameter"
+    )

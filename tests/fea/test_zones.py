@@ -1,0 +1,165 @@
+"""Places without a bound: which there are, how strong, and what to do."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from fea.corner import antiplane_exponent, plane_exponent
+from fea.zones import singular_places
+from geometry import GeometryError, Pin, Segment
+
+NU = 0.3
+
+
+def shouldered(fillet: float = 0.0, thick: float = 0.03, length: float = 0.02) -> Pin:
+    """A root, a shaft of 20 mm and a loaded end."""
+    return Pin(
+        "P",
+        (
+            Segment(0.02, thick, name="root"),
+            Segment(length, 0.02, name="shaft"),
+            Segment(0.02, 0.02, connection="P1"),
+        ),
+        fillet=fillet,
+    )
+
+
+def test_a_free_pin_with_fillets_has_none() -> None:
+    assert singular_places(shouldered(0.005), (), (), NU) == ()
+
+
+def test_a_sharp_shoulder() -> None:
+    (place,) = singular_places(shouldered(), (), (), NU)
+    assert (place.kind, place.r, place.z) == ("sharp corner", 0.01, 0.02)
+    assert set(place.between) == {"shoulder 1", "shaft"}
+    assert place.theory == pytest.approx(0.4555, abs=5e-5)
+    assert place.torsion_theory == pytest.approx(1.0 / 3.0)
+    assert place.radius == pytest.approx(0.002)
+    assert (
+        place.advice == "a fillet of at least 0.1 x the smaller diameter here would make it finite"
+    )
+
+
+@pytest.mark.parametrize(
+    ("pin", "limit", "largest"),
+    [
+        (shouldered(thick=0.022), "the height of the step, 0.05 x", 0.001),
+        (shouldered(length=0.003), "half the length of shaft, 0.075 x", 0.0015),
+    ],
+)
+def test_a_fillet_is_advised_that_fits(pin: Pin, limit: str, largest: float) -> None:
+    (place,) = singular_places(pin, (), (), NU)
+    assert limit in place.advice
+    mended = Pin("P", pin.segments, fillet=largest * (1.0 - 1e-12))
+    assert singular_places(mended, (), (), NU) == ()
+
+
+def test_the_inner_corner_of_a_bore_has_no_fillet_to_advise() -> None:
+    pin = Pin("P", (Segment(0.02, 0.03, bore=0.01), Segment(0.02, 0.02)), fillet=0.002)
+    (place,) = singular_places(pin, (), (), NU)
+    assert (place.kind, place.r, place.z) == ("sharp corner", 0.005, 0.02)
+    assert place.between == ("bore step 1", "bore segment 1")
+    assert "the step of a bore cannot be given one" in place.advice
+    assert place.radius == pytest.approx(0.001)
+
+
+def test_a_clamped_face_is_singular_at_its_rims() -> None:
+    solid = singular_places(shouldered(0.005), ("start",), (), NU)
+    assert [(p.kind, p.r, p.z) for p in solid] == [("edge of a clamp", 0.015, 0.0)]
+    assert solid[0].theory == pytest.approx(0.2888, abs=5e-5)
+    assert solid[0].torsion_theory == 0.0
+    assert solid[0].radius == pytest.approx(0.003)
+    assert "instead of a clamp" in solid[0].advice
+    hollow = Pin("P", (Segment(0.1, 0.03, bore=0.01),))
+    assert [p.r for p in singular_places(hollow, ("start",), (), NU)] == [0.015, 0.005]
+
+
+def test_a_clamped_face_is_harmless_without_lateral_contraction() -> None:
+    assert singular_places(shouldered(0.005), ("start",), (), 0.0) == ()
+
+
+def test_a_clamped_band_in_the_middle_of_a_shaft() -> None:
+    pin = Pin("P", (Segment(1, 2), Segment(1, 2, name="held"), Segment(1, 2)))
+    places = singular_places(pin, ("held",), (), NU)
+    assert [(p.kind, p.r, p.z) for p in places] == [("edge of a clamp", 1.0, z) for z in (1, 2)]
+    for place in places:
+        assert place.theory == pytest.approx(0.5, abs=1e-12)
+        assert place.torsion_theory == pytest.approx(0.5, abs=1e-12)
+
+
+@pytest.mark.parametrize(("held", "angle", "z"), [("shaft", 270, 0.02), ("root", 90, 0.02)])
+def test_a_clamp_that_ends_at_a_shoulder(held: str, angle: int, z: float) -> None:
+    """Held at the inner corner, or at the rim beside it, which leaves the corner free."""
+    places = singular_places(shouldered(), (held,), (), NU)
+    omega = math.radians(angle)
+    (edge,) = [p for p in places if held in p.between and "shoulder 1" in p.between]
+    assert (edge.kind, edge.z) == ("edge of a clamp", z)
+    assert edge.theory == pytest.approx(plane_exponent(omega, NU, "clamped", "free"))
+    assert edge.torsion_theory == pytest.approx(antiplane_exponent(omega, "clamped", "free"))
+    sharp = [p for p in places if p.kind == "sharp corner"]
+    assert len(sharp) == (held == "root")
+
+
+def test_what_is_held_throughout_is_not_singular() -> None:
+    """Neither a smooth seam between two held bands nor a rim between held surfaces."""
+    places = singular_places(shouldered(0.005), ("shaft", "P1", "end"), (), NU)
+    assert [(p.kind, p.z) for p in places] == [("edge of a clamp", 0.025)]
+
+
+def test_edges_of_uniform_tractions_are_logarithms() -> None:
+    pin = Pin("P", tuple(Segment(1, 2, connection=c) for c in "ABCD"))
+    places = singular_places(pin, (), ("B", "C"), NU)
+    assert [(p.kind, p.z) for p in places] == [("edge of a load", z) for z in (1, 2, 3)]
+    for place in places:
+        assert (place.theory, place.torsion_theory) == (0.0, 0.0)
+        assert place.radius == pytest.approx(0.02)
+        assert 'distribution = "cosine"' in place.advice
+    assert singular_places(pin, (), ("A",), NU)[0].z == 1.0  # and not the rim at z = 0
+
+
+def test_a_load_up_to_a_fillet_jumps_at_its_tangent_point() -> None:
+    pin = Pin("P", (Segment(2, 2, connection="B"), Segment(1, 3)), fillet=0.2)
+    (place,) = singular_places(pin, (), ("B",), NU)
+    assert (place.kind, place.z, place.between) == ("edge of a load", 1.8, ("B", "fillet 1"))
+
+
+def test_a_clamp_beside_a_load_is_a_clamp() -> None:
+    places = singular_places(shouldered(0.005), ("shaft",), ("P1",), NU)
+    assert [(p.kind, p.z) for p in places] == [("edge of a clamp", z) for z in (0.025, 0.04)]
+
+
+def test_the_excluded_distance_is_the_users() -> None:
+    near, far = (singular_places(shouldered(), (), ("P1",), NU, d) for d in (0.05, 0.2))
+    assert [p.kind for p in near] == ["sharp corner", "edge of a load"]
+    assert [p.radius for p in near] == pytest.approx([0.001, 0.0001])
+    assert [p.radius for p in far] == pytest.approx([0.004, 0.0004])
+
+
+def test_surfaces_go_by_the_names_of_the_study() -> None:
+    pin = Pin("P", (Segment(1, 2, name="hub", connection="B"), Segment(1, 2)))
+    assert singular_places(pin, ("hub",), (), NU) == singular_places(pin, ("B",), (), NU)
+    with pytest.raises(GeometryError, match="no surface 'rim'"):
+        singular_places(pin, ("rim",), (), NU)
+
+
+@settings(max_examples=100, deadline=None)
+@given(
+    st.lists(st.sampled_from([2.0, 2.5, 3.0]), min_size=1, max_size=5),
+    st.sampled_from([1e-7, 1e-3, 0.1, 0.25]),
+)
+def test_pins_with_fillets_have_no_sharp_corner(diameters: list[float], fillet: float) -> None:
+    pin = Pin("H", tuple(Segment(1.0, d) for d in diameters), fillet=fillet)
+    assert singular_places(pin, (), (), NU) == ()
+
+
+@pytest.mark.parametrize("rises", [True, False])
+def test_a_fillet_lost_in_rounding_is_a_sharp_corner(rises: bool) -> None:
+    segments = (Segment(1.0, 2.0), Segment(1.0, 3.0))
+    pin = Pin("P", segments if rises else segments[::-1], fillet=1e-10)
+    (place,) = singular_places(pin, (), (), NU)
+    assert place.kind == "sharp corner"
+    assert place.advice.startswith("a fillet of at least 0.1 x")
