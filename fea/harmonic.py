@@ -1,0 +1,145 @@
+"""The harmonic model: all of three-dimensional elasticity for a body of revolution, in its section.
+
+One factorisation per mesh and harmonic, one right-hand side per unit load; both phases, hence all
+directions, share it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fea.linear import SolveError, factorize
+from fea.material import Material
+from fea.meridian_fields import MeridianFields
+from fea.outline import Outline, shapes
+from fea.pin_loads import Floats, UnitLoad
+from fea.section import Ints, Section, around
+from fea.section_stress import inner_nodes, section_stress
+from fea.skin import AT
+from fea.tractions import ALONG_X, ALONG_Z, Traction, closing_tractions, traction
+from geometry import Pin
+from geometry.meridian_mesh import MeridianMesh
+
+
+class HarmonicModel:
+    """A pin on one mesh of its section, held at surfaces (by name).
+
+    Without any, the loads' balance is closed by tractions on the bands (fea.tractions), and as many
+    unknowns are held as there are rigid motions, about `pivot` (0 to 1, of the length), which
+    changes nothing but the motion.
+
+    Leaves out: plasticity, contact and clearance (loads are tractions).
+    """
+
+    def __init__(
+        self,
+        pin: Pin,
+        section: MeridianMesh,
+        material: Material,
+        clamps: tuple[str, ...],
+        pivot: float = 0.0,
+    ) -> None:
+        self.pin, self.material, self.pivot = pin, material, pivot
+        self.clamps = tuple(pin.surface(name) for name in clamps)
+        self.space = Section(section)
+        self.outline = Outline(self.space)
+
+    def solve(self, loads: tuple[UnitLoad, ...]) -> MeridianFields:
+        """Unit fields. Raises: SolveError when the pin is not held or a check fails."""
+        skin = np.einsum("qi,eia->eqa", shapes(AT), self.space.nodes[self.outline.nodes])
+        inner = inner_nodes(self.space, self.outline)
+        points = np.concatenate([skin.reshape(-1, 2), self.space.nodes[inner]])
+        displacement = np.zeros((len(points), 3, len(loads)))
+        stress = np.zeros((len(points), 6, len(loads)))
+        for n in sorted({load.n for load in loads}):
+            here = [k for k, load in enumerate(loads) if load.n == n]
+            forces, tractions = self._applied(n, [loads[k] for k in here])
+            u = _polar(self._displace(n, forces))
+            displacement[:, :, here], stress[:, :, here] = section_stress(
+                self.space, self.outline, self.material, n, u, tractions, self.clamps
+            )
+        return MeridianFields(
+            points, loads, stress, displacement, len(points) - len(inner), self.space.unknowns
+        )
+
+    def _applied(self, n: int, loads: list[UnitLoad]) -> tuple[Floats, Floats]:
+        """Nodal forces (unknowns, K) and tractions at the outline's nodes (E, 3, 3, K)."""
+        parts = [() if load.kind == "body" else (traction(self.pin, load),) for load in loads]
+        forces, tractions = self._forces(n, parts)
+        for k, load in enumerate(loads):
+            if load.kind == "body":
+                forces[:, k] = self._body_force(n)
+        if self.clamps or n > 1:
+            return forces, tractions
+        closing = [c for p in ((0, 1) if n == 0 else (0,)) for c in closing_tractions(self.pin, n, p)]
+        against, spread = self._forces(n, closing)
+        modes = rigid_motions(self.space.nodes, n)
+        share = -np.linalg.solve(modes.T @ against, modes.T @ forces)
+        return forces + against @ share, tractions + spread @ share
+
+    def _forces(self, n: int, parts: list[tuple[Traction, ...]]) -> tuple[Floats, Floats]:
+        forces = [_generalised(self.outline.forces(part, n)) for part in parts]
+        return np.stack(forces, axis=1), np.stack([self.outline.traction(p) for p in parts], axis=3)
+
+    def _body_force(self, n: int) -> Floats:
+        """Of the pin's mass in a field of 1 m/s^2 along x, or along z where n = 0."""
+        if self.material.density is None:
+            raise SolveError(f"pin {self.pin.name}: its material has no density for its weight")
+        amplitude = self.material.density * (ALONG_X if n else ALONG_Z)
+        return _generalised(around(n) * self.space.integrals[:, None] * amplitude)
+
+    def _displace(self, n: int, forces: Floats) -> Floats:
+        """Unknowns (unknowns, K) under nodal forces."""
+        fixed = np.concatenate([self._on_axis(n), self._held(n)])
+        free = np.setdiff1d(np.arange(self.space.unknowns), fixed)
+        K = self.space.stiffness(self.material, n)
+        u = np.zeros_like(forces)
+        u[free] = factorize(K[free][:, free], free // 3)(forces[free])
+        return u
+
+    def _on_axis(self, n: int) -> Ints:
+        """Unknowns that vanish on the axis, so that displacements are smooth there."""
+        axis = 3 * self.space.section.axis
+        p, m, w = axis, axis + 1, axis + 2
+        return np.concatenate({0: [p, m], 1: [p, w]}.get(n, [p, m, w]))
+
+    def _held(self, n: int) -> Ints:
+        if self.clamps:
+            edges = self.outline.nodes[self.outline.held(self.clamps)]
+            return (3 * np.unique(edges)[:, None] + np.arange(3)).ravel()
+        if n > 1:
+            return np.zeros(0, dtype=np.int64)
+        r, z = self.space.nodes.T
+        place = np.abs(z - self.pivot * self.pin.length)
+        if n == 0:  # shift along the axis, spin about it
+            outer = int(np.lexsort((place, -r))[0])
+            return np.array([3 * int(place.argmin()) + 2, 3 * outer])
+        innermost = np.flatnonzero(r <= r.min() * (1.0 + 1e-9))
+        near = int(innermost[place[innermost].argmin()])
+        far = int(innermost[np.abs(z[innermost] - z[near]).argmax()])
+        return np.array([3 * near + 1, 3 * far + 1])
+
+
+def _generalised(forces: Floats) -> Floats:
+    """Forces on the unknowns p, m, w of nodal forces (N, 3) along r, theta and z."""
+    R, T, Z = forces.T
+    return np.stack([R + T, R - T, Z], axis=1).ravel()
+
+
+def _polar(u: Floats) -> Floats:
+    """Amplitudes U, V, W, (N, 3, K), of unknowns p, m, w."""
+    p, m, w = (u[c::3] for c in range(3))
+    return np.stack([p + m, p - m, w], axis=1)
+
+
+def rigid_motions(nodes: Floats, n: int) -> Floats:
+    """Unknowns of the rigid motions of harmonic 1 (shift along x, turn about y) or 0 (shift along z,
+    spin), (3 N, 2); a load's work on them is its resultant.
+    """
+    r, z = nodes.T
+    nought = np.zeros_like(r)
+    if n == 1:
+        modes = ([nought, nought + 1.0, nought], [nought, z, -r])
+    else:
+        modes = ([nought, nought, nought + 1.0], [r / 2.0, -r / 2.0, nought])
+    return np.stack([np.stack(mode, axis=1).ravel() for mode in modes], axis=1)

@@ -1,0 +1,25 @@
+"""Stress on the meridian section under unit loads: the face that beam and harmonic models share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from fea.pin_loads import Floats, UnitLoad
+
+
+@dataclass(frozen=True)
+class MeridianFields:
+    """Amplitudes per unit of K loads at points (S, 2): r, z in m; stress (S, 6, K) in Pa.
+
+    Components are rr, tt, zz, tz, rz, rt; under a load of harmonic n and phase p the first three
+    and rz go as cos psi, the others as sin psi, psi = n theta - p pi / 2. displacement (S, 3, K) in
+    m: r and z as cos psi, theta as sin psi. skin: how many of the points, the first ones, follow the
+    outline counter-clockwise. unknowns: of the system that was solved.
+    """
+
+    points: Floats
+    loads: tuple[UnitLoad, ...]
+    stress: Floats
+    displacement: Floats
+    skin: int
+    unknowns: int
