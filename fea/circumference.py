@@ -1,0 +1,183 @@
+"""The largest von Mises stress round the axis, by superposing unit fields of several harmonics.
+
+At a point of the section the stress is the sum over n of P_n cos n theta + Q_n sin n theta. With one
+harmonic alone, von Mises squared is a quadratic form of (cos n theta, sin n theta) with entries
+A = P.P, B = P.Q, C = Q.Q (in von Mises' metric), so that its maximum is closed:
+
+    (A + C) / 2 + sqrt(((A - C) / 2)^2 + B^2)
+
+With several, von Mises being a seminorm, the sum of these maxima is a bound from above; only points
+whose bound exceeds what has been found elsewhere are sampled, and the best sample is polished.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.meridian_fields import MeridianFields
+from fea.pin_loads import Floats, PinLoads
+from fea.stress import VON_MISES, von_mises
+
+Ints = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+
+SAMPLES = 64  # round the axis
+FIRST = 8  # points per instant that are sampled to begin with
+CHUNK = 4096  # points sampled at once
+EVEN = np.array([1.0, 1.0, 1.0, 0.0, 1.0, 0.0])  # components that go as cos psi
+ODD = 1.0 - EVEN
+
+
+@dataclass(frozen=True)
+class Wave:
+    """One harmonic of a case: stress (S, 6, K) Pa per unit load, coefficients (T, K) by phase."""
+
+    n: int
+    stress: Floats
+    first: Floats
+    second: Floats
+
+    @cached_property
+    def bound(self) -> Floats:
+        """Largest von Mises stress of this harmonic alone, (S, T) Pa."""
+        A, B, C = self.forms
+        if self.n == 0:
+            return np.sqrt(np.maximum(A, 0.0))
+        return np.sqrt(np.maximum((A + C) / 2.0 + np.hypot((A - C) / 2.0, B), 0.0))
+
+    @cached_property
+    def forms(self) -> tuple[Floats, Floats, Floats]:
+        """A, B, C, (S, T) each."""
+        count = self.stress.shape[2]
+        even, odd = (self.stress * part[:, None] for part in (EVEN, ODD))
+        G, H = (np.einsum("sik,ij,sjl->skl", x, VON_MISES, x, optimize=True) for x in (even, odd))
+        G, H = (x.reshape(len(x), count * count) for x in (G, H))
+        a, b = self.first, self.second
+        aa, ab, bb = (
+            (x[:, :, None] * y[:, None, :]).reshape(-1, count * count).T
+            for x, y in ((a, a), (a, b), (b, b))
+        )
+        return G @ aa + H @ bb, G @ ab - H @ ab, G @ bb + H @ aa
+
+    def parts(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
+        """P and Q, (J, 6) each, at pairs of points and instants (J,)."""
+        s = self.stress[points]
+        a = np.einsum("jik,jk->ji", s, self.first[instants])
+        b = np.einsum("jik,jk->ji", s, self.second[instants])
+        return EVEN * a - ODD * b, EVEN * b + ODD * a
+
+
+class Circumference:
+    """A case on the section's points."""
+
+    def __init__(self, fields: MeridianFields, loads: PinLoads) -> None:
+        acting = loads.coefficients()
+        missing = set(acting) - set(fields.loads)
+        if missing:
+            raise ValueError(f"case {loads.case}: no unit fields for {sorted(missing)}")
+        self.count = len(loads)
+        self.points = len(fields.points)
+        self.waves = []
+        for n in sorted({load.n for load in acting}):
+            here = [load for load in acting if load.n == n]
+            stress = fields.stress[:, :, [fields.loads.index(load) for load in here]]
+            by_phase = np.stack([acting[load] for load in here], axis=1)  # (T, K, 2)
+            self.waves.append(Wave(n, stress, by_phase[..., 0], by_phase[..., 1]))
+
+    @cached_property
+    def bound(self) -> Floats:
+        """At least the largest von Mises stress round the axis, (S, T) Pa; exactly it where only
+        one harmonic acts.
+        """
+        if not self.waves:
+            return np.zeros((self.points, self.count))
+        return np.sum([wave.bound for wave in self.waves], axis=0)
+
+    def largest(self, among: Mask) -> tuple[Floats, Ints, Floats]:
+        """Over the points of a mask (S,), at every instant: maximum (T,) Pa, its point and angle."""
+        rows = np.flatnonzero(among)
+        bound = self.bound[rows]
+        every = np.arange(self.count)
+        if len(self.waves) < 2:
+            at = bound.argmax(axis=0)
+            _, angle = self.round(rows[at], every)
+            return bound[at, every], rows[at], angle
+        first = np.argpartition(-bound, min(FIRST, len(rows) - 1), axis=0)[:FIRST]
+        i, t = first.ravel(), np.tile(every, len(first))
+        value, angle = self.round(rows[i], t)
+        best = np.zeros(self.count)
+        np.maximum.at(best, t, value)
+        more = np.argwhere(bound > best)
+        value_more, angle_more = self.round(rows[more[:, 0]], more[:, 1])
+        value, angle = np.concatenate([value, value_more]), np.concatenate([angle, angle_more])
+        i, t = np.concatenate([i, more[:, 0]]), np.concatenate([t, more[:, 1]])
+        order = np.lexsort((-value, t))
+        top = order[np.searchsorted(t[order], every)]
+        return value[top], rows[i[top]], angle[top]
+
+    def round(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
+        """Largest von Mises stress (J,) Pa round the axis at pairs of points and instants, and the
+        angle (rad) where it is.
+        """
+        found = [
+            self._polished(points[k : k + CHUNK], instants[k : k + CHUNK])
+            for k in range(0, len(points), CHUNK)
+        ]
+        if not found:
+            return np.zeros(0), np.zeros(0)
+        return np.concatenate([v for v, _ in found]), np.concatenate([a for _, a in found])
+
+    def _polished(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
+        parts = [(wave.n, *wave.parts(points, instants)) for wave in self.waves]
+        if not parts:
+            return np.zeros(len(points)), np.zeros(len(points))
+        if len(parts) == 1:
+            return _closed(*parts[0])
+
+        def at(angles: Floats) -> Floats:
+            return von_mises(sum(_wave(n, P, Q, angles) for n, P, Q in parts))
+
+        angles = np.tile(np.arange(SAMPLES) * 2.0 * np.pi / SAMPLES, (len(points), 1))
+        value = at(angles)
+        k = value.argmax(axis=1)
+        angle, best = angles[np.arange(len(k)), k], value.max(axis=1)
+        step = 2.0 * np.pi / SAMPLES
+        for _ in range(3):  # the vertex of a parabola, ever closer
+            three = at(angle[:, None] + step * np.array([-1.0, 0.0, 1.0])) ** 2
+            bend = three[:, 0] - 2.0 * three[:, 1] + three[:, 2]
+            slope = three[:, 2] - three[:, 0]
+            flat = bend >= -1e-12 * three[:, 1]
+            move = np.where(flat, 0.0, -0.5 * slope / np.where(flat, 1.0, bend))
+            there = angle + step * np.clip(move, -1.0, 1.0)
+            found = at(there[:, None])[:, 0]
+            better = found > best
+            angle, best = np.where(better, there, angle), np.where(better, found, best)
+            step /= 8.0
+        return best, angle
+
+    def stress(self, points: Ints, instants: Ints, angle: Floats) -> Floats:
+        """Stress (J, 6) in Pa at pairs of points and instants and angles (J,): rr, tt, zz, tz, rz,
+        rt.
+        """
+        out = np.zeros((len(points), 6))
+        for wave in self.waves:
+            out += _wave(wave.n, *wave.parts(points, instants), angle[:, None])[:, 0]
+        return out
+
+
+def _wave(n: int, P: Floats, Q: Floats, angles: Floats) -> Floats:
+    """(J, A, 6) at angles (J, A)."""
+    c, s = np.cos(n * angles), np.sin(n * angles)
+    return np.asarray(c[..., None] * P[:, None] + s[..., None] * Q[:, None])
+
+
+def _closed(n: int, P: Floats, Q: Floats) -> tuple[Floats, Floats]:
+    if n == 0:
+        return von_mises(P), np.zeros(len(P))
+    A, B, C = (np.einsum("ji,ik,jk->j", x, VON_MISES, y) for x, y in ((P, P), (P, Q), (Q, Q)))
+    largest = (A + C) / 2.0 + np.hypot((A - C) / 2.0, B)
+    return np.sqrt(np.maximum(largest, 0.0)), 0.5 * np.arctan2(2.0 * B, A - C) / n
