@@ -8,11 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fea.balance import Balance, out_of_balance
 from fea.envelope import Envelope, envelope
 from fea.linear import SolveError
 from fea.material import Material
 from fea.peak import Peak, Refinement, Verdict, discretisation_error
-from fea.solid import PinLoads, SolidModel, UnitFields, out_of_balance
+from fea.pin_loads import PinLoads, UnitLoad
+from fea.solid import SolidModel, UnitFields, acting
 from geometry import Pin, sharp_corners
 from geometry.solid_mesh import MeshSize, solid_mesh
 
@@ -20,7 +22,7 @@ STEP = 2.0**0.5  # from one mesh to the next
 FEWEST = 3  # meshes before a maximum may be called converged: two can agree by chance
 MOST_UNKNOWNS = 300_000
 NEAR = 0.1  # of the local diameter: a peak this close to a sharp place is that place's
-BALANCE = 1e-6
+TELL = 1e-6  # of the largest load: what bands take up to close the balance is told from here on
 
 
 Found = list[tuple[Refinement, UnitFields, Envelope]]  # one entry per mesh
@@ -54,7 +56,8 @@ def refine(
     Raises: MeshError, SolveError.
     """
     held = tuple(pin.surface(name) for name in clamps)
-    refused = {c.case: why for c in cases if (why := _refusal(pin, held, c))}
+    balances = {} if held else {c.case: out_of_balance(pin, c, material.density) for c in cases}
+    refused = {case: b.refusal for case, b in balances.items() if b.refusal}
     live = tuple(c for c in cases if c.case not in refused)
     found: dict[str, Found] = {c.case: [] for c in live}
     for level in range(meshes if live else 0):
@@ -73,7 +76,7 @@ def refine(
     return tuple(
         Solution(Peak(pin.name, c.case, "solid", "rigid", refused[c.case]), None, None)
         if c.case in refused
-        else _judge(pin, held, c.case, found[c.case], tolerance)
+        else _judge(pin, held, c.case, found[c.case], tolerance, balances.get(c.case))
         for c in cases
     )
 
@@ -94,22 +97,22 @@ def _unit_fields(
     edges = tuple(z for name in names for z in (pin.band(name).z0, pin.band(name).z1))
     edges += tuple(z for _, z in clamp_edges(pin, held))
     mesh = solid_mesh(pin, size, tuple(dict.fromkeys(edges)))
-    units = tuple(dict.fromkeys(unit for c in cases for unit in c.units))
-    units = units or ((names[0], 0),)  # when all loads are nought, so is a field times nought
+    units = acting(cases)
+    units = units or ((UnitLoad(names[0], "force", 1), 0),)  # of which there is nought
     return SolidModel(pin, mesh, material, held).solve(units)
 
 
-def _refusal(pin: Pin, clamps: tuple[str, ...], loads: PinLoads) -> str | None:
-    """Why a case cannot be solved: nothing holds the pin and its loads are not in balance."""
-    if clamps:
-        return None
-    force, couple = out_of_balance(pin, loads)
-    if max(force, couple) <= BALANCE:
-        return None
+def _closing(pin: Pin, balance: Balance | None) -> str:
+    """What the bands take up beside the loads, as the end of a note; empty when nothing."""
+    if balance is None or not balance.largest:
+        return ""
+    force = balance.force / balance.largest
+    couple = balance.couple / balance.largest / pin.length
+    if max(force, couple) < TELL:
+        return ""
     return (
-        f"nothing holds the pin and its loads are not in balance (resultant {force:.2g} of the "
-        f"largest load, couple {couple:.2g} of that times the length): name what holds it in "
-        f"pin.{pin.name}.clamp"
+        f"; its bands close the balance, a force of {force:.2g} of the largest load and a couple "
+        f"of {couple:.2g} of that times the length"
     )
 
 
@@ -160,7 +163,14 @@ def _worth_refining(pin: Pin, held: tuple[str, ...], found: Found, tolerance: fl
     return len(found) < FEWEST or _error(found) > tolerance * top.maximum
 
 
-def _judge(pin: Pin, held: tuple[str, ...], case: str, found: Found, tolerance: float) -> Solution:
+def _judge(
+    pin: Pin,
+    held: tuple[str, ...],
+    case: str,
+    found: Found,
+    tolerance: float,
+    balance: Balance | None,
+) -> Solution:
     history = _history(found)
     _, fields, top = found[-1]
     if not np.isfinite(top.maximum):
@@ -180,7 +190,7 @@ def _judge(pin: Pin, held: tuple[str, ...], case: str, found: Found, tolerance: 
         case=case,
         model="solid",
         verdict=verdict,
-        note=note,
+        note=note + _closing(pin, balance),
         max_von_mises=top.maximum,
         error_estimate=error,
         location=top.location,

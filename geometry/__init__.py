@@ -6,6 +6,7 @@ and gmsh and is therefore not imported here.
 
 from geometry.meridian import Arc, Corner, Edge, meridian, sharp_corners
 from geometry.pin import Band, GeometryError, Pin, Segment
+from geometry.pin_like import PinLike
 
 __all__ = [
     "Arc",
@@ -14,6 +15,7 @@ __all__ = [
     "Edge",
     "GeometryError",
     "Pin",
+    "PinLike",
     "Segment",
     "meridian",
     "sharp_corners",
