@@ -14,11 +14,14 @@ from fea.linear import SolveError
 from fea.material import Material
 from fea.peak import Peak, Refinement, Verdict, discretisation_error
 from fea.pin_loads import PinLoads, UnitLoad
+from fea.sharp_edges import sharp_edges
 from fea.solid import SolidModel, UnitFields, acting
-from geometry import Pin, sharp_corners
-from geometry.solid_mesh import MeshSize, solid_mesh
+from geometry import CutPin, Pin, PinLike, sharp_corners
+from geometry.meshing import solid_mesh
+from geometry.solid_mesh import MeshSize
 
 STEP = 2.0**0.5  # from one mesh to the next
+HALF = 2.0  # the same where the mesh is given
 FEWEST = 3  # meshes before a maximum may be called converged: two can agree by chance
 MOST_UNKNOWNS = 300_000
 NEAR = 0.1  # of the local diameter: a peak this close to a sharp place is that place's
@@ -38,7 +41,7 @@ class Solution:
 
 
 def refine(
-    pin: Pin,
+    pin: PinLike,
     material: Material,
     clamps: tuple[str, ...],
     cases: tuple[PinLoads, ...],
@@ -60,12 +63,13 @@ def refine(
     refused = {case: b.refusal for case, b in balances.items() if b.refusal}
     live = tuple(c for c in cases if c.case not in refused)
     found: dict[str, Found] = {c.case: [] for c in live}
+    ratio = HALF if pin.meshed else STEP
     for level in range(meshes if live else 0):
-        if level and _unknowns(found) * STEP**3 > MOST_UNKNOWNS:
+        if level and _unknowns(found) * ratio**3 > MOST_UNKNOWNS:
             break
         progress(f"pin {pin.name}, mesh {level + 1}")
         start = time.perf_counter()
-        fields = _unit_fields(pin, material, held, live, (size or MeshSize()).finer(STEP**level))
+        fields = _unit_fields(pin, material, held, live, (size or MeshSize()).finer(ratio**level))
         for case in live:
             top = envelope(fields, case)
             spent = time.perf_counter() - start
@@ -86,7 +90,7 @@ def _unknowns(found: dict[str, Found]) -> int:
 
 
 def _unit_fields(
-    pin: Pin,
+    pin: PinLike,
     material: Material,
     held: tuple[str, ...],
     cases: tuple[PinLoads, ...],
@@ -95,14 +99,16 @@ def _unit_fields(
     """Unit fields for all that the cases load; the mesh is finer at edges of bands and clamps."""
     names = tuple(dict.fromkeys(name for c in cases for name in c.surfaces))
     edges = tuple(z for name in names for z in (pin.band(name).z0, pin.band(name).z1))
-    edges += tuple(z for _, z in clamp_edges(pin, held))
+    profile = pin.profile if isinstance(pin, CutPin) else pin
+    if isinstance(profile, Pin):
+        edges += tuple(z for _, z in clamp_edges(profile, held))
     mesh = solid_mesh(pin, size, tuple(dict.fromkeys(edges)))
     units = acting(cases)
     units = units or ((UnitLoad(names[0], "force", 1), 0),)  # of which there is nought
     return SolidModel(pin, mesh, material, held).solve(units)
 
 
-def _closing(pin: Pin, balance: Balance | None) -> str:
+def _closing(pin: PinLike, balance: Balance | None) -> str:
     """What the bands take up beside the loads, as the end of a note; empty when nothing."""
     if balance is None or not balance.largest:
         return ""
@@ -148,23 +154,31 @@ def _history(found: Found) -> tuple[Refinement, ...]:
     return tuple(step for step, _, _ in found)
 
 
-def _error(found: Found) -> float:
+def _place(pin: PinLike, held: tuple[str, ...], found: Found) -> str | None:
+    """What makes the last mesh's maximum meaningless, if anything does."""
+    _, fields, top = found[-1]
+    if isinstance(pin, Pin):
+        return sharp_place(pin, held, top.location)
+    return sharp_edges(fields.space, fields.surface, held).near(top.location, NEAR)
+
+
+def _error(pin: PinLike, found: Found) -> float:
     """Of the last mesh, Pa."""
     top = found[-1][2]
     if len(found) == 1:
         return top.maximum
-    return discretisation_error(_history(found), STEP, top.scatter)
+    return discretisation_error(_history(found), HALF if pin.meshed else STEP, top.scatter)
 
 
-def _worth_refining(pin: Pin, held: tuple[str, ...], found: Found, tolerance: float) -> bool:
+def _worth_refining(pin: PinLike, held: tuple[str, ...], found: Found, tolerance: float) -> bool:
     top = found[-1][2]
-    if sharp_place(pin, held, top.location) is not None:
+    if _place(pin, held, found) is not None:
         return False
-    return len(found) < FEWEST or _error(found) > tolerance * top.maximum
+    return len(found) < FEWEST or _error(pin, found) > tolerance * top.maximum
 
 
 def _judge(
-    pin: Pin,
+    pin: PinLike,
     held: tuple[str, ...],
     case: str,
     found: Found,
@@ -175,14 +189,18 @@ def _judge(
     _, fields, top = found[-1]
     if not np.isfinite(top.maximum):
         raise SolveError(f"pin {pin.name}, case {case}: the stress is not finite")
-    error = _error(found)
+    error = _error(pin, found)
     relative = error / top.maximum if top.maximum else 0.0
-    place = sharp_place(pin, held, top.location)
+    place = _place(pin, held, found)
     verdict: Verdict = "unconverged"
     if place and top.maximum:
         note = f"the peak sits at {place}, where it grows with every mesh"
     elif relative <= tolerance and len(history) >= FEWEST:
         verdict, note = "converged", f"known to {relative:.1%}"
+    elif len(history) == 1 and pin.meshed:
+        note = (
+            "from one mesh only: halving the file's would be too large, so the error is not known"
+        )
     else:
         note = f"known to {relative:.1%} only, {tolerance:.1%} was asked for"
     peak = Peak(

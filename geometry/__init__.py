@@ -4,6 +4,8 @@ Lengths in m. This room imports nothing else of ours. `geometry.solid_mesh` need
 and gmsh and is therefore not imported here.
 """
 
+from geometry.cut_pin import CutPin
+from geometry.features import Flat, Hole
 from geometry.meridian import Arc, Corner, Edge, meridian, sharp_corners
 from geometry.pin import Band, GeometryError, Pin, Segment
 from geometry.pin_like import PinLike
@@ -12,8 +14,11 @@ __all__ = [
     "Arc",
     "Band",
     "Corner",
+    "CutPin",
     "Edge",
+    "Flat",
     "GeometryError",
+    "Hole",
     "Pin",
     "PinLike",
     "Segment",

@@ -119,6 +119,11 @@ class Pin:
         return True
 
     @property
+    def meshed(self) -> bool:
+        """Whether it comes with a mesh: never."""
+        return False
+
+    @property
     def connections(self) -> tuple[str, ...]:
         """Connections that bear on this pin, in the order of the profile."""
         return tuple(s.connection for s in self.segments if s.connection)

@@ -10,7 +10,8 @@ from geometry.pin import Band
 class PinLike(Protocol):
     """A pin along z from 0 to `length` (m), with named surfaces and bands; `volume` in m^3.
 
-    revolved: whether it is the same all round its axis.
+    revolved: whether it is the same all round its axis. meshed: whether it comes with a mesh, which
+    can only be halved.
     """
 
     @property
@@ -21,6 +22,8 @@ class PinLike(Protocol):
     def volume(self) -> float: ...
     @property
     def revolved(self) -> bool: ...
+    @property
+    def meshed(self) -> bool: ...
     @property
     def connections(self) -> tuple[str, ...]: ...
     def band(self, name: str) -> Band:
