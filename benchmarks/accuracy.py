@@ -10,7 +10,8 @@ from benchmarks.timing import table
 from fea.envelope import envelope
 from fea.material import Material
 from fea.peak import Refinement, discretisation_error
-from fea.solid import PinLoads, SolidModel
+from fea.pin_loads import PinLoads
+from fea.solid import SolidModel, acting
 from geometry import Pin, Segment
 from geometry.solid_mesh import MeshSize, solid_mesh
 
@@ -27,7 +28,7 @@ def fillet() -> str:
         start = time.perf_counter()
         mesh = solid_mesh(PIN, MeshSize(across=3.0, arc=1.5).finer(STEP**level), (0.02, 0.06))
         model = SolidModel(PIN, mesh, STEEL, ("start",))
-        found = envelope(model.solve((("B", 0), ("B", 1))), LOAD)
+        found = envelope(model.solve(acting([LOAD])), LOAD)
         steps.append(Refinement(model.unknowns, found.maximum, time.perf_counter() - start))
     best = steps[-1].max_von_mises
     rows = []

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from fea.beam import BeamForces, cantilever
 from fea.distributed_load import axis_load_term, constant_stress, surface_load_term
 from fea.material import Material
+from fea.pin_loads import UnitLoad
 from fea.solid import SolidModel, UnitFields
 from geometry import Pin
 from geometry.solid_mesh import MeshSize, solid_mesh
@@ -85,8 +86,9 @@ def beam_check(
     bored = pin.with_bore(band, bore)
     mesh = solid_mesh(bored, MeshSize(across=6.0), (0.0, pin.band(band).z1))
     name = f"bore {band}"
-    on_axis = SolidModel(bored, mesh, material, ("start",)).solve(((name, 0), (name, 1)))
-    c = [dict(zip(((band, 0), (band, 1)), force, strict=True)).get(k, 0.0) for k in fields.loads]
+    both = tuple((UnitLoad(name, "force", 1), phase) for phase in (0, 1))
+    on_axis = SolidModel(bored, mesh, material, ("start",)).solve(both)
+    c = [force[p] if load == UnitLoad(band, "force", 1) else 0.0 for load, p in fields.loads]
     w, nu = size / pin.band(band).length, material.poisson_ratio
     return BeamCheck(
         force=size,
@@ -100,7 +102,7 @@ def beam_check(
 
 def axial_stress(fields: UnitFields, c: Floats, radius: float, angle: float, z: Floats) -> Floats:
     """Axial stress (Z,) in Pa at z (m) on the surface line at `angle` (rad) of a cylinder of
-    `radius` (m), under loads c (L,) in N or N m: linear between the nodes of the unrolled surface.
+    `radius` (m), under unit loads c (L,): linear between the nodes of the unrolled surface.
     """
     from scipy.interpolate import LinearNDInterpolator
 

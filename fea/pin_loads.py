@@ -16,7 +16,7 @@ So a unit load of harmonic n serves all directions: phases differ by a turn abou
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -107,12 +107,5 @@ class PinLoads:
         """The same loads, all turned about the pin's axis by `angle` (rad)."""
         c, s = np.cos(angle), np.sin(angle)
         about_z = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-        turned = (x @ about_z for x in (self.forces, self.moments))
-        return PinLoads(
-            self.case,
-            self.surfaces,
-            *turned,
-            distribution=self.distribution,
-            body=self.body @ about_z,
-            terms=self.terms,
-        )
+        forces, moments, body = (x @ about_z for x in (self.forces, self.moments, self.body))
+        return replace(self, forces=forces, moments=moments, body=body)

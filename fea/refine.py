@@ -8,19 +8,24 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fea.balance import Balance, out_of_balance
 from fea.envelope import Envelope, envelope
 from fea.linear import SolveError
 from fea.material import Material
 from fea.peak import Peak, Refinement, Verdict, discretisation_error
-from fea.solid import PinLoads, SolidModel, UnitFields, out_of_balance
-from geometry import Pin, sharp_corners
-from geometry.solid_mesh import MeshSize, solid_mesh
+from fea.pin_loads import PinLoads, UnitLoad
+from fea.sharp_edges import sharp_edges
+from fea.solid import SolidModel, UnitFields, acting
+from geometry import CutPin, Pin, PinLike, sharp_corners
+from geometry.meshing import solid_mesh
+from geometry.solid_mesh import MeshSize
 
 STEP = 2.0**0.5  # from one mesh to the next
+HALF = 2.0  # the same where the mesh is given
 FEWEST = 3  # meshes before a maximum may be called converged: two can agree by chance
 MOST_UNKNOWNS = 300_000
 NEAR = 0.1  # of the local diameter: a peak this close to a sharp place is that place's
-BALANCE = 1e-6
+TELL = 1e-6  # of the largest load: what bands take up to close the balance is told from here on
 
 
 Found = list[tuple[Refinement, UnitFields, Envelope]]  # one entry per mesh
@@ -36,7 +41,7 @@ class Solution:
 
 
 def refine(
-    pin: Pin,
+    pin: PinLike,
     material: Material,
     clamps: tuple[str, ...],
     cases: tuple[PinLoads, ...],
@@ -54,15 +59,17 @@ def refine(
     Raises: MeshError, SolveError.
     """
     held = tuple(pin.surface(name) for name in clamps)
-    refused = {c.case: why for c in cases if (why := _refusal(pin, held, c))}
+    balances = {} if held else {c.case: out_of_balance(pin, c, material.density) for c in cases}
+    refused = {case: b.refusal for case, b in balances.items() if b.refusal}
     live = tuple(c for c in cases if c.case not in refused)
     found: dict[str, Found] = {c.case: [] for c in live}
+    ratio = HALF if pin.meshed else STEP
     for level in range(meshes if live else 0):
-        if level and _unknowns(found) * STEP**3 > MOST_UNKNOWNS:
+        if level and _unknowns(found) * ratio**3 > MOST_UNKNOWNS:
             break
         progress(f"pin {pin.name}, mesh {level + 1}")
         start = time.perf_counter()
-        fields = _unit_fields(pin, material, held, live, (size or MeshSize()).finer(STEP**level))
+        fields = _unit_fields(pin, material, held, live, (size or MeshSize()).finer(ratio**level))
         for case in live:
             top = envelope(fields, case)
             spent = time.perf_counter() - start
@@ -73,7 +80,7 @@ def refine(
     return tuple(
         Solution(Peak(pin.name, c.case, "solid", "rigid", refused[c.case]), None, None)
         if c.case in refused
-        else _judge(pin, held, c.case, found[c.case], tolerance)
+        else _judge(pin, held, c.case, found[c.case], tolerance, balances.get(c.case))
         for c in cases
     )
 
@@ -83,7 +90,7 @@ def _unknowns(found: dict[str, Found]) -> int:
 
 
 def _unit_fields(
-    pin: Pin,
+    pin: PinLike,
     material: Material,
     held: tuple[str, ...],
     cases: tuple[PinLoads, ...],
@@ -92,24 +99,26 @@ def _unit_fields(
     """Unit fields for all that the cases load; the mesh is finer at edges of bands and clamps."""
     names = tuple(dict.fromkeys(name for c in cases for name in c.surfaces))
     edges = tuple(z for name in names for z in (pin.band(name).z0, pin.band(name).z1))
-    edges += tuple(z for _, z in clamp_edges(pin, held))
+    profile = pin.profile if isinstance(pin, CutPin) else pin
+    if isinstance(profile, Pin):
+        edges += tuple(z for _, z in clamp_edges(profile, held))
     mesh = solid_mesh(pin, size, tuple(dict.fromkeys(edges)))
-    units = tuple(dict.fromkeys(unit for c in cases for unit in c.units))
-    units = units or ((names[0], 0),)  # when all loads are nought, so is a field times nought
+    units = acting(cases)
+    units = units or ((UnitLoad(names[0], "force", 1), 0),)  # of which there is nought
     return SolidModel(pin, mesh, material, held).solve(units)
 
 
-def _refusal(pin: Pin, clamps: tuple[str, ...], loads: PinLoads) -> str | None:
-    """Why a case cannot be solved: nothing holds the pin and its loads are not in balance."""
-    if clamps:
-        return None
-    force, couple = out_of_balance(pin, loads)
-    if max(force, couple) <= BALANCE:
-        return None
+def _closing(pin: PinLike, balance: Balance | None) -> str:
+    """What the bands take up beside the loads, as the end of a note; empty when nothing."""
+    if balance is None or not balance.largest:
+        return ""
+    force = balance.force / balance.largest
+    couple = balance.couple / balance.largest / pin.length
+    if max(force, couple) < TELL:
+        return ""
     return (
-        f"nothing holds the pin and its loads are not in balance (resultant {force:.2g} of the "
-        f"largest load, couple {couple:.2g} of that times the length): name what holds it in "
-        f"pin.{pin.name}.clamp"
+        f"; its bands close the balance, a force of {force:.2g} of the largest load and a couple "
+        f"of {couple:.2g} of that times the length"
     )
 
 
@@ -145,34 +154,53 @@ def _history(found: Found) -> tuple[Refinement, ...]:
     return tuple(step for step, _, _ in found)
 
 
-def _error(found: Found) -> float:
+def _place(pin: PinLike, held: tuple[str, ...], found: Found) -> str | None:
+    """What makes the last mesh's maximum meaningless, if anything does."""
+    _, fields, top = found[-1]
+    if isinstance(pin, Pin):
+        return sharp_place(pin, held, top.location)
+    return sharp_edges(fields.space, fields.surface, held).near(top.location, NEAR)
+
+
+def _error(pin: PinLike, found: Found) -> float:
     """Of the last mesh, Pa."""
     top = found[-1][2]
     if len(found) == 1:
         return top.maximum
-    return discretisation_error(_history(found), STEP, top.scatter)
+    return discretisation_error(_history(found), HALF if pin.meshed else STEP, top.scatter)
 
 
-def _worth_refining(pin: Pin, held: tuple[str, ...], found: Found, tolerance: float) -> bool:
+def _worth_refining(pin: PinLike, held: tuple[str, ...], found: Found, tolerance: float) -> bool:
     top = found[-1][2]
-    if sharp_place(pin, held, top.location) is not None:
+    if _place(pin, held, found) is not None:
         return False
-    return len(found) < FEWEST or _error(found) > tolerance * top.maximum
+    return len(found) < FEWEST or _error(pin, found) > tolerance * top.maximum
 
 
-def _judge(pin: Pin, held: tuple[str, ...], case: str, found: Found, tolerance: float) -> Solution:
+def _judge(
+    pin: PinLike,
+    held: tuple[str, ...],
+    case: str,
+    found: Found,
+    tolerance: float,
+    balance: Balance | None,
+) -> Solution:
     history = _history(found)
     _, fields, top = found[-1]
     if not np.isfinite(top.maximum):
         raise SolveError(f"pin {pin.name}, case {case}: the stress is not finite")
-    error = _error(found)
+    error = _error(pin, found)
     relative = error / top.maximum if top.maximum else 0.0
-    place = sharp_place(pin, held, top.location)
+    place = _place(pin, held, found)
     verdict: Verdict = "unconverged"
     if place and top.maximum:
         note = f"the peak sits at {place}, where it grows with every mesh"
     elif relative <= tolerance and len(history) >= FEWEST:
         verdict, note = "converged", f"known to {relative:.1%}"
+    elif len(history) == 1 and pin.meshed:
+        note = (
+            "from one mesh only: halving the file's would be too large, so the error is not known"
+        )
     else:
         note = f"known to {relative:.1%} only, {tolerance:.1%} was asked for"
     peak = Peak(
@@ -180,7 +208,7 @@ def _judge(pin: Pin, held: tuple[str, ...], case: str, found: Found, tolerance: 
         case=case,
         model="solid",
         verdict=verdict,
-        note=note,
+        note=note + _closing(pin, balance),
         max_von_mises=top.maximum,
         error_estimate=error,
         location=top.location,

@@ -91,25 +91,28 @@ class Patch:
         np.add.at(out, self._corners, np.einsum("pij,pjal->pial", self._mass, traction))
         return out
 
-    def forces(self) -> Floats:
-        """Uniform tractions (P, 6, 3, 3) of one newton along x, y and z."""
-        return np.tile(np.eye(3) / self.area, (*self._corners.shape, 1, 1))
+    @property
+    def points(self) -> Floats:
+        """Nodes of its facets, (P, 6, 3), m."""
+        return np.asarray(self._nodes[self._corners])
 
-    def moments(self, middle: float) -> Floats:
-        """Tractions (P, 6, 3, 3) of one newton metre about x, y and z, and no force.
+    def exactly(self, traction: Floats, target: Floats, middle: float) -> Floats:
+        """The traction (P, 6, 3, L) with the resultants `target` (6, L): force and moment about
+        (0, 0, middle), N and N m.
 
-        About x and y through z = `middle` (m): transverse, linear in z. About z: tangential, of
-        constant size. The mesh's surface is not quite round, so these have small resultants of
-        other kinds, which small parts of the others and of uniform tractions cancel.
+        The mesh's surface is not quite round, and holes may be cut into it, so a traction has
+        resultants a little beside those meant; small parts of uniform tractions, of such that grow
+        along z and of one tangential about z make up for that.
         """
-        x = self._nodes[self._corners] - [0.0, 0.0, middle]
+        x = self.points - [0.0, 0.0, middle]
         trial = np.zeros((*x.shape, 6))
         trial[..., :3] = np.eye(3)
         trial[..., 1, 3], trial[..., 0, 4] = -x[..., 2], x[..., 2]
         r = np.hypot(x[..., 0], x[..., 1])
         trial[..., 0, 5], trial[..., 1, 5] = -x[..., 1] / r, x[..., 0] / r
-        found = resultants(self._nodes, self.nodal_forces(trial), middle)
-        return np.asarray(trial @ np.linalg.inv(found)[:, 3:])
+        has = resultants(self._nodes, self.nodal_forces(trial), middle)
+        short = target - resultants(self._nodes, self.nodal_forces(traction), middle)
+        return np.asarray(traction + trial @ np.linalg.solve(has, short))
 
 
 def resultants(nodes: Floats, forces: Floats, z: float = 0.0) -> Floats:

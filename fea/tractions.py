@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fea.pin_loads import Floats, UnitLoad
-from geometry import Band, Pin
+from geometry import Band, PinLike
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ INWARDS = np.array([-1.0, 0.0, 0.0])
 _NONE = np.zeros(3)
 
 
-def traction(pin: Pin, load: UnitLoad) -> Traction:
+def traction(pin: PinLike, load: UnitLoad) -> Traction:
     """The traction of a unit load on a band."""
     band = pin.band(load.surface)
     mean, slope = _NONE, _NONE
@@ -73,7 +73,7 @@ def pressure_amplitude(n: int, band: Band) -> float:
     return float(2.0 * highest / math.pi * (-1.0) ** (n // 2 + 1) / (n * n - 1.0))
 
 
-def closing_tractions(pin: Pin, n: int, phase: int) -> tuple[tuple[Traction, ...], ...]:
+def closing_tractions(pin: PinLike, n: int, phase: int) -> tuple[tuple[Traction, ...], ...]:
     """The tractions that close the balance of a pin that nothing holds, each on all its bands: for
     n = 1 a constant and one that grows with z; for n = 0 along the axis, or about it at phase 1.
 

@@ -114,6 +114,16 @@ class Pin:
         return tuple(bands)
 
     @property
+    def revolved(self) -> bool:
+        """Whether it is the same all round its axis: always."""
+        return True
+
+    @property
+    def meshed(self) -> bool:
+        """Whether it comes with a mesh: never."""
+        return False
+
+    @property
     def connections(self) -> tuple[str, ...]:
         """Connections that bear on this pin, in the order of the profile."""
         return tuple(s.connection for s in self.segments if s.connection)

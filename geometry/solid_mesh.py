@@ -12,9 +12,12 @@ from numpy.typing import NDArray
 from skfem import MeshTet2
 from skfem.io.meshio import from_meshio
 
+from geometry.cut import cut_solid, grade, name_faces
+from geometry.cut_pin import CutPin
 from geometry.gmsh_session import gmsh_model
-from geometry.meridian import Arc, Edge, meridian, sharp_corners
+from geometry.meridian import Edge, meridian, sharp_corners
 from geometry.pin import Pin
+from geometry.revolve import revolve
 
 SMALLEST_JACOBIAN = 0.1  # min / max of det J that every element must exceed
 MOST_ELEMENTS = 1e6
@@ -64,7 +67,7 @@ class SolidMesh:
         return points
 
 
-def solid_mesh(pin: Pin, size: MeshSize, edges: tuple[float, ...] = ()) -> SolidMesh:
+def solid_mesh(pin: Pin | CutPin, size: MeshSize, edges: tuple[float, ...] = ()) -> SolidMesh:
     """Mesh a pin; `edges` are z (m) of further circles on the surface to refine at.
 
     Raises: MeshError when elements stay inverted or slivers after repair and on a finer mesh.
@@ -83,18 +86,28 @@ def solid_mesh(pin: Pin, size: MeshSize, edges: tuple[float, ...] = ()) -> Solid
     )
 
 
-def _mesh(pin: Pin, size: MeshSize, edges: tuple[float, ...]) -> tuple[MeshTet2, float, int]:
-    _require_reasonable(pin, size)
+def _mesh(
+    pin: Pin | CutPin, size: MeshSize, edges: tuple[float, ...]
+) -> tuple[MeshTet2, float, int]:
+    profile = pin.profile if isinstance(pin, CutPin) else pin
+    _require_reasonable(profile, size)
     with gmsh_model(pin.name) as gmsh:
         try:
-            outline = meridian(pin)
-            _revolve(gmsh, outline)
-            surfaces = _name_surfaces(gmsh, pin, outline)
-            _set_sizes(gmsh, pin, size, edges)
+            more: list[int] = []
+            if isinstance(pin, CutPin):
+                cut_solid(gmsh, pin.profile, pin.holes, pin.flats)
+                surfaces = name_faces(gmsh, pin.profile, pin.holes, pin.flats)
+                far = _far(profile, size)
+                more = grade(gmsh, pin.holes, pin.flats, surfaces, far, size.across, size.growth)
+            else:
+                outline = meridian(pin)
+                revolve(gmsh, outline)
+                surfaces = _name_surfaces(gmsh, pin, outline)
+            _set_sizes(gmsh, profile, size, edges, more)
             gmsh.model.mesh.generate(3)
             gmsh.model.mesh.setOrder(2)
-            jacobian, repaired = _repair(gmsh)
-            return _collect(gmsh, surfaces), jacobian, repaired
+            jacobian, repaired = repair(gmsh)
+            return collect(gmsh, surfaces), jacobian, repaired
         except Exception as error:
             if type(error) is not Exception:  # gmsh raises bare ones
                 raise
@@ -115,28 +128,6 @@ def _far(pin: Pin, size: MeshSize) -> float:
     """Element size (m) away from all features: by the thinnest shaft or wall."""
     walls = [(s.diameter - s.bore) / 2 for s in pin.segments if s.bore]
     return min([pin.smallest_diameter / size.across, *walls])
-
-
-def _revolve(gmsh: Any, outline: tuple[Edge, ...]) -> None:
-    occ = gmsh.model.occ
-    points: dict[tuple[float, float], int] = {}
-
-    def point(rz: tuple[float, float]) -> int:
-        if rz not in points:
-            points[rz] = occ.addPoint(rz[0], 0.0, rz[1])
-        return points[rz]
-
-    curves = []
-    for e in outline:
-        if isinstance(e, Arc):
-            centre = occ.addPoint(e.centre[0], 0.0, e.centre[1])
-            curves.append(occ.addCircleArc(point(e.start), centre, point(e.end)))
-        else:
-            curves.append(occ.addLine(point(e.start), point(e.end)))
-    face = occ.addPlaneSurface([occ.addCurveLoop(curves)])
-    occ.revolve([(2, face)], 0, 0, 0, 0, 0, 1, 2 * math.pi)
-    occ.remove([(2, face)])
-    occ.synchronize()
 
 
 def _name_surfaces(gmsh: Any, pin: Pin, outline: tuple[Edge, ...]) -> dict[str, list[int]]:
@@ -163,8 +154,10 @@ def _name_surfaces(gmsh: Any, pin: Pin, outline: tuple[Edge, ...]) -> dict[str, 
     return named
 
 
-def _set_sizes(gmsh: Any, pin: Pin, size: MeshSize, edges: tuple[float, ...]) -> None:
-    """Element size as the least of graded fields about every feature circle."""
+def _set_sizes(
+    gmsh: Any, pin: Pin, size: MeshSize, edges: tuple[float, ...], more: list[int]
+) -> None:
+    """Element size as the least of graded fields about every feature circle, and `more` fields."""
     far = _far(pin, size)
     near = far / size.corner
     circles = [(c.r, c.z, near, 0.0) for c in sharp_corners(pin)]
@@ -178,7 +171,7 @@ def _set_sizes(gmsh: Any, pin: Pin, size: MeshSize, edges: tuple[float, ...]) ->
             arc = min(far, rho * math.pi / 2 / size.arc)
             circles.append((thin, pin.stations[i + 1], arc, 1.3 * rho))
     field = gmsh.model.mesh.field
-    tags = []
+    tags = list(more)
     for r, z, h, flat in dict.fromkeys(circles):
         d = f"Sqrt((Sqrt(x*x+y*y)-{r!r})^2+(z-{z!r})^2)-{flat!r}"
         tags.append(field.add("MathEval"))
@@ -210,7 +203,7 @@ def _jacobians(gmsh: Any) -> NDArray[np.float64]:
     return ratios
 
 
-def _repair(gmsh: Any) -> tuple[float, int]:
+def repair(gmsh: Any) -> tuple[float, int]:
     """Straighten the edges of bad elements, half-way at a time, until all are good.
 
     Returns the smallest min/max Jacobian and how many elements were touched. gmsh's own optimiser
@@ -233,7 +226,7 @@ def _repair(gmsh: Any) -> tuple[float, int]:
     return float(ratios.min()), len(touched)
 
 
-def _collect(gmsh: Any, surfaces: dict[str, list[int]]) -> MeshTet2:
+def collect(gmsh: Any, surfaces: dict[str, list[int]]) -> MeshTet2:
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     row = np.zeros(int(tags.max()) + 1, dtype=np.int64)
     row[tags] = np.arange(len(tags))

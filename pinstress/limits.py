@@ -10,9 +10,3 @@ def require_built(study: Study, model: str) -> None:
     """Raises: InputError for what the contract promises and this version does not have yet."""
     if model not in ("auto", "solid"):
         raise InputError(f"{study.path}: model {model!r} is not built yet; use solid or auto")
-    for name, case in study.table.case.items():
-        if case.distribution != "uniform":
-            raise InputError(
-                f"{study.path}: case.{name}.distribution: {case.distribution!r} is not built yet; "
-                "use uniform"
-            )

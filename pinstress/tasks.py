@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea.solid import PinLoads
+from fea.pin_loads import Distribution, PinLoads
 from geometry import Pin
 from loads import Reactions
 from pinstress.build import CaseLoads
@@ -68,13 +68,16 @@ def _task(study: Study, pin: Pin, clamps: tuple[str, ...], loads: dict[str, Case
                 f"({', '.join(here)}), so nothing loads it; clamp something else"
             )
         left_out[case] = tuple(c for c in here if c in held)
-        cases.append(_loads(case, applied, given.reactions))
+        spread = study.table.case[case].distribution
+        cases.append(_loads(case, applied, given.reactions, spread))
         if given.range is not None:
-            ranges[case] = _loads(case, applied, given.range.reactions)
+            ranges[case] = _loads(case, applied, given.range.reactions, spread)
     return Task(pin, clamps, tuple(cases), left_out, ranges)
 
 
-def _loads(case: str, applied: list[str], reactions: Reactions) -> PinLoads:
+def _loads(
+    case: str, applied: list[str], reactions: Reactions, distribution: Distribution
+) -> PinLoads:
     forces = np.stack([reactions.in_pin_axes(c) for c in applied], axis=1)
     moments = np.stack([reactions.moment_in_pin_axes(c) for c in applied], axis=1)
-    return PinLoads(case, tuple(applied), forces, moments)
+    return PinLoads(case, tuple(applied), forces, moments, distribution)

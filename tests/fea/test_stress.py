@@ -9,10 +9,12 @@ from hypothesis import strategies as st
 
 from fea.envelope import envelope
 from fea.material import Material
-from fea.solid import PinLoads, SolidModel, UnitFields
+from fea.pin_loads import PinLoads
+from fea.solid import SolidModel, UnitFields
 from fea.stress import von_mises
 from geometry import Pin, Segment
 from geometry.solid_mesh import MeshSize, solid_mesh
+from tests.fea.unit_loads import forces as forces_on
 
 
 @pytest.mark.parametrize(
@@ -44,8 +46,7 @@ def bar(steel: Material) -> UnitFields:
               Segment(0.02, 0.02, connection="C"))
     )  # fmt: skip
     mesh = solid_mesh(pin, MeshSize(across=3.0), (0.04, 0.06, 0.08))
-    units = tuple((name, axis) for name in "BC" for axis in (0, 1))
-    return SolidModel(pin, mesh, steel, ("start",)).solve(units)
+    return SolidModel(pin, mesh, steel, ("start",)).solve(forces_on("B", "C"))
 
 
 def test_clamps_answer_every_unit_load(bar: UnitFields) -> None:
@@ -53,8 +54,8 @@ def test_clamps_answer_every_unit_load(bar: UnitFields) -> None:
     mesh's surface to 1e-6 m.
     """
     expected = np.zeros((6, 4))
-    for k, (name, axis) in enumerate(bar.loads):
-        force, arm = -np.eye(3)[axis], {"B": 0.05, "C": 0.07}[name]
+    for k, (load, axis) in enumerate(bar.loads):
+        force, arm = -np.eye(3)[axis], {"B": 0.05, "C": 0.07}[load.surface]
         expected[:, k] = [*force, *np.cross([0.0, 0.0, arm], force)]
     assert bar.support[:3] == pytest.approx(expected[:3], abs=1e-9)
     assert bar.support[3:] == pytest.approx(expected[3:], abs=1e-6)

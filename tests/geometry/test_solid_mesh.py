@@ -100,7 +100,7 @@ def test_the_jacobian_measure_sees_an_inverted_element() -> None:
         a, b = (np.array(gmsh.model.mesh.getNode(n)[0]) for n in nodes[[0, 3]])
         gmsh.model.mesh.setNode(int(nodes[4]), list(a + 1.2 * (b - a)), [])
         assert module._jacobians(gmsh).min() < 0.0
-        jacobian, touched = module._repair(gmsh)
+        jacobian, touched = module.repair(gmsh)
         assert jacobian > 0.1
         assert touched >= 1
 

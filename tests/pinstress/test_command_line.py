@@ -147,7 +147,7 @@ def test_millimetres_and_inches_give_the_same_pin(
         (["study.toml"], ("-988.86", "nan"), "nan is not finite"),
         (["study.toml"], ('["start"]', '["B"]'), "nothing loads it"),
         (["study.toml"], ("forces = { B = [0.0, -988.86] }", 'table = "t.csv"'), "t.csv"),
-        (["study.toml"], ('kind = "given"', 'kind = "given"\ndistribution = "cosine"'), "cosine"),
+        (["study.toml"], ('kind = "given"', 'kind = "given"\ndistribution = "sine"'), "cosine"),
     ],
 )
 def test_bad_input_is_one_message_and_nothing_written(

@@ -18,6 +18,7 @@ from fea.material import Material
 from fea.solid import SolidModel, UnitFields
 from geometry import Pin, Segment
 from geometry.solid_mesh import MeshSize, SolidMesh, solid_mesh
+from tests.fea.unit_loads import forces
 
 Floats = NDArray[np.float64]
 Field = Callable[[Floats, float], Floats]
@@ -168,7 +169,7 @@ def test_solid_has_the_surface_loads_term(nu: float) -> None:
     mesh = bar_mesh(length, 0.0, MeshSize(across=8.0, corner=1.0))
     material = Material("bar", 200e9, nu)
     fields = SolidModel(bar(length, 0.0), mesh, material, ("start",)).solve(
-        (("side", 0), ("end", 0))
+        forces("side", "end", along=(0,))
     )
     # 1 N/m has the moment length^2 / 8 halfway; the end's force has a lever of length / 2
     found = middle(fields, length, (length, -length / 4.0))
@@ -189,7 +190,7 @@ def test_solid_has_the_axis_loads_term() -> None:
     mesh = bar_mesh(length, 2.0 * b, MeshSize(across=4.0, corner=1.0, growth=0.25))
     material = Material("bar", 200e9, nu)
     fields = SolidModel(bar(length, 2.0 * b), mesh, material, ("start",)).solve(
-        (("side", 0), ("bore side", 0))
+        forces("side", "bore side", along=(0,))
     )
     found = middle(fields, length, (-length, length))
     k = (axis_load_term(nu) - surface_load_term(nu)) * (1.0 - b**2) / (1.0 + b**2)

@@ -1,0 +1,72 @@
+"""Edges of any solid at which linear elasticity has no finite stress, found on its mesh."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.elasticity import Discretisation
+from fea.surface import Surface
+
+Floats = NDArray[np.float64]
+
+TURN = np.radians(30.0)  # of an inner corner: less is a facet of a curved surface, or hardly sharp
+SIDES = ((0, 1, 2), (1, 2, 0), (0, 2, 1))  # of a facet: ends and the corner across
+
+
+@dataclass(frozen=True)
+class SharpEdges:
+    """Points (K, 3), m, along inner corners and along edges of clamps, and the body's outer radius
+    (K,), m, at their z.
+    """
+
+    corner: Floats
+    rim: Floats
+    radius: Floats
+
+    def near(self, x: tuple[float, float, float], part: float) -> str | None:
+        """What makes a stress at x (m) meaningless: an edge within `part` of the diameter there."""
+        points = np.concatenate([self.corner, self.rim])
+        if not len(points):
+            return None
+        distance = np.linalg.norm(points - x, axis=1) / (2.0 * self.radius)
+        nearest = int(distance.argmin())
+        if distance[nearest] > part:
+            return None
+        return "a sharp inner corner" if nearest < len(self.corner) else "the edge of a clamp"
+
+
+def sharp_edges(space: Discretisation, surface: Surface, clamps: tuple[str, ...]) -> SharpEdges:
+    """Inner corners that turn by more than TURN, and the rims of the clamped surfaces."""
+    held = np.zeros(len(surface.facets), dtype=bool)
+    for name in clamps:
+        held |= np.isin(surface.facets, space.mesh.boundaries[name])
+    middle = surface.corners[:, 3:].ravel(order="F")  # a node on an edge, shared by two facets
+    order = np.argsort(middle, kind="stable").reshape(-1, 2)
+    facet, side = order % len(surface.facets), order // len(surface.facets)
+    ends = np.array(SIDES)
+    x = space.nodes[surface.corners]
+    a, b, across = (x[facet[:, 1], ends[side[:, 1], k]] for k in range(3))
+    normal, other = (surface.normals[facet[:, k], 3 + side[:, k]] for k in range(2))
+    along = (b - a) / np.linalg.norm(b - a, axis=1, keepdims=True)
+    into = np.cross(other, along)
+    into *= np.sign(np.sum(into * (across - (a + b) / 2), axis=1))[:, None]
+    turn = np.arctan2(np.sum(normal * into, axis=1), np.sum(normal * other, axis=1))
+    free = ~(held[facet[:, 0]] & held[facet[:, 1]])
+    corner = (turn > TURN) & free
+    rim = held[facet[:, 0]] != held[facet[:, 1]]
+    corners, rims = (np.concatenate([a[on], (a[on] + b[on]) / 2, b[on]]) for on in (corner, rim))
+    radius = _outer_radius(space.nodes[surface.nodes], np.concatenate([corners, rims]))
+    return SharpEdges(corners, rims, radius)
+
+
+def _outer_radius(nodes: Floats, points: Floats) -> Floats:
+    """Largest distance (K,) of surface nodes from the z-axis near the z of points (K, 3)."""
+    r = np.hypot(nodes[:, 0], nodes[:, 1])
+    order = np.argsort(nodes[:, 2])
+    z, r, near = nodes[order, 2], r[order], 0.1 * r.max()
+    first = np.searchsorted(z, points[:, 2] - near)
+    last = np.searchsorted(z, points[:, 2] + near, side="right")
+    return np.array([r[i:j].max() for i, j in zip(first, last, strict=True)])

@@ -1,0 +1,90 @@
+"""A mesh of tetrahedra from a file, by meshio, as quadratic tetrahedra with named surfaces."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+
+import meshio
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.body_file import BodyFile
+from geometry.pin import GeometryError
+from geometry.quadratic import Quadratic, find_facets, quadratic
+from geometry.solid_mesh import MeshError, SolidMesh
+
+Ints = NDArray[np.int64]
+
+SURFACES = ("triangle", "triangle6")
+HARMLESS = ("vertex", "line", "line3", *SURFACES)
+
+
+def mesh_from_file(file: BodyFile) -> SolidMesh:
+    """Quadratic tetrahedra (m) of a file, linear ones given straight sides; its boundaries are the
+    file's named sets of triangles, or of nodes.
+
+    Raises: GeometryError when the file is no mesh of tetrahedra; MeshError when one is inverted.
+    """
+    mesh = _read(file)
+    kinds = {block.type for block in mesh.cells}
+    where = f"pin {file.name}: {file.path.name}"
+    if not kinds & {"tetra", "tetra10"}:
+        raise GeometryError(f"{where}: there is no volume in it: it has no tetrahedra, but "
+                            f"{', '.join(sorted(kinds)) or 'nothing'}")  # fmt: skip
+    if other := kinds - {"tetra", "tetra10", *HARMLESS}:
+        raise GeometryError(f"{where}: only tetrahedra can be used, and it also has "
+                            f"{', '.join(sorted(other))}")  # fmt: skip
+    if {"tetra", "tetra10"} <= kinds:
+        raise GeometryError(f"{where}: it mixes linear and quadratic tetrahedra; use one kind")
+    points = np.asarray(mesh.points, dtype=float) * file.unit
+    cells = np.concatenate([b.data for b in mesh.cells if b.type.startswith("tetra")])
+    made = quadratic(points, cells.astype(np.int64))
+    jacobian = _jacobian(made)
+    if not jacobian > 0.0:
+        raise MeshError(f"{where}: it has inverted elements; repair them where it was made")
+    named = {name: find_facets(made, t) for name, t in _triangles(mesh).items() if len(t)}
+    for name, nodes in mesh.point_sets.items():
+        facets = made.mesh.facets[:, made.mesh.boundary_facets()].T
+        on = np.isin(facets, made.vertex[np.asarray(nodes, dtype=np.int64)]).all(axis=1)
+        if on.any():
+            named.setdefault(str(name), made.mesh.boundary_facets()[on])
+    return SolidMesh(made.mesh.with_boundaries(named), jacobian, 0)
+
+
+def _read(file: BodyFile) -> meshio.Mesh:
+    try:
+        with contextlib.redirect_stdout(io.StringIO()):  # meshio prints its warnings
+            return meshio.read(file.path)
+    except SystemExit:  # how meshio ends when it knows no format
+        reason = "its ending names no format of meshes"
+    except Exception as error:
+        reason = str(error) or type(error).__name__
+    raise GeometryError(
+        f"pin {file.name}: {file.path.name} is no geometry that can be read ({reason}); give a "
+        "STEP file, or a mesh of tetrahedra such as .msh, .inp or .vtk"
+    )
+
+
+def _triangles(mesh: meshio.Mesh) -> dict[str, Ints]:
+    """Corner nodes (T, 3) of the triangles of every named set."""
+    out: dict[str, list[Ints]] = {}
+    for name, blocks in mesh.cell_sets.items():
+        if name.startswith("gmsh:"):
+            continue
+        for block, rows in zip(mesh.cells, blocks, strict=True):
+            if block.type in SURFACES and rows is not None and len(rows):
+                out.setdefault(name, []).append(block.data[np.asarray(rows, dtype=np.int64), :3])
+    marked = mesh.cell_data.get("gmsh:physical")
+    for name, (tag, dimension) in mesh.field_data.items() if marked is not None else ():
+        for block, tags in zip(mesh.cells, marked, strict=True):
+            if dimension == 2 and block.type in SURFACES and name not in mesh.cell_sets:
+                out.setdefault(name, []).append(block.data[np.asarray(tags) == tag, :3])
+    return {name: np.concatenate(parts).astype(np.int64) for name, parts in out.items()}
+
+
+def _jacobian(made: Quadratic) -> float:
+    """Smallest min/max of det J over the elements, at their nodes."""
+    det = made.determinants()
+    det = det * np.sign(det.mean(axis=1, keepdims=True))
+    return float((det.min(axis=1) / det.max(axis=1)).min())

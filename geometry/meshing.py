@@ -1,0 +1,22 @@
+"""The mesh of a pin, however its shape is given."""
+
+from __future__ import annotations
+
+from geometry import solid_mesh as turned
+from geometry.cut_pin import CutPin
+from geometry.pin import Pin
+from geometry.pin_like import PinLike
+from geometry.solid_body import SolidBody
+from geometry.solid_mesh import MeshSize, SolidMesh
+
+
+def solid_mesh(pin: PinLike, size: MeshSize, edges: tuple[float, ...] = ()) -> SolidMesh:
+    """Mesh a pin; `edges` are z (m) of further circles on the surface to refine at,
+    which for a body from a file are the ends of its bands.
+
+    Raises: MeshError.
+    """
+    if isinstance(pin, SolidBody):
+        return pin.mesh(size)
+    assert isinstance(pin, Pin | CutPin)
+    return turned.solid_mesh(pin, size, edges)
