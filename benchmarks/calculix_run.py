@@ -20,14 +20,15 @@ JOB = "job"
 FRD_TO_OURS = [0, 1, 2, 4, 5, 3]  # xx, yy, zz, xy, yz, zx there; xx, yy, zz, yz, xz, xy here
 
 # Linux counts the largest memory of a child from before it starts its program, when it still has
-# its parent's: so the parent must be small. Ends stderr with seconds and kB.
+# its parent's: so the parent must be small. Ends stderr with seconds of wall time and of processor
+# time, and kB.
 PROBE = """
 import resource, subprocess, sys, time
 start = time.perf_counter()
 status = subprocess.run(sys.argv[1:]).returncode
 spent = time.perf_counter() - start
-memory = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
-print(f"\\n{spent} {memory}", file=sys.stderr)
+used = resource.getrusage(resource.RUSAGE_CHILDREN)
+print(f"\\n{spent} {used.ru_utime + used.ru_stime} {used.ru_maxrss}", file=sys.stderr)
 sys.exit(status)
 """
 
@@ -38,10 +39,13 @@ class RunError(RuntimeError):
 
 @dataclass(frozen=True)
 class Process:
-    """A finished process. seconds: wall time; megabytes: its largest memory."""
+    """A finished process. seconds: wall time; processor: time on all cores, s; megabytes: its
+    largest memory.
+    """
 
     output: str
     seconds: float
+    processor: float
     megabytes: float
 
 
@@ -60,8 +64,8 @@ def process(arguments: list[str], folder: Path) -> Process:
     if done.returncode:
         said = (done.stdout + done.stderr).strip()[-1000:]
         raise RunError(f"{arguments[0]} ended with status {done.returncode}:\n{said}")
-    spent, memory = done.stderr.split()[-2:]
-    return Process(done.stdout, float(spent), float(memory) / 1024.0)
+    spent, processor, memory = map(float, done.stderr.split()[-3:])
+    return Process(done.stdout, spent, processor, memory / 1024.0)
 
 
 @dataclass(frozen=True)

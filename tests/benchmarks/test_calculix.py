@@ -105,6 +105,7 @@ def test_a_process_is_measured_and_its_failure_told(tmp_path: Path) -> None:
     done = process(["sh", "-c", "sleep 0.1; echo done"], tmp_path)
     assert done.output == "done\n"
     assert 0.1 < done.seconds < 5.0
+    assert 0.0 <= done.processor < 0.1  # it slept
     assert 0.1 < done.megabytes < 50.0  # of sh; Python with numpy takes more
     with pytest.raises(RunError, match=r"(?s)sh ended with status 3.*no luck"):
         process(["sh", "-c", "echo no luck; exit 3"], tmp_path)
