@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from benchmarks import accuracy, motion_accuracy, peers_motion, publications, speed
+from benchmarks import accuracy, calculix, motion_accuracy, peers_motion, publications, speed
 
 ALL = {
     "motion": speed.motion,
@@ -13,6 +13,7 @@ ALL = {
     "solvers": speed.solvers,
     "fillet": accuracy.fillet,
     "demo": speed.demo,
+    "calculix": calculix.calculix,
     "peers-motion": peers_motion.peers_motion,
     "publications": publications.publications,
 }

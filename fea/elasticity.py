@@ -1,7 +1,8 @@
-"""Stiffness matrix of linear elasticity, all element matrices formed at once.
+"""Stiffness matrix of linear elasticity, for all elements at once, summed by pairs of nodes.
 
-Basis functions, mapping and quadrature are scikit-fem's; only the assembly is ours, because forms
-are evaluated component by component there (`python -m benchmarks assembly` for the ratio).
+Basis functions, mapping and quadrature are scikit-fem's; only the assembly is ours, because a form
+there evaluates its whole integrand for each of the 30 x 30 pairs of unknowns of an element
+(`python -m benchmarks assembly` for the ratio).
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 from skfem import Basis, ElementTetP2, MeshTet2
 
 from fea.material import Material
+from fea.pattern import Pattern
 
 Floats = NDArray[np.float64]
 
@@ -55,30 +57,19 @@ class Discretisation:
         return np.asarray(self.basis.dx)
 
     def stiffness(self, material: Material) -> sp.csr_matrix:
-        """Stiffness matrix, N/m."""
+        """Stiffness matrix, N/m: lambda S + mu S^T + mu tr S for a pair of nodes i, j, where S_ab
+        is the integral of dN_i/dx_a dN_j/dx_b.
+        """
         lam, mu = material.lame
-        g, w = self.gradients, self.weights
-        m = len(g)
-        x = (g * np.sqrt(w)[:, :, None, None]).reshape(m, 4, 30)
-        s = (x.transpose(0, 2, 1) @ x).reshape(m, 10, 3, 10, 3)  # integrals of dN_i/dx_a dN_j/dx_b
-        laplace = mu * np.einsum("miaja->mij", s)
-        blocks = lam * s.transpose(0, 1, 3, 2, 4) + mu * s.transpose(0, 1, 3, 4, 2)
-        for a in range(3):
-            blocks[..., a, a] += laplace
-        return self._assemble(blocks.reshape(m * 100, 9))
-
-    def _assemble(self, blocks: Floats) -> sp.csr_matrix:
-        """Sum 3 x 3 node blocks (M * 100, 9) into a sparse matrix."""
-        n = int(self.basis.N)
-        row = np.repeat(self.elements, 10, axis=1).ravel()
-        column = np.tile(self.elements, (1, 10)).ravel()
-        order = np.argsort(row * n + column, kind="stable")
-        key = (row * n + column)[order]
-        first = np.flatnonzero(np.concatenate([[True], key[1:] != key[:-1]]))
-        data = np.add.reduceat(blocks[order], first, axis=0).reshape(-1, 3, 3)
-        row, column = key[first] // n, key[first] % n
-        pointer = np.concatenate([[0], np.cumsum(np.bincount(row, minlength=n))])
-        return sp.bsr_matrix((data, column, pointer), shape=(3 * n, 3 * n)).tocsr()
+        pattern = Pattern(self.elements, int(self.basis.N))
+        g = self.gradients * np.sqrt(self.weights)[:, :, None, None]
+        d = np.ascontiguousarray(np.moveaxis(g, 3, 0))  # (3, M, 4, 10)
+        s = [[pattern.sums(a.swapaxes(1, 2) @ b) for b in d] for a in d]
+        blocks = np.empty((len(pattern), 3, 3))
+        for a, b in np.ndindex(3, 3):
+            blocks[:, a, b] = lam * s[a][b] + mu * s[b][a]
+        blocks[:, range(3), range(3)] += mu * (s[0][0] + s[1][1] + s[2][2])[:, None]
+        return pattern.matrix(blocks)
 
     def strain(self, displacement: Floats) -> Floats:
         """Strains (M, 4, 6) at the quadrature points for a displacement (N, 3) in m:

@@ -1,0 +1,47 @@
+"""Which pairs of nodes share an element, and the sum over elements for each pair.
+
+A stiffness matrix has a block for each such pair. The pairs are sorted once per mesh, by counting
+(two conversions of a sparse matrix), and sums are products with a matrix of ones.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+class Pattern:
+    """The pairs of nodes of a mesh with elements (M, k): P pairs, by row, then by column.
+
+    columns: (P,) second node of each pair. pointer: (N + 1,) where each first node's pairs begin.
+    """
+
+    def __init__(self, elements: NDArray[np.int64], nodes: int) -> None:
+        e = elements.astype(np.int32)
+        count = elements.shape[1] * e.size
+        row, column = np.repeat(e, e.shape[1], axis=1).ravel(), np.tile(e, e.shape[1]).ravel()
+        entries = sp.coo_matrix((np.arange(count, dtype=np.int32), (row, column)), (nodes, nodes))
+        entries.has_canonical_format = True  # keeps repeated entries apart
+        by_pair = entries.tocsc().tocsr()
+        new = np.diff(by_pair.indices, prepend=-1) != 0
+        new[by_pair.indptr[:-1]] = True
+        first = np.flatnonzero(new)
+        self.columns = by_pair.indices[first]
+        self.pointer = np.searchsorted(first, by_pair.indptr).astype(np.int32)
+        ones, pointer = np.ones(count), np.append(first, count)
+        self._sum = sp.csr_matrix((ones, by_pair.data, pointer), (len(first), count))
+
+    def __len__(self) -> int:
+        return len(self.columns)
+
+    def sums(self, parts: Floats) -> Floats:
+        """Sums (P,) over elements of what each gives to the pairs of its nodes, (M, k, k)."""
+        return np.asarray(self._sum @ parts.ravel())
+
+    def matrix(self, blocks: Floats) -> sp.csr_matrix:
+        """The sparse matrix with a block (d, d) for each pair, (P, d, d)."""
+        size = blocks.shape[1] * (len(self.pointer) - 1)
+        return sp.bsr_matrix((blocks, self.columns, self.pointer), (size, size)).tocsr()

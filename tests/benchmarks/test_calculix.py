@@ -1,0 +1,123 @@
+"""The deck for CalculiX, the readers of what it writes, and one run beside ours."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from benchmarks import calculix
+from benchmarks.calculix_deck import c3d10, write_deck
+from benchmarks.calculix_ours import FORCE, PIN, Loaded
+from benchmarks.calculix_run import RunError, displacements, process, stresses
+from fea.material import Material
+from geometry.solid_mesh import MeshSize, solid_mesh
+
+# CalculiX manual, ten-node tetrahedral element: nodes 5 to 10 lie between these, from 1
+C3D10_EDGES = ((1, 2), (2, 3), (3, 1), (1, 4), (2, 4), (3, 4))
+COARSE = MeshSize(across=2.0, arc=1.0)
+CORNERS = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+OUR_EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
+NODES = np.concatenate([CORNERS, [(CORNERS[a] + CORNERS[b]) / 2.0 for a, b in OUR_EDGES]])
+
+
+@pytest.mark.parametrize("z", [1.0, -1.0])
+def test_middles_lie_between_their_corners_and_volumes_are_positive(z: float) -> None:
+    nodes = NODES * [1.0, 1.0, z]
+    (element,) = c3d10(nodes, np.arange(10)[None, :])
+    x = nodes[element]
+    assert np.linalg.det(x[1:4] - x[0]) > 0.0
+    for middle, (a, b) in zip(x[4:], C3D10_EDGES, strict=True):
+        assert np.array_equal(middle, (x[a - 1] + x[b - 1]) / 2.0)
+
+
+def test_the_order_holds_on_a_mesh_of_a_pin() -> None:
+    """Curved edges are off their chord's middle by a part of its length, far less than 0.3."""
+    space = Loaded(solid_mesh(PIN, COARSE).mesh).space
+    x = space.nodes[c3d10(space.nodes, space.elements)]
+    assert np.linalg.det(x[:, 1:4] - x[:, :1]).min() > 0.0
+    for k, (a, b) in enumerate(C3D10_EDGES, 4):
+        chord = x[:, b - 1] - x[:, a - 1]
+        off = np.linalg.norm(x[:, k] - x[:, a - 1] - chord / 2.0, axis=1)
+        assert (off / np.linalg.norm(chord, axis=1)).max() < 0.3
+
+
+def test_the_deck_of_one_element(tmp_path: Path, steel: Material) -> None:
+    forces = np.zeros((10, 3))
+    forces[3, 1], forces[9, 0] = -100.0, 1.0 / 3.0
+    write_deck(tmp_path / "job.inp", NODES, np.arange(10)[None, :], steel, np.array([0, 4]), forces)
+    text = (tmp_path / "job.inp").read_text()
+    assert text.startswith("*NODE, NSET=ALL\n1, 0, 0, 0\n2, 1, 0, 0\n")
+    assert "\n*ELEMENT, TYPE=C3D10, ELSET=PIN\n1, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10\n" in text
+    assert "\n*NSET, NSET=HELD\n1,\n5,\n" in text
+    assert "\n*ELASTIC\n2e+11, 0.3\n" in text
+    assert "\n*BOUNDARY\nHELD, 1, 3\n" in text
+    assert "\n*CLOAD\n4, 2, -100\n10, 1, 0.33333333333\n*NODE PRINT" in text
+
+
+def test_the_deck_of_a_pin(tmp_path: Path, steel: Material) -> None:
+    """All of the force is there, to the 11 digits of each part; no number has more than the 20
+    characters that CalculiX reads.
+    """
+    pin = Loaded(solid_mesh(PIN, COARSE).mesh)
+    space, deck = pin.space, tmp_path / "job.inp"
+    write_deck(deck, space.nodes, space.elements, steel, pin.held, pin.forces)
+    text = deck.read_text()
+    assert max(len(field) for field in re.findall(r"[-+.\w]+", text)) <= 20
+    loads = text.split("*CLOAD\n")[1].split("*NODE PRINT")[0].splitlines()
+    values = np.array([[float(field) for field in line.split(",")] for line in loads])
+    assert np.unique(values[:, 1]).tolist() == [2.0]
+    assert values[:, 2].sum() == pytest.approx(FORCE, rel=1e-9)
+
+
+def test_displacements_are_read(tmp_path: Path) -> None:
+    path = tmp_path / "job.dat"
+    path.write_text(
+        "\n displacements (vx,vy,vz) for set ALL and time  0.1000000E+01\n\n"
+        "         1  0.000000E+00  0.000000E+00 -0.000000E+00\n"
+        "         2  6.645565E-11 -4.067764E-07 -1.410222E-11\n"
+    )
+    assert displacements(path)[1].tolist() == [6.645565e-11, -4.067764e-07, -1.410222e-11]
+
+
+def test_stresses_are_read_in_our_order(tmp_path: Path) -> None:
+    path = tmp_path / "job.frd"
+    path.write_text(
+        " -4  STRESS      6    1\n -5  SXX         1    4    1    1\n"
+        " -1         1-1.00000E+00 2.00000E+00-3.00000E+00 4.00000E+00-5.00000E+00 6.00000E+00\n"
+        " -1         2 0.00000E+00 0.00000E+00 0.00000E+00 0.00000E+00 0.00000E+00 0.00000E+00\n"
+        " -3\n -4  ERROR       1    1\n -1         1 9.00000E+00\n -3\n"
+    )
+    found = stresses(path)
+    assert found.shape == (2, 6)
+    assert found[0].tolist() == [-1.0, 2.0, -3.0, -5.0, 6.0, 4.0]  # xx, yy, zz, yz, xz, xy
+
+
+def test_a_missing_calculix_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(shutil, "which", lambda _: None)
+    assert "apt-get install calculix-ccx" in calculix.calculix()
+
+
+def test_a_process_is_measured_and_its_failure_told(tmp_path: Path) -> None:
+    done = process(["sh", "-c", "sleep 0.1; echo done"], tmp_path)
+    assert done.output == "done\n"
+    assert 0.1 < done.seconds < 5.0
+    assert 0.0 <= done.processor < 0.1  # it slept
+    assert 0.1 < done.megabytes < 50.0  # of sh; Python with numpy takes more
+    with pytest.raises(RunError, match=r"(?s)sh ended with status 3.*no luck"):
+        process(["sh", "-c", "echo no luck; exit 3"], tmp_path)
+
+
+@pytest.mark.peers
+@pytest.mark.skipif(shutil.which("ccx") is None, reason=calculix.MISSING)
+def test_calculix_finds_the_same() -> None:
+    """The same integration points: displacements to the 7 digits it prints, averaged stresses to
+    the 6 digits.
+    """
+    both = calculix.pair(COARSE)
+    assert both.difference < 1e-6
+    ours, theirs = both.ours.averaged, both.theirs.stress
+    assert np.abs(ours - theirs).max() < 2e-5 * np.abs(ours).max()
