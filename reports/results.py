@@ -30,11 +30,52 @@ class MeshStep:
 
 
 @dataclass(frozen=True)
+class SingularZone:
+    """A place where stress grows without bound as the mesh gets finer.
+
+    location: x, y, z in the pin's axes of the point of that circle where stress is largest. kind: "a
+    sharp corner", "the edge of a clamp" or "the edge of a load". between: surfaces that meet there.
+    exponent: stress grows as distance^-exponent, measured (None where it was not), and by theory.
+    excluded: radius about it in which no stress is read. governs: whether it would be the maximum.
+    max_von_mises: largest inside on the finest mesh, which says nothing but that. advice: what would
+    make the stress finite.
+    """
+
+    location: tuple[float, float, float]
+    kind: str
+    between: tuple[str, str]
+    exponent: float | None
+    exponent_theory: float
+    excluded: float
+    governs: bool
+    max_von_mises: float
+    advice: str
+
+
+@dataclass(frozen=True)
+class HandCheck:
+    """A check by hand: `name` ("bending", "single shear", ..) `at` a place, largest over the case:
+    stress against strength, their ratio (None without a yield strength), formula and source.
+    """
+
+    name: str
+    at: str
+    time: float | None
+    stress: float
+    strength: float | None
+    factor: float | None
+    formula: str
+    source: str
+
+
+@dataclass(frozen=True)
 class PinResult:
     """One pin in one case. Numbers are None for verdict `rigid`; time is None without a motion.
 
     location: x, y, z in the pin's own axes. held: what holds the pin, in words. left_out: given
     forces that were not applied because their band is held. published_*: the publication's value.
+    why: which model answered and why it was enough. singular_at: places without a maximum; where one
+    governs (verdict `singular`) maximum, error and factor are those outside all of them.
     """
 
     pin: str
@@ -57,6 +98,9 @@ class PinResult:
     left_out: tuple[str, ...] = ()
     published_max_von_mises: float | None = None
     published_safety_factor: float | None = None
+    why: str = ""
+    singular_at: tuple[SingularZone, ...] = ()
+    hand_checks: tuple[HandCheck, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -289,9 +333,10 @@ class PublishedValue:
 
 @dataclass(frozen=True)
 class Field:
-    """A solid mesh with results at its nodes: points (N, 3), tetra10 cells (M, 10; VTK order),
-    displacement (N, 3), stress (N, 6: xx, yy, zz, yz, xz, xy), von_mises (N,), and envelope (N,):
-    the largest von Mises over all instants at surface nodes, NaN inside.
+    """A mesh with results at its nodes: points (N, 3), cells (M, 10; VTK's order of "tetra10") or
+    (M, 4; "quad": the surface alone), displacement (N, 3), stress (N, 6: xx, yy, zz, yz, xz, xy),
+    von_mises (N,), and envelope (N,): the largest von Mises over all instants at surface nodes, NaN
+    inside. yield_strength: for the factor of safety at each point, None without one.
     """
 
     pin: str
@@ -302,6 +347,8 @@ class Field:
     stress: Floats
     von_mises: Floats
     envelope: Floats
+    cell_type: str = "tetra10"
+    yield_strength: float | None = None
 
 
 @dataclass(frozen=True)
