@@ -35,6 +35,19 @@ class Place:
     radius: float
     advice: str
 
+    @property
+    def following(self) -> float:
+        """Exponent q of the next term in plane strain, which goes as d^q."""
+        return 0.5 if self.kind == "edge of a clamp" and self.theory == 0.5 else 0.0
+
+    @property
+    def following_torsion(self) -> float:
+        """The same in torsion: eigenvalues are multiples of the first, odd ones if one side is
+        held.
+        """
+        times = 3.0 if self.kind == "edge of a clamp" else 2.0
+        return times * (1.0 - self.torsion_theory) - 1.0
+
 
 def singular_places(
     pin: Pin,

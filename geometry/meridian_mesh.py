@@ -21,6 +21,7 @@ Ints = NDArray[np.int64]
 TRIANGLE6, LINE3 = 9, 8  # gmsh's element types
 MOST_TRIANGLES = 2e5
 SMALLEST_JACOBIAN = 0.1  # min / max of det J that every element must exceed
+STEEPEST = 0.7  # growth of elements next to a spot, on all meshes
 
 
 @dataclass(frozen=True)
@@ -29,9 +30,9 @@ class SectionSize:
     quarter circle. growth: increase of the element size per distance from where it is small.
     """
 
-    across: float = 4.0
+    across: float = 2.0
     arc: float = 4.0
-    growth: float = 0.5
+    growth: float = 0.8
 
     def finer(self, factor: float) -> SectionSize:
         """The same grading with every size divided by `factor`."""
@@ -40,11 +41,14 @@ class SectionSize:
 
 @dataclass(frozen=True)
 class Spot:
-    """A point of the outline where the elements are `size` (m) small, for a mesh at scale 1."""
+    """A point of the outline where the elements are `size` (m) small; within `reach` (m) of it they
+    grow as fast as on the coarsest mesh.
+    """
 
     r: float
     z: float
     size: float
+    reach: float
 
 
 @dataclass(frozen=True)
@@ -58,8 +62,8 @@ class MeridianMesh:
     axis: Ints
 
 
-def meridian_mesh(pin: Pin, size: SectionSize, spots: Iterable[Spot] = (), scale: float = 1.0) -> MeridianMesh:
-    """Mesh a pin's section; near `spots` finer, their sizes divided by `scale`.
+def meridian_mesh(pin: Pin, size: SectionSize, spots: Iterable[Spot] = ()) -> MeridianMesh:
+    """Mesh a pin's section, finer at spots.
 
     Raises: MeshError when the section cannot be meshed within reason.
     """
@@ -68,7 +72,7 @@ def meridian_mesh(pin: Pin, size: SectionSize, spots: Iterable[Spot] = (), scale
     with gmsh_model(pin.name) as gmsh:
         try:
             curves = _draw(gmsh, outline)
-            _set_sizes(gmsh, pin, size, [Spot(s.r, s.z, s.size / scale) for s in spots])
+            _set_sizes(gmsh, pin, size, tuple(spots))
             gmsh.model.mesh.generate(2)
             gmsh.model.mesh.setOrder(2)
             return _collect(gmsh, pin, outline, curves)
@@ -115,23 +119,34 @@ def _draw(gmsh: Any, outline: tuple[Edge, ...]) -> list[int]:
     return curves
 
 
-def _set_sizes(gmsh: Any, pin: Pin, size: SectionSize, spots: list[Spot]) -> None:
+def _set_sizes(gmsh: Any, pin: Pin, size: SectionSize, spots: tuple[Spot, ...]) -> None:
+    """Element size as the least of a field about every spot and every fillet."""
     far = _far(pin, size)
     field = gmsh.model.mesh.field
-    small = [(x.r, x.z, min(x.size, far), 0.0) for x in spots]
+    tags: list[int] = []
+
+    def add(expression: str) -> None:
+        tags.append(field.add("MathEval"))
+        field.setString(tags[-1], "F", expression)
+
+    def greater(a: str, b: float) -> str:
+        return f"0.5*(({a})+{b!r}+Fabs(({a})-{b!r}))"
+
+    add(f"{far!r}")
+    for s in dict.fromkeys(spots):
+        d = f"Sqrt((x-{s.r!r})^2+(y-{s.z!r})^2)"
+        add(f"{min(s.size, far)!r}+{STEEPEST!r}*{d}")
+        if s.size < size.growth * s.reach:
+            add(f"{size.growth!r}*{greater(d, s.reach)}")
+        else:
+            add(f"{s.size!r}+{size.growth!r}*{d}")
     for i in range(len(pin.segments) - 1):
         rho = pin.fillet_at(i)
         if rho > 0.0:
             thin = min(pin.segments[i].diameter, pin.segments[i + 1].diameter) / 2
             near = min(far, rho * math.pi / 2 / size.arc)
-            small.append((thin, pin.stations[i + 1], near, 1.3 * rho))
-    tags = []
-    for r, z, near, flat in small:
-        d = f"Sqrt((x-{r!r})^2+(y-{z!r})^2)-{flat!r}"
-        tags.append(field.add("MathEval"))
-        field.setString(tags[-1], "F", f"{near!r}+{size.growth / 2!r}*(({d})+Fabs({d}))")
-    tags.append(field.add("MathEval"))
-    field.setString(tags[-1], "F", f"{far!r}")
+            d = f"Sqrt((x-{thin!r})^2+(y-{pin.stations[i + 1]!r})^2)-{1.3 * rho!r}"
+            add(f"{near!r}+{size.growth!r}*{greater(d, 0.0)}")
     least = field.add("Min")
     field.setNumbers(least, "FieldsList", tags)
     field.setAsBackgroundMesh(least)

@@ -1,0 +1,115 @@
+"""What the harmonic model says of a pin's cases on one mesh."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea.circumference import Circumference
+from fea.exponent import growth_exponent
+from fea.harmonic import HarmonicModel
+from fea.look import Inside, Look, Point
+from fea.material import Material
+from fea.meridian_fields import MeridianFields
+from fea.pin_loads import Floats, PinLoads
+from fea.zones import Place
+from geometry import Pin
+from geometry.meridian_mesh import SectionSize, Spot, meridian_mesh
+
+SIZE = SectionSize()  # of the first mesh
+CLOSE = (1e-2, 1e-3, 1e-4)  # element at a corner or clamp's edge, of the diameter, mesh by mesh
+LOGARITHM = 0.2  # element at a load's edge, of the excluded distance
+READ = (4.0, 0.01)  # exponents: from so many elements to so much of the diameter
+
+
+@dataclass(frozen=True)
+class HarmonicSolution:
+    """Fields on one mesh, and how fine that mesh is at singular places."""
+
+    fields: MeridianFields
+    close: float
+
+
+def harmonic_solution(
+    pin: Pin,
+    material: Material,
+    clamps: tuple[str, ...],
+    cases: tuple[PinLoads, ...],
+    places: tuple[Place, ...],
+    level: int,
+    ratio: float,
+) -> HarmonicSolution:
+    """All unit loads of the cases on mesh number `level`, each `ratio` times finer than the one
+    before. Raises: MeshError, SolveError.
+    """
+    close = CLOSE[min(level, len(CLOSE) - 1)]
+    spots = [
+        Spot(p.r, p.z, close * 2.0 * p.r, p.radius)
+        if p.kind != "edge of a load"
+        else Spot(p.r, p.z, LOGARITHM * p.radius / ratio**level, p.radius)
+        for p in places
+    ]
+    section = meridian_mesh(pin, SIZE.finer(ratio**level), spots)
+    loads = tuple(dict.fromkeys(load for case in cases for load in case.coefficients()))
+    return HarmonicSolution(HarmonicModel(pin, section, material, clamps).solve(loads), close)
+
+
+def harmonic_look(solution: HarmonicSolution, loads: PinLoads, places: tuple[Place, ...]) -> Look:
+    """Maximum outside the places, and what is inside them."""
+    fields = solution.fields
+    around = Circumference(fields, loads)
+    r, z = fields.points.T
+    distances = [np.hypot(r - p.r, z - p.z) for p in places]
+    outside = np.ones(len(r), dtype=bool)
+    for p, d in zip(places, distances, strict=True):
+        outside &= d > p.radius
+    maxima, point, angle = around.largest(outside)
+    instant = int(maxima.argmax())
+    return Look(
+        unknowns=fields.unknowns,
+        maximum=float(maxima[instant]),
+        instant=instant,
+        location=_location(fields.points[point[instant]], angle[instant]),
+        maxima=maxima,
+        places=tuple(
+            _inside(solution, around, p, d) for p, d in zip(places, distances, strict=True)
+        ),
+    )
+
+
+def _location(point: Floats, angle: float) -> Point:
+    r, z = (float(x) for x in point)
+    return (r * float(np.cos(angle)), r * float(np.sin(angle)), z)
+
+
+def _inside(
+    solution: HarmonicSolution, around: Circumference, place: Place, distance: Floats
+) -> Inside:
+    points = solution.fields.points
+    within = distance <= place.radius
+    maxima, _, angle = around.largest(within)
+    instant = int(maxima.argmax())
+    location = _location(np.array([place.r, place.z]), angle[instant])
+    exponent = None
+    if place.kind != "edge of a load":
+        exponent = _exponent(solution, around, place, distance, instant)
+    return Inside(float(maxima[instant]), location, exponent)
+
+
+def _exponent(
+    solution: HarmonicSolution, around: Circumference, place: Place, distance: Floats, instant: int
+) -> float | None:
+    """From the side of the place on which stress is larger."""
+    skin = solution.fields.skin
+    d = distance[:skin] / (2.0 * place.r)
+    near = np.flatnonzero((d >= READ[0] * solution.close) & (d <= READ[1]))
+    if not len(near):
+        return None
+    value, _ = around.round(near, np.full(len(near), instant))
+    first = int(np.argmin(distance[:skin]))
+    sides = [near < first, near > first]
+    side = max(sides, key=lambda s: float(np.median(value[s])) if s.any() else 0.0)
+    twists = all(wave.n == 0 and not wave.first.any() for wave in around.waves)
+    following = place.following_torsion if twists else place.following
+    return growth_exponent(d[near[side]], value[side], following)

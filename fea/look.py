@@ -1,0 +1,39 @@
+"""What one mesh says of one case: the noun between the models and the verdict."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from fea.pin_loads import Floats
+
+Point = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Inside:
+    """Of a singular place: the largest von Mises stress in it (Pa), where (x, y, z in m), and the
+    exponent with which stress was seen to grow, None where that could not be measured.
+    """
+
+    maximum: float
+    location: Point
+    exponent: float | None = None
+
+
+@dataclass(frozen=True)
+class Look:
+    """maximum: largest von Mises stress (Pa) outside all singular places, at `location` (m) at the
+    governing `instant`; maxima: (T,) the same at every instant. places: what is inside of each.
+
+    scatter: of the maximum by the mesh alone, where it was seen, Pa. left_out: by how much (Pa) what
+    the model leaves out may change the maximum.
+    """
+
+    unknowns: int
+    maximum: float
+    instant: int
+    location: Point
+    maxima: Floats
+    places: tuple[Inside, ...] = ()
+    scatter: float = 0.0
+    left_out: float = 0.0
