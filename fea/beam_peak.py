@@ -50,14 +50,19 @@ def harmonics(beam: BeamStress, loads: PinLoads) -> Floats:
 
 def highest(stress: Floats) -> Highest:
     """Largest von Mises stress round the axis of stresses (3, S, 6, T) as from `harmonics`."""
-    form = np.einsum("asit,ij,bsjt->abst", stress, VON_MISES, stress, optimize=True)
+    weighted = np.einsum("ij,bsjt->bsit", VON_MISES, stress)
+
+    def form(a: int, b: int) -> Floats:
+        return np.asarray(np.einsum("sit,sit->st", stress[a], weighted[b]))
+
+    square, cosine, sine = form(0, 0), form(1, 1), form(2, 2)
     # f = q0 + q1 cos + q2 sin + q3 cos 2 + q4 sin 2
     q = [
-        form[0, 0] + 0.5 * (form[1, 1] + form[2, 2]),
-        2.0 * form[0, 1],
-        2.0 * form[0, 2],
-        0.5 * (form[1, 1] - form[2, 2]),
-        form[1, 2],
+        square + 0.5 * (cosine + sine),
+        2.0 * form(0, 1),
+        2.0 * form(0, 2),
+        0.5 * (cosine - sine),
+        form(1, 2),
     ]
 
     def once(t: Floats | float) -> Floats:

@@ -8,8 +8,8 @@ What is known of them: in bending up to 11 % below fine elastic solutions; but t
 is 8 to 10 % below the largest principal stress there, because the shoulder hinders the hoop strain.
 So Kt times the nominal stress is not the von Mises peak; how near it is, fea.beam_error tells.
 
-Source: W. D. Pilkey & D. F. Pilkey, Peterson's Stress Concentration Factors, ch. 3; the deviation:
-R. B. Tipton, J. R. Sorem & R. D. Rolovic, J. Mech. Design 118 (1996) 321.
+Source: W. D. Pilkey & D. F. Pilkey, Peterson's Stress Concentration Factors, ch. 3; W. D. Pilkey,
+Formulas for Stress, Strain, and Structural Matrices, has the same fits.
 """
 
 from __future__ import annotations

@@ -1,0 +1,118 @@
+"""The largest stress of a beam, and an error that holds the truth or is refused."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from fea.beam_error import beam_estimate
+from fea.beam_stress import BeamStress, beam_stress
+from fea.line_load import acting
+from fea.material import Material
+from fea.notch import BENDING, TENSION, TORSION, shoulder_factor
+from fea.pin_loads import PinLoads, UnitLoad
+from fea.refine import refine
+from fea.solid import PinLoads as SolidLoads
+from geometry import Pin, Segment
+from geometry.solid_mesh import MeshSize
+
+d, L = 0.02, 0.2
+I, A = math.pi / 64 * d**4, math.pi / 4 * d**2  # noqa: E741
+PLAIN = Pin("P", (Segment(L - 0.02, d), Segment(0.02, d, connection="B")))
+
+
+def case(force: tuple[float, ...], moment: tuple[float, ...] = (0.0, 0.0, 0.0)) -> PinLoads:
+    return PinLoads("case", ("B",), np.array([[force]]), np.array([[moment]]))
+
+
+def held(pin: Pin, steel: Material, loads: PinLoads) -> BeamStress:
+    return beam_stress(pin, steel, acting(loads), ("start",))
+
+
+SHAFT = Pin(
+    "P", (Segment(0.03, 0.03), Segment(0.1, d), Segment(0.02, d, connection="B")), fillet=0.002
+)
+
+
+def test_notch_factors_multiply_the_nominal_stress(steel: Material) -> None:
+    """Tension, torsion and bending, all 0.3 r into the fillet, 0.0314 m from the start."""
+    kt = [shoulder_factor(f, 0.03, d, 0.002) for f in (TENSION, TORSION, BENDING)]
+    nominal = [1 / A, math.sqrt(3) * d / 2 / (2 * I), (0.14 - 0.0314) * d / 2 / I]
+    cases = [case((0, 0, 1.0)), case((0, 0, 0), (0, 0, 1.0)), case((1.0, 0, 0))]
+    for k, s, loads in zip(kt, nominal, cases, strict=True):
+        assert k is not None
+        beam = held(SHAFT, steel, loads)
+        assert beam.points[-1] == pytest.approx([d / 2, 0.0314])
+        top = beam_estimate(beam, loads, ("start",))
+        assert top.maximum == pytest.approx(k * s, rel=1e-9)
+        assert top.error is not None
+        assert 0.1 * top.maximum < top.error < 0.5 * top.maximum
+
+
+def test_a_sharp_corner_has_no_maximum(steel: Material) -> None:
+    """Named, without an error; one that no load passes is none of our business."""
+    sharp = Pin("P", (Segment(0.03, 0.03), Segment(0.1, d, connection="B"), Segment(0.02, 0.03)))
+    loads = case((1.0, 0.0, 0.0))
+    found = beam_estimate(held(sharp, steel, loads), loads, ("start",))
+    assert found.error is None
+    assert found.without_factor == ("a sharp inner corner at z = 0.03 m",)
+    assert "no maximum exists" in found.leaves_out
+    torsion = Pin("P", (Segment(0.03, 0.03), Segment(0.1, d, connection="B")), fillet=0.0005)
+    twist = case((0.0, 0.0, 0.0), (0.0, 0.0, 1.0))
+    outside = beam_estimate(held(torsion, steel, twist), twist)
+    assert outside.error is None  # h/r = 10: torsion's fit ends at 4, but bending's holds
+    assert beam_estimate(held(torsion, steel, loads), loads).error is not None
+
+
+def test_missing_unit_loads_are_told(steel: Material) -> None:
+    beam = beam_stress(PLAIN, steel, (UnitLoad("B", "force", 1),), ("start",))
+    with pytest.raises(ValueError, match="case: no unit fields"):
+        beam_estimate(beam, case((0.0, 0.0, 1.0)))
+
+
+def test_a_cosine_pressure_bends_the_wall_of_a_tube(steel: Material) -> None:
+    """What no beam feels makes the error larger, the more the thinner the wall."""
+    errors = []
+    for bore in (0.0, 0.014, 0.018):
+        pin = Pin("P", (Segment(0.05, d, bore), Segment(0.02, d, bore, connection="B")))
+        found = []
+        for how in ("uniform", "cosine"):
+            loads = PinLoads("case", ("B",), np.array([[[1.0, 0, 0]]]), distribution=how)
+            beam = held(pin, steel, loads)
+            found.append(beam_estimate(beam, loads, ("start",)))
+        assert found[0].maximum == pytest.approx(found[1].maximum)
+        assert found[0].error is not None
+        assert found[1].error is not None
+        errors.append(found[1].error - found[0].error)
+    assert errors == sorted(errors)
+    # 0.9 of the radius: the ring's 6 p_2 R^2 / (3 t^2) alone, with p_2 = 0.212 p_0
+    p0 = 4 / (math.pi * d * 0.02)
+    assert errors[-1] > 2 * 0.212 * p0 * (0.0095 / 0.001) ** 2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("gap", "across"), [(0.004, 0.016), (0.03, 0.03)])
+def test_the_error_holds_the_solids_maximum(steel: Material, gap: float, across: float) -> None:
+    """Double shear with a thick middle, stubby and slender; the solid's own error is added."""
+    band = Segment(0.02, d, connection="A")
+    pin = Pin(
+        "P",
+        (band, Segment(gap, d), Segment(across, 0.028, connection="B"), Segment(gap, d),
+         Segment(0.02, d, connection="C")),
+        fillet=0.003,
+    )  # fmt: skip
+    force = 1000.0 * np.array([[[-0.5, 0, 0], [1.0, 0, 0], [-0.5, 0, 0]]])
+    loads = PinLoads("case", ("A", "B", "C"), force)
+    found = beam_estimate(beam_stress(pin, steel, acting(loads)), loads)
+    (solid,) = refine(
+        pin, steel, (), (SolidLoads("case", ("A", "B", "C"), force),), 0.05, MeshSize(4.0, arc=3.0),
+        meshes=2,
+    )  # fmt: skip
+    assert solid.peak.max_von_mises is not None
+    assert solid.peak.error_estimate is not None
+    assert found.error is not None
+    assert found.error < 0.5 * found.maximum
+    off = abs(solid.peak.max_von_mises - found.maximum)
+    assert off < found.error + solid.peak.error_estimate
