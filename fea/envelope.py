@@ -12,7 +12,7 @@ it is.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,6 +23,8 @@ from fea.solid import UnitFields
 from fea.stress import VON_MISES
 
 Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Point = tuple[float, float, float]
 
 
 FEW = 12  # unit loads up to which their products in pairs are fewer than the stresses
@@ -37,7 +39,8 @@ class Envelope:
 
     scatter: half its range over the directions, Pa. location: where it is (m) with the loads as
     they are. field: (S,) each surface node's largest over all instants, Pa, and coefficients: (L,)
-    unit loads at the governing instant, with the loads as they are.
+    unit loads at the governing instant, with the loads as they are. inside: of regions that the
+    maximum leaves out, the largest stress (Pa) and where it is (m).
     """
 
     maximum: float
@@ -47,14 +50,24 @@ class Envelope:
     field: Floats
     coefficients: Floats
     maxima: Floats
+    inside: tuple[tuple[float, Point], ...] = ()
 
 
-def envelope(fields: UnitFields, loads: PinLoads, directions: int = DIRECTIONS) -> Envelope:
+def envelope(
+    fields: UnitFields,
+    loads: PinLoads,
+    outside: Mask | None = None,
+    within: Sequence[Mask] = (),
+    directions: int = DIRECTIONS,
+) -> Envelope:
     """Largest von Mises stress over the surface and all instants of a case.
 
-    fields: with all the unit loads of which `loads` are made.
+    fields: with all the unit loads of which `loads` are made. outside: nodes of the surface (S,)
+    among which the maximum is looked for, all by default; within: regions of which the largest
+    stress is wanted, too.
     """
     nodes = fields.surface.nodes
+    among = np.ones(len(nodes), dtype=bool) if outside is None else outside
     directions = directions if fields.revolved else 1
     squares_of = _squares(fields.stress[nodes])
 
@@ -64,22 +77,29 @@ def envelope(fields: UnitFields, loads: PinLoads, directions: int = DIRECTIONS) 
     as_is = squares(0.0)
     peaks = np.stack(
         [
-            (squares(2.0 * np.pi * k / directions) if k else as_is).max(axis=0)
+            (squares(2.0 * np.pi * k / directions) if k else as_is)[among].max(axis=0)
             for k in range(directions)
         ]
     )
     peaks = np.sqrt(np.maximum(peaks, 0.0))  # (directions, T)
     maxima = peaks.mean(axis=0)
     instant = int(maxima.argmax())
-    x, y, z = fields.space.nodes[nodes[as_is[:, instant].argmax()]]
+
+    def place(nodes: NDArray[np.int64], values: Floats) -> Point:
+        x, y, z = fields.space.nodes[nodes[values.argmax()]].tolist()
+        return (x, y, z)
+
     return Envelope(
         maximum=float(maxima[instant]),
         scatter=float(np.ptp(peaks[:, instant])) / 2.0,
         instant=instant,
-        location=(float(x), float(y), float(z)),
+        location=place(nodes[among], as_is[among, instant]),
         field=np.sqrt(np.maximum(as_is.max(axis=1), 0.0)),
         coefficients=fields.coefficients(loads)[instant],
         maxima=maxima,
+        inside=tuple(
+            (float(np.sqrt(as_is[m].max())), place(nodes[m], as_is[m].max(axis=1))) for m in within
+        ),
     )
 
 

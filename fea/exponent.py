@@ -20,7 +20,11 @@ LIMITS = (0.01, 0.95)
 
 def growth_exponent(distance: Floats, stress: Floats, following: float = 0.0) -> float | None:
     """s from stresses (J,) at distances (J,), q = `following`; None if they show no such growth."""
-    if len(distance) < FEWEST or np.ptp(np.log(distance)) < np.log(SPAN) or not np.all(stress > 0.0):
+    if (
+        len(distance) < FEWEST
+        or np.ptp(np.log(distance)) < np.log(SPAN)
+        or not np.all(stress > 0.0)
+    ):
         return None
     d = distance / np.exp(np.log(distance).mean())
 

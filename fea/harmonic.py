@@ -44,11 +44,17 @@ class HarmonicModel:
         self.space = Section(section)
         self.outline = Outline(self.space)
 
-    def solve(self, loads: tuple[UnitLoad, ...]) -> MeridianFields:
-        """Unit fields. Raises: SolveError when the pin is not held or a check fails."""
+    def solve(
+        self, loads: tuple[UnitLoad, ...], extra: Floats = np.zeros((0, 2))
+    ) -> MeridianFields:
+        """Unit fields, at `extra` points (P, 2) inside the section too.
+
+        Raises: SolveError when the pin is not held or a check fails.
+        """
         skin = np.einsum("qi,eia->eqa", shapes(AT), self.space.nodes[self.outline.nodes])
         inner = inner_nodes(self.space, self.outline)
-        points = np.concatenate([skin.reshape(-1, 2), self.space.nodes[inner]])
+        points = np.concatenate([skin.reshape(-1, 2), self.space.nodes[inner], extra])
+        at_extra = self.space.values_at(extra)
         displacement = np.zeros((len(points), 3, len(loads)))
         stress = np.zeros((len(points), 6, len(loads)))
         for n in sorted({load.n for load in loads}):
@@ -56,10 +62,10 @@ class HarmonicModel:
             forces, tractions = self._applied(n, [loads[k] for k in here])
             u = _polar(self._displace(n, forces))
             displacement[:, :, here], stress[:, :, here] = section_stress(
-                self.space, self.outline, self.material, n, u, tractions, self.clamps
+                self.space, self.outline, self.material, n, u, tractions, self.clamps, at_extra
             )
         return MeridianFields(
-            points, loads, stress, displacement, len(points) - len(inner), self.space.unknowns
+            points, loads, stress, displacement, 5 * len(self.outline.nodes), self.space.unknowns
         )
 
     def _applied(self, n: int, loads: list[UnitLoad]) -> tuple[Floats, Floats]:
@@ -71,7 +77,9 @@ class HarmonicModel:
                 forces[:, k] = self._body_force(n)
         if self.clamps or n > 1:
             return forces, tractions
-        closing = [c for p in ((0, 1) if n == 0 else (0,)) for c in closing_tractions(self.pin, n, p)]
+        closing = [
+            c for p in ((0, 1) if n == 0 else (0,)) for c in closing_tractions(self.pin, n, p)
+        ]
         against, spread = self._forces(n, closing)
         modes = rigid_motions(self.space.nodes, n)
         share = -np.linalg.solve(modes.T @ against, modes.T @ forces)

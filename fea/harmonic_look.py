@@ -6,13 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea.circumference import Circumference
+from fea.answer import Picture
+from fea.circumference import Circumference, Mask
 from fea.exponent import growth_exponent
 from fea.harmonic import HarmonicModel
-from fea.look import Inside, Look, Point
+from fea.look import FELT, Inside, Look, Point
 from fea.material import Material
 from fea.meridian_fields import MeridianFields
 from fea.pin_loads import Floats, PinLoads
+from fea.revolved import revolve
 from fea.zones import Place
 from geometry import Pin
 from geometry.meridian_mesh import SectionSize, Spot, meridian_mesh
@@ -20,6 +22,7 @@ from geometry.meridian_mesh import SectionSize, Spot, meridian_mesh
 SIZE = SectionSize()  # of the first mesh
 CLOSE = (1e-2, 1e-3, 1e-4)  # element at a corner or clamp's edge, of the diameter, mesh by mesh
 LOGARITHM = 0.2  # element at a load's edge, of the excluded distance
+RIM = 32  # points round a place
 READ = (4.0, 0.01)  # exponents: from so many elements to so much of the diameter
 
 
@@ -52,18 +55,56 @@ def harmonic_solution(
     ]
     section = meridian_mesh(pin, SIZE.finer(ratio**level), spots)
     loads = tuple(dict.fromkeys(load for case in cases for load in case.coefficients()))
-    return HarmonicSolution(HarmonicModel(pin, section, material, clamps).solve(loads), close)
+    rims = np.concatenate([np.zeros((0, 2)), *(_rim(pin, p) for p in places)])
+    return HarmonicSolution(HarmonicModel(pin, section, material, clamps).solve(loads, rims), close)
 
 
-def harmonic_look(solution: HarmonicSolution, loads: PinLoads, places: tuple[Place, ...]) -> Look:
-    """Maximum outside the places, and what is inside them."""
-    fields = solution.fields
-    around = Circumference(fields, loads)
+def _rim(pin: Pin, place: Place) -> Floats:
+    """Points (P, 2) inside the pin at the excluded distance and at FELT of it, so that what is read
+    there does not depend on where nodes are.
+    """
+    angle = 2.0 * np.pi * (np.arange(RIM) + 0.5) / RIM
+    circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    x = np.concatenate([f * place.radius * circle for f in (1.0, FELT)]) + [place.r, place.z]
+    at = np.clip(np.searchsorted(pin.stations, x[:, 1]) - 1, 0, len(pin.segments) - 1)
+    outer = np.array([s.diameter / 2.0 for s in pin.segments])[at]
+    inner = np.array([s.bore / 2.0 for s in pin.segments])[at]
+    little = 1e-3 * place.radius
+    inside = (x[:, 0] > inner + little) & (x[:, 0] < outer - little)
+    return x[inside & (x[:, 1] > little) & (x[:, 1] < pin.length - little)]
+
+
+class HarmonicAnswer:
+    """What a solution says of any loads made of its unit loads (fea.answer)."""
+
+    def __init__(self, solution: HarmonicSolution, places: tuple[Place, ...]) -> None:
+        self.fields, self._places = solution.fields, places
+
+    def maxima(self, loads: PinLoads) -> Floats:
+        """Largest von Mises stress (T,) Pa at every instant outside the places."""
+        outside = _outside(self.fields, self._places)[0]
+        return Circumference(self.fields, loads).largest(outside)[0]
+
+    def picture(self, loads: PinLoads, instant: int) -> Picture:
+        """The surface at one instant, with its envelope over all."""
+        return revolve(self.fields, loads, instant)
+
+
+def _outside(fields: MeridianFields, places: tuple[Place, ...]) -> tuple[Mask, list[Floats]]:
+    """Points outside all places, and their distances (S,) from each, m."""
     r, z = fields.points.T
     distances = [np.hypot(r - p.r, z - p.z) for p in places]
     outside = np.ones(len(r), dtype=bool)
     for p, d in zip(places, distances, strict=True):
-        outside &= d > p.radius
+        outside &= d >= p.radius * (1.0 - 1e-9)
+    return outside, distances
+
+
+def harmonic_look(solution: HarmonicSolution, places: tuple[Place, ...], loads: PinLoads) -> Look:
+    """Maximum outside the places, and what is inside them."""
+    fields = solution.fields
+    around = Circumference(fields, loads)
+    outside, distances = _outside(fields, places)
     maxima, point, angle = around.largest(outside)
     instant = int(maxima.argmax())
     return Look(
@@ -86,15 +127,15 @@ def _location(point: Floats, angle: float) -> Point:
 def _inside(
     solution: HarmonicSolution, around: Circumference, place: Place, distance: Floats
 ) -> Inside:
-    points = solution.fields.points
     within = distance <= place.radius
     maxima, _, angle = around.largest(within)
+    felt = around.largest(within & (distance >= FELT * place.radius * (1.0 - 1e-9)))[0].max()
     instant = int(maxima.argmax())
     location = _location(np.array([place.r, place.z]), angle[instant])
     exponent = None
     if place.kind != "edge of a load":
         exponent = _exponent(solution, around, place, distance, instant)
-    return Inside(float(maxima[instant]), location, exponent)
+    return Inside(float(maxima[instant]), float(felt), location, exponent)
 
 
 def _exponent(

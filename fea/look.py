@@ -8,14 +8,18 @@ from fea.pin_loads import Floats
 
 Point = tuple[float, float, float]
 
+FELT = 0.1  # of a place's radius: a place governs if at this distance it has the largest stress
+
 
 @dataclass(frozen=True)
 class Inside:
-    """Of a singular place: the largest von Mises stress in it (Pa), where (x, y, z in m), and the
+    """Of a singular place: the largest von Mises stress in it (Pa), which only says how fine the
+    mesh is, where (x, y, z in m); felt: the largest further away than FELT of its radius; and the
     exponent with which stress was seen to grow, None where that could not be measured.
     """
 
     maximum: float
+    felt: float
     location: Point
     exponent: float | None = None
 

@@ -19,11 +19,35 @@ class Refinement:
 
 
 @dataclass(frozen=True)
+class SingularZone:
+    """A circle near which stress has no bound.
+
+    location: (x, y, z), m, of the point on it where stress is largest. kind: what makes it so, in
+    words. between: the surfaces that meet there. exponent: stress grows as distance^-exponent,
+    measured, None where it was not; exponent_theory: 0 for a logarithm. excluded: distance (m)
+    within which stress is not read. governs: whether more stress (max_von_mises, Pa, which says
+    little about the pin) was found inside than outside of all zones. advice: what to do about it.
+    """
+
+    location: tuple[float, float, float]
+    kind: str
+    between: tuple[str, str]
+    exponent: float | None
+    exponent_theory: float | None
+    excluded: float
+    governs: bool
+    max_von_mises: float
+    advice: str
+
+
+@dataclass(frozen=True)
 class Peak:
     """max_von_mises and error_estimate in Pa, None when the pin is `rigid`.
 
     location: (x, y, z) in the pin's axes, m. instant: index of the governing instant. note: one
-    sentence on the verdict, for people.
+    sentence on the verdict, for people. why: which model answered, and why it was enough.
+    singular_at: places where stress has no bound; where one governs (`singular`) maximum and error
+    are those outside all of them.
     """
 
     pin: str
@@ -36,6 +60,8 @@ class Peak:
     location: tuple[float, float, float] | None = None
     instant: int = 0
     history: tuple[Refinement, ...] = ()
+    singular_at: tuple[SingularZone, ...] = ()
+    why: str = ""
 
     @property
     def dofs(self) -> int:

@@ -66,14 +66,20 @@ class Section:
         strain = first + n * second if n else first
         half = np.linalg.cholesky(elasticity(material)).T
         m = len(self.elements)
-        x = (half @ (strain * np.sqrt(around(n) * self._weights)[:, :, None, None])).reshape(m, -1, 18)
+        x = (half @ (strain * np.sqrt(around(n) * self._weights)[:, :, None, None])).reshape(
+            m, -1, 18
+        )
         return self._assemble(x.transpose(0, 2, 1) @ x)
 
     @cached_property
     def integrals(self) -> Floats:
         """Of the shape functions times r over the section, (N,), m^3."""
         value = np.stack([self.basis.basis[i][0].value[0] for i in range(6)], axis=-1)
-        found = (self._weights @ value if value.ndim == 2 else np.einsum("mq,mqi->mi", self._weights, value))
+        found = (
+            self._weights @ value
+            if value.ndim == 2
+            else np.einsum("mq,mqi->mi", self._weights, value)
+        )
         return np.bincount(self.elements.ravel(), found.ravel(), minlength=len(self.nodes))
 
     @cached_property
@@ -106,7 +112,23 @@ class Section:
         row = np.repeat(self.elements.ravel(), 3)
         column = (3 * np.arange(m)[:, None, None] + np.arange(3)).repeat(6, axis=1).ravel()
         count = np.bincount(self.elements.ravel())
-        return sp.csr_matrix((np.tile(extend.ravel(), m) / count[row], (row, column)), shape=(len(count), 3 * m))
+        return sp.csr_matrix(
+            (np.tile(extend.ravel(), m) / count[row], (row, column)), shape=(len(count), 3 * m)
+        )
+
+    def values_at(self, points: Floats) -> sp.csr_matrix:
+        """Matrix (P, N) from values at nodes to those at points (P, 2) inside the section."""
+        corners = self.nodes[self.elements[:, :3]]
+        edges = np.stack([corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]], axis=2)
+        x = np.einsum("mab,pmb->pma", np.linalg.inv(edges), points[:, None] - corners[:, 0])
+        depth = np.minimum(x.min(axis=2), 1.0 - x.sum(axis=2))  # in elements, as if straight-sided
+        element = depth.argmax(axis=1)
+        at = x[np.arange(len(points)), element].T
+        values = [ElementTriP2().lbasis(at, i)[0] for i in range(6)]
+        row = np.arange(len(points)).repeat(6)
+        column = self.elements[element].ravel()
+        shape = (len(points), len(self.nodes))
+        return sp.csr_matrix((np.stack(values, axis=1).ravel(), (row, column)), shape=shape)
 
     @cached_property
     def _pattern(self) -> tuple[Ints, Ints, Ints, Ints]:
@@ -145,7 +167,9 @@ def strains_of(basis: Basis) -> tuple[Floats, Floats]:
     and the part to be multiplied by it, (M, Q, 6, 18) each.
     """
     grad = np.stack([basis.basis[i][0].grad for i in range(6)], axis=-1)  # (2, M, Q, 6)
-    value = np.stack([np.broadcast_to(basis.basis[i][0].value, grad.shape[1:3]) for i in range(6)], axis=-1)
+    value = np.stack(
+        [np.broadcast_to(basis.basis[i][0].value, grad.shape[1:3]) for i in range(6)], axis=-1
+    )
     by_r, by_z = grad
     over_r = value / basis.global_coordinates()[0][..., None]
     first, second = (np.zeros((*by_r.shape[:2], 6, 6, 3)) for _ in range(2))

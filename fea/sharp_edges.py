@@ -6,11 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from fea.elasticity import Discretisation
 from fea.surface import Surface
+from fea.zones import INSTEAD_OF_CLAMP, Kind, Place
 
 Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 
 TURN = np.radians(30.0)  # of an inner corner: less is a facet of a curved surface, or hardly sharp
 SIDES = ((0, 1, 2), (1, 2, 0), (0, 2, 1))  # of a facet: ends and the corner across
@@ -26,16 +29,36 @@ class SharpEdges:
     rim: Floats
     radius: Floats
 
-    def near(self, x: tuple[float, float, float], part: float) -> str | None:
-        """What makes a stress at x (m) meaningless: an edge within `part` of the diameter there."""
-        points = np.concatenate([self.corner, self.rim])
-        if not len(points):
-            return None
-        distance = np.linalg.norm(points - x, axis=1) / (2.0 * self.radius)
-        nearest = int(distance.argmin())
-        if distance[nearest] > part:
-            return None
-        return "a sharp inner corner" if nearest < len(self.corner) else "the edge of a clamp"
+    def places(self, x: Floats, part: float) -> list[tuple[Place, Mask]]:
+        """Of points x (S, 3), m: those within `part` of the diameter of any inner corner, and of any
+        clamp's edge, as a place each; none where there is nothing of the kind.
+        """
+        first = len(self.corner)
+        kinds: tuple[tuple[Kind, Floats, Floats, str], ...] = (
+            ("sharp corner", self.corner, self.radius[:first], _RADIUS),
+            ("edge of a clamp", self.rim, self.radius[first:], INSTEAD_OF_CLAMP),
+        )
+        found = []
+        for kind, points, radius, advice in kinds:
+            if len(points):
+                distance, nearest = cKDTree(points).query(x)
+                reach = part * 2.0 * radius
+                at = points[0]
+                place = Place(
+                    r=float(np.hypot(at[0], at[1])),
+                    z=float(at[2]),
+                    kind=kind,
+                    between=("the body", "itself" if kind == "sharp corner" else "what holds it"),
+                    theory=None,
+                    torsion_theory=0.0,
+                    radius=float(reach.max()),
+                    advice=advice,
+                )
+                found.append((place, distance <= reach[nearest]))
+        return found
+
+
+_RADIUS = "a radius there would make it finite"
 
 
 def sharp_edges(space: Discretisation, surface: Surface, clamps: tuple[str, ...]) -> SharpEdges:

@@ -21,7 +21,8 @@ class Place:
     """A circle at (r, z), m, near which stress grows like d^-theory at the distance d.
 
     between: the surfaces that meet there. theory: the exponent in plane strain, so for axial and
-    bending loads; 0 at the edge of a load, where it grows like log(1/d). torsion_theory: the
+    bending loads; 0 at the edge of a load, where it grows like log(1/d); None where the angle is not
+    known. torsion_theory: the
     exponent in torsion; bending has this part too. radius: how far (m) stress is not to be read.
     advice: what would make it finite, for people.
     """
@@ -30,7 +31,7 @@ class Place:
     z: float
     kind: Kind
     between: tuple[str, str]
-    theory: float
+    theory: float | None
     torsion_theory: float
     radius: float
     advice: str
@@ -70,6 +71,12 @@ def singular_places(
     return tuple(place for place in found if place is not None)
 
 
+def clamp_rims(pin: Pin, clamps: tuple[str, ...]) -> tuple[tuple[float, float], ...]:
+    """Rims (r, z) of the held surfaces, m."""
+    held = {pin.surface(name) for name in clamps}
+    return tuple((v.r, v.z) for v in vertices(pin) if held & set(v.between))
+
+
 def _place(
     pin: Pin, v: Vertex, held: set[str], pushed: set[str], nu: float, distance: float
 ) -> Place | None:
@@ -83,7 +90,7 @@ def _place(
     if max(plane, torsion) > 0.0:
         clamped = "clamped" in (first, second)
         kind = "edge of a clamp" if clamped else "sharp corner"
-        advice = _INSTEAD_OF_CLAMP if clamped else _fillet(pin, v)
+        advice = INSTEAD_OF_CLAMP if clamped else _fillet(pin, v)
     elif smooth and "clamped" not in (first, second) and pushed & set(v.between):
         kind, advice, reach = "edge of a load", _INSTEAD_OF_TRACTION, reach * LOGARITHM
     else:
@@ -95,7 +102,7 @@ def _side(name: str, held: set[str]) -> Side:
     return "clamped" if name in held else "free"
 
 
-_INSTEAD_OF_CLAMP = (
+INSTEAD_OF_CLAMP = (
     "model the hub that holds the pin, or hold the pin by balanced loads instead of a clamp"
 )
 _INSTEAD_OF_TRACTION = (

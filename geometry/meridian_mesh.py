@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 from skfem import MeshTri2
 
 from geometry.gmsh_session import gmsh_model
-from geometry.meridian import Arc, Edge, meridian
+from geometry.meridian import RZ, Arc, Edge, meridian
 from geometry.pin import Pin
 from geometry.solid_mesh import MeshError
 
@@ -71,8 +72,9 @@ def meridian_mesh(pin: Pin, size: SectionSize, spots: Iterable[Spot] = ()) -> Me
     _require_reasonable(pin, size)
     with gmsh_model(pin.name) as gmsh:
         try:
-            curves = _draw(gmsh, outline)
-            _set_sizes(gmsh, pin, size, tuple(spots))
+            spots = tuple(spots)
+            curves = _draw(gmsh, outline, spots)
+            _set_sizes(gmsh, pin, size, spots)
             gmsh.model.mesh.generate(2)
             gmsh.model.mesh.setOrder(2)
             return _collect(gmsh, pin, outline, curves)
@@ -98,7 +100,8 @@ def _require_reasonable(pin: Pin, size: SectionSize) -> None:
         )
 
 
-def _draw(gmsh: Any, outline: tuple[Edge, ...]) -> list[int]:
+def _draw(gmsh: Any, outline: tuple[Edge, ...], spots: tuple[Spot, ...]) -> list[list[int]]:
+    """Curves of every edge, which is cut at the reach of spots at its ends."""
     geo = gmsh.model.geo
     points: dict[tuple[float, float], int] = {}
 
@@ -111,50 +114,74 @@ def _draw(gmsh: Any, outline: tuple[Edge, ...]) -> list[int]:
     for e in outline:
         if isinstance(e, Arc):
             centre = geo.addPoint(*e.centre, 0.0)
-            curves.append(geo.addCircleArc(point(e.start), centre, point(e.end)))
+            curves.append([geo.addCircleArc(point(e.start), centre, point(e.end))])
         else:
-            curves.append(geo.addLine(point(e.start), point(e.end)))
-    geo.addPlaneSurface([geo.addCurveLoop(curves)])
+            stops = [e.start, *_cuts(e, spots), e.end]
+            pairs = itertools.pairwise(stops)
+            curves.append([geo.addLine(point(a), point(b)) for a, b in pairs])
+    geo.addPlaneSurface([geo.addCurveLoop([c for found in curves for c in found])])
     geo.synchronize()
     return curves
 
 
+def _cuts(edge: Edge, spots: tuple[Spot, ...]) -> list[RZ]:
+    length = math.dist(edge.start, edge.end)
+    reaches = {(s.r, s.z): s.reach for s in spots}
+    parts = {
+        reach / length if end is edge.start else 1.0 - reach / length
+        for end in (edge.start, edge.end)
+        if (reach := reaches.get(end))
+    }
+    (r, z), (to_r, to_z) = edge.start, edge.end
+    return [
+        (r + x * (to_r - r), z + x * (to_z - z)) for x in sorted(parts) if 0.001 < x < 0.999
+    ]
+
+
 def _set_sizes(gmsh: Any, pin: Pin, size: SectionSize, spots: tuple[Spot, ...]) -> None:
-    """Element size as the least of a field about every spot and every fillet."""
+    """Element size as the least of fields about all spots and fillets."""
     far = _far(pin, size)
     field = gmsh.model.mesh.field
-    tags: list[int] = []
+    fields: list[int] = []
 
-    def add(expression: str) -> None:
-        tags.append(field.add("MathEval"))
-        field.setString(tags[-1], "F", expression)
+    def grow(points: tuple[int, ...], near: float, flat: float, growth: float) -> None:
+        """`near` within the distance `flat` of the points, and growing from there."""
+        if near >= far:
+            return
+        distance = field.add("Distance")
+        field.setNumbers(distance, "PointsList", points)
+        fields.append(field.add("Threshold"))
+        field.setNumber(fields[-1], "InField", distance)
+        field.setNumber(fields[-1], "SizeMin", near)
+        field.setNumber(fields[-1], "DistMin", flat)
+        field.setNumber(fields[-1], "SizeMax", far)
+        field.setNumber(fields[-1], "DistMax", flat + (far - near) / growth)
 
-    def greater(a: str, b: float) -> str:
-        return f"0.5*(({a})+{b!r}+Fabs(({a})-{b!r}))"
-
-    add(f"{far!r}")
+    alike: dict[tuple[float, float], list[int]] = {}
     for s in dict.fromkeys(spots):
-        d = f"Sqrt((x-{s.r!r})^2+(y-{s.z!r})^2)"
-        add(f"{min(s.size, far)!r}+{STEEPEST!r}*{d}")
-        if s.size < size.growth * s.reach:
-            add(f"{size.growth!r}*{greater(d, s.reach)}")
-        else:
-            add(f"{s.size!r}+{size.growth!r}*{d}")
+        alike.setdefault((s.size, s.reach), []).append(gmsh.model.geo.addPoint(s.r, s.z, 0.0))
     for i in range(len(pin.segments) - 1):
         rho = pin.fillet_at(i)
         if rho > 0.0:
             thin = min(pin.segments[i].diameter, pin.segments[i + 1].diameter) / 2
-            near = min(far, rho * math.pi / 2 / size.arc)
-            d = f"Sqrt((x-{thin!r})^2+(y-{pin.stations[i + 1]!r})^2)-{1.3 * rho!r}"
-            add(f"{near!r}+{size.growth!r}*{greater(d, 0.0)}")
+            corner = gmsh.model.geo.addPoint(thin, pin.stations[i + 1], 0.0)
+            grow((corner,), rho * math.pi / 2 / size.arc, 1.3 * rho, size.growth)
+    for (near, reach), points in alike.items():
+        steep = near < size.growth * reach
+        grow(tuple(points), near, 0.0, STEEPEST if steep else size.growth)
+        if steep:
+            grow(tuple(points), size.growth * reach, reach, size.growth)
+    gmsh.model.geo.synchronize()
     least = field.add("Min")
-    field.setNumbers(least, "FieldsList", tags)
-    field.setAsBackgroundMesh(least)
+    field.setNumbers(least, "FieldsList", fields)
+    if fields:
+        field.setAsBackgroundMesh(least)
     for option in ("MeshSizeExtendFromBoundary", "MeshSizeFromPoints", "MeshSizeFromCurvature"):
         gmsh.option.setNumber(f"Mesh.{option}", 0)
+    gmsh.option.setNumber("Mesh.MeshSizeMax", far)
 
 
-def _collect(gmsh: Any, pin: Pin, outline: tuple[Edge, ...], curves: list[int]) -> MeridianMesh:
+def _collect(gmsh: Any, pin: Pin, outline: tuple[Edge, ...], curves: list[list[int]]) -> MeridianMesh:
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     triangles = gmsh.model.mesh.getElementsByType(TRIANGLE6)[1].reshape(-1, 6).astype(np.int64)
     row = np.full(int(tags.max()) + 1, -1)
@@ -166,12 +193,14 @@ def _collect(gmsh: Any, pin: Pin, outline: tuple[Edge, ...], curves: list[int]) 
     points = coordinates.reshape(-1, 3)[where[used], :2]
     edges: dict[str, list[Ints]] = {}
     axis = []
-    for e, curve in zip(outline, curves, strict=True):
-        nodes = row[gmsh.model.mesh.getElementsByType(LINE3, curve)[1].astype(np.int64)].reshape(-1, 3)
-        if e.name:
-            edges.setdefault(e.name, []).append(nodes)
-        else:
-            axis.append(nodes.ravel())
+    for e, parts in zip(outline, curves, strict=True):
+        for curve in parts:
+            found = gmsh.model.mesh.getElementsByType(LINE3, curve)[1].astype(np.int64)
+            nodes = row[found].reshape(-1, 3)
+            if e.name:
+                edges.setdefault(e.name, []).append(nodes)
+            else:
+                axis.append(nodes.ravel())
     on_axis = np.unique(np.concatenate(axis)) if axis else np.zeros(0, dtype=np.int64)
     points[on_axis, 0] = 0.0
     triangles = row[triangles]

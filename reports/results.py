@@ -45,7 +45,7 @@ class SingularZone:
     kind: str
     between: tuple[str, str]
     exponent: float | None
-    exponent_theory: float
+    exponent_theory: float | None
     excluded: float
     governs: bool
     max_von_mises: float

@@ -1,0 +1,93 @@
+"""The outer skin of a section's fields, revolved into a surface in space."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fea.answer import Picture
+from fea.circumference import EVEN, ODD, Circumference
+from fea.meridian_fields import MeridianFields
+from fea.pin_loads import Floats, PinLoads
+from fea.stress import VON_MISES
+
+SECTORS = 60
+CLOSE = 1e-9  # of the length: points that are one
+
+
+def revolve(fields: MeridianFields, loads: PinLoads, instant: int) -> Picture:
+    """Skin and loads as they are at an instant."""
+    rows = _skin(fields)
+    theta = np.arange(SECTORS) * 2.0 * np.pi / SECTORS
+    r, z = fields.points[rows].T
+    around = Circumference(fields, loads)
+    everywhere = np.repeat(np.arange(len(rows)), SECTORS)
+    angle = np.tile(theta, len(rows))
+    at = rows[everywhere]
+    stress = around.stress(at, np.full(len(at), instant), angle)
+    turn = np.zeros((len(angle), 3, 3))  # columns: unit vectors along r, theta, z
+    turn[:, 0, 0], turn[:, 1, 0] = np.cos(angle), np.sin(angle)
+    turn[:, 0, 1], turn[:, 1, 1] = -np.sin(angle), np.cos(angle)
+    turn[:, 2, 2] = 1.0
+    tensor = turn @ stress[:, [[0, 5, 4], [5, 1, 3], [4, 3, 2]]] @ turn.transpose(0, 2, 1)
+    x, y = r[everywhere] * np.cos(angle), r[everywhere] * np.sin(angle)
+    return Picture(
+        points=np.stack([x, y, z[everywhere]], axis=1),
+        cells=_quads(len(rows)),
+        cell_type="quad",
+        displacement=np.einsum("pab,pb->pa", turn, _moved(fields, loads, at, instant, angle)),
+        stress=np.stack([tensor[:, a, b] for a, b in _COMPONENTS], axis=1),
+        envelope=_envelope(around, rows, theta),
+    )
+
+
+_COMPONENTS = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
+
+
+def _skin(fields: MeridianFields) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
+    """Points of the skin in order, those that coincide once, if neither is a corner's."""
+    x = fields.points[: fields.skin]
+    step = np.linalg.norm(np.diff(x, axis=0), axis=1)
+    return np.flatnonzero(np.concatenate([[True], step > CLOSE * np.ptp(x[:, 1])]))
+
+
+def _quads(count: int) -> np.ndarray[tuple[int, int], np.dtype[np.int64]]:
+    i = np.arange(count - 1)[:, None] * SECTORS
+    j = np.arange(SECTORS)[None]
+    k = (j + 1) % SECTORS
+    return np.stack([i + j, i + k, i + SECTORS + k, i + SECTORS + j], axis=2).reshape(-1, 4)
+
+
+def _moved(
+    fields: MeridianFields,
+    loads: PinLoads,
+    rows: np.ndarray[tuple[int], np.dtype[np.int64]],
+    instant: int,
+    angle: Floats,
+) -> Floats:
+    """Displacement along r, theta, z (P, 3) at points and angles."""
+    out = np.zeros((len(rows), 3))
+    for load, both in loads.coefficients().items():
+        u = fields.displacement[rows, :, fields.loads.index(load)]
+        for phase, amount in enumerate(both[instant]):
+            psi = load.n * angle - phase * np.pi / 2.0
+            c, s = np.cos(psi), np.sin(psi)
+            out += amount * u * np.stack([c, s, c], axis=1)
+    return out
+
+
+def _envelope(
+    around: Circumference, rows: np.ndarray[tuple[int], np.dtype[np.int64]], theta: Floats
+) -> Floats:
+    """Largest von Mises stress over all instants at rows x angles, flat."""
+    out = np.zeros((len(rows), len(theta)))
+    for k, angle in enumerate(theta):
+        stress = np.zeros((len(rows), 6, around.count))
+        for wave in around.waves:
+            c, s = np.cos(wave.n * angle), np.sin(wave.n * angle)
+            x = wave.stress[rows]
+            even, odd = x * EVEN[:, None], x * ODD[:, None]
+            stress += even @ (c * wave.first + s * wave.second).T
+            stress += odd @ (s * wave.first - c * wave.second).T
+        square = np.einsum("pit,ij,pjt->pt", stress, VON_MISES, stress, optimize=True)
+        out[:, k] = np.sqrt(np.maximum(square, 0.0)).max(axis=1)
+    return out.ravel()

@@ -1,0 +1,126 @@
+"""From what successive meshes say to a verdict: is the maximum known, and is there one at all?"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from fea.linear import SolveError
+from fea.look import Look
+from fea.peak import Peak, Refinement, SingularZone, Verdict, discretisation_error
+from fea.zones import Place
+
+FEWEST = 3  # meshes before a maximum may be called converged: two can agree by chance
+
+ARTICLES = {
+    "sharp corner": "a sharp corner",
+    "edge of a clamp": "the edge of a clamp",
+    "edge of a load": "the edge of a load",
+}
+
+
+@dataclass(frozen=True)
+class Seen:
+    """The meshes of one case so far, coarse to fine, each `ratio` times finer than the one before;
+    seconds: what each took.
+    """
+
+    pin: str
+    case: str
+    model: str
+    looks: tuple[Look, ...]
+    seconds: tuple[float, ...]
+    ratio: float
+
+    @property
+    def history(self) -> tuple[Refinement, ...]:
+        """Maxima outside the singular places, mesh by mesh."""
+        return tuple(
+            Refinement(look.unknowns, look.maximum, spent)
+            for look, spent in zip(self.looks, self.seconds, strict=True)
+        )
+
+    @property
+    def error(self) -> float:
+        """Estimated error of the last maximum, Pa."""
+        last = self.looks[-1]
+        if len(self.looks) == 1:
+            return last.maximum
+        found = discretisation_error(self.history, self.ratio, last.scatter)
+        return found + last.left_out
+
+    @property
+    def relative(self) -> float:
+        """The same over the maximum."""
+        largest = self.looks[-1].maximum
+        return self.error / largest if largest else 0.0
+
+    def known(self, tolerance: float) -> bool:
+        """Whether the maximum is known to `tolerance`."""
+        return len(self.looks) >= FEWEST and self.relative <= tolerance
+
+
+def zones(look: Look, places: Sequence[Place]) -> tuple[SingularZone, ...]:
+    """What is to be told of each singular place that is loaded at all."""
+    return tuple(
+        SingularZone(
+            location=inside.location,
+            kind=ARTICLES[place.kind],
+            between=place.between,
+            exponent=inside.exponent,
+            exponent_theory=place.theory,
+            excluded=place.radius,
+            governs=inside.felt > look.maximum,
+            max_von_mises=inside.maximum,
+            advice=place.advice,
+        )
+        for place, inside in zip(places, look.places, strict=True)
+    )
+
+
+def judge(seen: Seen, places: Sequence[Place], tolerance: float, note: str = "") -> Peak:
+    """The peak of a case; `note` is put behind the verdict's own sentence.
+
+    Raises: SolveError when the stress is not finite.
+    """
+    last = seen.looks[-1]
+    if not last.maximum < float("inf"):
+        raise SolveError(f"pin {seen.pin}, case {seen.case}: the stress is not finite")
+    found = zones(last, places)
+    governing = [zone for zone in found if zone.governs]
+    known = seen.known(tolerance)
+    verdict: Verdict = "converged" if known else "unconverged"
+    told = f"known to {seen.relative:.1%}" + (
+        "" if known else f" only, {tolerance:.1%} was asked for"
+    )
+    if len(seen.looks) == 1 and not known:
+        told = "from one mesh only, so the error is not known"
+    if governing:
+        verdict = "singular"
+        worst = max(governing, key=lambda zone: zone.max_von_mises)
+        told = f"{_nowhere(worst)}; outside of what is excluded, {told}"
+    return Peak(
+        pin=seen.pin,
+        case=seen.case,
+        model=seen.model,
+        verdict=verdict,
+        note=told + note,
+        max_von_mises=last.maximum,
+        error_estimate=seen.error,
+        location=last.location,
+        instant=last.instant,
+        history=seen.history,
+        singular_at=found,
+    )
+
+
+def _nowhere(zone: SingularZone) -> str:
+    first, second = zone.between
+    where = f"{zone.kind} ({first} / {second})"
+    if zone.exponent_theory == 0.0:
+        return f"no maximum exists: at {where} stress grows like log(1/distance)"
+    measured = "" if zone.exponent is None else f"{zone.exponent:.2f} measured, "
+    return (
+        f"no maximum exists: at {where} stress grows like distance^-s, s = {measured}"
+        f"{zone.exponent_theory:.2f} by theory"
+    )
