@@ -84,7 +84,7 @@ def test_holes_may_cross_and_a_profile_keeps_its_surfaces() -> None:
     )
     holes = (Hole(0.033, 0.005), Hole(0.05, 0.004), Hole(0.05, 0.004, math.pi / 2))
     pin = CutPin(profile, holes)
-    mesh = solid_mesh(pin, MeshSize()).mesh
+    mesh = solid_mesh(pin, MeshSize(across=2.5)).mesh
     assert {"fillet 1", "shoulder 1", "bore B", "hole 1", "hole 2", "hole 3"} <= set(
         mesh.boundaries
     )
