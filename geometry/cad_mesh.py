@@ -94,6 +94,11 @@ def _solids(gmsh: Any, file: BodyFile) -> list[tuple[int, int]]:
             f"pin {file.name}: there is no volume in {file.path.name}, only surfaces or curves; "
             "export the pin as a solid"
         )
+    if len(solids) > 1:
+        raise GeometryError(
+            f"pin {file.name}: {file.path.name} holds {len(solids)} solids; a pin is one: export "
+            "it by itself, or unite them"
+        )
     return solids
 
 

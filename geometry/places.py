@@ -72,7 +72,7 @@ def with_places(mesh: MeshTet2, file: BodyFile) -> MeshTet2:
     for name, at in zip(FACES, (z.min(), z.max()), strict=True):
         flat = (np.abs(z - at) < slack).all(axis=1)
         if flat.any():
-            named[name] = here.number[flat]
+            named.setdefault(name, here.number[flat])
     found = {p.name: _find(here, named, p, file) for p in file.places}
     return mesh.with_boundaries({**named, **found})
 

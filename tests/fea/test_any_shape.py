@@ -96,6 +96,19 @@ def test_forces_on_a_cut_band_act_at_its_middle(steel: Material) -> None:
     assert envelope(fields, case).scatter == 0.0
 
 
+def test_a_pin_may_be_held_by_a_hole(steel: Material) -> None:
+    """By a cross pin, say; its rim is the edge of a clamp."""
+    bar = Pin("P", (Segment(0.03, 0.02), Segment(0.02, 0.02, connection="B")))
+    pin = CutPin(bar, (Hole(0.01, 0.006),))
+    case = PinLoads("case", ("B",), np.array([[[0.0, 0.0, 1000.0]]]))
+    size = MeshSize(across=2.5, corner=1.0)
+    (found,) = refine(pin, steel, ("hole 1",), (case,), 0.5, size, meshes=1)
+    assert found.peak.note.startswith("the peak sits at the edge of a clamp")
+    assert found.fields is not None
+    force = found.fields.support @ found.fields.coefficients(case)[0]
+    assert force[:3] == pytest.approx([0.0, 0.0, -1000.0], abs=1e-6)
+
+
 def test_a_body_that_nothing_holds_closes_its_balance(steel: Material, tmp_path: Path) -> None:
     """Three bands on a file's bar, wherever its z begins; a peak where a flat's step is sharp is
     no value.

@@ -164,6 +164,13 @@ def test_bad_files(tmp_path: Path, step: Path) -> None:
         gmsh.model.occ.synchronize()
         gmsh.write(str(sheet))
     refuse(sheet, "there is no volume in sheet.step")
+    pair = tmp_path / "pair.step"
+    with gmsh_model("pair") as gmsh:
+        for x in (0, 5):
+            gmsh.model.occ.addBox(x, 0, 0, 1, 1, 1)
+        gmsh.model.occ.synchronize()
+        gmsh.write(str(pair))
+    refuse(pair, "pair.step holds 2 solids; a pin is one")
     square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=float)
     meshio.write(tmp_path / "s.stl", meshio.Mesh(square, [("triangle", [[0, 1, 2], [0, 2, 3]])]))
     refuse(tmp_path / "s.stl", "there is no volume in it: it has no tetrahedra, but triangle")
