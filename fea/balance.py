@@ -36,7 +36,7 @@ def out_of_balance(pin: PinLike, loads: PinLoads, density: float | None = None) 
     """The balance of a pin without clamps under its loads and, with a density (kg/m^3), its own
     weight and inertia.
     """
-    z = np.array([pin.band(name).middle for name in loads.surfaces]) - pin.length / 2.0
+    z = np.array([pin.band(name).middle for name in loads.surfaces]) - sum(pin.ends) / 2.0
     force = loads.forces.sum(axis=1)
     couple = (np.cross(z[:, None] * [0.0, 0.0, 1.0], loads.forces) + loads.moments).sum(axis=1)
     largest = _largest(loads.forces)

@@ -18,6 +18,7 @@ from fea.sharp_edges import sharp_edges
 from fea.solid import SolidModel, UnitFields, acting
 from geometry import CutPin, Pin, PinLike, sharp_corners
 from geometry.meshing import solid_mesh
+from geometry.pin import FACES
 from geometry.solid_mesh import MeshSize
 
 STEP = 2.0**0.5  # from one mesh to the next
@@ -101,7 +102,8 @@ def _unit_fields(
     edges = tuple(z for name in names for z in (pin.band(name).z0, pin.band(name).z1))
     profile = pin.profile if isinstance(pin, CutPin) else pin
     if isinstance(profile, Pin):
-        edges += tuple(z for _, z in clamp_edges(profile, held))
+        turned = tuple(name for name in held if name in (*FACES, *profile.labels))
+        edges += tuple(z for _, z in clamp_edges(profile, turned))
     mesh = solid_mesh(pin, size, tuple(dict.fromkeys(edges)))
     units = acting(cases)
     units = units or ((UnitLoad(names[0], "force", 1), 0),)  # of which there is nought

@@ -15,7 +15,7 @@ from fea.zones import INSTEAD_OF_CLAMP, Kind, Place
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-TURN = np.radians(30.0)  # of an inner corner: less is a facet of a curved surface, or hardly sharp
+TURN = np.radians(40.0)  # of an inner corner: less is a facet of a curved wall, or hardly sharp
 SIDES = ((0, 1, 2), (1, 2, 0), (0, 2, 1))  # of a facet: ends and the corner across
 
 
@@ -68,21 +68,32 @@ def sharp_edges(space: Discretisation, surface: Surface, clamps: tuple[str, ...]
         held |= np.isin(surface.facets, space.mesh.boundaries[name])
     middle = surface.corners[:, 3:].ravel(order="F")  # a node on an edge, shared by two facets
     order = np.argsort(middle, kind="stable").reshape(-1, 2)
-    facet, side = order % len(surface.facets), order // len(surface.facets)
-    ends = np.array(SIDES)
-    x = space.nodes[surface.corners]
-    a, b, across = (x[facet[:, 1], ends[side[:, 1], k]] for k in range(3))
-    normal, other = (surface.normals[facet[:, k], 3 + side[:, k]] for k in range(2))
-    along = (b - a) / np.linalg.norm(b - a, axis=1, keepdims=True)
-    into = np.cross(other, along)
-    into *= np.sign(np.sum(into * (across - (a + b) / 2), axis=1))[:, None]
+    facet, side = (order % len(surface.facets)).T, (order // len(surface.facets)).T
+    nodes = np.array(SIDES)[side[1]]  # of the second facet: ends, across
+    two = surface.corners[facet[1]]
+    a, b, across = (np.take_along_axis(two, nodes[:, [k]], axis=1)[:, 0] for k in range(3))
+    x = space.nodes
+    # of facets made plane: sides that were straightened for the elements' sake kink curved ones
+    normal, other = _plane_normals(x, surface)[facet]
+    into = np.cross(other, x[b] - x[a])
+    into *= np.sign(np.sum(into * (x[across] - (x[a] + x[b]) / 2), axis=1))[:, None]
+    into /= np.linalg.norm(into, axis=1, keepdims=True)
     turn = np.arctan2(np.sum(normal * into, axis=1), np.sum(normal * other, axis=1))
-    free = ~(held[facet[:, 0]] & held[facet[:, 1]])
-    corner = (turn > TURN) & free
-    rim = held[facet[:, 0]] != held[facet[:, 1]]
-    corners, rims = (np.concatenate([a[on], (a[on] + b[on]) / 2, b[on]]) for on in (corner, rim))
+    corner = (turn > TURN) & ~(held[facet[0]] & held[facet[1]])
+    rim = held[facet[0]] != held[facet[1]]
+    edge = np.stack([a, middle[order[:, 0]], b], axis=1)
+    corners, rims = (x[np.unique(edge[on])] for on in (corner, rim))
     radius = _outer_radius(space.nodes[surface.nodes], np.concatenate([corners, rims]))
     return SharpEdges(corners, rims, radius)
+
+
+def _plane_normals(nodes: Floats, surface: Surface) -> Floats:
+    """Outward unit normals (F, 3) of the triangles between the facets' corners."""
+    x = nodes[surface.corners[:, :3]]
+    normals = np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0])
+    mean = surface.normals[:, 3:].sum(axis=1)
+    normals *= np.sign(np.sum(normals * mean, axis=1))[:, None]
+    return np.asarray(normals / np.linalg.norm(normals, axis=1, keepdims=True))
 
 
 def _outer_radius(nodes: Floats, points: Floats) -> Floats:

@@ -57,7 +57,9 @@ def surface(space: Discretisation) -> Surface:
     normals = _area_vectors(x, _NODES[:, 0], _NODES[:, 1])
     normals /= np.linalg.norm(normals, axis=2, keepdims=True)
     middle = space.nodes[space.elements[mesh.f2t[0, facets]][:, :4]].mean(axis=1)
-    inward = np.sum(normals[:, 0] * (middle - x[:, 0]), axis=1) > 0.0
+    # by the plane between the corners: a curved facet may bulge past the middle of its element
+    plane = np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0])
+    inward = np.sum(plane * (middle - x[:, 0]), axis=1) > 0.0
     normals[inward] *= -1.0
     return Surface(np.unique(corners), facets, corners, normals)
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from geometry.body_file import BodyFile
 from geometry.cut import near
-from geometry.gmsh_session import gmsh_model
+from geometry.gmsh_session import gmsh_model, silence
 from geometry.pin import GeometryError
 from geometry.solid_mesh import (
     SMALLEST_JACOBIAN,
@@ -78,7 +78,8 @@ def _mesh(file: BodyFile, size: MeshSize) -> SolidMesh:
 def _solids(gmsh: Any, file: BodyFile) -> list[tuple[int, int]]:
     try:
         gmsh.option.setNumber("Geometry.OCCImportLabels", 0)
-        gmsh.model.occ.importShapes(str(file.path))
+        with silence():
+            gmsh.model.occ.importShapes(str(file.path))
         gmsh.model.occ.synchronize()
     except Exception as error:
         if type(error) is not Exception:
@@ -92,6 +93,11 @@ def _solids(gmsh: Any, file: BodyFile) -> list[tuple[int, int]]:
         raise GeometryError(
             f"pin {file.name}: there is no volume in {file.path.name}, only surfaces or curves; "
             "export the pin as a solid"
+        )
+    if len(solids) > 1:
+        raise GeometryError(
+            f"pin {file.name}: {file.path.name} holds {len(solids)} solids; a pin is one: export "
+            "it by itself, or unite them"
         )
     return solids
 

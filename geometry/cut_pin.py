@@ -39,6 +39,11 @@ class CutPin:
         return self.profile.length
 
     @property
+    def ends(self) -> tuple[float, float]:
+        """Least and greatest z, m."""
+        return self.profile.ends
+
+    @property
     def revolved(self) -> bool:
         """Whether nothing is cut."""
         return not (self.holes or self.flats)

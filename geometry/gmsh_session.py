@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -20,3 +22,17 @@ def gmsh_model(name: str) -> Iterator[Any]:
         yield gmsh
     finally:
         gmsh.finalize()
+
+
+@contextmanager
+def silence() -> Iterator[None]:
+    """Nothing on standard output, to which OpenCASCADE writes what it makes of a file."""
+    sys.stdout.flush()
+    kept, nowhere = os.dup(1), os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(nowhere, 1)
+        yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
+        os.close(nowhere)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import warnings
 
 import meshio
 import numpy as np
@@ -54,7 +55,9 @@ def mesh_from_file(file: BodyFile) -> SolidMesh:
 
 def _read(file: BodyFile) -> meshio.Mesh:
     try:
-        with contextlib.redirect_stdout(io.StringIO()):  # meshio prints its warnings
+        # meshio prints its warnings, and guesses at formats by trying them
+        with contextlib.redirect_stdout(io.StringIO()), warnings.catch_warnings():
+            warnings.simplefilter("ignore")
             return meshio.read(file.path)
     except SystemExit:  # how meshio ends when it knows no format
         reason = "its ending names no format of meshes"

@@ -82,6 +82,11 @@ class Pin:
         return self.stations[-1]
 
     @property
+    def ends(self) -> tuple[float, float]:
+        """Least and greatest z, m."""
+        return 0.0, self.length
+
+    @property
     def smallest_diameter(self) -> float:
         """m."""
         return min(s.diameter for s in self.segments)

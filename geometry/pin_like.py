@@ -8,7 +8,7 @@ from geometry.pin import Band
 
 
 class PinLike(Protocol):
-    """A pin along z from 0 to `length` (m), with named surfaces and bands; `volume` in m^3.
+    """A pin along z between its `ends` (m), with named surfaces and bands; `volume` in m^3.
 
     revolved: whether it is the same all round its axis. meshed: whether it comes with a mesh, which
     can only be halved.
@@ -18,6 +18,8 @@ class PinLike(Protocol):
     def name(self) -> str: ...
     @property
     def length(self) -> float: ...
+    @property
+    def ends(self) -> tuple[float, float]: ...
     @property
     def volume(self) -> float: ...
     @property

@@ -72,7 +72,7 @@ def with_places(mesh: MeshTet2, file: BodyFile) -> MeshTet2:
     for name, at in zip(FACES, (z.min(), z.max()), strict=True):
         flat = (np.abs(z - at) < slack).all(axis=1)
         if flat.any():
-            named[name] = here.number[flat]
+            named.setdefault(name, here.number[flat])
     found = {p.name: _find(here, named, p, file) for p in file.places}
     return mesh.with_boundaries({**named, **found})
 
@@ -93,7 +93,8 @@ def _find(here: Facets, named: dict[str, Ints], place: Place, file: BodyFile) ->
         a, b, low, high = (v / file.unit for v in (*place.z, low, high))
         raise GeometryError(
             f"{where}: no outer surface between z = {a:.6g} and {b:.6g} in {file.path.name}, "
-            f"which reaches from z = {low:.6g} to {high:.6g} (in its own unit)"
+            f"which reaches from z = {low:.6g} to {high:.6g} (in its own unit); a surface that "
+            "is not round about the z-axis can be given by its name"
         )
     return here.number[on]
 

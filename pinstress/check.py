@@ -10,8 +10,9 @@ from pinstress.errors import InputError
 from pinstress.limits import require_built
 from pinstress.mechanism import linkage, span
 from pinstress.pins import pin as pin_of
+from pinstress.pins import weight
 from pinstress.published import read_published
-from pinstress.schema import GivenCase, LegCase, MotionCase
+from pinstress.schema import GivenCase, LegCase, MotionCase, PinTable
 from pinstress.study import Study
 
 
@@ -31,10 +32,11 @@ def describe(study: Study) -> str:
         ways = dict.fromkeys(study.clamps(name, case) for case in table.case)
         held = " or ".join(", ".join(w) or "nothing: loads must be in balance" for w in ways)
         density = table.material[p.material].density
-        weight = pin.weight(density) / system.factor("force") if density else None
-        heavy = f", {weight:.4g} {system.force}" if weight else ""
+        heavy = ""
+        if density:
+            heavy = f", {weight(pin, density) / system.factor('force'):.4g} {system.force}"
         lines.append(
-            f"pin {name}: {p.material}, {len(p.profile)} segments{heavy}; "
+            f"pin {name}: {p.material}, {_form(p)}{heavy}; "
             f"loaded at {', '.join(pin.connections) or 'nothing'}; held by {held}"
         )
     a = table.analysis
@@ -43,6 +45,13 @@ def describe(study: Study) -> str:
     )
     lines.append(f"model {a.model}, tolerance {a.tolerance:g}{goal}")
     return "\n".join(lines)
+
+
+def _form(pin: PinTable) -> str:
+    if pin.profile is None:
+        return f"from {pin.geometry}"
+    counted = ((len(pin.profile), "segment"), (len(pin.hole), "hole"), (len(pin.flat), "flat"))
+    return ", ".join(f"{n} {what}{'s' * (n > 1)}" for n, what in counted if n)
 
 
 def _mechanism(study: Study, mechanism: Linkage) -> list[str]:

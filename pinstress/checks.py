@@ -7,6 +7,7 @@ import numpy as np
 from fea.beam_check import beam_check as compare_with_beam
 from fea.material import Material
 from fea.refine import Solution
+from geometry import Pin
 from loads import GROUND, Lever, Linkage, Slider
 from pinstress.build import CaseLoads
 from pinstress.errors import InputError
@@ -20,10 +21,11 @@ from reports import results as plain
 def require_cantilever(study: Study, task: Task, case: str) -> None:
     """Raises: InputError if the pin of the beam check is no cantilever with one load."""
     loads = next(c for c in task.loads if c.case == case)
-    if task.clamps != ("start",) or len(loads.surfaces) != 1 or loads.moments.any():
+    turned = isinstance(task.pin, Pin)
+    if not turned or task.clamps != ("start",) or len(loads.surfaces) != 1 or loads.moments.any():
         raise InputError(
-            f"{study.path}: beam_check: pin {task.pin.name} must be clamped at its start face "
-            "alone and loaded on one band, by forces alone, to be a cantilever"
+            f"{study.path}: beam_check: pin {task.pin.name} must be a plain profile, clamped at "
+            "its start face alone and loaded on one band, by forces alone, to be a cantilever"
         )
 
 
@@ -32,6 +34,7 @@ def beam_check(study: Study, task: Task, material: Material, at: Solution) -> pl
     check, pin = study.table.beam_check, task.pin
     assert check is not None
     assert at.fields is not None
+    assert isinstance(pin, Pin)
     loads = next(c for c in task.loads if c.case == at.peak.case)
     (band,) = loads.surfaces
     forces = loads.forces[:, 0, :2]

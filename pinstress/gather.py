@@ -13,6 +13,7 @@ from fea.stress import von_mises
 from pinstress.build import CaseLoads
 from pinstress.gather_loads import drive_position, mechanics
 from pinstress.pins import material as material_of
+from pinstress.pins import outline, weight
 from pinstress.published import Published
 from pinstress.study import Study
 from pinstress.tasks import Task
@@ -106,14 +107,13 @@ def _shape(study: Study, task: Task) -> plain.PinShape:
     pin, name = task.pin, study.table.pin[task.pin.name].material
     density = material_of(study, name).density
     held = {pin.surface(c) for c in task.clamps}
-    segments = []
-    for s, label in zip(pin.segments, pin.labels, strict=True):
-        kind = "held" if label in held else "band" if s.connection else "plain"
-        named = label if s.connection or s.name else ""
-        sizes = (x / unit("length") for x in (s.length, s.diameter, s.bore))
-        segments.append((*sizes, named, kind))
-    weight = pin.weight(density) / unit("force") if density else None
-    return plain.PinShape(pin.name, tuple(segments), name, weight)  # type: ignore[arg-type]
+    segments = tuple(
+        (length / unit("length"), diameter / unit("length"), bore / unit("length"), label,
+         "held" if label in held else kind)
+        for length, diameter, bore, label, kind in outline(pin)
+    )  # fmt: skip
+    heavy = weight(pin, density) / unit("force") if density else None
+    return plain.PinShape(pin.name, segments, name, heavy)
 
 
 def landing_range(

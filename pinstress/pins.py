@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from fea.material import Material
-from geometry.pin import GeometryError, Pin, Segment
+from geometry import CutPin, Flat, GeometryError, Hole, Pin, PinLike, Segment
 from pinstress.errors import InputError
+from pinstress.schema import PinTable
 from pinstress.study import Study
+
+METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
 
 
 def material(study: Study, name: str) -> Material:
@@ -14,14 +17,15 @@ def material(study: Study, name: str) -> Material:
     return Material(name, m.youngs_modulus, m.poisson_ratio, m.density, m.yield_strength)
 
 
-def pin(study: Study, name: str) -> Pin:
-    """A pin of the study. Raises: InputError for a shape that cannot be, or an unknown clamp."""
+def pin(study: Study, name: str) -> PinLike:
+    """A pin of the study.
+
+    Raises: InputError for a shape that cannot be, a file that holds none, or an unknown clamp;
+    MeshError when a file's solid cannot be meshed.
+    """
     p = study.table.pin[name]
-    segments = tuple(
-        Segment(s.length, s.diameter, s.bore, s.name, s.connection, s.fillet) for s in p.profile
-    )
     try:
-        made = Pin(name, segments, p.fillet)
+        made = _from_file(study, name, p) if p.geometry is not None else _turned(name, p)
         for clamp in (
             *p.clamp,
             *(c for k in study.table.case.values() for c in k.clamp.get(name, ())),
@@ -30,3 +34,54 @@ def pin(study: Study, name: str) -> Pin:
     except GeometryError as error:
         raise InputError(f"{study.path}: {error}") from None
     return made
+
+
+def weight(pin: PinLike, density: float, gravity: float = 9.80665) -> float:
+    """Weight (N) for a density in kg/m^3."""
+    return density * gravity * pin.volume
+
+
+def outline(pin: PinLike) -> list[tuple[float, float, float, str, str]]:
+    """Cylinders to draw a pin by: length, diameter, bore (m), name, and "band" or "plain"; of a
+    shape from a file its bands, and as much as there is between them.
+    """
+    profile = pin.profile if isinstance(pin, CutPin) else pin
+    if isinstance(profile, Pin):
+        return [
+            (s.length, s.diameter, s.bore, label if s.connection or s.name else "",
+             "band" if s.connection else "plain")
+            for s, label in zip(profile.segments, profile.labels, strict=True)
+        ]  # fmt: skip
+    drawn: list[tuple[float, float, float, str, str]] = []
+    at, end = pin.ends
+    for name in pin.connections:
+        band = pin.band(name)
+        if band.z0 > at:
+            drawn.append((band.z0 - at, 2 * band.radius, 0.0, "", "plain"))
+        drawn.append((band.length, 2 * band.radius, 0.0, name, "band"))
+        at = band.z1
+    if end > at and drawn:
+        drawn.append((end - at, drawn[-1][1], 0.0, "", "plain"))
+    return drawn
+
+
+def _turned(name: str, p: PinTable) -> Pin | CutPin:
+    segments = tuple(
+        Segment(s.length, s.diameter, s.bore, s.name, s.connection, s.fillet)
+        for s in p.profile or ()
+    )
+    profile = Pin(name, segments, p.fillet)
+    if not (p.hole or p.flat):
+        return profile
+    holes = tuple(Hole(h.z, h.diameter, h.angle) for h in p.hole)
+    return CutPin(profile, holes, tuple(Flat(*f.z, f.distance, f.angle) for f in p.flat))
+
+
+def _from_file(study: Study, name: str, p: PinTable) -> PinLike:
+    from geometry.body_file import BodyFile, Place
+    from geometry.solid_body import SolidBody  # which needs meshio and scikit-fem
+
+    assert p.geometry is not None
+    places = tuple(Place(n, b.z, b.surface, b.connection) for n, b in p.band.items())
+    file = BodyFile(name, study.beside(p.geometry), METRES[p.geometry_unit], places)
+    return SolidBody(file)

@@ -6,9 +6,11 @@ from pydantic import AfterValidator, Field, model_validator
 
 from pinstress.quantities import (
     Acceleration,
+    Angle,
     Density,
     Duration,
     Force,
+    Length,
     Mass,
     Moment,
     Name,
@@ -45,13 +47,70 @@ class SegmentTable(Table):
     fillet: NotNegativeLength | None = None
 
 
+class HoleTable(Table):
+    """A hole through the whole pin and its axis, at an angle from x."""
+
+    z: PositiveLength
+    diameter: PositiveLength
+    angle: Angle = 0.0
+
+
+class FlatTable(Table):
+    """What lies further than `distance` from the axis, at an angle from x, is milled away."""
+
+    z: tuple[Length, Length]
+    distance: PositiveLength
+    angle: Angle = 0.0
+
+
+class BandTable(Table):
+    """A band of a pin from a file: the outermost surface between two z, or the file's surface of
+    that name. connection: whether the link of the band's name bears there.
+    """
+
+    z: tuple[Length, Length] | None = None
+    surface: str | None = None
+    connection: bool = True
+
+    @model_validator(mode="after")
+    def _one_place(self) -> "BandTable":
+        if (self.z is None) == (self.surface is None):
+            raise ValueError('give either z = [a, b] or surface = "..."')
+        return self
+
+
 class PinTable(Table):
-    """A pin: a body of revolution, and what holds it."""
+    """A pin: a body of revolution, or what a file holds, and what holds it."""
 
     material: str
-    profile: Annotated[list[SegmentTable], Field(min_length=1)]
-    clamp: list[str] = []
+    profile: Annotated[list[SegmentTable], Field(min_length=1)] | None = None
     fillet: NotNegativeLength = 0.0
+    hole: list[HoleTable] = []
+    flat: list[FlatTable] = []
+    geometry: str | None = None
+    geometry_unit: Literal["mm", "cm", "m", "in"] = "mm"
+    band: dict[str, BandTable] = {}
+    clamp: list[str] = []
+
+    @model_validator(mode="after")
+    def _one_shape(self) -> "PinTable":
+        if (self.profile is None) == (self.geometry is None):
+            raise ValueError('give either profile = [...] or geometry = "file.step"')
+        turned = ("fillet", "hole", "flat")
+        told = ("band", "geometry_unit") if self.profile is not None else turned
+        for key in told:
+            if key in self.model_fields_set:
+                other = "geometry" if self.profile is not None else "a profile"
+                raise ValueError(f"{key} goes with {other} only")
+        return self
+
+    @property
+    def connections(self) -> list[tuple[str, str]]:
+        """Connections that bear on it, each with the key that says so."""
+        if self.profile is not None:
+            named = enumerate(self.profile, 1)
+            return [(f"profile[{i}].connection", s.connection) for i, s in named if s.connection]
+        return [(f"band.{name}", name) for name, band in self.band.items() if band.connection]
 
 
 class CaseTable(Table):

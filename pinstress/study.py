@@ -62,7 +62,7 @@ class Study:
 
     def connections(self, pin: str) -> tuple[str, ...]:
         """Connections that bear on a pin."""
-        return tuple(s.connection for s in self.table.pin[pin].profile if s.connection)
+        return tuple(name for _, name in self.table.pin[pin].connections)
 
 
 def load_study(path: str | Path) -> Study:
@@ -157,14 +157,10 @@ def _cross_references(table: StudyTable) -> Iterable[str]:
             yield f"pin.{name}.material: no material {pin.material!r}; " + _near(
                 pin.material, table.material
             )
-        for i, s in enumerate(pin.profile, 1):
-            if s.connection and s.connection in bears:
-                yield (
-                    f"pin.{name}.profile[{i}].connection: {s.connection!r} bears on pin "
-                    f"{bears[s.connection]} already"
-                )
-            if s.connection:
-                bears[s.connection] = name
+        for key, connection in pin.connections:
+            if connection in bears:
+                yield (f"pin.{name}.{key}: {connection!r} bears on pin {bears[connection]} already")
+            bears[connection] = name
     for name, case in table.case.items():
         for pin_name in case.clamp:
             if pin_name not in table.pin:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fea.pin_loads import Distribution, PinLoads
-from geometry import Pin
+from geometry import PinLike
 from loads import Reactions
 from pinstress.build import CaseLoads
 from pinstress.errors import InputError
@@ -23,7 +23,7 @@ class Task:
     held. ranges: by case, the loads over the ranges of its impulse.
     """
 
-    pin: Pin
+    pin: PinLike
     clamps: tuple[str, ...]
     loads: tuple[PinLoads, ...]
     left_out: dict[str, tuple[str, ...]]
@@ -52,7 +52,7 @@ def tasks(study: Study, pins: list[str], loads: dict[str, CaseLoads]) -> list[Ta
     return out
 
 
-def _task(study: Study, pin: Pin, clamps: tuple[str, ...], loads: dict[str, CaseLoads]) -> Task:
+def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, CaseLoads]) -> Task:
     held = {pin.surface(c) for c in clamps}
     cases: list[PinLoads] = []
     left_out: dict[str, tuple[str, ...]] = {}

@@ -90,7 +90,7 @@ def test_values_carry_their_provenance() -> None:
     for body in mechanism.body:
         assert {f"mechanism.body.{body}.weight", f"mechanism.body.{body}.centre"} <= set(by_key)
     for name, pin in gear.table.pin.items():
-        for i in range(len(pin.profile)):
+        for i in range(len(pin.profile or ())):
             assert f"pin.{name}.profile[{i + 1}]" in by_key
 
 

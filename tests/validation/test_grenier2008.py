@@ -19,6 +19,7 @@ from loads.forces import motion_reactions
 from pinstress import build
 from pinstress.pins import material
 from pinstress.pins import pin as pin_of
+from pinstress.pins import weight as weight_of
 from pinstress.study import Study
 from tests.conftest import INCH, LBF
 
@@ -151,4 +152,4 @@ def test_pins_weigh_what_table_3_says(gear: Study, pin: str, weight: float) -> N
     """
     density = material(gear, "AISI 4340").density
     assert density is not None
-    assert pin_of(gear, pin).weight(density) / LBF == pytest.approx(weight, rel=2e-3)
+    assert weight_of(pin_of(gear, pin), density) / LBF == pytest.approx(weight, rel=2e-3)

@@ -1,0 +1,190 @@
+"""Pins from CAD files and meshes: what is found on them, and what must be refused."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+
+from fea.elasticity import Discretisation
+from fea.surface import Patch, surface
+from geometry import CutPin, GeometryError, Hole, Pin, Segment
+from geometry.body_file import BodyFile, Place
+from geometry.gmsh_session import gmsh_model
+from geometry.quadratic import refined
+from geometry.solid_body import SolidBody
+from geometry.solid_mesh import MeshSize, solid_mesh
+from tests.geometry.files import MM, write_mesh, write_step
+
+SHAFT = (Segment(20.0, 30.0), Segment(40.0, 20.0))
+STEPPED = Pin("P", SHAFT, fillet=4.0)  # in mm
+IN_METRES = Pin(
+    "P",
+    (Segment(0.02, 0.03), Segment(0.02, 0.02), Segment(0.02, 0.02, connection="B")),
+    fillet=0.004,
+)
+BAND = Place("B", (0.04, 0.06))
+
+
+def body(path: Path, *places: Place) -> SolidBody:
+    return SolidBody(BodyFile("P", path, MM, places or (BAND,)))
+
+
+@pytest.fixture(scope="module")
+def step(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_step(STEPPED, tmp_path_factory.mktemp("step") / "pin.step")
+
+
+def test_a_step_file_is_measured(step: Path) -> None:
+    """Its band ends between two of the file's own edges, which splitting makes: 40 to 50 mm."""
+    found = body(step, Place("B", (0.04, 0.05)), Place("root", (0.0, 0.01), connection=False))
+    assert found.volume == pytest.approx(STEPPED.volume * 1e-9, rel=1e-9)
+    assert found.length == pytest.approx(0.06)
+    assert found.connections == ("B",)
+    band = found.band("B")
+    assert (band.z0, band.z1, band.middle) == (0.04, 0.05, 0.045)
+    assert band.radius == pytest.approx(0.01, rel=1e-3)
+    assert band.area == pytest.approx(2 * math.pi * 0.01 * 0.01, rel=1e-3)
+    assert found.band("root").radius == pytest.approx(0.015, rel=1e-3)
+    assert not found.revolved
+    solid = found.mesh(MeshSize())
+    space = Discretisation(solid.mesh)
+    assert space.weights.sum() == pytest.approx(found.volume, rel=3e-4)
+    z = space.nodes[surface(space).corners][
+        np.isin(surface(space).facets, solid.mesh.boundaries["B"])
+    ][..., 2]
+    assert z.min() == pytest.approx(0.04)
+    assert z.max() == pytest.approx(0.05)
+    area = Patch(space, surface(space), "start").area
+    assert area == pytest.approx(math.pi * 0.015**2, rel=1e-3)
+
+
+def test_surfaces_of_a_step_file_have_its_names(step: Path, tmp_path: Path) -> None:
+    """gmsh does not hand them on; the fourth face here is the fillet."""
+    parts = step.read_text().split("ADVANCED_FACE('',")
+    named = tmp_path / "named.stp"
+    faces = ["start", "head", "shoulder", "neck", "shaft", "tip"]
+    assert len(parts) == len(faces) + 1
+    text = parts[0]
+    for name, part in zip(faces, parts[1:], strict=True):
+        text += f"ADVANCED_FACE('{name}',{part}"
+    named.write_text(text)
+    found = body(named, Place("B", (0.04, 0.05)), Place("neck", surface="neck", connection=False))
+    band = found.band("neck")
+    assert (band.z0, band.z1) == pytest.approx((0.02, 0.024))
+    assert 0.01 < band.radius < 0.014
+    assert set(found.mesh(MeshSize(across=3.0)).mesh.boundaries) == {*faces, "B", "end"}
+    with pytest.raises(
+        GeometryError, match=r"no surface 'nack'; it has start, head|has no surface"
+    ):
+        body(named, Place("B", surface="nack"))
+
+
+@pytest.mark.parametrize("ending", ["vtk", "msh", "inp"])
+@pytest.mark.parametrize("linear", [False, True])
+def test_a_mesh_is_taken_as_it_is(ending: str, linear: bool, tmp_path: Path) -> None:
+    """And halved: eight times the elements, the same volume. Straight sides cut 2 % off it."""
+    solid = solid_mesh(IN_METRES, MeshSize(), (0.04, 0.06))
+    path = write_mesh(solid, tmp_path / f"pin.{ending}", linear)
+    found = body(path)
+    assert found.meshed
+    assert found.volume == pytest.approx(IN_METRES.volume, rel=2e-2 if linear else 3e-4)
+    assert found.band("B").area == pytest.approx(
+        IN_METRES.band("B").area, rel=2e-2 if linear else 1e-3
+    )
+    one, two = found.mesh(MeshSize()), found.mesh(MeshSize().finer(2.0))
+    assert one.mesh.nelements == solid.mesh.nelements
+    assert two.mesh.nelements == 8 * one.mesh.nelements
+    assert len(two.mesh.boundaries["B"]) == 4 * len(one.mesh.boundaries["B"])
+    volumes = [Discretisation(m.mesh).weights.sum() for m in (one, two)]
+    assert volumes[1] == pytest.approx(volumes[0], rel=1e-5)
+
+
+def test_refining_keeps_the_curved_shape() -> None:
+    mesh = solid_mesh(IN_METRES, MeshSize(across=2.5)).mesh
+    coarse, fine = Discretisation(mesh), Discretisation(refined(mesh))
+    for name in mesh.boundaries:
+        areas = [Patch(s, surface(s), name).area for s in (coarse, fine)]
+        assert areas[1] == pytest.approx(areas[0], rel=1e-5)
+    assert set(fine.mesh.boundary_facets()) == set(
+        np.concatenate(list(fine.mesh.boundaries.values()))
+    )
+
+
+def test_surfaces_of_a_mesh_have_its_names(tmp_path: Path) -> None:
+    """Physical groups of a .msh file, and sets of nodes."""
+    path = tmp_path / "box.msh"
+    with gmsh_model("box") as gmsh:
+        gmsh.model.occ.addBox(-5, -5, 0, 10, 10, 30)
+        gmsh.model.occ.synchronize()
+        gmsh.option.setNumber("Mesh.MeshSizeMax", 3.0)
+        for _, face in gmsh.model.getEntities(2):
+            at = gmsh.model.occ.getCenterOfMass(2, face)
+            gmsh.model.addPhysicalGroup(2, [face], name="top" if at[2] > 29 else f"side {face}")
+        gmsh.model.addPhysicalGroup(3, [1], name="box")
+        gmsh.model.mesh.generate(3)
+        gmsh.write(str(path))
+    found = body(path, Place("lid", surface="top"))
+    assert found.band("lid").area == pytest.approx(1e-4)
+    assert found.volume == pytest.approx(3e-6)
+    mesh = meshio.read(path)
+    nodes = np.flatnonzero(mesh.points[:, 2] < 1e-9)
+    only = [(b.type, b.data) for b in mesh.cells if b.type == "tetra"]
+    sets = tmp_path / "box.inp"
+    meshio.write(sets, meshio.Mesh(mesh.points, only, point_sets={"foot": nodes}))
+    assert body(sets, Place("B", surface="foot")).band("B").area == pytest.approx(1e-4)
+
+
+def test_the_outermost_surface_is_without_holes(tmp_path: Path) -> None:
+    """A tube with a cross hole: its band is the outside less the hole, not the bore."""
+    pin = Pin("P", (Segment(0.06, 0.02, bore=0.01, connection="B"),))
+    solid = solid_mesh(CutPin(pin, (Hole(0.03, 0.004),)), MeshSize())
+    found = body(write_mesh(solid, tmp_path / "tube.vtk"), Place("B", (0.0, 0.06)))
+    outside = np.sort(found.mesh(MeshSize()).mesh.boundaries["B"])
+    assert len(outside) == len(solid.mesh.boundaries["B"])
+    space = Discretisation(solid.mesh)
+    assert found.band("B").area == pytest.approx(Patch(space, surface(space), "B").area, rel=1e-9)
+
+
+def test_bad_files(tmp_path: Path, step: Path) -> None:
+    def refuse(path: Path, message: str, *places: Place) -> None:
+        with pytest.raises(GeometryError, match=message):
+            body(path, *places)
+
+    refuse(tmp_path / "gone.step", "there is no file")
+    for ending in ("step", "msh", "vtk", "doc"):
+        (tmp_path / f"text.{ending}").write_text("Dear pin,\n")
+        refuse(tmp_path / f"text.{ending}", "is no geometry")
+    sheet = tmp_path / "sheet.step"
+    with gmsh_model("sheet") as gmsh:
+        gmsh.model.occ.addRectangle(0, 0, 0, 1, 1)
+        gmsh.model.occ.synchronize()
+        gmsh.write(str(sheet))
+    refuse(sheet, "there is no volume in sheet.step")
+    pair = tmp_path / "pair.step"
+    with gmsh_model("pair") as gmsh:
+        for x in (0, 5):
+            gmsh.model.occ.addBox(x, 0, 0, 1, 1, 1)
+        gmsh.model.occ.synchronize()
+        gmsh.write(str(pair))
+    refuse(pair, "pair.step holds 2 solids; a pin is one")
+    square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=float)
+    meshio.write(tmp_path / "s.stl", meshio.Mesh(square, [("triangle", [[0, 1, 2], [0, 2, 3]])]))
+    refuse(tmp_path / "s.stl", "there is no volume in it: it has no tetrahedra, but triangle")
+    cube = np.concatenate([square, square + np.array([0.0, 0.0, 1.0])])
+    meshio.write(tmp_path / "h.vtk", meshio.Mesh(cube, [("hexahedron", [list(range(8))])]))
+    refuse(tmp_path / "h.vtk", "no tetrahedra, but hexahedron")
+    refuse(
+        step,
+        r"no outer surface between z = 70 and 80 .* from z = 0 to 60",
+        Place("B", (0.07, 0.08)),
+    )
+    refuse(step, "needs a below b", Place("B", (0.02, 0.01)))
+    found = body(step)
+    with pytest.raises(GeometryError, match="no surface 'Q'; it has"):
+        found.surface("Q")
+    with pytest.raises(GeometryError, match="no surface 'Q'; it has"):
+        found.band("Q")

@@ -1,0 +1,153 @@
+"""Pins with holes and flats, and pins from files, in a study: read, refused, run."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import pytest
+
+from geometry import CutPin, Flat, Hole, Pin, Segment
+from geometry.solid_mesh import MeshSize, solid_mesh
+from pinstress import InputError, load_study
+from pinstress.check import describe
+from pinstress.cli import run_command_line
+from pinstress.pins import pin as pin_of
+from tests.geometry.files import write_mesh, write_step
+
+STUDY = """
+title = "A pin of any shape"
+units = "mm-N-s"
+
+[material.steel]
+youngs_modulus = "210 GPa"
+poisson_ratio = 0.3
+density = "7850 kg/m^3"
+yield_strength = "350 MPa"
+
+[pin.P]
+material = "steel"
+clamp = ["start"]
+SHAPE
+
+[case.push]
+kind = "given"
+forces = { B = [0.0, 1000.0] }
+
+[analysis]
+tolerance = 0.5
+"""
+PROFILE = """profile = [
+  { length = 20.0, diameter = 30.0 },
+  { length = 40.0, diameter = 20.0, connection = "B" },
+]
+fillet = 4.0
+"""
+CUT = (
+    PROFILE
+    + """hole = [{ z = 45.0, diameter = "4 mm", angle = "90 deg" }]
+flat = [{ z = [50.0, 60.0], distance = 8.0, angle = "30 deg" }]
+"""
+)
+FILE = """geometry = "pin.step"
+[pin.P.band]
+B = { z = [40.0, 60.0] }
+root = { z = [0.0, 10.0], connection = false }
+"""
+
+
+def write(folder: Path, shape: str) -> Path:
+    path = folder / "study.toml"
+    path.write_text(STUDY.replace("SHAPE", shape))
+    return path
+
+
+def test_holes_and_flats_are_read(tmp_path: Path) -> None:
+    study = load_study(write(tmp_path, CUT))
+    found = pin_of(study, "P")
+    assert isinstance(found, CutPin)
+    assert not found.revolved
+    assert found.holes == (Hole(0.045, 0.004, math.pi / 2),)
+    assert found.flats == (Flat(0.05, 0.06, 0.008, 30.0 * math.pi / 180.0),)
+    assert "steel, 2 segments, 1 hole, 1 flat, " in describe(study)
+    turned = pin_of(load_study(write(tmp_path, PROFILE)), "P")
+    assert isinstance(turned, Pin)
+    assert turned.revolved
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["cut", "step", "mesh"])
+def test_runs(kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """To results, drawing and field."""
+    monkeypatch.chdir(tmp_path)
+    pin = Pin("P", (Segment(20.0, 30.0), Segment(40.0, 20.0, connection="B")), fillet=4.0)
+    if kind == "step":
+        write_step(pin, tmp_path / "pin.step")
+    if kind == "mesh":
+        small = Pin("P", (Segment(0.02, 0.03), Segment(0.04, 0.02, connection="B")), fillet=0.004)
+        write_mesh(solid_mesh(small, MeshSize(across=2.0)), tmp_path / "pin.msh")
+    write(
+        tmp_path,
+        CUT if kind == "cut" else FILE.replace("step", "msh" if kind == "mesh" else "step"),
+    )
+    assert run_command_line(["run", "study.toml", "--no-pictures"]) in (0, 1)
+    (found,) = json.loads((tmp_path / "out/study/results.json").read_text())["pins"]
+    assert found["model"] == "solid"
+    assert 10.0 < found["max_von_mises"] < 100.0
+    assert (tmp_path / "out/study/vtk/P_push.vtu").is_file()
+    assert "P" in (tmp_path / "out/study/report.html").read_text()
+
+
+@pytest.mark.parametrize(
+    ("shape", "message"),
+    [
+        (PROFILE + FILE, r"pin.P: give either profile = \[...\] or geometry"),
+        ("", r"pin.P: give either profile = \[...\] or geometry"),
+        (PROFILE + "[pin.P.band]\nB = { z = [0.0, 1.0] }", "pin.P: band goes with geometry only"),
+        ("fillet = 1.0\n" + FILE, "pin.P: fillet goes with a profile only"),
+        (FILE.replace("{ z = [40.0, 60.0] }", "{}"), r"pin.P.band.B: give either z = \[a, b\]"),
+        (FILE.replace("z =", "zz ="), "unknown key 'zz'; did you mean 'z'"),
+        (PROFILE + 'geometry_unit = "in"', "geometry_unit goes with geometry only"),
+        (FILE.replace('"pin.step"', '"pin.step"\ngeometry_unit = "mile"'), "geometry_unit: input"),
+        (CUT.replace('"90 deg"', "90"), r"hole\[1\].angle"),
+    ],
+)
+def test_bad_tables(shape: str, message: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=message):
+        load_study(write(tmp_path, shape))
+
+
+@pytest.mark.parametrize(
+    ("shape", "message"),
+    [
+        (CUT.replace('"4 mm"', "20.0"), "hole 1: its diameter is 1 times the pin's there"),
+        (CUT.replace("distance = 8.0", "distance = 10.5"), "flat 1: it lies outside the pin"),
+        (FILE.replace("pin.step", "gone.step"), "there is no file .*gone.step"),
+        (FILE.replace("pin.step", "study.toml"), "study.toml is no geometry that can be read"),
+        (FILE.replace("40.0, 60.0", "70.0, 80.0"), "no outer surface between z = 70 and 80"),
+        (FILE.replace("z = [0.0, 10.0]", 'surface = "foot"'), "no surface 'foot'; it has face 1"),
+        (FILE, "no surface 'side'; it has"),
+    ],
+)
+def test_bad_shapes(
+    shape: str, message: str, tmp_path: Path, step: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "pin.step").write_bytes(step.read_bytes())
+    path = write(tmp_path, shape)
+    if shape == FILE:
+        path.write_text(path.read_text().replace('clamp = ["start"]', 'clamp = ["side"]'))
+    with pytest.raises(InputError, match=message):
+        pin_of(load_study(path), "P")
+
+
+@pytest.fixture(scope="module")
+def step(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    pin = Pin("P", (Segment(20.0, 30.0), Segment(40.0, 20.0)), fillet=4.0)
+    return write_step(pin, tmp_path_factory.mktemp("step") / "pin.step")
+
+
+def test_a_beam_check_needs_a_profile(tmp_path: Path) -> None:
+    path = write(tmp_path, CUT)
+    path.write_text(path.read_text() + '[beam_check]\npin = "P"\ncase = "push"\naxis_bore = 1.0\n')
+    assert run_command_line(["run", str(path), "--out", str(tmp_path / "out")]) == 2
