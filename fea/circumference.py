@@ -1,7 +1,7 @@
 """The largest von Mises stress round the axis, by superposing unit fields of several harmonics.
 
-At a point of the section the stress is the sum over n of P_n cos n theta + Q_n sin n theta. With one
-harmonic alone, von Mises squared is a quadratic form of (cos n theta, sin n theta) with entries
+At a point of the section the stress is the sum over n of P_n cos n theta + Q_n sin n theta. With
+one harmonic alone, von Mises squared is a quadratic form of (cos n theta, sin n theta) with entries
 A = P.P, B = P.Q, C = Q.Q (in von Mises' metric), so that its maximum is closed:
 
     (A + C) / 2 + sqrt(((A - C) / 2)^2 + B^2)
@@ -95,10 +95,10 @@ class Circumference:
         """
         if not self.waves:
             return np.zeros((self.points, self.count))
-        return np.sum([wave.bound for wave in self.waves], axis=0)
+        return np.asarray(sum(wave.bound for wave in self.waves))
 
     def largest(self, among: Mask) -> tuple[Floats, Ints, Floats]:
-        """Over the points of a mask (S,), at every instant: maximum (T,) Pa, its point and angle."""
+        """Over the points of a mask (S,), at every instant: maximum (T,) Pa, point, angle."""
         rows = np.flatnonzero(among)
         bound = self.bound[rows]
         every = np.arange(self.count)
@@ -139,7 +139,7 @@ class Circumference:
             return _closed(*parts[0])
 
         def at(angles: Floats) -> Floats:
-            return von_mises(sum(_wave(n, P, Q, angles) for n, P, Q in parts))
+            return von_mises(np.asarray(sum(_wave(n, P, Q, angles) for n, P, Q in parts)))
 
         angles = np.tile(np.arange(SAMPLES) * 2.0 * np.pi / SAMPLES, (len(points), 1))
         value = at(angles)

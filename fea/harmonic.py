@@ -20,6 +20,8 @@ from fea.tractions import ALONG_X, ALONG_Z, Traction, closing_tractions, tractio
 from geometry import Pin
 from geometry.meridian_mesh import MeridianMesh
 
+_NOWHERE = np.zeros((0, 2))
+
 
 class HarmonicModel:
     """A pin on one mesh of its section, held at surfaces (by name).
@@ -44,9 +46,7 @@ class HarmonicModel:
         self.space = Section(section)
         self.outline = Outline(self.space)
 
-    def solve(
-        self, loads: tuple[UnitLoad, ...], extra: Floats = np.zeros((0, 2))
-    ) -> MeridianFields:
+    def solve(self, loads: tuple[UnitLoad, ...], extra: Floats = _NOWHERE) -> MeridianFields:
         """Unit fields, at `extra` points (P, 2) inside the section too.
 
         Raises: SolveError when the pin is not held or a check fails.
@@ -70,7 +70,9 @@ class HarmonicModel:
 
     def _applied(self, n: int, loads: list[UnitLoad]) -> tuple[Floats, Floats]:
         """Nodal forces (unknowns, K) and tractions at the outline's nodes (E, 3, 3, K)."""
-        parts = [() if load.kind == "body" else (traction(self.pin, load),) for load in loads]
+        parts: list[tuple[Traction, ...]] = [
+            () if load.kind == "body" else (traction(self.pin, load),) for load in loads
+        ]
         forces, tractions = self._forces(n, parts)
         for k, load in enumerate(loads):
             if load.kind == "body":
@@ -141,8 +143,8 @@ def _polar(u: Floats) -> Floats:
 
 
 def rigid_motions(nodes: Floats, n: int) -> Floats:
-    """Unknowns of the rigid motions of harmonic 1 (shift along x, turn about y) or 0 (shift along z,
-    spin), (3 N, 2); a load's work on them is its resultant.
+    """Unknowns of the rigid motions of harmonic 1 (shift along x, turn about y) or 0 (shift along
+    z, spin), (3 N, 2); a load's work on them is its resultant.
     """
     r, z = nodes.T
     nought = np.zeros_like(r)

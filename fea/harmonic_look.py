@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -55,7 +56,7 @@ def harmonic_solution(
     ]
     section = meridian_mesh(pin, SIZE.finer(ratio**level), spots)
     loads = tuple(dict.fromkeys(load for case in cases for load in case.coefficients()))
-    rims = np.concatenate([np.zeros((0, 2)), *(_rim(pin, p) for p in places)])
+    rims = np.concatenate([np.zeros((0, 2)), *map(partial(_rim, pin), places)])
     return HarmonicSolution(HarmonicModel(pin, section, material, clamps).solve(loads, rims), close)
 
 

@@ -92,6 +92,7 @@ def solve_pin(
         out |= _beam(job, pin, live, notes)
         live = tuple(c for c in live if c.case not in out)
     if live:
+        model: Literal["harmonic", "solid"]
         model = "solid" if asked.model == "solid" or not isinstance(pin, Pin) else "harmonic"
         out |= _refined(job, model, live, notes)
     return tuple(out[c.case] for c in cases)

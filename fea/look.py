@@ -29,8 +29,7 @@ class Look:
     """maximum: largest von Mises stress (Pa) outside all singular places, at `location` (m) at the
     governing `instant`; maxima: (T,) the same at every instant. places: what is inside of each.
 
-    scatter: of the maximum by the mesh alone, where it was seen, Pa. left_out: by how much (Pa) what
-    the model leaves out may change the maximum.
+    scatter: of the maximum by the mesh alone, where it was seen, Pa.
     """
 
     unknowns: int
@@ -40,4 +39,3 @@ class Look:
     maxima: Floats
     places: tuple[Inside, ...] = ()
     scatter: float = 0.0
-    left_out: float = 0.0

@@ -80,7 +80,8 @@ class Section:
             if value.ndim == 2
             else np.einsum("mq,mqi->mi", self._weights, value)
         )
-        return np.bincount(self.elements.ravel(), found.ravel(), minlength=len(self.nodes))
+        count = len(self.nodes)
+        return np.bincount(self.elements.ravel(), found.ravel(), count).astype(np.float64)
 
     @cached_property
     def _samples(self) -> Basis:

@@ -2,7 +2,8 @@
 
 Along the outline (arc s, tangent t, in the order counter-clockwise) the strains in the surface are
 
-    e_ss = t . d(U, W)/ds      e_tt = (U + n V) / r      2 e_st = dV/ds - (t_r (n U + V) + t_z n W) / r
+    e_ss = t . d(U, W)/ds      e_tt = (U + n V) / r
+    2 e_st = dV/ds - (t_r (n U + V) + t_z n W) / r
 
 and with the traction they give all of the stress. The derivatives are taken at two Gauss points of
 each edge, where those of quadratic elements are most exact, and interpolated by the cubic through
@@ -19,7 +20,7 @@ import numpy as np
 
 from fea.material import Material
 from fea.outline import Outline, shapes, slopes
-from fea.section import Floats, Section
+from fea.section import Floats, Ints, Section
 from fea.surface import SMOOTH
 
 AT = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])  # where on an edge
@@ -77,8 +78,8 @@ def _derivatives(
     a, c = half * _GAUSS, half * (1.0 - _GAUSS)
     left, right = before >= 0, after >= 0
 
-    def cubic(rows: Floats, p: int, samples: list[Floats], places: list[Floats]) -> None:
-        w = _lagrange(half[rows] * AT[p], np.stack([q for q in places], axis=1))
+    def cubic(rows: Ints, p: int, samples: list[Floats], places: list[Floats]) -> None:
+        w = _lagrange(half[rows] * AT[p], np.stack(places, axis=1))
         out[rows, p] = np.einsum("eq,eqck->eck", w, np.stack(samples, axis=1))
 
     e, f = np.flatnonzero(right), after[right]
@@ -95,7 +96,7 @@ def _derivatives(
     return out[:, :, 0], out[:, :, 1]
 
 
-def _neighbours(outline: Outline, x: Floats, traction: Floats) -> tuple[Floats, Floats]:
+def _neighbours(outline: Outline, x: Floats, traction: Floats) -> tuple[Ints, Ints]:
     """Edges before and after each (E,) across which the surface and its load go on smoothly; -1
     where they do not.
     """

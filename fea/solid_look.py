@@ -25,7 +25,7 @@ Mask = NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class SolidSolution:
-    """Unit fields on one mesh, and what of the surface's nodes is in each of the singular places."""
+    """Unit fields on one mesh, and which nodes of the surface are in each singular place."""
 
     fields: UnitFields
     places: tuple[Place, ...]
@@ -122,7 +122,8 @@ def solid_look(
         location=top.location,
         maxima=top.maxima,
         places=tuple(
-            Inside(value, value, at, s) for (value, at), s in zip(top.inside, exponents, strict=True)
+            Inside(value, value, at, s)
+            for (value, at), s in zip(top.inside, exponents, strict=True)
         ),
         scatter=top.scatter,
     )

@@ -46,8 +46,7 @@ class Seen:
         last = self.looks[-1]
         if len(self.looks) == 1:
             return last.maximum
-        found = discretisation_error(self.history, self.ratio, last.scatter)
-        return found + last.left_out
+        return discretisation_error(self.history, self.ratio, last.scatter)
 
     @property
     def relative(self) -> float:

@@ -21,8 +21,8 @@ class Place:
     """A circle at (r, z), m, near which stress grows like d^-theory at the distance d.
 
     between: the surfaces that meet there. theory: the exponent in plane strain, so for axial and
-    bending loads; 0 at the edge of a load, where it grows like log(1/d); None where the angle is not
-    known. torsion_theory: the
+    bending loads; 0 at the edge of a load, where it grows like log(1/d); None where the angle is
+    not known. torsion_theory: the
     exponent in torsion; bending has this part too. radius: how far (m) stress is not to be read.
     advice: what would make it finite, for people.
     """

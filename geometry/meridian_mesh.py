@@ -133,9 +133,7 @@ def _cuts(edge: Edge, spots: tuple[Spot, ...]) -> list[RZ]:
         if (reach := reaches.get(end))
     }
     (r, z), (to_r, to_z) = edge.start, edge.end
-    return [
-        (r + x * (to_r - r), z + x * (to_z - z)) for x in sorted(parts) if 0.001 < x < 0.999
-    ]
+    return [(r + x * (to_r - r), z + x * (to_z - z)) for x in sorted(parts) if 0.001 < x < 0.999]
 
 
 def _set_sizes(gmsh: Any, pin: Pin, size: SectionSize, spots: tuple[Spot, ...]) -> None:
@@ -181,7 +179,9 @@ def _set_sizes(gmsh: Any, pin: Pin, size: SectionSize, spots: tuple[Spot, ...]) 
     gmsh.option.setNumber("Mesh.MeshSizeMax", far)
 
 
-def _collect(gmsh: Any, pin: Pin, outline: tuple[Edge, ...], curves: list[list[int]]) -> MeridianMesh:
+def _collect(
+    gmsh: Any, pin: Pin, outline: tuple[Edge, ...], curves: list[list[int]]
+) -> MeridianMesh:
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     triangles = gmsh.model.mesh.getElementsByType(TRIANGLE6)[1].reshape(-1, 6).astype(np.int64)
     row = np.full(int(tags.max()) + 1, -1)

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fea.refine import refine
 
 from fea.envelope import envelope
 from fea.material import Material
 from fea.pin_loads import PinLoads
-from fea.refine import refine
 from fea.solid import SolidModel, acting
 from fea.stress import von_mises
 from geometry import CutPin, Flat, Hole, Pin, PinLike, Segment

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from fea.refine import refine
 
 from fea.beam_error import beam_estimate
 from fea.beam_stress import BeamStress, beam_stress
@@ -13,7 +14,6 @@ from fea.line_load import acting
 from fea.material import Material
 from fea.notch import BENDING, TENSION, TORSION, shoulder_factor
 from fea.pin_loads import PinLoads, UnitLoad
-from fea.refine import refine
 from fea.solid import PinLoads as SolidLoads
 from geometry import Pin, Segment
 from geometry.solid_mesh import MeshSize

@@ -6,15 +6,14 @@ import math
 
 import numpy as np
 import pytest
+from fea.refine import refine
 from numpy.typing import NDArray
 
 from fea.balance import out_of_balance
-from fea.beam_check import axial_stress
 from fea.elasticity import Discretisation
 from fea.envelope import envelope
 from fea.material import Material
 from fea.pin_loads import PinLoads, UnitLoad
-from fea.refine import refine
 from fea.solid import SolidModel, UnitFields, acting
 from fea.solid_loads import Unit, nodal_loads
 from fea.stress import von_mises
@@ -22,6 +21,7 @@ from fea.surface import resultants, surface
 from geometry import Pin, Segment
 from geometry.solid_mesh import MeshSize, solid_mesh
 from tests.fea.unit_loads import at, forces, moments
+from tests.solid_line import axial_stress
 
 Floats = NDArray[np.float64]
 

@@ -6,17 +6,17 @@ import math
 
 import numpy as np
 import pytest
+from fea.refine import refine, sharp_place
 
 from fea.balance import out_of_balance
 from fea.beam import cantilever
-from fea.beam_check import axial_stress
 from fea.material import Material
 from fea.pin_loads import PinLoads
-from fea.refine import refine, sharp_place
 from fea.solid import SolidModel
 from geometry import Pin, Segment
 from geometry.solid_mesh import MeshSize, solid_mesh
 from tests.fea.unit_loads import forces
+from tests.solid_line import axial_stress
 
 LONG = Pin("long", (Segment(0.10, 0.02), Segment(0.02, 0.02, connection="B")))
 

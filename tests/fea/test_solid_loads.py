@@ -7,14 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from fea.refine import refine
 
 from fea.balance import out_of_balance
-from fea.beam_check import axial_stress
 from fea.envelope import envelope
 from fea.linear import SolveError
 from fea.material import Material
 from fea.pin_loads import BODY, PinLoads, UnitLoad
-from fea.refine import refine
 from fea.solid import SolidModel, acting
 from fea.solid_loads import closed, nodal_loads
 from fea.stress import von_mises
@@ -22,6 +21,7 @@ from fea.surface import Patch, resultants, surface
 from geometry import Pin, Segment
 from geometry.solid_mesh import MeshSize, solid_mesh
 from tests.fea.unit_loads import at, forces, moments
+from tests.solid_line import axial_stress
 
 FREE = Pin(
     "P",

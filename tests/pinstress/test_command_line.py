@@ -272,6 +272,7 @@ def test_numerics_that_fail_are_status_3(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     import fea.refine
+
     from geometry.solid_mesh import MeshError
 
     def no_mesh(*_: object) -> None:

@@ -16,13 +16,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fea.refine import NEAR, clamp_edges
 
 from fea.beam_error import BeamEstimate, beam_estimate
 from fea.beam_stress import beam_stress
 from fea.line_load import acting
 from fea.material import Material
 from fea.pin_loads import PinLoads
-from fea.refine import NEAR, clamp_edges
 from fea.solid import PinLoads as SolidLoads
 from fea.solid import SolidModel
 from fea.stress import von_mises
