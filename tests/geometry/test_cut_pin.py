@@ -75,6 +75,7 @@ def test_a_flat() -> None:
     assert found.near((-R, 0.0, 0.03), 0.1) is None
 
 
+@pytest.mark.slow
 def test_holes_may_cross_and_a_profile_keeps_its_surfaces() -> None:
     """Through a bore, through a fillet, and at right angles through each other."""
     profile = Pin(
