@@ -34,11 +34,11 @@ class SingularZone:
     """A place where stress grows without bound as the mesh gets finer.
 
     location: x, y, z in the pin's axes of the point of that circle where stress is largest. kind:
-    "a sharp corner", "the edge of a clamp" or "the edge of a load". between: surfaces that meet there.
-    exponent: stress grows as distance^-exponent, measured (None where it was not), and by theory.
-    excluded: radius about it in which no stress is read. governs: whether it would be the maximum.
-    max_von_mises: largest inside on the finest mesh, which says nothing but that. advice: what
-    would make the stress finite.
+    "a sharp corner", "the edge of a clamp" or "the edge of a load". between: surfaces that meet
+    there. exponent: stress grows as distance^-exponent, measured, and by theory (0: like a
+    logarithm); None where unknown. excluded: radius about it in which no stress is read. governs:
+    whether it would be the maximum. max_von_mises: largest inside on the finest mesh, which says
+    nothing but that. advice: what would make the stress finite.
     """
 
     location: tuple[float, float, float]
@@ -75,7 +75,8 @@ class PinResult:
     location: x, y, z in the pin's own axes. held: what holds the pin, in words. left_out: given
     forces that were not applied because their band is held. published_*: the publication's value.
     why: which model answered and why it was enough. singular_at: places without a maximum; where
-    one governs (verdict `singular`) maximum, error and factor are those outside all of them.
+    one governs (verdict `singular`) maximum, error and factor are those outside all of them, as are
+    those of the history.
     """
 
     pin: str
