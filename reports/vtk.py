@@ -36,7 +36,7 @@ def write_vtu(field: Field, path: Path, units: Units) -> None:
 
     mesh = meshio.Mesh(
         points=field.points,
-        cells=[("tetra10", field.cells)],
+        cells=[(field.cell_type, field.cells)],
         point_data=point_data(field, units),
     )
     meshio.write(path, mesh, file_format="vtu", binary=True, compression="zlib")
