@@ -30,6 +30,8 @@ FIRST = 8  # points per instant that are sampled to begin with
 CHUNK = 4096  # points sampled at once
 EVEN = np.array([1.0, 1.0, 1.0, 0.0, 1.0, 0.0])  # components that go as cos psi
 ODD = 1.0 - EVEN
+_SIZES, _AXES = np.linalg.eigh(VON_MISES)
+ROOT = (_AXES * np.sqrt(np.maximum(_SIZES, 0.0))).T[1:]  # (5, 6): ROOT^T ROOT is VON_MISES
 
 
 @dataclass(frozen=True)
@@ -62,6 +64,22 @@ class Wave:
             for x, y in ((a, a), (a, b), (b, b))
         )
         return G @ aa + H @ bb, G @ ab - H @ ab, G @ bb + H @ aa
+
+    @cached_property
+    def _metric(self) -> tuple[Floats, Floats]:
+        """Even and odd parts of unit stresses, (S, 5, K), whose squares sum to von Mises squared."""
+        even, odd = (ROOT @ (self.stress * part[:, None]) for part in (EVEN, ODD))
+        return even, odd
+
+    def measured(self, points: Ints, angle: float) -> Floats:
+        """At points (J,) and an angle five numbers (J, 5, T) whose squares sum to von Mises squared,
+        and which add up over the waves.
+        """
+        even, odd = (x[points].reshape(-1, x.shape[2]) for x in self._metric)
+        c, s = np.cos(self.n * angle), np.sin(self.n * angle)
+        found = even @ (c * self.first + s * self.second).T
+        found += odd @ (s * self.first - c * self.second).T
+        return np.asarray(found.reshape(len(points), 5, -1))
 
     def parts(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
         """P and Q, (J, 6) each, at pairs of points and instants (J,)."""
@@ -158,6 +176,17 @@ class Circumference:
             angle, best = np.where(better, there, angle), np.where(better, found, best)
             step /= 8.0
         return best, angle
+
+    def squares(self, points: Ints, angle: float) -> Floats:
+        """Von Mises squared (J, T) at points (J,) at an angle (rad) and every instant, Pa^2."""
+        if len(self.waves) == 1:
+            A, B, C = (form[points] for form in self.waves[0].forms)
+            c, s = np.cos(self.waves[0].n * angle), np.sin(self.waves[0].n * angle)
+            return np.asarray(c * c * A + 2.0 * c * s * B + s * s * C)
+        found = np.zeros((len(points), 5, self.count))
+        for wave in self.waves:
+            found += wave.measured(points, angle)
+        return np.asarray(np.square(found).sum(axis=1))
 
     def stress(self, points: Ints, instants: Ints, angle: Floats) -> Floats:
         """Stress (J, 6) in Pa at pairs of points and instants and angles (J,): rr, tt, zz, tz, rz,

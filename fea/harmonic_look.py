@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from functools import partial
 
@@ -23,16 +24,17 @@ from geometry.meridian_mesh import SectionSize, Spot, meridian_mesh
 SIZE = SectionSize()  # of the first mesh
 CLOSE = (1e-2, 1e-3, 1e-4)  # element at a corner or clamp's edge, of the diameter, mesh by mesh
 LOGARITHM = 0.2  # element at a load's edge, of the excluded distance
+MATTERS = 0.5  # of the maximum elsewhere
 RIM = 32  # points round a place
 READ = (4.0, 0.01)  # exponents: from so many elements to so much of the diameter
 
 
 @dataclass(frozen=True)
 class HarmonicSolution:
-    """Fields on one mesh, and how fine that mesh is at singular places."""
+    """Fields on one mesh, and how fine (of the diameter) that mesh is at each singular place."""
 
     fields: MeridianFields
-    close: float
+    close: tuple[float, ...]
 
 
 def harmonic_solution(
@@ -43,21 +45,31 @@ def harmonic_solution(
     places: tuple[Place, ...],
     level: int,
     ratio: float,
+    before: Collection[Look] = (),
 ) -> HarmonicSolution:
     """All unit loads of the cases on mesh number `level`, each `ratio` times finer than the one
-    before. Raises: MeshError, SolveError.
+    before, from which the looks `before` are.
+
+    Raises: MeshError, SolveError.
     """
-    close = CLOSE[min(level, len(CLOSE) - 1)]
+    close = tuple(
+        CLOSE[min(level, len(CLOSE) - 1) if _matters(k, before) else 0] for k in range(len(places))
+    )
     spots = [
-        Spot(p.r, p.z, close * 2.0 * p.r, p.radius)
+        Spot(p.r, p.z, near * 2.0 * p.r, p.radius)
         if p.kind != "edge of a load"
         else Spot(p.r, p.z, LOGARITHM * p.radius / ratio**level, p.radius)
-        for p in places
+        for p, near in zip(places, close, strict=True)
     ]
     section = meridian_mesh(pin, SIZE.finer(ratio**level), spots)
     loads = tuple(dict.fromkeys(load for case in cases for load in case.coefficients()))
     rims = np.concatenate([np.zeros((0, 2)), *map(partial(_rim, pin), places)])
     return HarmonicSolution(HarmonicModel(pin, section, material, clamps).solve(loads, rims), close)
+
+
+def _matters(place: int, before: Collection[Look]) -> bool:
+    """Whether stress in a place is so large that it may govern, so that its growth is measured."""
+    return any(look.places[place].felt >= MATTERS * look.maximum for look in before)
 
 
 def _rim(pin: Pin, place: Place) -> Floats:
@@ -115,7 +127,8 @@ def harmonic_look(solution: HarmonicSolution, places: tuple[Place, ...], loads: 
         location=_location(fields.points[point[instant]], angle[instant]),
         maxima=maxima,
         places=tuple(
-            _inside(solution, around, p, d) for p, d in zip(places, distances, strict=True)
+            _inside(solution, around, p, d, close)
+            for p, d, close in zip(places, distances, solution.close, strict=True)
         ),
     )
 
@@ -126,7 +139,11 @@ def _location(point: Floats, angle: float) -> Point:
 
 
 def _inside(
-    solution: HarmonicSolution, around: Circumference, place: Place, distance: Floats
+    solution: HarmonicSolution,
+    around: Circumference,
+    place: Place,
+    distance: Floats,
+    close: float,
 ) -> Inside:
     within = distance <= place.radius
     maxima, _, angle = around.largest(within)
@@ -134,7 +151,7 @@ def _inside(
     instant = int(maxima.argmax())
     location = _location(np.array([place.r, place.z]), angle[instant])
     exponent = None
-    if place.kind != "edge of a load":
+    if place.kind != "edge of a load" and close == CLOSE[-1]:
         exponent = _exponent(solution, around, place, distance, instant)
     return Inside(float(maxima[instant]), float(felt), location, exponent)
 
@@ -145,7 +162,7 @@ def _exponent(
     """From the side of the place on which stress is larger."""
     skin = solution.fields.skin
     d = distance[:skin] / (2.0 * place.r)
-    near = np.flatnonzero((d >= READ[0] * solution.close) & (d <= READ[1]))
+    near = np.flatnonzero((d >= READ[0] * CLOSE[-1]) & (d <= READ[1]))
     if not len(near):
         return None
     value, _ = around.round(near, np.full(len(near), instant))

@@ -179,7 +179,10 @@ def _refined(
         look: Callable[[PinLoads], Look]
         if model == "harmonic":
             assert isinstance(pin, Pin)
-            section = harmonic_solution(pin, job.material, job.held, cases, places, level, ratio)
+            last = [s.looks[-1] for s in seen.values()]
+            section = harmonic_solution(
+                pin, job.material, job.held, cases, places, level, ratio, last
+            )
             found, look = places, partial(harmonic_look, section, places)
             answer = HarmonicAnswer(section, places)
         else:
