@@ -106,6 +106,6 @@ def discretisation_error(
     p = math.log(before / least) / math.log(ratio) if before else -math.inf
     if p >= 0.5:
         return max(1.25 * least / math.expm1(p * math.log(ratio)), scatter)
-    if change <= 2.0 * scatter:
-        return formal
+    if change <= 2.0 * scatter or (values[-1] - values[-2]) * (values[-2] - values[-3]) < 0.0:
+        return formal  # to and fro is no trend
     return 3.0 * change / (math.sqrt(ratio) - 1.0)
