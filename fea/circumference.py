@@ -29,12 +29,22 @@ Mask = NDArray[np.bool_]
 
 SAMPLES = 64  # round the axis, at least
 SAMPLES_PER_WAVE = 5  # of von Mises squared
-FIRST = 8  # points per instant that are sampled to begin with
+FIRST = 8  # points, or pairs of points and instants, that are sampled to begin with
 CHUNK = 4096  # points sampled at once
 EVEN = np.array([1.0, 1.0, 1.0, 0.0, 1.0, 0.0])  # components that go as cos psi
 ODD = 1.0 - EVEN
 _SIZES, _AXES = np.linalg.eigh(VON_MISES)
 ROOT = (_AXES * np.sqrt(np.maximum(_SIZES, 0.0))).T[1:]  # (5, 6): ROOT^T ROOT is VON_MISES
+
+
+@dataclass(frozen=True)
+class Top:
+    """The largest von Mises stress (Pa), at a point (its number), an instant and an angle (rad)."""
+
+    value: float
+    point: int
+    instant: int
+    angle: float
 
 
 @dataclass(frozen=True)
@@ -139,6 +149,29 @@ class Circumference:
         order = np.lexsort((-value, t))
         top = order[np.searchsorted(t[order], every)]
         return value[top], rows[i[top]], angle[top]
+
+    def top(self, among: Mask) -> Top:
+        """Over the points of a mask (S,) and all instants.
+
+        Pairs of points and instants are sampled in the order of their bounds until the next bound
+        is below what was found.
+        """
+        rows = np.flatnonzero(among)
+        bound = self.bound[rows].ravel()
+        best = Top(0.0, int(rows[0]) if len(rows) else 0, 0, 0.0)
+        batch = 1 if len(self.waves) < 2 else FIRST
+        while len(bound):
+            pairs = np.argpartition(-bound, min(batch, len(bound) - 1))[:batch]
+            row, instant = np.divmod(pairs, self.count)
+            value, angle = self.round(rows[row], instant)
+            k = int(value.argmax())
+            if value[k] > best.value:
+                best = Top(float(value[k]), int(rows[row[k]]), int(instant[k]), float(angle[k]))
+            bound[pairs] = -1.0
+            if len(self.waves) < 2 or bound.max() <= best.value:
+                break
+            batch *= 4
+        return best
 
     def round(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
         """Largest von Mises stress (J,) Pa round the axis at pairs of points and instants, and the

@@ -118,14 +118,12 @@ def harmonic_look(solution: HarmonicSolution, places: tuple[Place, ...], loads: 
     fields = solution.fields
     around = Circumference(fields, loads)
     outside, distances = _outside(fields, places)
-    maxima, point, angle = around.largest(outside)
-    instant = int(maxima.argmax())
+    top = around.top(outside)
     return Look(
         unknowns=fields.unknowns,
-        maximum=float(maxima[instant]),
-        instant=instant,
-        location=_location(fields.points[point[instant]], angle[instant]),
-        maxima=maxima,
+        maximum=top.value,
+        instant=top.instant,
+        location=_location(fields.points[top.point], top.angle),
         places=tuple(
             _inside(solution, around, p, d, close)
             for p, d, close in zip(places, distances, solution.close, strict=True)
@@ -146,14 +144,13 @@ def _inside(
     close: float,
 ) -> Inside:
     within = distance <= place.radius
-    maxima, _, angle = around.largest(within)
-    felt = around.largest(within & (distance >= FELT * place.radius * (1.0 - 1e-9)))[0].max()
-    instant = int(maxima.argmax())
-    location = _location(np.array([place.r, place.z]), angle[instant])
+    top = around.top(within)
+    felt = around.top(within & (distance >= FELT * place.radius * (1.0 - 1e-9))).value
+    location = _location(np.array([place.r, place.z]), top.angle)
     exponent = None
     if place.kind != "edge of a load" and close == CLOSE[-1]:
-        exponent = _exponent(solution, around, place, distance, instant)
-    return Inside(float(maxima[instant]), float(felt), location, exponent)
+        exponent = _exponent(solution, around, place, distance, top.instant)
+    return Inside(top.value, felt, location, exponent)
 
 
 def _exponent(

@@ -125,11 +125,10 @@ def places_of(
     """Where stress has no bound in any of the cases; of a body of revolution only."""
     if not isinstance(pin, Pin):
         return ()
-    loaded = set() if clamps else set(pin.connections)
-    for case in cases:
-        for load in case.coefficients():
-            if load.kind in ("force", "moment"):
-                loaded.add(load.surface)
+    acting = {load for case in cases for load in case.coefficients() if load.shears}
+    loaded = {load.surface for load in acting}
+    if acting and not clamps:  # the balance is closed on all bands
+        loaded |= set(pin.connections)
     nu = material.poisson_ratio
     return singular_places(pin, clamps, tuple(sorted(loaded)), nu, distance)
 
