@@ -23,6 +23,7 @@ from geometry.meridian_mesh import SectionSize, Spot, meridian_mesh
 
 SIZE = SectionSize()  # of the first mesh
 CLOSE = (1e-2, 1e-3, 1e-4)  # element at a corner or clamp's edge, of the diameter, mesh by mesh
+EDGE = 0.04  # element at the edge of any band, of the diameter
 LOGARITHM = 0.2  # element at a load's edge, of the excluded distance
 MATTERS = 0.5  # of the maximum elsewhere
 RIM = 32  # points round a place
@@ -61,7 +62,13 @@ def harmonic_solution(
         else Spot(p.r, p.z, LOGARITHM * p.radius / ratio**level, p.radius)
         for p, near in zip(places, close, strict=True)
     ]
-    section = meridian_mesh(pin, SIZE.finer(ratio**level), spots)
+    taken = {(s.r, s.z) for s in spots}
+    for name in dict.fromkeys(name for case in cases for name in case.surfaces):
+        band = pin.band(name)
+        for at in {(band.radius, band.z0), (band.radius, band.z1)} - taken:
+            d = 2.0 * band.radius
+            spots.append(Spot(*at, EDGE * d / ratio**level, 4.0 * EDGE * d))
+    section = meridian_mesh(pin, SIZE.finer(ratio**level), sorted(spots))
     loads = tuple(dict.fromkeys(load for case in cases for load in case.coefficients()))
     rims = np.concatenate([np.zeros((0, 2)), *map(partial(_rim, pin), places)])
     return HarmonicSolution(HarmonicModel(pin, section, material, clamps).solve(loads, rims), close)
