@@ -7,7 +7,8 @@ A = P.P, B = P.Q, C = Q.Q (in von Mises' metric), so that its maximum is closed:
     (A + C) / 2 + sqrt(((A - C) / 2)^2 + B^2)
 
 With several, von Mises being a seminorm, the sum of these maxima is a bound from above; only points
-whose bound exceeds what has been found elsewhere are sampled, and the best sample is polished.
+whose bound exceeds what has been found elsewhere are sampled; von Mises squared is a trigonometric
+polynomial, so samples give its highest crest (fea.crest).
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.crest import highest_crest
 from fea.meridian_fields import MeridianFields
 from fea.pin_loads import Floats, PinLoads
 from fea.stress import VON_MISES, von_mises
@@ -25,13 +27,24 @@ from fea.stress import VON_MISES, von_mises
 Ints = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
-SAMPLES = 64  # round the axis
-FIRST = 8  # points per instant that are sampled to begin with
+SAMPLES = 64  # round the axis, at least
+SAMPLES_PER_WAVE = 5  # of von Mises squared
+FIRST = 8  # points, or pairs of points and instants, that are sampled to begin with
 CHUNK = 4096  # points sampled at once
 EVEN = np.array([1.0, 1.0, 1.0, 0.0, 1.0, 0.0])  # components that go as cos psi
 ODD = 1.0 - EVEN
 _SIZES, _AXES = np.linalg.eigh(VON_MISES)
 ROOT = (_AXES * np.sqrt(np.maximum(_SIZES, 0.0))).T[1:]  # (5, 6): ROOT^T ROOT is VON_MISES
+
+
+@dataclass(frozen=True)
+class Top:
+    """The largest von Mises stress (Pa), at a point (its number), an instant and an angle (rad)."""
+
+    value: float
+    point: int
+    instant: int
+    angle: float
 
 
 @dataclass(frozen=True)
@@ -137,6 +150,29 @@ class Circumference:
         top = order[np.searchsorted(t[order], every)]
         return value[top], rows[i[top]], angle[top]
 
+    def top(self, among: Mask) -> Top:
+        """Over the points of a mask (S,) and all instants.
+
+        Pairs of points and instants are sampled in the order of their bounds until the next bound
+        is below what was found.
+        """
+        rows = np.flatnonzero(among)
+        bound = self.bound[rows].ravel()
+        best = Top(0.0, int(rows[0]) if len(rows) else 0, 0, 0.0)
+        batch = 1 if len(self.waves) < 2 else FIRST
+        while len(bound):
+            pairs = np.argpartition(-bound, min(batch, len(bound) - 1))[:batch]
+            row, instant = np.divmod(pairs, self.count)
+            value, angle = self.round(rows[row], instant)
+            k = int(value.argmax())
+            if value[k] > best.value:
+                best = Top(float(value[k]), int(rows[row[k]]), int(instant[k]), float(angle[k]))
+            bound[pairs] = -1.0
+            if len(self.waves) < 2 or bound.max() <= best.value:
+                break
+            batch *= 4
+        return best
+
     def round(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
         """Largest von Mises stress (J,) Pa round the axis at pairs of points and instants, and the
         angle (rad) where it is.
@@ -159,23 +195,11 @@ class Circumference:
         def at(angles: Floats) -> Floats:
             return von_mises(np.asarray(sum(_wave(n, P, Q, angles) for n, P, Q in parts)))
 
-        angles = np.tile(np.arange(SAMPLES) * 2.0 * np.pi / SAMPLES, (len(points), 1))
-        value = at(angles)
-        k = value.argmax(axis=1)
-        angle, best = angles[np.arange(len(k)), k], value.max(axis=1)
-        step = 2.0 * np.pi / SAMPLES
-        for _ in range(3):  # the vertex of a parabola, ever closer
-            three = at(angle[:, None] + step * np.array([-1.0, 0.0, 1.0])) ** 2
-            bend = three[:, 0] - 2.0 * three[:, 1] + three[:, 2]
-            slope = three[:, 2] - three[:, 0]
-            flat = bend >= -1e-12 * three[:, 1]
-            move = np.where(flat, 0.0, -0.5 * slope / np.where(flat, 1.0, bend))
-            there = angle + step * np.clip(move, -1.0, 1.0)
-            found = at(there[:, None])[:, 0]
-            better = found > best
-            angle, best = np.where(better, there, angle), np.where(better, found, best)
-            step /= 8.0
-        return best, angle
+        degree = 2 * parts[-1][0]  # of von Mises squared
+        count = max(SAMPLES, SAMPLES_PER_WAVE * degree)
+        even = np.tile(np.arange(count) * 2.0 * np.pi / count, (len(points), 1))
+        angle = highest_crest(at(even) ** 2, degree)
+        return at(angle[:, None])[:, 0], angle
 
     def squares(self, points: Ints, angle: float) -> Floats:
         """Von Mises squared (J, T) at points (J,) at an angle (rad) and every instant, Pa^2."""

@@ -79,13 +79,16 @@ class HarmonicModel:
                 forces[:, k] = self._body_force(n)
         if self.clamps or n > 1:
             return forces, tractions
-        closing = [
-            c for p in ((0, 1) if n == 0 else (0,)) for c in closing_tractions(self.pin, n, p)
-        ]
-        against, spread = self._forces(n, closing)
         modes = rigid_motions(self.space.nodes, n)
-        share = -np.linalg.solve(modes.T @ against, modes.T @ forces)
-        return forces + against @ share, tractions + spread @ share
+        for shears in (True, False):
+            here = [k for k, load in enumerate(loads) if load.shears == shears]
+            phases = (0,) if n else (0, 1)
+            closing = [c for p in phases for c in closing_tractions(self.pin, n, p, not shears)]
+            against, spread = self._forces(n, closing)
+            share = -np.linalg.solve(modes.T @ against, modes.T @ forces[:, here])
+            forces[:, here] += against @ share
+            tractions[..., here] += spread @ share
+        return forces, tractions
 
     def _forces(self, n: int, parts: list[tuple[Traction, ...]]) -> tuple[Floats, Floats]:
         forces = [_generalised(self.outline.forces(part, n)) for part in parts]

@@ -23,6 +23,7 @@ from geometry.meridian_mesh import SectionSize, Spot, meridian_mesh
 
 SIZE = SectionSize()  # of the first mesh
 CLOSE = (1e-2, 1e-3, 1e-4)  # element at a corner or clamp's edge, of the diameter, mesh by mesh
+EDGE = 0.04  # element at the edge of any band, of the diameter
 LOGARITHM = 0.2  # element at a load's edge, of the excluded distance
 MATTERS = 0.5  # of the maximum elsewhere
 RIM = 32  # points round a place
@@ -61,7 +62,13 @@ def harmonic_solution(
         else Spot(p.r, p.z, LOGARITHM * p.radius / ratio**level, p.radius)
         for p, near in zip(places, close, strict=True)
     ]
-    section = meridian_mesh(pin, SIZE.finer(ratio**level), spots)
+    taken = {(s.r, s.z) for s in spots}
+    for name in dict.fromkeys(name for case in cases for name in case.surfaces):
+        band = pin.band(name)
+        for at in {(band.radius, band.z0), (band.radius, band.z1)} - taken:
+            d = 2.0 * band.radius
+            spots.append(Spot(*at, EDGE * d / ratio**level, 4.0 * EDGE * d))
+    section = meridian_mesh(pin, SIZE.finer(ratio**level), sorted(spots))
     loads = tuple(dict.fromkeys(load for case in cases for load in case.coefficients()))
     rims = np.concatenate([np.zeros((0, 2)), *map(partial(_rim, pin), places)])
     return HarmonicSolution(HarmonicModel(pin, section, material, clamps).solve(loads, rims), close)
@@ -118,14 +125,12 @@ def harmonic_look(solution: HarmonicSolution, places: tuple[Place, ...], loads: 
     fields = solution.fields
     around = Circumference(fields, loads)
     outside, distances = _outside(fields, places)
-    maxima, point, angle = around.largest(outside)
-    instant = int(maxima.argmax())
+    top = around.top(outside)
     return Look(
         unknowns=fields.unknowns,
-        maximum=float(maxima[instant]),
-        instant=instant,
-        location=_location(fields.points[point[instant]], angle[instant]),
-        maxima=maxima,
+        maximum=top.value,
+        instant=top.instant,
+        location=_location(fields.points[top.point], top.angle),
         places=tuple(
             _inside(solution, around, p, d, close)
             for p, d, close in zip(places, distances, solution.close, strict=True)
@@ -146,14 +151,13 @@ def _inside(
     close: float,
 ) -> Inside:
     within = distance <= place.radius
-    maxima, _, angle = around.largest(within)
-    felt = around.largest(within & (distance >= FELT * place.radius * (1.0 - 1e-9)))[0].max()
-    instant = int(maxima.argmax())
-    location = _location(np.array([place.r, place.z]), angle[instant])
+    top = around.top(within)
+    felt = around.top(within & (distance >= FELT * place.radius * (1.0 - 1e-9))).value
+    location = _location(np.array([place.r, place.z]), top.angle)
     exponent = None
     if place.kind != "edge of a load" and close == CLOSE[-1]:
-        exponent = _exponent(solution, around, place, distance, instant)
-    return Inside(float(maxima[instant]), float(felt), location, exponent)
+        exponent = _exponent(solution, around, place, distance, top.instant)
+    return Inside(top.value, felt, location, exponent)
 
 
 def _exponent(

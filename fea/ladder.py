@@ -115,17 +115,26 @@ class _Job:
         return maximum + error < limit or maximum - error > limit
 
 
-def _places(job: _Job, cases: tuple[PinLoads, ...]) -> tuple[Place, ...]:
-    """Where stress has no bound in any of the cases."""
-    if not isinstance(job.pin, Pin):
+def places_of(
+    pin: PinLike,
+    material: Material,
+    clamps: tuple[str, ...],
+    cases: tuple[PinLoads, ...],
+    distance: float = 0.1,
+) -> tuple[Place, ...]:
+    """Where stress has no bound in any of the cases; of a body of revolution only."""
+    if not isinstance(pin, Pin):
         return ()
-    loaded = set() if job.held else set(job.pin.connections)
-    for case in cases:
-        for load in case.coefficients():
-            if load.kind in ("force", "moment"):
-                loaded.add(load.surface)
-    nu = job.material.poisson_ratio
-    return singular_places(job.pin, job.held, tuple(sorted(loaded)), nu, job.asked.distance)
+    acting = {load for case in cases for load in case.coefficients() if load.shears}
+    loaded = {load.surface for load in acting}
+    if acting and not clamps:  # the balance is closed on all bands
+        loaded |= set(pin.connections)
+    nu = material.poisson_ratio
+    return singular_places(pin, clamps, tuple(sorted(loaded)), nu, distance)
+
+
+def _places(job: _Job, cases: tuple[PinLoads, ...]) -> tuple[Place, ...]:
+    return places_of(job.pin, job.material, job.held, cases, job.asked.distance)
 
 
 def _beam(

@@ -77,7 +77,7 @@ class Section:
     @cached_property
     def integrals(self) -> Floats:
         """Of the shape functions times r over the section, (N,), m^3."""
-        value = np.stack([self.basis.basis[i][0].value[0] for i in range(6)], axis=-1)
+        value = np.stack([np.asarray(self.basis.basis[i][0])[0] for i in range(6)], axis=-1)
         found = (
             self._weights @ value
             if value.ndim == 2
@@ -175,7 +175,8 @@ def strains_of(basis: Basis) -> tuple[Floats, Floats]:
     """
     grad = np.stack([basis.basis[i][0].grad for i in range(6)], axis=-1)  # (2, M, Q, 6)
     value = np.stack(
-        [np.broadcast_to(basis.basis[i][0].value, grad.shape[1:3]) for i in range(6)], axis=-1
+        [np.broadcast_to(np.asarray(basis.basis[i][0]), grad.shape[1:3]) for i in range(6)],
+        axis=-1,
     )
     by_r, by_z = grad
     over_r = value / basis.global_coordinates()[0][..., None]

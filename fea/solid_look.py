@@ -122,7 +122,6 @@ def solid_look(
         maximum=top.maximum,
         instant=top.instant,
         location=top.location,
-        maxima=top.maxima,
         places=tuple(
             Inside(value, value, at, s)
             for (value, at), s in zip(top.inside, exponents, strict=True)

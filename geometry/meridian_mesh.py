@@ -40,7 +40,7 @@ class SectionSize:
         return SectionSize(self.across * factor, self.arc * factor, self.growth / factor)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, order=True)
 class Spot:
     """A point of the outline where the elements are `size` (m) small; within `reach` (m) of it they
     grow as fast as on the coarsest mesh.
