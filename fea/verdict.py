@@ -118,8 +118,8 @@ def _nowhere(zone: SingularZone) -> str:
     where = f"{zone.kind} ({first} / {second})"
     if zone.exponent_theory == 0.0:
         return f"no maximum exists: at {where} stress grows like log(1/distance)"
-    measured = "" if zone.exponent is None else f"{zone.exponent:.2f} measured, "
-    return (
-        f"no maximum exists: at {where} stress grows like distance^-s, s = {measured}"
-        f"{zone.exponent_theory:.2f} by theory"
-    )
+    exponents = ((zone.exponent, "measured"), (zone.exponent_theory, "by theory"))
+    told = ", ".join(f"{s:.2f} {how}" for s, how in exponents if s is not None)
+    if not told:
+        return f"no maximum exists: at {where} stress grows without bound"
+    return f"no maximum exists: at {where} stress grows like distance^-s, s = {told}"
