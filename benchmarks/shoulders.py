@@ -99,13 +99,15 @@ def _peaks(pin: Pin, fields: MeridianFields, case: PinLoads) -> tuple[float, flo
     return top.value, float(np.abs(np.linalg.eigvalsh(tensor)).max())
 
 
-def main() -> None:
-    """Print the tables."""
+def shoulders() -> str:
+    """The table."""
     run(shoulder(*SHAPES[0]), QUICK)  # libraries loaded
-    print("largest von Mises stress at the fillet over the nominal stress; errors in % of a mesh of")
-    print("ten times the unknowns; first principal stress over Peterson's factor (Pilkey's fit)")
+    lines = [
+        "largest von Mises stress at the fillet over the nominal stress; errors in % of a mesh of",
+        "ten times the unknowns; K: first principal stress, beside Peterson's factor (Pilkey's fit)",
+    ]
     head = "  ".join(f"{k:>8} {'err':>6} {'quick':>6} {'K':>6} {'K/Pet.':>6}" for k in KINDS)
-    print(f"{'D/d':>5} {'r/d':>7} {'unkn.':>6} {'ms':>5}  {head}")
+    lines.append(f"{'D/d':>5} {'r/d':>7} {'unkn.':>6} {'ms':>5}  {head}")
     worst, quick_worst, times = 0.0, 0.0, []
     for shape in SHAPES:
         pin = shoulder(*shape)
@@ -122,14 +124,12 @@ def main() -> None:
             cells.append(
                 f"{finest.von_mises[k]:8.4f} {error[k]:6.2f} {rough[k]:6.2f} {nominal:6.3f} {beside}"
             )
-        print(
+        lines.append(
             f"{shape[0]:5} {shape[1]:7} {quick.unknowns:6} {1e3 * quick.seconds:5.0f}  "
-            + "  ".join(cells),
-            flush=True,
+            + "  ".join(cells)
         )
-    print(f"largest error: {worst:.2f} % (good), {quick_worst:.2f} % (quick)")
-    print(f"quick mesh, all three loads, meshing included: median {1e3 * np.median(times):.0f} ms")
-
-
-if __name__ == "__main__":
-    main()
+    lines += [
+        f"largest error: {worst:.2f} % (err), {quick_worst:.2f} % (quick)",
+        f"quick mesh, all three loads, meshing included: median {1e3 * np.median(times):.0f} ms",
+    ]
+    return "\n".join(lines)
