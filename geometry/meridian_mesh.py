@@ -22,7 +22,7 @@ Ints = NDArray[np.int64]
 TRIANGLE6, LINE3 = 9, 8  # gmsh's element types
 MOST_TRIANGLES = 2e5
 SMALLEST_JACOBIAN = 0.1  # min / max of det J that every element must exceed
-STEEPEST = 0.7  # growth of elements next to a spot, on all meshes
+STEEPEST = 0.6  # growth of elements next to a spot, on all meshes
 
 
 @dataclass(frozen=True)
