@@ -6,7 +6,6 @@ bearing pressure.
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
@@ -75,34 +74,32 @@ def corners(count: int = CORNERS, seed: int = 5) -> list[Row]:
     return rows
 
 
-def main() -> None:
-    """Print both tables."""
-    rows = []
-    print(f"{'pin':>14} {'verdict':>12} {'unknowns':>8} {'estimate':>9} {'true':>9}")
+def contained() -> str:
+    """The estimate beside the true error, pin by pin."""
+    lines = [f"{'pin':>14} {'verdict':>12} {'unknowns':>8} {'estimate':>9} {'true':>9}"]
+    held = []
     for row in coverage():
-        rows.append(row)
-        mark = "" if row["held"] else "  NOT CONTAINED"
-        print(
-            f"{row['pin']:>14} {row['verdict']:>12} {row['unknowns']:>8} "
-            f"{row['estimate']:9.2%} {row['error']:9.2%}{mark}",
-            flush=True,
+        held.append(row["held"])
+        lines.append(
+            f"{row['pin']:>14} {row['verdict']:>12} {row['unknowns']:>8} {row['estimate']:9.2%} "
+            f"{row['error']:9.2%}" + ("" if row["held"] else "  not contained")
         )
-    held = sum(bool(row["held"]) for row in rows)
-    print(f"contained: {held} of {len(rows)}")
-    worst = 0.0
-    found = corners()
-    sharp = [row for row in found if row["sharp"]]
-    for row in sharp:
-        for zone in row["governs"]:
-            off = 1.0 if zone.exponent is None else abs(zone.exponent - zone.exponent_theory)
-            worst = max(worst, off)
-    print(f"sharp pins found: {sum(bool(r['found']) for r in sharp)} of {len(sharp)}")
-    print(f"of these singular: {sum(r['verdict'] == 'singular' for r in sharp)}")
-    print(f"largest difference of an exponent from theory: {worst:.3f}")
-    others = [row for row in found if not row["sharp"]]
-    print(f"filleted pins taken for sharp: {sum(bool(r['found']) for r in others)} of {len(others)}")
-    print(f"of these singular for any reason: {sum(r['verdict'] == 'singular' for r in others)}")
+    return "\n".join([*lines, f"contained: {sum(held)} of {len(held)}"])
 
 
-if __name__ == "__main__":
-    sys.exit(main())
+def singular() -> str:
+    """Sharp corners found, their exponents, and fillets taken for corners."""
+    rows = corners()
+    sharp, others = ([r for r in rows if r["sharp"] == is_sharp] for is_sharp in (True, False))
+    zones = [zone for row in sharp for zone in row["governs"]]
+    off = [abs(z.exponent - z.exponent_theory) for z in zones if z.exponent is not None]
+    return "\n".join(
+        [
+            f"sharp corners found in {sum(r['found'] for r in sharp)} of {len(sharp)} sharp pins",
+            f"  of which singular: {sum(r['verdict'] == 'singular' for r in sharp)}",
+            f"  exponents of {len(off)} of {len(zones)} governing corners measured; largest "
+            f"difference from theory {max(off):.3f}",
+            f"sharp corners found in {sum(r['found'] for r in others)} of {len(others)} filleted",
+            f"  of which singular for any reason: {sum(r['verdict'] == 'singular' for r in others)}",
+        ]
+    )
