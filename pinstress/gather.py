@@ -195,7 +195,7 @@ def landing_range(
 
 
 def field(study: Study, task: Task, solution: Solution) -> plain.Field | None:
-    """A pin's field at its governing instant; None when it was not solved, or by a model without."""
+    """A pin's field at its governing instant; None if not solved, or if the model has none."""
     peak, unit = solution.peak, study.system.factor
     loads = next(x for x in task.loads if x.case == peak.case)
     shown = solution.answer.picture(loads, peak.instant) if solution.answer else None

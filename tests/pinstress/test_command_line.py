@@ -144,8 +144,8 @@ def test_all_models_answer(run_once: tuple[Path, str, str], tmp_path: Path) -> N
 
 
 def test_what_is_asked_decides_how_far_it_goes(tmp_path: Path) -> None:
-    """A factor of 120 is far above the 10 that is required, which three meshes decide; the tolerance
-    takes more, and is not reached.
+    """A factor of 120 is far above the 10 that is required, which three meshes decide; the
+    tolerance takes more, and is not reached.
     """
     text = ONE_PIN.replace("tolerance = 0.05", 'goal = "decide"\ntolerance = 0.001')
     (tmp_path / "study.toml").write_text(text)
