@@ -8,9 +8,11 @@ from skfem import MeshTri, MeshTri2
 from geometry.meridian_mesh import MeridianMesh
 
 
-def rectangle(inner: float, outer: float, length: float, across: int, along: int) -> MeridianMesh:
+def rectangle(
+    inner: float, outer: float, length: float, across: int, along: int, band: str = "outer"
+) -> MeridianMesh:
     """inner to outer radius and length, m; 2 x `across` x `along` triangles. Surfaces are called
-    start, outer, end and, where inner > 0, bore.
+    start, `band`, end and, where inner > 0, bore.
     """
     r, z = np.linspace(inner, outer, across + 1), np.linspace(0.0, length, along + 1)
     mesh = MeshTri2.from_mesh(MeshTri.init_tensor(r, z))
@@ -21,7 +23,7 @@ def rectangle(inner: float, outer: float, length: float, across: int, along: int
     tiny = 1e-9 * (outer + length)
     sides = {
         "start": at[1] < tiny,
-        "outer": at[0] > outer - tiny,
+        band: at[0] > outer - tiny,
         "end": at[1] > length - tiny,
         "bore": (at[0] < inner + tiny) & (inner > 0.0),
     }

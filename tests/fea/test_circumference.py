@@ -124,7 +124,7 @@ def test_an_instant_without_load_among_others() -> None:
     """Neither a division by zero nor a point outside the mask."""
     force = np.array([[[1.0, 2.0, 0.0]], [[0.0, 0.0, 0.0]]])
     for how in ("uniform", "cosine"):
-        loads = PinLoads("case", ("B",), force, distribution=how)  # type: ignore[arg-type]
+        loads = PinLoads("case", ("B",), force, distribution=how)
         fields = unit_fields(loads, 30, seed=2)
         among = np.arange(30) > 24
         maximum, point, angle = Circumference(fields, loads).largest(among)

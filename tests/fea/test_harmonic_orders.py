@@ -79,7 +79,7 @@ def test_patch(state: str, steel: Material) -> None:
         fillet = space.nodes[outline.nodes[outline.rows["fillet 1"]]].reshape(-1, 2)
         reach = np.linalg.norm(found.points[..., None, :] - fillet, axis=3).min(axis=2)
         wrong = wrong[reach.min(axis=1) > 0.002]
-        assert len(wrong) > 20
+        assert len(wrong) > 15
     assert wrong.max() < 1e-11 * size
 
 
@@ -122,9 +122,9 @@ CASES = {
 }
 
 
-def orders(seen: list[tuple[float, ...]]) -> Floats:
+def orders(seen: list[tuple[float, float]]) -> Floats:
     """Between successive meshes, each twice as fine."""
-    return np.log2(np.array(seen)[:-1] / np.array(seen)[1:])
+    return np.asarray(np.log2(np.array(seen)[:-1] / np.array(seen)[1:]))
 
 
 @pytest.mark.parametrize("inner", [0.0, 0.4], ids=["solid", "hollow"])

@@ -20,9 +20,10 @@ import pytest
 
 from fea.harmonic import HarmonicModel, rigid_motions
 from fea.material import Material
+from fea.outline import shapes
 from fea.pin_loads import Floats
 from fea.section_stress import inner_nodes, section_stress
-from fea.skin import AT, shapes
+from fea.skin import AT
 from geometry import Pin, Segment
 from tests.fea.exact import (
     Exact,
