@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fea.material import Material
-from fea.pin_loads import PinLoads
+from fea.pin_loads import Distribution, PinLoads
 from geometry import Pin, Segment
 
 STEEL = Material("steel", 2.0e11, 0.3, 7850.0, 1.0e9)
@@ -38,7 +38,7 @@ def _trial(rng: np.random.Generator, k: int, fillet: tuple[float, float] | None)
     bore = float(rng.uniform(0.2, 0.6)) * d if k % 3 == 2 else 0.0
     lengths = d * rng.uniform(0.6, 1.5, 4) + 2.0 * rho
     force = rng.normal(size=(5, 2, 3)) * [1.0, 1.0, 0.3] * 1e4
-    distribution = "cosine" if rng.random() < 0.4 else "uniform"
+    distribution: Distribution = "cosine" if rng.random() < 0.4 else "uniform"
     if k % 2:  # a cantilever out of a thick root
         segments = (
             Segment(float(lengths[0]) + thick, thick, bore, name="root"),

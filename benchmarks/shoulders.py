@@ -104,7 +104,7 @@ def shoulders() -> str:
     run(shoulder(*SHAPES[0]), QUICK)  # libraries loaded
     lines = [
         "largest von Mises stress at the fillet over the nominal stress; errors in % of a mesh of",
-        "ten times the unknowns; K: first principal stress, beside Peterson's factor (Pilkey's fit)",
+        "ten times the unknowns; K: first principal stress, beside Peterson's (Pilkey's fit)",
     ]
     head = "  ".join(f"{k:>8} {'err':>6} {'quick':>6} {'K':>6} {'K/Pet.':>6}" for k in KINDS)
     lines.append(f"{'D/d':>5} {'r/d':>7} {'unkn.':>6} {'ms':>5}  {head}")
@@ -117,12 +117,13 @@ def shoulders() -> str:
         worst, quick_worst = max(worst, *np.abs(error)), max(quick_worst, *np.abs(rough))
         times.append(quick.seconds)
         cells = []
-        for k, kind in enumerate(KINDS):
+        for k in range(len(KINDS)):
             chart = shoulder_factor(CHARTS[k], shape[0] * D, D, shape[1] * D)
             nominal = finest.principal[k]
             beside = "     -" if chart is None else f"{nominal / chart:6.3f}"
             cells.append(
-                f"{finest.von_mises[k]:8.4f} {error[k]:6.2f} {rough[k]:6.2f} {nominal:6.3f} {beside}"
+                f"{finest.von_mises[k]:8.4f} {error[k]:6.2f} {rough[k]:6.2f} "
+                f"{nominal:6.3f} {beside}"
             )
         lines.append(
             f"{shape[0]:5} {shape[1]:7} {quick.unknowns:6} {1e3 * quick.seconds:5.0f}  "

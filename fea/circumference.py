@@ -80,13 +80,13 @@ class Wave:
 
     @cached_property
     def _metric(self) -> tuple[Floats, Floats]:
-        """Even and odd parts of unit stresses, (S, 5, K), whose squares sum to von Mises squared."""
+        """Even and odd parts of unit stresses (S, 5, K): squares sum to von Mises squared."""
         even, odd = (ROOT @ (self.stress * part[:, None]) for part in (EVEN, ODD))
         return even, odd
 
     def measured(self, points: Ints, angle: float) -> Floats:
-        """At points (J,) and an angle five numbers (J, 5, T) whose squares sum to von Mises squared,
-        and which add up over the waves.
+        """At points (J,) and an angle five numbers (J, 5, T) whose squares sum to von Mises
+        squared, and which add up over the waves.
         """
         even, odd = (x[points].reshape(-1, x.shape[2]) for x in self._metric)
         c, s = np.cos(self.n * angle), np.sin(self.n * angle)

@@ -85,7 +85,8 @@ def _rim(pin: Pin, place: Place) -> Floats:
     """
     angle = 2.0 * np.pi * (np.arange(RIM) + 0.5) / RIM
     circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    x = np.concatenate([f * place.radius * circle for f in (1.0, FELT)]) + [place.r, place.z]
+    both = np.concatenate([place.radius * circle, FELT * place.radius * circle])
+    x = both + np.array([place.r, place.z])
     at = np.clip(np.searchsorted(pin.stations, x[:, 1]) - 1, 0, len(pin.segments) - 1)
     outer = np.array([s.diameter / 2.0 for s in pin.segments])[at]
     inner = np.array([s.bore / 2.0 for s in pin.segments])[at]

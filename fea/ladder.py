@@ -241,8 +241,10 @@ def _why(job: _Job, model: str) -> Callable[[Seen, Peak], str]:
             chosen = "solid: the pin is no body of revolution"
         elif job.asked.goal == "decide":
             chosen = "harmonic: a beam's error leaves the required factor open"
-        else:
+        elif job.asked.tolerance < PLAIN:
             chosen = f"harmonic: a beam is never known to {job.asked.tolerance:.1%}"
+        else:
+            chosen = f"harmonic: no beam knows this maximum to {job.asked.tolerance:.1%}"
         if seen.known(job.asked.tolerance):
             return f"{chosen}; its error is within the tolerance on {len(seen.looks)} meshes"
         if job.decided(peak.max_von_mises or 0.0, seen.error):

@@ -130,7 +130,7 @@ class Section:
         depth = np.minimum(x.min(axis=2), 1.0 - x.sum(axis=2))  # in elements, as if straight-sided
         best = depth.argmax(axis=1)
         every = np.arange(len(points))
-        element, at = near[every, best], x[every, best].T
+        element, at = np.asarray(near)[every, best], x[every, best].T
         values = [ElementTriP2().lbasis(at, i)[0] for i in range(6)]
         row = np.arange(len(points)).repeat(6)
         column = self.elements[element].ravel()

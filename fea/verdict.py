@@ -10,6 +10,7 @@ from fea.look import Look
 from fea.peak import Peak, Refinement, SingularZone, Verdict, discretisation_error
 from fea.zones import Place
 
+LEAST_ORDER = {"harmonic": 1.0}  # meshes of sections have points at the rims of what is excluded
 FEWEST = 3  # meshes before a maximum may be called converged: two can agree by chance
 
 ARTICLES = {
@@ -46,7 +47,8 @@ class Seen:
         last = self.looks[-1]
         if len(self.looks) == 1:
             return last.maximum
-        return discretisation_error(self.history, self.ratio, last.scatter)
+        least = LEAST_ORDER.get(self.model, 0.5)
+        return discretisation_error(self.history, self.ratio, last.scatter, least)
 
     @property
     def relative(self) -> float:
