@@ -92,7 +92,8 @@ def _rim(pin: Pin, place: Place) -> Floats:
     inner = np.array([s.bore / 2.0 for s in pin.segments])[at]
     little = 1e-3 * place.radius
     inside = (x[:, 0] > inner + little) & (x[:, 0] < outer - little)
-    return x[inside & (x[:, 1] > little) & (x[:, 1] < pin.length - little)]
+    found: Floats = x[inside & (x[:, 1] > little) & (x[:, 1] < pin.length - little)]
+    return found
 
 
 class HarmonicAnswer:

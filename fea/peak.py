@@ -109,4 +109,4 @@ def discretisation_error(
         return max(1.25 * least / math.expm1(p * math.log(ratio)), scatter)
     if change <= 2.0 * scatter or (values[-1] - values[-2]) * (values[-2] - values[-3]) < 0.0:
         return formal
-    return 3.0 * change / (ratio**least_order - 1.0)
+    return 3.0 * change / math.expm1(least_order * math.log(ratio))

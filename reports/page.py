@@ -16,9 +16,10 @@ from reports.page_rows import pin_parts, reaction_tables
 from reports.plot_names import SVG, drive_names, plot_name
 from reports.published import published_reactions
 from reports.results import Results
+from reports.summary import summary
 from reports.tables import TEXTS, safety_factor_rows, shown, shown_columns
 from reports.template import environment
-from reports.words import READING, outcome, summary, word
+from reports.words import MEANING, READING, outcome, word
 
 TYPES = {".svg": "image/svg+xml", ".png": "image/png", ".jpg": "image/jpeg"}
 
@@ -69,6 +70,7 @@ def render(
         units=results.units,
         summary=summary(results),
         reading=READING,
+        meaning=MEANING,
         plot=_Plots(plots).uri,
         drive_names=drive_names,
         ratio=ratio,

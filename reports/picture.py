@@ -64,7 +64,8 @@ def _surface(field: Field, name: str, scale: float) -> pyvista.PolyData:
     import pyvista
     from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter
 
-    kind = np.full(len(field.cells), pyvista.CellType.QUADRATIC_TETRA, dtype=np.uint8)
+    shape = {"tetra10": pyvista.CellType.QUADRATIC_TETRA, "quad": pyvista.CellType.QUAD}
+    kind = np.full(len(field.cells), shape[field.cell_type], dtype=np.uint8)
     counts = np.full((len(field.cells), 1), field.cells.shape[1])
     cells = np.hstack([counts, field.cells]).ravel()
     grid = pyvista.UnstructuredGrid(cells, kind, np.asarray(field.points, dtype=float))
