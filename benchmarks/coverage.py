@@ -100,6 +100,6 @@ def singular() -> str:
             f"  exponents of {len(off)} of {len(zones)} governing corners measured; largest "
             f"difference from theory {max(off):.3f}",
             f"sharp corners found in {sum(r['found'] for r in others)} of {len(others)} filleted",
-            f"  of which singular for any reason: {sum(r['verdict'] == 'singular' for r in others)}",
+            f"  of these singular at all: {sum(r['verdict'] == 'singular' for r in others)}",
         ]
     )

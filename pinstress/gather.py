@@ -214,4 +214,13 @@ def field(study: Study, task: Task, solution: Solution) -> plain.Field | None:
         envelope=shown.envelope / unit("stress"),
         cell_type=shown.cell_type,
         yield_strength=_scaled(strength, unit("stress")),
+        outside=_outside(study, peak),
     )
+
+
+def _outside(study: Study, peak: Peak) -> tuple[float, tuple[float, float, float]] | None:
+    if peak.verdict != "singular" or peak.max_von_mises is None or peak.location is None:
+        return None
+    unit = study.system.factor
+    x, y, z = (a / unit("length") for a in peak.location)
+    return peak.max_von_mises / unit("stress"), (x, y, z)
