@@ -46,9 +46,10 @@ def verdict_words(verdict: str, yields: bool | None) -> str:
 def outcome(pin: PinResult) -> str:
     """One word for a row: meets, misses or no value; yields or holds where nothing is required.
 
-    A singular row can only miss or yield: more stress than is read has no bound.
+    An unconverged row may have an error small enough to say whether it meets what is required. A
+    singular one can only miss or yield: more stress than is read has no bound.
     """
-    if pin.verdict not in ("converged", "singular"):
+    if pin.verdict == "rigid" or (pin.verdict == "unconverged" and pin.meets_required is None):
         return "no value"
     if pin.meets_required is not None:
         found = "meets" if pin.meets_required else "misses"

@@ -48,11 +48,13 @@ def test_agreement_by_chance_does_not_stay_unnoticed() -> None:
 
 
 def test_a_change_within_the_scatter_is_no_trend() -> None:
-    """Else changes that do not shrink are one: 3 x 14 / (2^(1/2) - 1)."""
+    """Else changes that do not shrink are one: 3 x 14 / (2^(p/2) - 1), p being the least order."""
     seen = sequence(1846.0, 1856.0, 1870.0)
     assert discretisation_error(seen, 2.0**0.5, 45.0) == pytest.approx(45.0)
     assert discretisation_error(seen, 2.0**0.5, 10.0) == pytest.approx(42.0)
-    assert discretisation_error(seen, 2.0**0.5) == pytest.approx(42.0 / (2.0**0.5 - 1.0))
+    assert discretisation_error(seen, 2.0**0.5) == pytest.approx(42.0 / (2.0**0.25 - 1.0))
+    regular = discretisation_error(seen, 2.0**0.5, least_order=1.0)
+    assert regular == pytest.approx(42.0 / (2.0**0.5 - 1.0))
 
 
 def test_to_and_fro_is_no_trend() -> None:

@@ -6,6 +6,7 @@ import csv
 import json
 import math
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -108,11 +109,14 @@ def test_a_tolerance_that_is_not_reached_is_status_1(tmp_path: Path) -> None:
     done = pinstress("run", "study.toml", "--no-pictures", cwd=tmp_path)
     assert done.returncode == 1
     last = done.stderr.strip().splitlines()[-1]
-    assert last.startswith(
-        "Not reached: B (landing): no maximum exists: at a sharp corner (shoulder 1 / B) stress "
-        "grows like distance^-s, s = 0.43 measured, 0.46 by theory; outside of what is excluded, "
-        "known to "
+    said = re.match(
+        r"Not reached: B \(landing\): no maximum exists: at a sharp corner \(shoulder 1 / B\) "
+        r"stress grows like distance\^-s, s = (0\.\d\d) measured, 0\.46 by theory; outside of what is "
+        r"excluded, known to ",
+        last,
     )
+    assert said
+    assert float(said[1]) == pytest.approx(0.456, abs=0.05)
     (pin,) = json.loads((tmp_path / "out" / "study" / "results.json").read_text())["pins"]
     assert pin["verdict"] == "singular"
     assert pin["meets_required"] is None  # enough outside says nothing of the corner
@@ -145,7 +149,7 @@ def test_all_models_answer(run_once: tuple[Path, str, str], tmp_path: Path) -> N
 
 def test_what_is_asked_decides_how_far_it_goes(tmp_path: Path) -> None:
     """A factor of 120 is far above the 10 that is required, which three meshes decide; the
-    tolerance takes more, and is not reached.
+    tolerance would take more, but is not what was asked for.
     """
     text = ONE_PIN.replace("tolerance = 0.05", 'goal = "decide"\ntolerance = 0.001')
     (tmp_path / "study.toml").write_text(text)
@@ -155,7 +159,9 @@ def test_what_is_asked_decides_how_far_it_goes(tmp_path: Path) -> None:
     assert pin["verdict"] == "unconverged"
     assert pin["meets_required"] is True
     assert pin["safety_factor"] > 100.0
-    assert done.returncode == 1
+    assert done.returncode == 0
+    assert "Not reached" not in done.stderr
+    assert "1 of 1 pin meets the required safety factor" in " ".join(done.stdout.split())
 
 
 def test_millimetres_and_inches_give_the_same_pin(
@@ -277,7 +283,8 @@ def test_help_begins_with_an_example(command: str, capsys: pytest.CaptureFixture
 
 
 def test_an_interrupt_leaves_nothing_behind(tmp_path: Path) -> None:
-    (tmp_path / "study.toml").write_text(ONE_PIN)
+    slow = ONE_PIN.replace("tolerance = 0.05", 'model = "solid"\ntolerance = 0.001')
+    (tmp_path / "study.toml").write_text(slow)
     earlier = tmp_path / "out" / "study"
     earlier.mkdir(parents=True)
     (earlier / "results.json").write_text("{}")

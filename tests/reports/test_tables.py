@@ -81,6 +81,7 @@ def test_json_holds_the_contract(results: Results) -> None:
         "error_estimate",
         "verdict",
         "note",
+        "why",
         "location",
         "time",
         "safety_factor",
@@ -89,6 +90,8 @@ def test_json_holds_the_contract(results: Results) -> None:
         "dofs",
         "seconds",
         "history",
+        "singular_at",
+        "hand_checks",
         "held",
         "left_out",
     }
