@@ -111,8 +111,8 @@ def test_a_tolerance_that_is_not_reached_is_status_1(tmp_path: Path) -> None:
     last = done.stderr.strip().splitlines()[-1]
     said = re.match(
         r"Not reached: B \(landing\): no maximum exists: at a sharp corner \(shoulder 1 / B\) "
-        r"stress grows like distance\^-s, s = (0\.\d\d) measured, 0\.46 by theory; outside of what is "
-        r"excluded, known to ",
+        r"stress grows like distance\^-s, s = (0\.\d\d) measured, 0\.46 by theory; outside of what "
+        r"is excluded, known to ",
         last,
     )
     assert said
