@@ -46,7 +46,7 @@ def skin(
     space: Section, outline: Outline, material: Material, n: int, u: Floats, traction: Floats
 ) -> Skin:
     """Of displacements u (N, 3, K), m, of harmonic n under tractions (E, 3, 3, K), Pa, at the ends
-    and middle of the outline's edges. On an axis (r = 0) values are those of points close by.
+    and middle of the outline's edges. On an axis (r = 0) stresses are finite and mean nothing.
     """
     x, moved = space.nodes[outline.nodes], u[outline.nodes]
     at = np.einsum("qi,eia->eqa", shapes(AT), x)

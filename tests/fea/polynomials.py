@@ -33,9 +33,11 @@ def by_z(c: Floats) -> Floats:
     return np.pad(P.polyder(c, axis=1), ((0, 0), (0, 1)))
 
 
-def over_r(c: Floats) -> Floats:
-    """Divided by r, on which it must vanish: this is the condition on the axis."""
-    assert np.abs(c[0]).max() <= 1e-12 * np.abs(c).max(initial=1e-300)
+def over_r(c: Floats, size: float = 0.0) -> Floats:
+    """Divided by r, with which it must vanish: this is the condition on the axis. size: of what it
+    is made of.
+    """
+    assert np.abs(c[0]).max() <= 1e-12 * max(float(np.abs(c).max()), size)
     return np.pad(c[1:], ((0, 1), (0, 0)))
 
 
@@ -52,11 +54,12 @@ def manufactured(material: Material, n: int, U: Floats, V: Floats, W: Floats) ->
         ]
     )
     rr, tt, zz, tz, rz, rt = stress = np.einsum("ab,bij->aij", elasticity(material), strain)
+    size = float(np.abs(stress).max())
     body = -np.stack(
         [
-            by_r(rr) + by_z(rz) + over_r(n * rt + rr - tt),
-            by_r(rt) + by_z(tz) + over_r(2.0 * rt - n * tt),
-            by_r(rz) + by_z(zz) + over_r(n * tz + rz),
+            by_r(rr) + by_z(rz) + over_r(n * rt + rr - tt, size),
+            by_r(rt) + by_z(tz) + over_r(2.0 * rt - n * tt, size),
+            by_r(rz) + by_z(zz) + over_r(n * tz + rz, size),
         ]
     )
     return Exact(n, _field(np.stack([U, V, W])), _field(stress), _field(body))
