@@ -56,7 +56,7 @@ def test_turned_loads_turn_the_answer(
     fields = HarmonicModel(PIN, section, steel, clamps).solve(tuple(loads.coefficients()))
     one, other = Circumference(fields, loads), Circumference(fields, turned)
     points = np.arange(0, len(fields.points), 7)
-    instants, angle = points % 3, 0.01 * points
+    instants, angle = points % 3, 0.01 * points.astype(np.float64)
     a, b = one.stress(points, instants, angle), other.stress(points, instants, angle + 0.7)
     assert b == pytest.approx(a, abs=1e-10 * np.abs(a).max())
     everywhere = np.ones(len(fields.points), dtype=bool)

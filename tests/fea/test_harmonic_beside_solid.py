@@ -1,7 +1,9 @@
 """The harmonic model against the solid one, which shares only the loads and the material with it.
 
-A cantilever with a fillet: energy (the load's displacement) to 0.2 %, the fillet's peak to 1.5 %,
-which is what a solid mesh of this size leaves (it is 9 elements across, quadratic).
+A cantilever with a fillet: energy (the load's displacement) to 0.2 %; von Mises stress at all nodes
+of the fillet to 2 % of the peak, rms (measured 1.6 %, the solid's scatter from node to node). The
+largest of the solid's nodes is one whose scatter is large, and so 2 % too large on both meshes tried
+(6 and 9 elements along the fillet): 3 %.
 """
 
 from __future__ import annotations
@@ -9,10 +11,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fea.circumference import Circumference
+from fea.circumference import Circumference, Ints
 from fea.harmonic import HarmonicModel
 from fea.material import Material
-from fea.pin_loads import PinLoads, UnitLoad
+from fea.pin_loads import Floats, PinLoads, UnitLoad
 from fea.solid import SolidModel
 from fea.stress import von_mises
 from geometry import Pin
@@ -47,10 +49,20 @@ def test_harmonic_beside_solid(cantilever_pin: Pin, steel: Material) -> None:
         energy = _work(flat, UNITS[name])
         u = by_solid.displacement[..., k].ravel()
         assert u @ (solid.stiffness @ u) == pytest.approx(energy, rel=2e-3), name
-        peak = Circumference(by_section, loads).largest(fillet)[0][0]
-        assert von_mises(by_solid.stress[near] @ amount).max() == pytest.approx(peak, rel=1.5e-2), (
-            name
-        )
+        around = Circumference(by_section, loads)
+        peak = around.largest(fillet)[0][0]
+        found = von_mises(by_solid.stress[near] @ amount)
+        off = found - _beside(around, by_section.points, np.flatnonzero(fillet), x[near])
+        assert np.sqrt(np.mean(off**2)) < 2e-2 * peak, name
+        assert found.max() == pytest.approx(peak, rel=3e-2), name
+
+
+def _beside(around: Circumference, points: Floats, among: Ints, x: Floats) -> Floats:
+    """Von Mises stress (J,) at those of some points that are nearest to x (J, 3)."""
+    place = np.stack([np.hypot(x[:, 0], x[:, 1]), x[:, 2]], axis=1)
+    nearest = among[np.linalg.norm(points[among] - place[:, None], axis=2).argmin(axis=1)]
+    angle = np.arctan2(x[:, 1], x[:, 0])
+    return von_mises(around.stress(nearest, np.zeros(len(x), dtype=np.int64), angle))
 
 
 def _work(model: HarmonicModel, unit: UnitLoad) -> float:
