@@ -2,8 +2,8 @@
 
 A cantilever with a fillet: energy (the load's displacement) to 0.2 %; von Mises stress at all nodes
 of the fillet to 2 % of the peak, rms (measured 1.6 %, the solid's scatter from node to node). The
-largest of the solid's nodes is one whose scatter is large, and so 2 % too large on both meshes tried
-(6 and 9 elements along the fillet): 3 %.
+largest of the solid's nodes is one whose scatter is large, and so 2 % too large on two meshes (6
+and 9 elements along the fillet): 3 %.
 """
 
 from __future__ import annotations
