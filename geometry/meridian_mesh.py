@@ -22,6 +22,7 @@ Ints = NDArray[np.int64]
 TRIANGLE6, LINE3 = 9, 8  # gmsh's element types
 MOST_TRIANGLES = 2e5
 SMALLEST_JACOBIAN = 0.1  # min / max of det J that every element must exceed
+SMALLEST_FILLET = 1e-8  # of the diameter beside it: gmsh hangs at 1e-13
 STEEPEST = 0.6  # growth of elements next to a spot, on all meshes
 
 
@@ -98,6 +99,13 @@ def _require_reasonable(pin: Pin, size: SectionSize) -> None:
             f"pin {pin.name}: it would take {triangles:.1e} elements, because its thinnest part is "
             "so small beside the whole; model the part that matters by itself"
         )
+    for i, (left, right) in enumerate(itertools.pairwise(pin.segments)):
+        rho, thin = pin.fillet_at(i), min(left.diameter, right.diameter)
+        if 0.0 < rho < SMALLEST_FILLET * thin:
+            raise MeshError(
+                f"pin {pin.name}: fillet {i + 1} is {rho / thin:.1e} of the diameter, too small to "
+                "be meshed; make it larger, or 0 for a sharp corner"
+            )
 
 
 def _draw(gmsh: Any, outline: tuple[Edge, ...], spots: tuple[Spot, ...]) -> list[list[int]]:

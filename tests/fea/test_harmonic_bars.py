@@ -130,6 +130,20 @@ def test_nothing_spurious_on_the_axis(n: int, steel: Material) -> None:
     assert seen[2] < 0.4 * seen[1], seen
 
 
+@pytest.mark.parametrize("n", [0, 1, 2, 4])
+def test_displacements_on_the_axis(n: int, steel: Material) -> None:
+    """What makes them smooth in space holds exactly: there is no more than one value at r = 0."""
+    unit = UnitLoad("B", "pressure", n)
+    fields = HarmonicModel(BAR, rectangle(0.0, A, L, 2, 20, "B"), steel, ("start",)).solve((unit,))
+    on = fields.points[:, 0] == 0.0
+    assert on.sum() > 40
+    U, V, W = fields.displacement[on, :, 0].T
+    gone = {0: [U, V], 1: [U + V, W]}.get(n, [U, V, W])
+    assert not np.any(gone)
+    if n < 2:
+        assert np.any([U, W])
+
+
 @pytest.mark.parametrize(("nu", "tolerance"), [(0.49, 1e-2), (0.4999, 2e-2)])
 def test_nearly_incompressible(nu: float, tolerance: float, steel: Material) -> None:
     """The largest von Mises stress at a fillet on a mesh as fine as the ladder's third against one
