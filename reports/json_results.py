@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from reports.numbers import finite
-from reports.results import PinResult, ReactionTable, Results
+from reports.results import HandCheck, PinResult, ReactionTable, Results, SingularZone
 from reports.terminal_loads import largest
 
 SCHEMA = "pinstress-results/1"
@@ -75,6 +75,7 @@ def _pin(pin: PinResult) -> dict[str, Any]:
         "error_estimate": finite(pin.error_estimate),
         "verdict": pin.verdict,
         "note": pin.note,
+        "why": pin.why,
         "location": None if pin.location is None else [finite(x) for x in pin.location],
         "time": finite(pin.time),
         "safety_factor": finite(pin.safety_factor),
@@ -92,6 +93,35 @@ def _pin(pin: PinResult) -> dict[str, Any]:
         ],
         "held": pin.held,
         "left_out": list(pin.left_out),
+        "singular_at": [_zone(zone) for zone in pin.singular_at],
+        "hand_checks": [_hand_check(check) for check in pin.hand_checks],
+    }
+
+
+def _zone(zone: SingularZone) -> dict[str, Any]:
+    return {
+        "location": [finite(x) for x in zone.location],
+        "kind": zone.kind,
+        "between": list(zone.between),
+        "exponent": finite(zone.exponent),
+        "exponent_theory": finite(zone.exponent_theory),
+        "excluded_radius": finite(zone.excluded),
+        "governs": bool(zone.governs),
+        "max_von_mises": finite(zone.max_von_mises),
+        "advice": zone.advice,
+    }
+
+
+def _hand_check(check: HandCheck) -> dict[str, Any]:
+    return {
+        "name": check.name,
+        "at": check.at,
+        "time": finite(check.time),
+        "stress": finite(check.stress),
+        "strength": finite(check.strength),
+        "factor": finite(check.factor),
+        "formula": check.formula,
+        "source": check.source,
     }
 
 

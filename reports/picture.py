@@ -18,6 +18,7 @@ SIZE = (1200, 800)
 SUBDIVISIONS = 3  # of each quadratic triangle, so that round pins look round
 SHARP = 30.0  # degrees between faces from which an edge is drawn
 INK = "#222222"
+CELLS = {"tetra10": "QUADRATIC_TETRA", "quad": "QUAD"}  # VTK's names
 
 
 def render_pin(field: Field, path_png: Path, units: Units, title: str) -> None:
@@ -64,7 +65,7 @@ def _surface(field: Field, name: str, scale: float) -> pyvista.PolyData:
     import pyvista
     from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter
 
-    kind = np.full(len(field.cells), pyvista.CellType.QUADRATIC_TETRA, dtype=np.uint8)
+    kind = np.full(len(field.cells), pyvista.CellType[CELLS[field.cell_type]], dtype=np.uint8)
     counts = np.full((len(field.cells), 1), field.cells.shape[1])
     cells = np.hstack([counts, field.cells]).ravel()
     grid = pyvista.UnstructuredGrid(cells, kind, np.asarray(field.points, dtype=float))

@@ -16,7 +16,7 @@ from reports.motion_tables import (
 from reports.numbers import DASH, engineering, finite, ratio, short
 from reports.published import write_published_reactions
 from reports.results import PinResult, Results, Units
-from reports.words import READING, word
+from reports.words import MEANING, READING, verdict_words
 
 __all__ = [
     "safety_factor_rows",
@@ -46,6 +46,8 @@ COLUMNS = (
     "published_safety_factor",
     "note",
 )
+# Behind the units, where readers of an earlier version do not look.
+LATER = ("yields",)
 TEXTS = ("pin", "case", "meets_required", "verdict", "model")
 PUBLISHED = ("published_max_von_mises", "ratio", "published_safety_factor")
 
@@ -72,6 +74,7 @@ def _row(pin: PinResult, required: float | None) -> Row:
         "ratio": ratio(pin.max_von_mises, pin.published_max_von_mises),
         "published_safety_factor": finite(pin.published_safety_factor),
         "note": pin.note,
+        "yields": None if pin.yields is None else _yes(pin.yields),
     }
 
 
@@ -104,8 +107,8 @@ def shown(name: str, row: Row) -> str:
     """A value of a row for people: four digits, a dash for none."""
     value = row[name]
     if name == "verdict":
-        return word(str(value))
-    if value is None or (name == "meets_required" and row["verdict"] != "converged"):
+        return verdict_words(str(value), row["yields"] == "yes")
+    if value is None or (name == "meets_required" and not _decides(row)):
         return DASH
     if isinstance(value, str):
         return value
@@ -114,14 +117,23 @@ def shown(name: str, row: Row) -> str:
     return engineering(value, 2 if name == "error_estimate" else 4)
 
 
+def _decides(row: Row) -> bool:
+    """Whether a row says if the required factor is met; a singular one can only say that not."""
+    singular = row["verdict"] == "singular" and row["meets_required"] == "no"
+    return row["verdict"] == "converged" or singular
+
+
 def write_safety_factors(results: Results, directory: Path) -> None:
     """Write safety_factors.csv, every digit, and safety_factors.md, four digits and the notes."""
     units = results.units
     rows = safety_factor_rows(results)
     write_csv(
         directory / "safety_factors.csv",
-        (*COLUMNS, "stress_unit", "time_unit"),
-        ([*(row[name] for name in COLUMNS), units.stress, units.time] for row in rows),
+        (*COLUMNS, "stress_unit", "time_unit", *LATER),
+        (
+            [*(row[n] for n in COLUMNS), units.stress, units.time, *(row[n] for n in LATER)]
+            for row in rows
+        ),
     )
     text = _markdown(results, rows)
     (directory / "safety_factors.md").write_text(text, encoding="utf-8")
@@ -137,14 +149,16 @@ def _markdown(results: Results, rows: list[Row]) -> str:
             [name not in TEXTS for name in columns],
         ),
         READING,
+        "\n".join(f"- {name}: {sentence}" for name, sentence in MEANING.items()),
     ]
     if results.published_source:
         parts.append(f"Published values: {markdown.escaped(results.published_source)}")
-    notes = [f"- {_note(pin)}" for pin in results.pins if pin.note]
+    notes = [f"- {_note(pin)}" for pin in results.pins if pin.note or pin.why]
     if notes:
         parts += ["## Notes", "\n".join(notes)]
     return "\n\n".join(parts) + "\n"
 
 
 def _note(pin: PinResult) -> str:
-    return markdown.escaped(f"{pin.pin}, {pin.case}: {pin.note}")
+    said = "; ".join(text for text in (pin.note, pin.why) if text)
+    return markdown.escaped(f"{pin.pin}, {pin.case}: {said}")

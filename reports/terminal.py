@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from reports.numbers import DASH, engineering, ratio, short
 from reports.results import PinResult, Results
-from reports.words import outcome, summary, word
+from reports.summary import summary
+from reports.words import outcome, word
 
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
@@ -36,7 +37,8 @@ def _table(results: Results) -> Table:
     for heading in (f"t\n[{time}]", f"max von\nMises\n[{stress}]", "±", "FoS", "required"):
         # As Text: a unit in square brackets is no markup.
         table.add_column(Text(heading), justify="right", no_wrap=True)
-    table.add_column("verdict", no_wrap=True)
+    # Wide enough for the longest word; two of them stand below each other.
+    table.add_column("verdict", overflow="fold", min_width=len("unconverged"), max_width=12)
     for heading in ("published", "ratio") if published else ():
         table.add_column(heading, justify="right", no_wrap=True)
     for pin in results.pins:
@@ -47,12 +49,6 @@ def _table(results: Results) -> Table:
 def _cells(pin: PinResult, required: float | None, published: bool) -> list[RenderableType]:
     from rich.text import Text
 
-    words = word(pin.verdict)
-    if pin.verdict == "converged" and pin.meets_required is not None:
-        words = outcome(pin)
-    elif pin.verdict == "converged" and pin.yields:
-        words = "yields"
-    colour = COLOURS.get(outcome(pin), "yellow")
     cells: list[RenderableType] = [
         Text(pin.pin, "bold"),
         Text(pin.case),
@@ -61,9 +57,19 @@ def _cells(pin: PinResult, required: float | None, published: bool) -> list[Rend
         engineering(pin.error_estimate, 2),
         engineering(pin.safety_factor),
         DASH if required is None else short(required),
-        Text(words, colour),
+        Text(_words(pin), COLOURS.get(outcome(pin), "yellow")),
     ]
     if published:
         cells.append(engineering(pin.published_max_von_mises))
         cells.append(engineering(ratio(pin.max_von_mises, pin.published_max_von_mises), 3))
     return cells
+
+
+def _words(pin: PinResult) -> str:
+    """The verdict, or for a converged row what it decides; yields where stress is beyond yield."""
+    said = [] if pin.verdict == "converged" else [word(pin.verdict)]
+    if outcome(pin) != "no value" and (pin.meets_required is not None or pin.yields):
+        said.append(outcome(pin))
+    if pin.yields and "yields" not in said:
+        said.append("yields")
+    return ", ".join(said) or word(pin.verdict)

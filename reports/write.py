@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from reports.animation import write_animations
+from reports.hand_checks import write_hand_checks
 from reports.json_results import write_json
 from reports.landing import write_landing
 from reports.leg_tables import write_legs
@@ -22,6 +23,7 @@ from reports.tables import (
     write_reactions_pin_axes,
     write_safety_factors,
 )
+from reports.zones import write_zones
 
 
 def write_reports(
@@ -33,6 +35,8 @@ def write_reports(
     """
     drawn = write_loads(results, directory, plots)
     write_safety_factors(results, directory)
+    write_hand_checks(results, directory)
+    write_zones(results, directory)
     write_landing(results, directory)
     if results.beam_check is not None:
         write_beam_check(results.beam_check, directory / "beam_check.csv")

@@ -23,7 +23,7 @@ from reports.tables import (
     write_safety_factors,
 )
 from reports.terminal import print_safety_factors
-from reports.words import summary
+from reports.summary import summary
 
 SAFETY_FACTORS = [
     "pin",
