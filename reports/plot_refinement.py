@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.ticker import FixedLocator, NullFormatter
+from matplotlib.ticker import FixedLocator, MaxNLocator, NullFormatter, NullLocator
 
 from reports.plot_names import plot_name
 from reports.results import PinResult, Units
@@ -15,6 +15,7 @@ from reports.style import clipped, label_ends, line_style, panels, plain_numbers
 from reports.words import word
 
 MARKS = "os^Dv<>ph*"
+CLOSE = np.log10(3.0)  # range of an axis that may have no two of 1, 2, 5
 
 
 def refinement_plot(
@@ -70,13 +71,19 @@ def _text(label: str, pin: PinResult) -> str:
 
 
 def _ticks(axes: Axes, pins: Sequence[PinResult]) -> None:
-    """Ticks at 1, 2, 5 where the range is small: decades alone would leave an axis bare."""
+    """Ticks at 1, 2, 5 where the range is small, and at round numbers where it is smaller still:
+    decades alone would leave an axis bare.
+    """
     steps = [step for pin in pins for step in pin.history]
     for axis, values in (
         (axes.xaxis, [float(step.dofs) for step in steps]),
         (axes.yaxis, [step.max_von_mises for step in steps]),
     ):
         low, high = np.log10(min(values)), np.log10(max(values))
+        if high - low < CLOSE:
+            axis.set_major_locator(MaxNLocator(5))
+            axis.set_minor_locator(NullLocator())
+            continue
         decades = np.arange(np.floor(low), np.ceil(high) + 1)
         within = (1.0, 2.0, 5.0) if high - low < 3.0 else (1.0,)
         axis.set_major_locator(FixedLocator([m * 10.0**d for d in decades for m in within]))

@@ -88,7 +88,7 @@ def zone_table(zones: list[Zone], length: str, stress: str) -> tuple[list[str], 
             "yes" if zone.found.governs else "no",
             zone.found.advice,
         ]
-        for zone in zones
+        for zone in sorted(zones, key=lambda zone: zone.number)
     ]
     return head, rows
 

@@ -13,6 +13,7 @@ from rich.console import Console
 from reports.csv_files import cell, harmless
 from reports.json_results import to_json, write_json
 from reports.results import Results
+from reports.summary import summary
 from reports.tables import (
     safety_factor_rows,
     write_beam_check,
@@ -23,7 +24,6 @@ from reports.tables import (
     write_safety_factors,
 )
 from reports.terminal import print_safety_factors
-from reports.summary import summary
 
 SAFETY_FACTORS = [
     "pin",
@@ -91,6 +91,9 @@ def test_json_holds_the_contract(results: Results) -> None:
         "history",
         "held",
         "left_out",
+        "why",
+        "singular_at",
+        "hand_checks",
     }
     assert found["pins"][2]["left_out"] == ["1200 lbf at 2.0 s on band head"]
     assert found["pins"][-1]["max_von_mises"] is None
