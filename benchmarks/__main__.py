@@ -4,7 +4,16 @@ from __future__ import annotations
 
 import sys
 
-from benchmarks import accuracy, calculix, motion_accuracy, peers_motion, publications, speed
+from benchmarks import (
+    accuracy,
+    calculix,
+    coverage,
+    motion_accuracy,
+    peers_motion,
+    publications,
+    shoulders,
+    speed,
+)
 
 ALL = {
     "motion": speed.motion,
@@ -13,6 +22,9 @@ ALL = {
     "solvers": speed.solvers,
     "fillet": accuracy.fillet,
     "demo": speed.demo,
+    "shoulders": shoulders.shoulders,
+    "coverage": coverage.contained,
+    "corners": coverage.singular,
     "calculix": calculix.calculix,
     "peers-motion": peers_motion.peers_motion,
     "publications": publications.publications,

@@ -14,8 +14,10 @@ from skfem import MeshTet2
 from fea.elasticity import Discretisation
 from fea.linear import factorize
 from fea.material import Material
+from fea.pin_loads import UnitLoad
+from fea.solid_loads import Unit, nodal_loads
 from fea.stress import nodal_stress, with_known_traction
-from fea.surface import Patch, Surface, held_nodes, surface
+from fea.surface import Surface, held_nodes, surface
 from geometry import Pin, Segment
 
 Floats = NDArray[np.float64]
@@ -34,6 +36,7 @@ PIN = Pin(
 )
 STEEL = Material("steel", 2.0e11, 0.3)
 FORCE = 1.0e4  # N, along y
+ALONG_Y: tuple[Unit, ...] = ((UnitLoad(BAND, "force", 1), 1),)
 
 
 class Loaded:
@@ -47,11 +50,9 @@ class Loaded:
         self.space = Discretisation(mesh)
         self.boundary: Surface = surface(self.space)
         self.held: Ints = held_nodes(self.space, (CLAMP,))
-        patch = Patch(self.space, self.boundary, BAND)
-        uniform = FORCE * patch.forces()[..., 1:2]
-        self.traction = np.zeros((*self.boundary.normals.shape, 1))
-        self.traction[patch.rows] = uniform
-        self.forces: Floats = patch.nodal_forces(uniform)[..., 0]
+        loads = nodal_loads(PIN, STEEL, self.space, self.boundary, ALONG_Y)
+        self.traction: Floats = FORCE * loads.traction
+        self.forces: Floats = FORCE * loads.forces[..., 0]
 
 
 @dataclass(frozen=True)

@@ -13,9 +13,9 @@ from fea.pin_loads import Floats, PinLoads
 
 @dataclass(frozen=True)
 class Picture:
-    """A mesh with results at its N nodes at one instant: points (N, 3) m; cells (M, 10), VTK's order
-    of "tetra10", or (M, 4), "quad"; displacement (N, 3) m; stress (N, 6) Pa: xx, yy, zz, yz, xz, xy;
-    envelope (N,): the largest von Mises stress over all instants, Pa, NaN inside the body.
+    """A mesh with results at its N nodes at one instant: points (N, 3) m; cells (M, 10), in VTK's
+    order of "tetra10", or (M, 4), "quad"; displacement (N, 3) m; stress (N, 6) Pa: xx, yy, zz, yz,
+    xz, xy; envelope (N,): the largest von Mises stress over all instants, Pa, NaN inside the body.
     """
 
     points: Floats

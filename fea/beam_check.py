@@ -1,4 +1,4 @@
-"""A cantilever pin's axial stress from the solid, beside beam theory.
+"""A cantilever pin's axial stress from the harmonic model, beside beam theory.
 
 Along the surface line in tension, with the load on the band's surface, and with the same load on a
 thin bore along the axis, which imitates the line load of the theory.
@@ -13,20 +13,22 @@ from numpy.typing import NDArray
 
 from fea.beam import BeamForces, cantilever
 from fea.distributed_load import axis_load_term, constant_stress, surface_load_term
+from fea.harmonic import HarmonicModel
 from fea.material import Material
 from fea.pin_loads import UnitLoad
-from fea.solid import SolidModel, UnitFields
 from geometry import Pin
-from geometry.solid_mesh import MeshSize, solid_mesh
+from geometry.meridian_mesh import SectionSize, Spot, meridian_mesh
 
 Floats = NDArray[np.float64]
 
+ACROSS = 20.0  # elements over the thinnest wall, which the bore leaves
+CLOSE = 0.01  # element at the root's edge and the load's, of the radius
 WINDOW = (0.3, 0.8)  # of the loaded length: away from the root and from the load's end
 
 
 @dataclass(frozen=True)
 class Difference:
-    """Of the solid's stress from the beam's, as parts of the beam's peak: rms and largest within
+    """Of elasticity's stress from the beam's, as parts of the beam's peak: rms and largest within
     the window, largest anywhere and its z (m).
     """
 
@@ -71,48 +73,42 @@ def beam_check(
     material: Material,
     band: str,
     force: tuple[float, float],
-    fields: UnitFields,
     bore: float,
     points: int = 101,
 ) -> BeamCheck:
     """Compare a pin clamped at its start under a transverse force (N) on one band.
 
-    fields: the pin's unit fields, which include the band's x and y. bore: diameter (m) of the thin
-    bore on which the load also acts.
+    bore: diameter (m) of the thin bore on which the load also acts.
+
+    Raises: MeshError, SolveError.
     """
     size = float(np.hypot(*force))
-    away = float(np.arctan2(-force[1], -force[0]))  # the side in tension
     beam = cantilever(pin, {band: size}, np.linspace(0.0, pin.band(band).z1, points))
-    bored = pin.with_bore(band, bore)
-    mesh = solid_mesh(bored, MeshSize(across=6.0), (0.0, pin.band(band).z1))
-    name = f"bore {band}"
-    both = tuple((UnitLoad(name, "force", 1), phase) for phase in (0, 1))
-    on_axis = SolidModel(bored, mesh, material, ("start",)).solve(both)
-    c = [force[p] if load == UnitLoad(band, "force", 1) else 0.0 for load, p in fields.loads]
+    radius = pin.band(band).radius
     w, nu = size / pin.band(band).length, material.poisson_ratio
+    bored = pin.with_bore(band, bore)
     return BeamCheck(
         force=size,
-        surface_term=constant_stress(surface_load_term(nu), w, pin.band(band).radius),
-        axis_term=constant_stress(axis_load_term(nu), w, pin.band(band).radius),
+        surface_term=constant_stress(surface_load_term(nu), w, radius),
+        axis_term=constant_stress(axis_load_term(nu), w, radius),
         beam=beam,
-        surface_load=axial_stress(fields, np.array(c), pin.band(band).radius, away, beam.z),
-        axis_load=axial_stress(on_axis, np.array(force), pin.band(band).radius, away, beam.z),
+        surface_load=size * tension(pin, material, band, radius, beam.z),
+        axis_load=size * tension(bored, material, f"bore {band}", radius, beam.z),
     )
 
 
-def axial_stress(fields: UnitFields, c: Floats, radius: float, angle: float, z: Floats) -> Floats:
-    """Axial stress (Z,) in Pa at z (m) on the surface line at `angle` (rad) of a cylinder of
-    `radius` (m), under unit loads c (L,): linear between the nodes of the unrolled surface.
-    """
-    from scipy.interpolate import LinearNDInterpolator
+def tension(pin: Pin, material: Material, loaded: str, radius: float, z: Floats) -> Floats:
+    """Axial stress (Z,) in Pa at z (m) on the side in tension of a shaft of `radius` (m) held at
+    its start, for one newton across on the surface `loaded`.
 
-    nodes = fields.surface.nodes
-    x = fields.space.nodes[nodes]
-    r = np.hypot(x[:, 0], x[:, 1])
-    turn = np.angle(np.exp(1j * (np.arctan2(x[:, 1], x[:, 0]) - angle)))
-    near = (np.abs(r - radius) < 1e-6 * radius) & (np.abs(turn) < 0.8)
-    stress = fields.stress[nodes[near], 2] @ c
-    line = LinearNDInterpolator(np.stack([radius * turn[near], x[near, 2]], axis=1), stress)
-    rims = x[near, 2].min(), x[near, 2].max()
-    inside = np.clip(z, rims[0] + 1e-6 * radius, rims[1] - 1e-6 * radius)  # within the hull
-    return np.asarray(line(np.zeros_like(z), inside))
+    Raises: MeshError, SolveError.
+    """
+    rims = ((radius, 0.0), (radius, float(z.max())))
+    spots = [Spot(r, at, CLOSE * radius, 0.2 * radius) for r, at in rims]
+    mesh = meridian_mesh(pin, SectionSize(ACROSS, 8.0, 0.2), spots)
+    load = UnitLoad(loaded, "force", 1)
+    fields = HarmonicModel(pin, mesh, material, ("start",)).solve((load,))
+    skin = fields.points[: fields.skin]
+    on = np.flatnonzero(np.isclose(skin[:, 0], radius, rtol=1e-9) & (skin[:, 1] <= z.max()))
+    on = on[np.argsort(skin[on, 1], kind="stable")]
+    return np.asarray(-np.interp(z, skin[on, 1], fields.stress[on, 2, 0]))

@@ -1,13 +1,14 @@
 """The largest von Mises stress round the axis, by superposing unit fields of several harmonics.
 
-At a point of the section the stress is the sum over n of P_n cos n theta + Q_n sin n theta. With one
-harmonic alone, von Mises squared is a quadratic form of (cos n theta, sin n theta) with entries
+At a point of the section the stress is the sum over n of P_n cos n theta + Q_n sin n theta. With
+one harmonic alone, von Mises squared is a quadratic form of (cos n theta, sin n theta) with entries
 A = P.P, B = P.Q, C = Q.Q (in von Mises' metric), so that its maximum is closed:
 
     (A + C) / 2 + sqrt(((A - C) / 2)^2 + B^2)
 
 With several, von Mises being a seminorm, the sum of these maxima is a bound from above; only points
-whose bound exceeds what has been found elsewhere are sampled, and the best sample is polished.
+whose bound exceeds what has been found elsewhere are sampled; von Mises squared is a trigonometric
+polynomial, so samples give its highest crest (fea.crest).
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.crest import highest_crest
 from fea.meridian_fields import MeridianFields
 from fea.pin_loads import Floats, PinLoads
 from fea.stress import VON_MISES, von_mises
@@ -25,11 +27,24 @@ from fea.stress import VON_MISES, von_mises
 Ints = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
-SAMPLES = 64  # round the axis
-FIRST = 8  # points per instant that are sampled to begin with
+SAMPLES = 64  # round the axis, at least
+SAMPLES_PER_WAVE = 5  # of von Mises squared
+FIRST = 8  # points, or pairs of points and instants, that are sampled to begin with
 CHUNK = 4096  # points sampled at once
 EVEN = np.array([1.0, 1.0, 1.0, 0.0, 1.0, 0.0])  # components that go as cos psi
 ODD = 1.0 - EVEN
+_SIZES, _AXES = np.linalg.eigh(VON_MISES)
+ROOT = (_AXES * np.sqrt(np.maximum(_SIZES, 0.0))).T[1:]  # (5, 6): ROOT^T ROOT is VON_MISES
+
+
+@dataclass(frozen=True)
+class Top:
+    """The largest von Mises stress (Pa), at a point (its number), an instant and an angle (rad)."""
+
+    value: float
+    point: int
+    instant: int
+    angle: float
 
 
 @dataclass(frozen=True)
@@ -63,6 +78,22 @@ class Wave:
         )
         return G @ aa + H @ bb, G @ ab - H @ ab, G @ bb + H @ aa
 
+    @cached_property
+    def _metric(self) -> tuple[Floats, Floats]:
+        """Even and odd parts of unit stresses (S, 5, K): squares sum to von Mises squared."""
+        even, odd = (ROOT @ (self.stress * part[:, None]) for part in (EVEN, ODD))
+        return even, odd
+
+    def measured(self, points: Ints, angle: float) -> Floats:
+        """At points (J,) and an angle five numbers (J, 5, T) whose squares sum to von Mises
+        squared, and which add up over the waves.
+        """
+        even, odd = (x[points].reshape(-1, x.shape[2]) for x in self._metric)
+        c, s = np.cos(self.n * angle), np.sin(self.n * angle)
+        found = even @ (c * self.first + s * self.second).T
+        found += odd @ (s * self.first - c * self.second).T
+        return np.asarray(found.reshape(len(points), 5, -1))
+
     def parts(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
         """P and Q, (J, 6) each, at pairs of points and instants (J,)."""
         s = self.stress[points]
@@ -95,10 +126,10 @@ class Circumference:
         """
         if not self.waves:
             return np.zeros((self.points, self.count))
-        return np.sum([wave.bound for wave in self.waves], axis=0)
+        return np.asarray(sum(wave.bound for wave in self.waves))
 
     def largest(self, among: Mask) -> tuple[Floats, Ints, Floats]:
-        """Over the points of a mask (S,), at every instant: maximum (T,) Pa, its point and angle."""
+        """Over the points of a mask (S,), at every instant: maximum (T,) Pa, point, angle."""
         rows = np.flatnonzero(among)
         bound = self.bound[rows]
         every = np.arange(self.count)
@@ -118,6 +149,29 @@ class Circumference:
         order = np.lexsort((-value, t))
         top = order[np.searchsorted(t[order], every)]
         return value[top], rows[i[top]], angle[top]
+
+    def top(self, among: Mask) -> Top:
+        """Over the points of a mask (S,) and all instants.
+
+        Pairs of points and instants are sampled in the order of their bounds until the next bound
+        is below what was found.
+        """
+        rows = np.flatnonzero(among)
+        bound = self.bound[rows].ravel()
+        best = Top(0.0, int(rows[0]) if len(rows) else 0, 0, 0.0)
+        batch = 1 if len(self.waves) < 2 else FIRST
+        while len(bound):
+            pairs = np.argpartition(-bound, min(batch, len(bound) - 1))[:batch]
+            row, instant = np.divmod(pairs, self.count)
+            value, angle = self.round(rows[row], instant)
+            k = int(value.argmax())
+            if value[k] > best.value:
+                best = Top(float(value[k]), int(rows[row[k]]), int(instant[k]), float(angle[k]))
+            bound[pairs] = -1.0
+            if len(self.waves) < 2 or bound.max() <= best.value:
+                break
+            batch *= 4
+        return best
 
     def round(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
         """Largest von Mises stress (J,) Pa round the axis at pairs of points and instants, and the
@@ -139,25 +193,24 @@ class Circumference:
             return _closed(*parts[0])
 
         def at(angles: Floats) -> Floats:
-            return von_mises(sum(_wave(n, P, Q, angles) for n, P, Q in parts))
+            return von_mises(np.asarray(sum(_wave(n, P, Q, angles) for n, P, Q in parts)))
 
-        angles = np.tile(np.arange(SAMPLES) * 2.0 * np.pi / SAMPLES, (len(points), 1))
-        value = at(angles)
-        k = value.argmax(axis=1)
-        angle, best = angles[np.arange(len(k)), k], value.max(axis=1)
-        step = 2.0 * np.pi / SAMPLES
-        for _ in range(3):  # the vertex of a parabola, ever closer
-            three = at(angle[:, None] + step * np.array([-1.0, 0.0, 1.0])) ** 2
-            bend = three[:, 0] - 2.0 * three[:, 1] + three[:, 2]
-            slope = three[:, 2] - three[:, 0]
-            flat = bend >= -1e-12 * three[:, 1]
-            move = np.where(flat, 0.0, -0.5 * slope / np.where(flat, 1.0, bend))
-            there = angle + step * np.clip(move, -1.0, 1.0)
-            found = at(there[:, None])[:, 0]
-            better = found > best
-            angle, best = np.where(better, there, angle), np.where(better, found, best)
-            step /= 8.0
-        return best, angle
+        degree = 2 * parts[-1][0]  # of von Mises squared
+        count = max(SAMPLES, SAMPLES_PER_WAVE * degree)
+        even = np.tile(np.arange(count) * 2.0 * np.pi / count, (len(points), 1))
+        angle = highest_crest(at(even) ** 2, degree)
+        return at(angle[:, None])[:, 0], angle
+
+    def squares(self, points: Ints, angle: float) -> Floats:
+        """Von Mises squared (J, T) at points (J,) at an angle (rad) and every instant, Pa^2."""
+        if len(self.waves) == 1:
+            A, B, C = (form[points] for form in self.waves[0].forms)
+            c, s = np.cos(self.waves[0].n * angle), np.sin(self.waves[0].n * angle)
+            return np.asarray(c * c * A + 2.0 * c * s * B + s * s * C)
+        found = np.zeros((len(points), 5, self.count))
+        for wave in self.waves:
+            found += wave.measured(points, angle)
+        return np.asarray(np.square(found).sum(axis=1))
 
     def stress(self, points: Ints, instants: Ints, angle: Floats) -> Floats:
         """Stress (J, 6) in Pa at pairs of points and instants and angles (J,): rr, tt, zz, tz, rz,

@@ -20,6 +20,8 @@ from fea.tractions import ALONG_X, ALONG_Z, Traction, closing_tractions, tractio
 from geometry import Pin
 from geometry.meridian_mesh import MeridianMesh
 
+_NOWHERE = np.zeros((0, 2))
+
 
 class HarmonicModel:
     """A pin on one mesh of its section, held at surfaces (by name).
@@ -44,9 +46,7 @@ class HarmonicModel:
         self.space = Section(section)
         self.outline = Outline(self.space)
 
-    def solve(
-        self, loads: tuple[UnitLoad, ...], extra: Floats = np.zeros((0, 2))
-    ) -> MeridianFields:
+    def solve(self, loads: tuple[UnitLoad, ...], extra: Floats = _NOWHERE) -> MeridianFields:
         """Unit fields, at `extra` points (P, 2) inside the section too.
 
         Raises: SolveError when the pin is not held or a check fails.
@@ -70,20 +70,25 @@ class HarmonicModel:
 
     def _applied(self, n: int, loads: list[UnitLoad]) -> tuple[Floats, Floats]:
         """Nodal forces (unknowns, K) and tractions at the outline's nodes (E, 3, 3, K)."""
-        parts = [() if load.kind == "body" else (traction(self.pin, load),) for load in loads]
+        parts: list[tuple[Traction, ...]] = [
+            () if load.kind == "body" else (traction(self.pin, load),) for load in loads
+        ]
         forces, tractions = self._forces(n, parts)
         for k, load in enumerate(loads):
             if load.kind == "body":
                 forces[:, k] = self._body_force(n)
         if self.clamps or n > 1:
             return forces, tractions
-        closing = [
-            c for p in ((0, 1) if n == 0 else (0,)) for c in closing_tractions(self.pin, n, p)
-        ]
-        against, spread = self._forces(n, closing)
         modes = rigid_motions(self.space.nodes, n)
-        share = -np.linalg.solve(modes.T @ against, modes.T @ forces)
-        return forces + against @ share, tractions + spread @ share
+        for shears in (True, False):
+            here = [k for k, load in enumerate(loads) if load.shears == shears]
+            phases = (0,) if n else (0, 1)
+            closing = [c for p in phases for c in closing_tractions(self.pin, n, p, not shears)]
+            against, spread = self._forces(n, closing)
+            share = -np.linalg.solve(modes.T @ against, modes.T @ forces[:, here])
+            forces[:, here] += against @ share
+            tractions[..., here] += spread @ share
+        return forces, tractions
 
     def _forces(self, n: int, parts: list[tuple[Traction, ...]]) -> tuple[Floats, Floats]:
         forces = [_generalised(self.outline.forces(part, n)) for part in parts]
@@ -141,8 +146,8 @@ def _polar(u: Floats) -> Floats:
 
 
 def rigid_motions(nodes: Floats, n: int) -> Floats:
-    """Unknowns of the rigid motions of harmonic 1 (shift along x, turn about y) or 0 (shift along z,
-    spin), (3 N, 2); a load's work on them is its resultant.
+    """Unknowns of the rigid motions of harmonic 1 (shift along x, turn about y) or 0 (shift along
+    z, spin), (3 N, 2); a load's work on them is its resultant.
     """
     r, z = nodes.T
     nought = np.zeros_like(r)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -21,17 +23,19 @@ from geometry.meridian_mesh import SectionSize, Spot, meridian_mesh
 
 SIZE = SectionSize()  # of the first mesh
 CLOSE = (1e-2, 1e-3, 1e-4)  # element at a corner or clamp's edge, of the diameter, mesh by mesh
+EDGE = 0.04  # element at the edge of any band, of the diameter
 LOGARITHM = 0.2  # element at a load's edge, of the excluded distance
+MATTERS = 0.5  # of the maximum elsewhere
 RIM = 32  # points round a place
 READ = (4.0, 0.01)  # exponents: from so many elements to so much of the diameter
 
 
 @dataclass(frozen=True)
 class HarmonicSolution:
-    """Fields on one mesh, and how fine that mesh is at singular places."""
+    """Fields on one mesh, and how fine (of the diameter) that mesh is at each singular place."""
 
     fields: MeridianFields
-    close: float
+    close: tuple[float, ...]
 
 
 def harmonic_solution(
@@ -42,21 +46,37 @@ def harmonic_solution(
     places: tuple[Place, ...],
     level: int,
     ratio: float,
+    before: Collection[Look] = (),
 ) -> HarmonicSolution:
     """All unit loads of the cases on mesh number `level`, each `ratio` times finer than the one
-    before. Raises: MeshError, SolveError.
+    before, from which the looks `before` are.
+
+    Raises: MeshError, SolveError.
     """
-    close = CLOSE[min(level, len(CLOSE) - 1)]
+    close = tuple(
+        CLOSE[min(level, len(CLOSE) - 1) if _matters(k, before) else 0] for k in range(len(places))
+    )
     spots = [
-        Spot(p.r, p.z, close * 2.0 * p.r, p.radius)
+        Spot(p.r, p.z, near * 2.0 * p.r, p.radius)
         if p.kind != "edge of a load"
         else Spot(p.r, p.z, LOGARITHM * p.radius / ratio**level, p.radius)
-        for p in places
+        for p, near in zip(places, close, strict=True)
     ]
-    section = meridian_mesh(pin, SIZE.finer(ratio**level), spots)
+    taken = {(s.r, s.z) for s in spots}
+    for name in dict.fromkeys(name for case in cases for name in case.surfaces):
+        band = pin.band(name)
+        for at in {(band.radius, band.z0), (band.radius, band.z1)} - taken:
+            d = 2.0 * band.radius
+            spots.append(Spot(*at, EDGE * d / ratio**level, 4.0 * EDGE * d))
+    section = meridian_mesh(pin, SIZE.finer(ratio**level), sorted(spots))
     loads = tuple(dict.fromkeys(load for case in cases for load in case.coefficients()))
-    rims = np.concatenate([np.zeros((0, 2)), *(_rim(pin, p) for p in places)])
+    rims = np.concatenate([np.zeros((0, 2)), *map(partial(_rim, pin), places)])
     return HarmonicSolution(HarmonicModel(pin, section, material, clamps).solve(loads, rims), close)
+
+
+def _matters(place: int, before: Collection[Look]) -> bool:
+    """Whether stress in a place is so large that it may govern, so that its growth is measured."""
+    return any(look.places[place].felt >= MATTERS * look.maximum for look in before)
 
 
 def _rim(pin: Pin, place: Place) -> Floats:
@@ -65,13 +85,15 @@ def _rim(pin: Pin, place: Place) -> Floats:
     """
     angle = 2.0 * np.pi * (np.arange(RIM) + 0.5) / RIM
     circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    x = np.concatenate([f * place.radius * circle for f in (1.0, FELT)]) + [place.r, place.z]
+    both = np.concatenate([place.radius * circle, FELT * place.radius * circle])
+    x = both + np.array([place.r, place.z])
     at = np.clip(np.searchsorted(pin.stations, x[:, 1]) - 1, 0, len(pin.segments) - 1)
     outer = np.array([s.diameter / 2.0 for s in pin.segments])[at]
     inner = np.array([s.bore / 2.0 for s in pin.segments])[at]
     little = 1e-3 * place.radius
     inside = (x[:, 0] > inner + little) & (x[:, 0] < outer - little)
-    return x[inside & (x[:, 1] > little) & (x[:, 1] < pin.length - little)]
+    found: Floats = x[inside & (x[:, 1] > little) & (x[:, 1] < pin.length - little)]
+    return found
 
 
 class HarmonicAnswer:
@@ -105,16 +127,15 @@ def harmonic_look(solution: HarmonicSolution, places: tuple[Place, ...], loads: 
     fields = solution.fields
     around = Circumference(fields, loads)
     outside, distances = _outside(fields, places)
-    maxima, point, angle = around.largest(outside)
-    instant = int(maxima.argmax())
+    top = around.top(outside)
     return Look(
         unknowns=fields.unknowns,
-        maximum=float(maxima[instant]),
-        instant=instant,
-        location=_location(fields.points[point[instant]], angle[instant]),
-        maxima=maxima,
+        maximum=top.value,
+        instant=top.instant,
+        location=_location(fields.points[top.point], top.angle),
         places=tuple(
-            _inside(solution, around, p, d) for p, d in zip(places, distances, strict=True)
+            _inside(solution, around, p, d, close)
+            for p, d, close in zip(places, distances, solution.close, strict=True)
         ),
     )
 
@@ -125,17 +146,20 @@ def _location(point: Floats, angle: float) -> Point:
 
 
 def _inside(
-    solution: HarmonicSolution, around: Circumference, place: Place, distance: Floats
+    solution: HarmonicSolution,
+    around: Circumference,
+    place: Place,
+    distance: Floats,
+    close: float,
 ) -> Inside:
     within = distance <= place.radius
-    maxima, _, angle = around.largest(within)
-    felt = around.largest(within & (distance >= FELT * place.radius * (1.0 - 1e-9)))[0].max()
-    instant = int(maxima.argmax())
-    location = _location(np.array([place.r, place.z]), angle[instant])
+    top = around.top(within)
+    felt = around.top(within & (distance >= FELT * place.radius * (1.0 - 1e-9))).value
+    location = _location(np.array([place.r, place.z]), top.angle)
     exponent = None
-    if place.kind != "edge of a load":
-        exponent = _exponent(solution, around, place, distance, instant)
-    return Inside(float(maxima[instant]), float(felt), location, exponent)
+    if place.kind != "edge of a load" and close == CLOSE[-1]:
+        exponent = _exponent(solution, around, place, distance, top.instant)
+    return Inside(top.value, felt, location, exponent)
 
 
 def _exponent(
@@ -144,7 +168,7 @@ def _exponent(
     """From the side of the place on which stress is larger."""
     skin = solution.fields.skin
     d = distance[:skin] / (2.0 * place.r)
-    near = np.flatnonzero((d >= READ[0] * solution.close) & (d <= READ[1]))
+    near = np.flatnonzero((d >= READ[0] * CLOSE[-1]) & (d <= READ[1]))
     if not len(near):
         return None
     value, _ = around.round(near, np.full(len(near), instant))

@@ -92,6 +92,7 @@ def solve_pin(
         out |= _beam(job, pin, live, notes)
         live = tuple(c for c in live if c.case not in out)
     if live:
+        model: Literal["harmonic", "solid"]
         model = "solid" if asked.model == "solid" or not isinstance(pin, Pin) else "harmonic"
         out |= _refined(job, model, live, notes)
     return tuple(out[c.case] for c in cases)
@@ -114,17 +115,26 @@ class _Job:
         return maximum + error < limit or maximum - error > limit
 
 
-def _places(job: _Job, cases: tuple[PinLoads, ...]) -> tuple[Place, ...]:
-    """Where stress has no bound in any of the cases."""
-    if not isinstance(job.pin, Pin):
+def places_of(
+    pin: PinLike,
+    material: Material,
+    clamps: tuple[str, ...],
+    cases: tuple[PinLoads, ...],
+    distance: float = 0.1,
+) -> tuple[Place, ...]:
+    """Where stress has no bound in any of the cases; of a body of revolution only."""
+    if not isinstance(pin, Pin):
         return ()
-    loaded = set() if job.held else set(job.pin.connections)
-    for case in cases:
-        for load in case.coefficients():
-            if load.kind in ("force", "moment"):
-                loaded.add(load.surface)
-    nu = job.material.poisson_ratio
-    return singular_places(job.pin, job.held, tuple(sorted(loaded)), nu, job.asked.distance)
+    acting = {load for case in cases for load in case.coefficients() if load.shears}
+    loaded = {load.surface for load in acting}
+    if acting and not clamps:  # the balance is closed on all bands
+        loaded |= set(pin.connections)
+    nu = material.poisson_ratio
+    return singular_places(pin, clamps, tuple(sorted(loaded)), nu, distance)
+
+
+def _places(job: _Job, cases: tuple[PinLoads, ...]) -> tuple[Place, ...]:
+    return places_of(job.pin, job.material, job.held, cases, job.asked.distance)
 
 
 def _beam(
@@ -178,7 +188,10 @@ def _refined(
         look: Callable[[PinLoads], Look]
         if model == "harmonic":
             assert isinstance(pin, Pin)
-            section = harmonic_solution(pin, job.material, job.held, cases, places, level, ratio)
+            last = [s.looks[-1] for s in seen.values()]
+            section = harmonic_solution(
+                pin, job.material, job.held, cases, places, level, ratio, last
+            )
             found, look = places, partial(harmonic_look, section, places)
             answer = HarmonicAnswer(section, places)
         else:
@@ -228,8 +241,10 @@ def _why(job: _Job, model: str) -> Callable[[Seen, Peak], str]:
             chosen = "solid: the pin is no body of revolution"
         elif job.asked.goal == "decide":
             chosen = "harmonic: a beam's error leaves the required factor open"
-        else:
+        elif job.asked.tolerance < PLAIN:
             chosen = f"harmonic: a beam is never known to {job.asked.tolerance:.1%}"
+        else:
+            chosen = f"harmonic: no beam knows this maximum to {job.asked.tolerance:.1%}"
         if seen.known(job.asked.tolerance):
             return f"{chosen}; its error is within the tolerance on {len(seen.looks)} meshes"
         if job.decided(peak.max_von_mises or 0.0, seen.error):

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fea.pin_loads import Floats
-
 Point = tuple[float, float, float]
 
 FELT = 0.1  # of a place's radius: a place governs if at this distance it has the largest stress
@@ -27,17 +25,14 @@ class Inside:
 @dataclass(frozen=True)
 class Look:
     """maximum: largest von Mises stress (Pa) outside all singular places, at `location` (m) at the
-    governing `instant`; maxima: (T,) the same at every instant. places: what is inside of each.
+    governing `instant`. places: what is inside of each.
 
-    scatter: of the maximum by the mesh alone, where it was seen, Pa. left_out: by how much (Pa) what
-    the model leaves out may change the maximum.
+    scatter: of the maximum by the mesh alone, where it was seen, Pa.
     """
 
     unknowns: int
     maximum: float
     instant: int
     location: Point
-    maxima: Floats
     places: tuple[Inside, ...] = ()
     scatter: float = 0.0
-    left_out: float = 0.0

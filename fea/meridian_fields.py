@@ -12,9 +12,9 @@ class MeridianFields:
     """Amplitudes per unit of K loads at points (S, 2): r, z in m; stress (S, 6, K) in Pa.
 
     Components are rr, tt, zz, tz, rz, rt; under a load of harmonic n and phase p the first three
-    and rz go as cos psi, the others as sin psi, psi = n theta - p pi / 2. displacement (S, 3, K) in
-    m: r and z as cos psi, theta as sin psi. skin: how many of the points, the first ones, follow the
-    outline counter-clockwise. unknowns: of the system that was solved.
+    and rz go as cos psi, the others as sin psi, psi = n theta - p pi / 2. displacement (S, 3, K)
+    in m: r and z as cos psi, theta as sin psi. skin: how many of the points, the first ones, follow
+    the outline counter-clockwise. unknowns: of the system that was solved.
     """
 
     points: Floats

@@ -81,16 +81,17 @@ class Peak:
 
 
 def discretisation_error(
-    history: tuple[Refinement, ...], ratio: float, scatter: float = 0.0
+    history: tuple[Refinement, ...], ratio: float, scatter: float = 0.0, least_order: float = 0.5
 ) -> float:
     """Estimated error (Pa) of the last of at least two meshes, each `ratio` times finer.
 
     Roache's grid convergence index, Fs e / (ratio^p - 1), with the observed order p and Fs = 1.25.
     On unstructured meshes two values can agree by chance, so the last change e counts as at least
     what the change before it would leave at p = 2, the order of the recovered stress. Where the
-    changes hardly shrink (p < 0.5) Fs = 3, and p = 0.5; but a change within twice the `scatter`
-    (Pa) that the mesh has anyway is no trend, and then p = 2. Two meshes: p = 2 and Fs = 3, for
-    what it is worth. Never less than the scatter.
+    changes hardly shrink (p < 0.5) Fs = 3, and p is the `least_order` that the model can have; but
+    to and fro, or within twice the `scatter` (Pa) that the mesh has anyway, is no trend, and then
+    p = 2.
+    Two meshes: p = 2 and Fs = 3, for what it is worth. Never less than the scatter.
 
     Source: Roache, J. Fluids Eng. 116 (1994) 405.
     """
@@ -106,6 +107,6 @@ def discretisation_error(
     p = math.log(before / least) / math.log(ratio) if before else -math.inf
     if p >= 0.5:
         return max(1.25 * least / math.expm1(p * math.log(ratio)), scatter)
-    if change <= 2.0 * scatter:
+    if change <= 2.0 * scatter or (values[-1] - values[-2]) * (values[-2] - values[-3]) < 0.0:
         return formal
-    return 3.0 * change / (math.sqrt(ratio) - 1.0)
+    return 3.0 * change / math.expm1(least_order * math.log(ratio))

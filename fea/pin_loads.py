@@ -37,6 +37,11 @@ class UnitLoad(NamedTuple):
     n: int
 
     @property
+    def shears(self) -> bool:
+        """Whether its traction has a shear that jumps at the band's edge."""
+        return self.kind in ("force", "moment")
+
+    @property
     def phases(self) -> tuple[int, ...]:
         """Which there are: two, but along the axis and for n = 0 pressure only 0, about it 1."""
         if self.n:

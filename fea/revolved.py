@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from fea.answer import Picture
-from fea.circumference import EVEN, ODD, Circumference
+from fea.circumference import Circumference, Ints
 from fea.meridian_fields import MeridianFields
 from fea.pin_loads import Floats, PinLoads
-from fea.stress import VON_MISES
 
 SECTORS = 60
 CLOSE = 1e-9  # of the length: points that are one
@@ -43,14 +42,14 @@ def revolve(fields: MeridianFields, loads: PinLoads, instant: int) -> Picture:
 _COMPONENTS = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
 
 
-def _skin(fields: MeridianFields) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
+def _skin(fields: MeridianFields) -> Ints:
     """Points of the skin in order, those that coincide once, if neither is a corner's."""
     x = fields.points[: fields.skin]
     step = np.linalg.norm(np.diff(x, axis=0), axis=1)
     return np.flatnonzero(np.concatenate([[True], step > CLOSE * np.ptp(x[:, 1])]))
 
 
-def _quads(count: int) -> np.ndarray[tuple[int, int], np.dtype[np.int64]]:
+def _quads(count: int) -> Ints:
     i = np.arange(count - 1)[:, None] * SECTORS
     j = np.arange(SECTORS)[None]
     k = (j + 1) % SECTORS
@@ -60,7 +59,7 @@ def _quads(count: int) -> np.ndarray[tuple[int, int], np.dtype[np.int64]]:
 def _moved(
     fields: MeridianFields,
     loads: PinLoads,
-    rows: np.ndarray[tuple[int], np.dtype[np.int64]],
+    rows: Ints,
     instant: int,
     angle: Floats,
 ) -> Floats:
@@ -75,19 +74,9 @@ def _moved(
     return out
 
 
-def _envelope(
-    around: Circumference, rows: np.ndarray[tuple[int], np.dtype[np.int64]], theta: Floats
-) -> Floats:
+def _envelope(around: Circumference, rows: Ints, theta: Floats) -> Floats:
     """Largest von Mises stress over all instants at rows x angles, flat."""
     out = np.zeros((len(rows), len(theta)))
     for k, angle in enumerate(theta):
-        stress = np.zeros((len(rows), 6, around.count))
-        for wave in around.waves:
-            c, s = np.cos(wave.n * angle), np.sin(wave.n * angle)
-            x = wave.stress[rows]
-            even, odd = x * EVEN[:, None], x * ODD[:, None]
-            stress += even @ (c * wave.first + s * wave.second).T
-            stress += odd @ (s * wave.first - c * wave.second).T
-        square = np.einsum("pit,ij,pjt->pt", stress, VON_MISES, stress, optimize=True)
-        out[:, k] = np.sqrt(np.maximum(square, 0.0)).max(axis=1)
-    return out.ravel()
+        out[:, k] = around.squares(rows, float(angle)).max(axis=1)
+    return np.sqrt(np.maximum(out, 0.0)).ravel()

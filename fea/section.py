@@ -20,6 +20,7 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 from skfem import Basis, ElementTriP2
 
 from fea.material import Material
@@ -27,6 +28,8 @@ from geometry.meridian_mesh import MeridianMesh
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+NEAREST = 12  # elements by their middles, among which the one round a point is looked for
 
 
 class Section:
@@ -74,13 +77,14 @@ class Section:
     @cached_property
     def integrals(self) -> Floats:
         """Of the shape functions times r over the section, (N,), m^3."""
-        value = np.stack([self.basis.basis[i][0].value[0] for i in range(6)], axis=-1)
+        value = np.stack([np.asarray(self.basis.basis[i][0])[0] for i in range(6)], axis=-1)
         found = (
             self._weights @ value
             if value.ndim == 2
             else np.einsum("mq,mqi->mi", self._weights, value)
         )
-        return np.bincount(self.elements.ravel(), found.ravel(), minlength=len(self.nodes))
+        count = len(self.nodes)
+        return np.bincount(self.elements.ravel(), found.ravel(), count).astype(np.float64)
 
     @cached_property
     def _samples(self) -> Basis:
@@ -119,11 +123,14 @@ class Section:
     def values_at(self, points: Floats) -> sp.csr_matrix:
         """Matrix (P, N) from values at nodes to those at points (P, 2) inside the section."""
         corners = self.nodes[self.elements[:, :3]]
-        edges = np.stack([corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]], axis=2)
-        x = np.einsum("mab,pmb->pma", np.linalg.inv(edges), points[:, None] - corners[:, 0])
+        near = cKDTree(corners.mean(axis=1)).query(points, min(NEAREST, len(corners)))[1]
+        a, b, c = (corners[near, k] for k in range(3))
+        edges = np.stack([b - a, c - a], axis=3)
+        x = np.linalg.solve(edges, (points[:, None] - a)[..., None])[..., 0]
         depth = np.minimum(x.min(axis=2), 1.0 - x.sum(axis=2))  # in elements, as if straight-sided
-        element = depth.argmax(axis=1)
-        at = x[np.arange(len(points)), element].T
+        best = depth.argmax(axis=1)
+        every = np.arange(len(points))
+        element, at = np.asarray(near)[every, best], x[every, best].T
         values = [ElementTriP2().lbasis(at, i)[0] for i in range(6)]
         row = np.arange(len(points)).repeat(6)
         column = self.elements[element].ravel()
@@ -168,7 +175,8 @@ def strains_of(basis: Basis) -> tuple[Floats, Floats]:
     """
     grad = np.stack([basis.basis[i][0].grad for i in range(6)], axis=-1)  # (2, M, Q, 6)
     value = np.stack(
-        [np.broadcast_to(basis.basis[i][0].value, grad.shape[1:3]) for i in range(6)], axis=-1
+        [np.broadcast_to(np.asarray(basis.basis[i][0]), grad.shape[1:3]) for i in range(6)],
+        axis=-1,
     )
     by_r, by_z = grad
     over_r = value / basis.global_coordinates()[0][..., None]

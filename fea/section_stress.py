@@ -27,8 +27,8 @@ def section_stress(
     at_extra: sp.csr_matrix,
 ) -> tuple[Floats, Floats]:
     """Displacement (S, 3, K) in m and stress (S, 6, K) in Pa, amplitudes, at the five points of
-    each edge of the outline, then at the inner nodes, then where `at_extra` (P, N) takes values to, of
-    displacements u (N, 3, K) of harmonic n.
+    each edge of the outline, then at the inner nodes, then where `at_extra` (P, N) takes values to,
+    of displacements u (N, 3, K) of harmonic n.
 
     traction: (E, 3, 3, K) Pa at the nodes of the outline's edges. Inside, and where the traction is
     unknown because the surface is held, stresses are extended linearly from three points of each
@@ -43,12 +43,8 @@ def section_stress(
     on_skin = np.where(keep[..., None, None], rough, found.stress)
     inner = inner_nodes(space, outline)
     return (
-        np.concatenate(
-            [found.displacement.reshape(-1, 3, K), u[inner], _apply(at_extra, u)]
-        ),
-        np.concatenate(
-            [on_skin.reshape(-1, 6, K), averaged[inner], _apply(at_extra, averaged)]
-        ),
+        np.concatenate([found.displacement.reshape(-1, 3, K), u[inner], _apply(at_extra, u)]),
+        np.concatenate([on_skin.reshape(-1, 6, K), averaged[inner], _apply(at_extra, averaged)]),
     )
 
 

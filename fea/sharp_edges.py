@@ -30,8 +30,8 @@ class SharpEdges:
     radius: Floats
 
     def places(self, x: Floats, part: float) -> list[tuple[Place, Mask]]:
-        """Of points x (S, 3), m: those within `part` of the diameter of any inner corner, and of any
-        clamp's edge, as a place each; none where there is nothing of the kind.
+        """Of points x (S, 3), m: those within `part` of the diameter of any inner corner, and of
+        any clamp's edge, as a place each; none where there is nothing of the kind.
         """
         first = len(self.corner)
         kinds: tuple[tuple[Kind, Floats, Floats, str], ...] = (

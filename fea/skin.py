@@ -2,13 +2,16 @@
 
 Along the outline (arc s, tangent t, in the order counter-clockwise) the strains in the surface are
 
-    e_ss = t . d(U, W)/ds      e_tt = (U + n V) / r      2 e_st = dV/ds - (t_r (n U + V) + t_z n W) / r
+    e_ss = t . d(U, W)/ds      e_tt = (U + n V) / r
+    2 e_st = dV/ds - (t_r (n U + V) + t_z n W) / r
 
-and with the traction they give all of the stress. The derivatives are taken at two Gauss points of
-each edge, where those of quadratic elements are most exact, and interpolated by the cubic through
-the four nearest ones; where the outline has a corner, or the traction a jump, by the line through
-the edge's own. `python -m benchmarks recovery` compares this with the average of extrapolated
-stresses: several times less error at a fillet.
+and with the traction they give all of the stress. The first and the last are taken at two Gauss
+points of each edge, where those of quadratic elements are most exact, and interpolated by the cubic
+through the four nearest ones; where the outline has a corner, or the traction a jump, by the line
+through the edge's own. The strains and not the derivatives are interpolated: these turn with the
+outline, so that a mere rotation would leave stresses where its curvature jumps. `python -m
+benchmarks recovery` compares this with the average of extrapolated stresses: several times less
+error at a fillet.
 """
 
 from __future__ import annotations
@@ -19,7 +22,7 @@ import numpy as np
 
 from fea.material import Material
 from fea.outline import Outline, shapes, slopes
-from fea.section import Floats, Section
+from fea.section import Floats, Ints, Section
 from fea.surface import SMOOTH
 
 AT = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])  # where on an edge
@@ -43,7 +46,7 @@ def skin(
     space: Section, outline: Outline, material: Material, n: int, u: Floats, traction: Floats
 ) -> Skin:
     """Of displacements u (N, 3, K), m, of harmonic n under tractions (E, 3, 3, K), Pa, at the ends
-    and middle of the outline's edges. On an axis (r = 0) values are those of points close by.
+    and middle of the outline's edges. On an axis (r = 0) stresses are finite and mean nothing.
     """
     x, moved = space.nodes[outline.nodes], u[outline.nodes]
     at = np.einsum("qi,eia->eqa", shapes(AT), x)
@@ -51,25 +54,28 @@ def skin(
     tangent /= np.linalg.norm(tangent, axis=2, keepdims=True)
     U = np.einsum("qi,eiak->eqak", shapes(AT), moved)
     r = np.maximum(at[..., 0], 1e-6 * at[..., 0].max())[..., None]
-    t_r, t_z = tangent[..., 0, None], tangent[..., 1, None]
-    stretch, slope = _derivatives(outline, x, moved, traction)
+    stretch, shear = _strains(outline, n, x, moved, traction)
     e_tt = (U[..., 0, :] + n * U[..., 1, :]) / r
-    shear = slope - (t_r * (n * U[..., 0, :] + U[..., 1, :]) + t_z * n * U[..., 2, :]) / r
     applied = np.einsum("qi,eiak->eqak", shapes(AT), traction)
     return Skin(at, tangent, U, _stress(material, tangent, stretch, e_tt, shear, applied))
 
 
-def _derivatives(
-    outline: Outline, x: Floats, moved: Floats, traction: Floats
+def _strains(
+    outline: Outline, n: int, x: Floats, moved: Floats, traction: Floats
 ) -> tuple[Floats, Floats]:
-    """e_ss and dV/ds at the points, (E, 5, K) each."""
-    along = slopes(np.array([-_GAUSS, _GAUSS]))
+    """e_ss and 2 e_st at the points, (E, 5, K) each; both are nought in rigid motions."""
+    at = np.array([-_GAUSS, _GAUSS])
+    along = slopes(at)
     path = np.einsum("qi,eia->eqa", along, x)
     step = np.linalg.norm(path, axis=2)
     change = np.einsum("qi,eiak->eqak", along, moved) / step[..., None, None]
     direction = path / step[..., None]
     stretch = np.einsum("eqa,eqak->eqk", direction, change[:, :, [0, 2]])
-    value = np.stack([stretch, change[:, :, 1]], axis=2)  # (E, 2, 2, K)
+    u_r, u_t, u_z = np.moveaxis(np.einsum("qi,eiak->eqak", shapes(at), moved), 2, 0)
+    t_r, t_z = direction[..., 0, None], direction[..., 1, None]
+    r = np.einsum("qi,ei->eq", shapes(at), x[..., 0])[..., None]
+    shear = change[:, :, 1] - (t_r * (n * u_r + u_t) + t_z * n * u_z) / r
+    value = np.stack([stretch, shear], axis=2)  # (E, 2, 2, K)
     weights = np.stack([(1.0 - AT / _GAUSS) / 2.0, (1.0 + AT / _GAUSS) / 2.0], axis=1)
     out = np.einsum("pq,eqck->epck", weights, value)
     half = np.linalg.norm(np.einsum("qi,eia->eqa", slopes(np.zeros(1)), x), axis=2)[:, 0]
@@ -77,8 +83,8 @@ def _derivatives(
     a, c = half * _GAUSS, half * (1.0 - _GAUSS)
     left, right = before >= 0, after >= 0
 
-    def cubic(rows: Floats, p: int, samples: list[Floats], places: list[Floats]) -> None:
-        w = _lagrange(half[rows] * AT[p], np.stack([q for q in places], axis=1))
+    def cubic(rows: Ints, p: int, samples: list[Floats], places: list[Floats]) -> None:
+        w = _lagrange(half[rows] * AT[p], np.stack(places, axis=1))
         out[rows, p] = np.einsum("eq,eqck->eck", w, np.stack(samples, axis=1))
 
     e, f = np.flatnonzero(right), after[right]
@@ -95,7 +101,7 @@ def _derivatives(
     return out[:, :, 0], out[:, :, 1]
 
 
-def _neighbours(outline: Outline, x: Floats, traction: Floats) -> tuple[Floats, Floats]:
+def _neighbours(outline: Outline, x: Floats, traction: Floats) -> tuple[Ints, Ints]:
     """Edges before and after each (E,) across which the surface and its load go on smoothly; -1
     where they do not.
     """

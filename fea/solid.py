@@ -110,7 +110,8 @@ class SolidModel:
         boundary = surface(self.space)
         loads = nodal_loads(self.pin, self.material, self.space, boundary, units)
         if not self.clamps:
-            loads = closed(self.pin, self.space, boundary, loads)
+            pressing = np.array([not load.shears for load, _ in units])
+            loads = closed(self.pin, self.space, boundary, loads, pressing)
         displacement, support = self._displace(loads.forces)
         held = np.zeros(len(boundary.facets), dtype=bool)
         for name in self.clamps:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fea.elasticity import Discretisation
 from fea.linear import SolveError
@@ -69,17 +70,50 @@ def nodal_loads(
     return NodalLoads(t, F)
 
 
-def closed(pin: PinLike, space: Discretisation, boundary: Surface, loads: NodalLoads) -> NodalLoads:
+def closed(
+    pin: PinLike,
+    space: Discretisation,
+    boundary: Surface,
+    loads: NodalLoads,
+    pressing: NDArray[np.bool_] | None = None,
+) -> NodalLoads:
     """The loads with closing tractions on all bands that make each free of resultants.
+
+    pressing: (L,) which loads are closed by pressures; none by default.
 
     Raises: SolveError when there is no band to take them up.
     """
     if not pin.connections:
         raise SolveError(f"pin {pin.name}: nothing holds it, and no connection bears on it")
     patches = {name: Patch(space, boundary, name) for name in pin.connections}
+    out = NodalLoads(loads.traction.copy(), loads.forces.copy())
+    pressing = np.zeros(loads.forces.shape[2], dtype=bool) if pressing is None else pressing
+    for pressure in (False, True):
+        here = np.flatnonzero(pressing == pressure)
+        if not len(here):
+            continue
+        unit, F = _closing(pin, space, boundary, patches, pressure)
+        has = resultants(space.nodes, F)
+        amount = np.zeros((F.shape[2], len(here)))
+        for _ in range(2):  # once more for round-off
+            left = resultants(space.nodes, loads.forces[..., here] + F @ amount)
+            amount -= np.linalg.solve(has, left)
+        out.traction[..., here] += unit @ amount
+        out.forces[..., here] += F @ amount
+    return out
+
+
+def _closing(
+    pin: PinLike,
+    space: Discretisation,
+    boundary: Surface,
+    patches: dict[str, Patch],
+    pressure: bool,
+) -> tuple[Floats, Floats]:
+    """Closing tractions (F, 6, 3, 6), Pa, and their nodal forces (N, 3, 6)."""
     fields: list[Floats] = []
     for n, phase in ((1, 0), (1, 1), (0, 0), (0, 1)):
-        for everywhere in closing_tractions(pin, n, phase):
+        for everywhere in closing_tractions(pin, n, phase, pressure):
             field = np.zeros(boundary.normals.shape)
             for t in everywhere:
                 patch = patches[t.surface]
@@ -89,12 +123,7 @@ def closed(pin: PinLike, space: Discretisation, boundary: Surface, loads: NodalL
     F = np.zeros((*space.nodes.shape, len(fields)))
     for patch in patches.values():
         F += patch.nodal_forces(unit[patch.rows])
-    has = resultants(space.nodes, F)
-    amount = np.zeros((len(fields), loads.forces.shape[2]))
-    for _ in range(2):  # once more for round-off
-        left = resultants(space.nodes, loads.forces + F @ amount)
-        amount -= np.linalg.solve(has, left)
-    return NodalLoads(loads.traction + unit @ amount, loads.forces + F @ amount)
+    return unit, F
 
 
 def components(t: Traction, x: Floats, n: int, phase: int) -> Floats:

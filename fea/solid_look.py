@@ -18,6 +18,7 @@ from fea.solid import SolidModel, UnitFields, acting
 from fea.zones import Place, clamp_rims
 from geometry import CutPin, Pin, PinLike
 from geometry.meshing import solid_mesh
+from geometry.pin import FACES
 from geometry.solid_mesh import MeshSize
 
 Mask = NDArray[np.bool_]
@@ -25,7 +26,7 @@ Mask = NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class SolidSolution:
-    """Unit fields on one mesh, and what of the surface's nodes is in each of the singular places."""
+    """Unit fields on one mesh, and which nodes of the surface are in each singular place."""
 
     fields: UnitFields
     places: tuple[Place, ...]
@@ -58,7 +59,8 @@ def solid_solution(
     edges = tuple(z for name in names for z in (pin.band(name).z0, pin.band(name).z1))
     profile = pin.profile if isinstance(pin, CutPin) else pin
     if isinstance(profile, Pin):
-        edges += tuple(z for _, z in clamp_rims(profile, clamps))
+        turned = tuple(name for name in clamps if name in (*FACES, *profile.labels))
+        edges += tuple(z for _, z in clamp_rims(profile, turned))
     mesh = solid_mesh(pin, size, tuple(dict.fromkeys(edges)))
     units = acting(cases) or ((UnitLoad(names[0], "force", 1), 0),)  # of which there is nought
     fields = SolidModel(pin, mesh, material, clamps).solve(units)
@@ -120,9 +122,9 @@ def solid_look(
         maximum=top.maximum,
         instant=top.instant,
         location=top.location,
-        maxima=top.maxima,
         places=tuple(
-            Inside(value, value, at, s) for (value, at), s in zip(top.inside, exponents, strict=True)
+            Inside(value, value, at, s)
+            for (value, at), s in zip(top.inside, exponents, strict=True)
         ),
         scatter=top.scatter,
     )

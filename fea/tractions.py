@@ -40,6 +40,7 @@ class Traction:
 
 
 ALONG_X = np.array([1.0, -1.0, 0.0])  # amplitudes of a traction of constant direction, n = 1
+PUSHING = np.array([2.0, 0.0, 0.0])  # amplitudes of a pressure with the same resultant
 ALONG_Z = np.array([0.0, 0.0, 1.0])
 ABOUT_Z = np.array([0.0, -1.0, 0.0])  # at phase 1
 INWARDS = np.array([-1.0, 0.0, 0.0])
@@ -73,11 +74,14 @@ def pressure_amplitude(n: int, band: Band) -> float:
     return float(2.0 * highest / math.pi * (-1.0) ** (n // 2 + 1) / (n * n - 1.0))
 
 
-def closing_tractions(pin: PinLike, n: int, phase: int) -> tuple[tuple[Traction, ...], ...]:
+def closing_tractions(
+    pin: PinLike, n: int, phase: int, pressure: bool = False
+) -> tuple[tuple[Traction, ...], ...]:
     """The tractions that close the balance of a pin that nothing holds, each on all its bands: for
     n = 1 a constant and one that grows with z; for n = 0 along the axis, or about it at phase 1.
 
-    Of all tractions on the bands with a given resultant, these have the least mean square.
+    Of all tractions on the bands with a given resultant, these have the least mean square; of all
+    pressures, those for `pressure`, which have no shear that would jump at a band's edge.
     """
     bands = [pin.band(name) for name in pin.connections]
 
@@ -86,7 +90,8 @@ def closing_tractions(pin: PinLike, n: int, phase: int) -> tuple[tuple[Traction,
 
     if n == 1:
         middle = sum(b.area * b.middle for b in bands) / sum(b.area for b in bands)
-        return everywhere(ALONG_X, _NONE), everywhere(_NONE, ALONG_X / pin.length, middle)
+        across = PUSHING if pressure else ALONG_X
+        return everywhere(across, _NONE), everywhere(_NONE, across / pin.length, middle)
     if phase == 0:
         return (everywhere(ALONG_Z, _NONE),)
     return (tuple(Traction(b.name, 0.0, ABOUT_Z * b.radius, _NONE) for b in bands),)

@@ -10,6 +10,7 @@ from fea.look import Look
 from fea.peak import Peak, Refinement, SingularZone, Verdict, discretisation_error
 from fea.zones import Place
 
+LEAST_ORDER = {"harmonic": 1.0}  # meshes of sections have points at the rims of what is excluded
 FEWEST = 3  # meshes before a maximum may be called converged: two can agree by chance
 
 ARTICLES = {
@@ -46,8 +47,8 @@ class Seen:
         last = self.looks[-1]
         if len(self.looks) == 1:
             return last.maximum
-        found = discretisation_error(self.history, self.ratio, last.scatter)
-        return found + last.left_out
+        least = LEAST_ORDER.get(self.model, 0.5)
+        return discretisation_error(self.history, self.ratio, last.scatter, least)
 
     @property
     def relative(self) -> float:
@@ -119,8 +120,8 @@ def _nowhere(zone: SingularZone) -> str:
     where = f"{zone.kind} ({first} / {second})"
     if zone.exponent_theory == 0.0:
         return f"no maximum exists: at {where} stress grows like log(1/distance)"
-    measured = "" if zone.exponent is None else f"{zone.exponent:.2f} measured, "
-    return (
-        f"no maximum exists: at {where} stress grows like distance^-s, s = {measured}"
-        f"{zone.exponent_theory:.2f} by theory"
-    )
+    exponents = ((zone.exponent, "measured"), (zone.exponent_theory, "by theory"))
+    told = ", ".join(f"{s:.2f} {how}" for s, how in exponents if s is not None)
+    if not told:
+        return f"no maximum exists: at {where} stress grows without bound"
+    return f"no maximum exists: at {where} stress grows like distance^-s, s = {told}"

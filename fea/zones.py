@@ -21,8 +21,8 @@ class Place:
     """A circle at (r, z), m, near which stress grows like d^-theory at the distance d.
 
     between: the surfaces that meet there. theory: the exponent in plane strain, so for axial and
-    bending loads; 0 at the edge of a load, where it grows like log(1/d); None where the angle is not
-    known. torsion_theory: the
+    bending loads; 0 at the edge of a load, where it grows like log(1/d); None where the angle is
+    not known. torsion_theory: the
     exponent in torsion; bending has this part too. radius: how far (m) stress is not to be read.
     advice: what would make it finite, for people.
     """
@@ -38,8 +38,13 @@ class Place:
 
     @property
     def following(self) -> float:
-        """Exponent q of the next term in plane strain, which goes as d^q."""
-        return 0.5 if self.kind == "edge of a clamp" and self.theory == 0.5 else 0.0
+        """Exponent q of the term d^q that stands for all that follows in plane strain: theirs where
+        one side of a smooth surface is held; at inner corners what fits twenty of them best
+        (`python -m benchmarks corners`).
+        """
+        if self.kind == "sharp corner":
+            return 0.2
+        return 0.5 if self.theory == 0.5 else 0.0
 
     @property
     def following_torsion(self) -> float:

@@ -22,7 +22,7 @@ Ints = NDArray[np.int64]
 TRIANGLE6, LINE3 = 9, 8  # gmsh's element types
 MOST_TRIANGLES = 2e5
 SMALLEST_JACOBIAN = 0.1  # min / max of det J that every element must exceed
-STEEPEST = 0.7  # growth of elements next to a spot, on all meshes
+STEEPEST = 0.6  # growth of elements next to a spot, on all meshes
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class SectionSize:
         return SectionSize(self.across * factor, self.arc * factor, self.growth / factor)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, order=True)
 class Spot:
     """A point of the outline where the elements are `size` (m) small; within `reach` (m) of it they
     grow as fast as on the coarsest mesh.
@@ -133,9 +133,7 @@ def _cuts(edge: Edge, spots: tuple[Spot, ...]) -> list[RZ]:
         if (reach := reaches.get(end))
     }
     (r, z), (to_r, to_z) = edge.start, edge.end
-    return [
-        (r + x * (to_r - r), z + x * (to_z - z)) for x in sorted(parts) if 0.001 < x < 0.999
-    ]
+    return [(r + x * (to_r - r), z + x * (to_z - z)) for x in sorted(parts) if 0.001 < x < 0.999]
 
 
 def _set_sizes(gmsh: Any, pin: Pin, size: SectionSize, spots: tuple[Spot, ...]) -> None:
@@ -181,7 +179,9 @@ def _set_sizes(gmsh: Any, pin: Pin, size: SectionSize, spots: tuple[Spot, ...]) 
     gmsh.option.setNumber("Mesh.MeshSizeMax", far)
 
 
-def _collect(gmsh: Any, pin: Pin, outline: tuple[Edge, ...], curves: list[list[int]]) -> MeridianMesh:
+def _collect(
+    gmsh: Any, pin: Pin, outline: tuple[Edge, ...], curves: list[list[int]]
+) -> MeridianMesh:
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     triangles = gmsh.model.mesh.getElementsByType(TRIANGLE6)[1].reshape(-1, 6).astype(np.int64)
     row = np.full(int(tags.max()) + 1, -1)

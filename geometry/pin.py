@@ -134,7 +134,12 @@ class Pin:
         return tuple(s.connection for s in self.segments if s.connection)
 
     def band(self, name: str) -> Band:
-        """The outer surface called `name` (a segment's connection, name or number)."""
+        """The outer surface called `name` (a segment's connection, name or number), or "bore " and
+        such a name for the inner one.
+        """
+        if name.startswith("bore ") and name[5:] in self.labels:
+            i = self.labels.index(name[5:])
+            return Band(name, self.stations[i], self.stations[i + 1], 0.5 * self.segments[i].bore)
         return self.bands[self._position(name)]
 
     def surface(self, name: str) -> str:

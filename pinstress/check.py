@@ -7,7 +7,6 @@ from loads.four_bar import four_bar
 from loads.mobility import require_determined
 from pinstress.build import case_loads
 from pinstress.errors import InputError
-from pinstress.limits import require_built
 from pinstress.mechanism import linkage, span
 from pinstress.pins import pin as pin_of
 from pinstress.pins import weight
@@ -19,7 +18,6 @@ from pinstress.study import Study
 def describe(study: Study) -> str:
     """A summary of a valid study. Raises: InputError for what only its pieces together show."""
     table, system = study.table, study.system
-    require_built(study, table.analysis.model)
     read_published(study)
     lines = [f"{study.path}: {table.title}", f"units {system.name}"]
     mechanism = linkage(study) if table.mechanism else None

@@ -6,7 +6,6 @@ import numpy as np
 
 from fea.beam_check import beam_check as compare_with_beam
 from fea.material import Material
-from fea.refine import Solution
 from geometry import Pin
 from loads import GROUND, Lever, Linkage, Slider
 from pinstress.build import CaseLoads
@@ -29,25 +28,24 @@ def require_cantilever(study: Study, task: Task, case: str) -> None:
         )
 
 
-def beam_check(study: Study, task: Task, material: Material, at: Solution) -> plain.BeamCheck:
+def beam_check(study: Study, task: Task, material: Material) -> plain.BeamCheck:
     """The beam check of a pin at the instant of its largest force."""
     check, pin = study.table.beam_check, task.pin
     assert check is not None
-    assert at.fields is not None
     assert isinstance(pin, Pin)
-    loads = next(c for c in task.loads if c.case == at.peak.case)
+    loads = next(c for c in task.loads if c.case == check.case)
     (band,) = loads.surfaces
     forces = loads.forces[:, 0, :2]
     plane = forces[np.linalg.norm(forces, axis=1).argmax()]
     found = compare_with_beam(
-        pin, material, band, (float(plane[0]), float(plane[1])), at.fields, check.axis_bore
+        pin, material, band, (float(plane[0]), float(plane[1])), check.axis_bore
     )
     unit = study.system.factor
     surface, axis = found.difference(found.surface_load), found.difference(found.axis_load)
     z0, z1 = pin.band(band).z0, pin.band(band).z1
     return plain.BeamCheck(
         pin=pin.name,
-        case=at.peak.case,
+        case=check.case,
         connection=band,
         force=found.force / unit("force"),
         diameter=2.0 * pin.band(band).radius / unit("length"),

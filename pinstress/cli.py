@@ -89,7 +89,7 @@ def example(text: str) -> str:
 @click.option(
     "--model",
     type=click.Choice(["auto", "beam", "harmonic", "solid"]),
-    help="Instead of the study's; beam and harmonic are not built yet.",
+    help="Instead of the study's.",
 )
 @click.option(
     "--tolerance",

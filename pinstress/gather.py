@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from importlib.metadata import version
 
-import numpy as np
-
-from fea.envelope import envelope
-from fea.peak import Peak
-from fea.refine import Solution
+from fea.hand_checks import hand_checks
+from fea.ladder import Solution
+from fea.peak import Peak, SingularZone
+from fea.pin_loads import Floats
 from fea.stress import von_mises
+from geometry import CutPin, Pin
 from pinstress.build import CaseLoads
 from pinstress.gather_loads import drive_position, mechanics
 from pinstress.pins import material as material_of
@@ -62,10 +62,7 @@ def _pin_result(
     material = material_of(study, study.table.pin[peak.pin].material)
     required = study.table.analysis.required_safety_factor
     factor = peak.safety_factor(material.yield_strength)
-    meets = None
-    if factor is not None and required is not None:
-        # a peak that is no value decides nothing, whichever side of the limit it is on
-        meets = factor >= required if peak.verdict != "unconverged" else None
+    meets = _meets(peak, material.yield_strength, required)
     case = loads[peak.case]
     times = case.reactions.times
     positions = drive_position(study, case)
@@ -95,6 +92,64 @@ def _pin_result(
         left_out=task.left_out[peak.case],
         published_max_von_mises=theirs[0],
         published_safety_factor=theirs[1],
+        why=peak.why,
+        singular_at=tuple(_zone(study, zone) for zone in peak.singular_at),
+        hand_checks=_hand_checks(study, task, peak.case, times),
+    )
+
+
+def _meets(peak: Peak, strength: float | None, required: float | None) -> bool | None:
+    """Whether the required factor is reached; None where that is open. Outside of singular places
+    too little is too little, but enough there says nothing of the places themselves.
+    """
+    if strength is None or required is None or peak.max_von_mises is None:
+        return None
+    stress, error, limit = peak.max_von_mises, peak.error_estimate or 0.0, strength / required
+    if peak.verdict == "converged":
+        return stress <= limit
+    if stress - error > limit:
+        return False
+    return True if stress + error <= limit and peak.verdict == "unconverged" else None
+
+
+def _zone(study: Study, zone: SingularZone) -> plain.SingularZone:
+    unit = study.system.factor
+    x, y, z = (a / unit("length") for a in zone.location)
+    return plain.SingularZone(
+        location=(x, y, z),
+        kind=zone.kind,
+        between=zone.between,
+        exponent=zone.exponent,
+        exponent_theory=zone.exponent_theory,
+        excluded=zone.excluded / unit("length"),
+        governs=zone.governs,
+        max_von_mises=zone.max_von_mises / unit("stress"),
+        advice=zone.advice,
+    )
+
+
+def _hand_checks(
+    study: Study, task: Task, case: str, times: Floats | None
+) -> tuple[plain.HandCheck, ...]:
+    """Of a pin with a profile; a pin that is cut is checked as if it were not."""
+    pin = task.pin.profile if isinstance(task.pin, CutPin) else task.pin
+    if not isinstance(pin, Pin):
+        return ()
+    material = material_of(study, study.table.pin[pin.name].material)
+    loads = next(x for x in task.loads if x.case == case)
+    stress = study.system.factor("stress")
+    return tuple(
+        plain.HandCheck(
+            name=c.name,
+            at=c.at,
+            time=None if times is None else float(times[c.instant]),
+            stress=c.stress / stress,
+            strength=None if c.strength is None else c.strength / stress,
+            factor=c.factor,
+            formula=c.formula,
+            source=c.source,
+        )
+        for c in hand_checks(pin, material, loads, task.clamps)
     )
 
 
@@ -121,10 +176,10 @@ def landing_range(
 ) -> plain.LandingRange | None:
     """A pin over the ranges of its landing's impulse: unit fields superposed, nothing solved."""
     case, over = solution.peak.case, loads[solution.peak.case].range
-    if over is None or solution.fields is None:
+    if over is None or solution.answer is None:
         return None
     unit = study.system.factor
-    maxima = envelope(solution.fields, task.ranges[case]).maxima
+    maxima = solution.answer.maxima(task.ranges[case])
     strength = material_of(study, study.table.pin[task.pin.name].material).yield_strength
     return plain.LandingRange(
         pin=task.pin.name,
@@ -139,22 +194,33 @@ def landing_range(
     )
 
 
-def field(study: Study, solution: Solution) -> plain.Field | None:
-    """A pin's field at its governing instant; None when it was not solved."""
-    fields, found = solution.fields, solution.envelope
-    if fields is None or found is None:
+def field(study: Study, task: Task, solution: Solution) -> plain.Field | None:
+    """A pin's field at its governing instant; None if not solved, or if the model has none."""
+    peak, unit = solution.peak, study.system.factor
+    loads = next(x for x in task.loads if x.case == peak.case)
+    shown = solution.answer.picture(loads, peak.instant) if solution.answer else None
+    if shown is None:
         return None
-    unit = study.system.factor
-    stress = fields.stress @ found.coefficients / unit("stress")
-    over_all = np.full(len(stress), np.nan)
-    over_all[fields.surface.nodes] = found.field / unit("stress")
+    strength = material_of(study, study.table.pin[peak.pin].material).yield_strength
+    stress = shown.stress / unit("stress")
     return plain.Field(
-        pin=solution.peak.pin,
-        case=solution.peak.case,
-        points=fields.space.nodes / unit("length"),
-        cells=fields.space.elements,
-        displacement=fields.displacement @ found.coefficients / unit("length"),
+        pin=peak.pin,
+        case=peak.case,
+        points=shown.points / unit("length"),
+        cells=shown.cells,
+        displacement=shown.displacement / unit("length"),
         stress=stress,
         von_mises=von_mises(stress),
-        envelope=over_all,
+        envelope=shown.envelope / unit("stress"),
+        cell_type=shown.cell_type,
+        yield_strength=_scaled(strength, unit("stress")),
+        outside=_outside(study, peak),
     )
+
+
+def _outside(study: Study, peak: Peak) -> tuple[float, tuple[float, float, float]] | None:
+    if peak.verdict != "singular" or peak.max_von_mises is None or peak.location is None:
+        return None
+    unit = study.system.factor
+    x, y, z = (a / unit("length") for a in peak.location)
+    return peak.max_von_mises / unit("stress"), (x, y, z)

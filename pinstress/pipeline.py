@@ -7,11 +7,10 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from fea.refine import Solution, refine
+from fea.ladder import Asked, Model, Solution, solve_pin
 from pinstress import checks, gather
 from pinstress.build import CaseLoads, case_loads
 from pinstress.errors import InputError
-from pinstress.limits import require_built
 from pinstress.measures import published_values
 from pinstress.mechanism import linkage
 from pinstress.pins import material as material_of
@@ -51,7 +50,7 @@ class Plan:
     """
 
     study: Study
-    tolerance: float
+    asked: Asked
     loads: dict[str, CaseLoads]
     tasks: list[Task]
     published: Published
@@ -63,7 +62,7 @@ def prepare(
     *,
     pins: Iterable[str] | None = None,
     cases: Iterable[str] | None = None,
-    model: str | None = None,
+    model: Model | None = None,
     tolerance: float | None = None,
 ) -> Plan:
     """Find the reactions and lay out what is to be solved.
@@ -72,7 +71,6 @@ def prepare(
 
     Raises: InputError for bad input.
     """
-    require_built(study, model or study.table.analysis.model)
     published = read_published(study)
     loads = all_loads(study, select(study.table.case, cases, "case"))
     checks.motion_check(study, loads, published)  # mistakes there should not wait for the stresses
@@ -80,11 +78,29 @@ def prepare(
     todo = tasks(study, select(study.table.pin, pins, "pin"), loads)
     check, checked = study.table.beam_check, None
     if check is not None:
-        asked = (t for t in todo if t.pin.name == check.pin and check.case in t.left_out)
-        checked = next(asked, None)
+        choice = (t for t in todo if t.pin.name == check.pin and check.case in t.left_out)
+        checked = next(choice, None)
         if checked is not None:
             checks.require_cantilever(study, checked, check.case)
-    return Plan(study, tolerance or study.table.analysis.tolerance, loads, todo, published, checked)
+    asked = _asked(study, model, tolerance)
+    for task in todo:
+        if asked.model in ("beam", "harmonic") and not task.pin.revolved:
+            raise InputError(
+                f"{study.path}: pin {task.pin.name} is no body of revolution, which the "
+                f"{asked.model} model needs: use auto or solid"
+            )
+    return Plan(study, asked, loads, todo, published, checked)
+
+
+def _asked(study: Study, model: Model | None, tolerance: float | None) -> Asked:
+    table = study.table.analysis
+    return Asked(
+        tolerance or table.tolerance,
+        model or table.model,
+        table.goal,
+        table.required_safety_factor,
+        table.excluded_distance,
+    )
 
 
 def solve(
@@ -109,19 +125,20 @@ def solve(
             progress(message, part)
 
         material = material_of(study, study.table.pin[task.pin.name].material)
-        found = refine(task.pin, material, task.clamps, task.loads, plan.tolerance, progress=tell)
+        found = solve_pin(task.pin, material, task.clamps, task.loads, plan.asked, tell)
         for solution in found:
-            if (field := gather.field(study, solution)) is not None:
+            if (field := gather.field(study, task, solution)) is not None:
                 keep(field)
         if task is plan.checked and study.table.beam_check is not None:
             tell(f"pin {task.pin.name}, beam check")
-            at = next(s for s in found if s.peak.case == study.table.beam_check.case)
-            beam = checks.beam_check(study, task, material, at)
+            beam = checks.beam_check(study, task, material)
         landing += [r for s in found if (r := gather.landing_range(study, plan.loads, task, s))]
-        solutions += [(task, Solution(s.peak, None, None)) for s in found]  # fields are large
+        solutions += [(task, Solution(s.peak, None)) for s in found]  # fields are large
     pins, cases = list(study.table.pin), list(plan.loads)
     solutions.sort(key=lambda s: (pins.index(s[1].peak.pin), cases.index(s[1].peak.case)))
-    results = gather.results(study, plan.loads, solutions, beam, plan.published, plan.tolerance)
+    results = gather.results(
+        study, plan.loads, solutions, beam, plan.published, plan.asked.tolerance
+    )
     return replace(results, landing=tuple(landing))
 
 

@@ -238,10 +238,15 @@ class LegCase(CaseTable):
 
 
 class AnalysisTable(Table):
-    """What is asked of the analysis."""
+    """What is asked of the analysis. goal: "value", the maximum to the tolerance, or "decide", on
+    which side of the required safety factor it is. excluded_distance: of the local diameter, from
+    corners and edges of clamps, where no stress is read if they are singular.
+    """
 
     model: Literal["auto", "beam", "harmonic", "solid"] = "auto"
+    goal: Literal["value", "decide"] = "value"
     tolerance: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.02
+    excluded_distance: Annotated[float, Field(ge=0.01, le=0.5)] = 0.1
     required_safety_factor: Annotated[float, Field(gt=0.0)] | None = None
 
 

@@ -6,11 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea.pin_loads import Distribution, PinLoads
+from fea.pin_loads import Distribution, Floats, PinLoads
 from geometry import PinLike
 from loads import Reactions
 from pinstress.build import CaseLoads
 from pinstress.errors import InputError
+from pinstress.pins import material
 from pinstress.pins import pin as pin_of
 from pinstress.study import Study
 
@@ -69,15 +70,35 @@ def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, 
             )
         left_out[case] = tuple(c for c in here if c in held)
         spread = study.table.case[case].distribution
-        cases.append(_loads(case, applied, given.reactions, spread))
+        body = np.zeros(3)
+        if not clamps and material(study, study.table.pin[pin.name].material).density:
+            body = _own_weight(given, applied)
+        cases.append(_loads(case, applied, given.reactions, spread, body))
         if given.range is not None:
-            ranges[case] = _loads(case, applied, given.range.reactions, spread)
+            ranges[case] = _loads(case, applied, given.range.reactions, spread, body)
     return Task(pin, clamps, tuple(cases), left_out, ranges)
 
 
 def _loads(
-    case: str, applied: list[str], reactions: Reactions, distribution: Distribution
+    case: str, applied: list[str], reactions: Reactions, distribution: Distribution, body: Floats
 ) -> PinLoads:
     forces = np.stack([reactions.in_pin_axes(c) for c in applied], axis=1)
     moments = np.stack([reactions.moment_in_pin_axes(c) for c in applied], axis=1)
-    return PinLoads(case, tuple(applied), forces, moments, distribution)
+    return PinLoads(case, tuple(applied), forces, moments, distribution, body)
+
+
+def _own_weight(case: CaseLoads, connections: list[str]) -> Floats:
+    """Gravity less the pin's acceleration, (T, 3) m/s^2 in its own axes, where a mechanism moves
+    it; else nought. A clamped pin's weight goes into its clamp, as the loads there do.
+    """
+    if case.dynamics is None:
+        return np.zeros(3)
+    motion, first = case.dynamics.motion, connections[0]
+    for joint in motion.linkage.joints:
+        if any(c.name == first for c in joint.connections):
+            across = np.array(motion.linkage.gravity) - motion.joint(joint.name)[2]
+            turn = case.reactions.turn[:, case.reactions.connections.index(first)]
+            c, s = np.cos(turn), np.sin(turn)
+            x, y = across.T
+            return np.stack([c * x + s * y, c * y - s * x, np.zeros(len(x))], axis=1)
+    return np.zeros(3)

@@ -28,7 +28,7 @@ def write_hand_checks(results: Results, directory: Path) -> None:
     if not checked:
         return
     units = results.units
-    columns = ("pin", "case", *CHECK, *MODEL, "stress_unit", "time_unit")
+    columns = ("pin", "case", "check", *CHECK[1:], *MODEL, "stress_unit", "time_unit")
     write_csv(directory / "hand_checks.csv", columns, _rows(checked, units))
     parts = [f"# Checks by hand: {markdown.escaped(results.title)}", HAND_CHECKS]
     for pin in checked:

@@ -91,10 +91,10 @@ def _pin(pin: PinResult) -> dict[str, Any]:
             }
             for step in pin.history
         ],
+        "singular_at": [_zone(zone) for zone in pin.singular_at],
+        "hand_checks": [_check(check) for check in pin.hand_checks],
         "held": pin.held,
         "left_out": list(pin.left_out),
-        "singular_at": [_zone(zone) for zone in pin.singular_at],
-        "hand_checks": [_hand_check(check) for check in pin.hand_checks],
     }
 
 
@@ -112,7 +112,7 @@ def _zone(zone: SingularZone) -> dict[str, Any]:
     }
 
 
-def _hand_check(check: HandCheck) -> dict[str, Any]:
+def _check(check: HandCheck) -> dict[str, Any]:
     return {
         "name": check.name,
         "at": check.at,

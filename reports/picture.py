@@ -18,7 +18,6 @@ SIZE = (1200, 800)
 SUBDIVISIONS = 3  # of each quadratic triangle, so that round pins look round
 SHARP = 30.0  # degrees between faces from which an edge is drawn
 INK = "#222222"
-CELLS = {"tetra10": "QUADRATIC_TETRA", "quad": "QUAD"}  # VTK's names
 
 
 def render_pin(field: Field, path_png: Path, units: Units, title: str) -> None:
@@ -26,19 +25,22 @@ def render_pin(field: Field, path_png: Path, units: Units, title: str) -> None:
     import pyvista
 
     peak = int(np.argmax(field.von_mises))
-    largest = float(field.von_mises[peak])
+    largest, place, told = float(field.von_mises[peak]), field.points[peak], "max"
+    if field.outside is not None:  # colours would only show how fine the mesh is at the zones
+        largest, place = field.outside[0], np.asarray(field.outside[1])
+        told = "max outside excluded zones"
     power = _power(largest)
     # VTK's font has no raised digits.
     unit = units.stress if power == 0 else f"10^{power} {units.stress}"
     name = f"von Mises [{unit}]"
     surface = _surface(field, name, 10.0**power)
-    view = View.of(field.points, field.points[peak])
+    view = View.of(field.points, place)
     plotter = pyvista.Plotter(off_screen=True, window_size=list(SIZE))
     try:
         plotter.background_color = pyvista.Color("white")
         _add_surface(plotter, surface, name, largest / 10.0**power)
-        label = f"max {engineering(largest / 10.0**power)} {unit}"
-        _mark(plotter, field.points[peak], view.beside(field.points, field.points[peak]), label)
+        label = f"{told} {engineering(largest / 10.0**power)} {unit}"
+        _mark(plotter, place, view.beside(field.points, place), label)
         plotter.add_text(_drawable(title), position=(24, SIZE[1] - 48), font_size=13, color=INK)
         # Apart from the bar, whose own title lies on its labels.
         plotter.add_text(name, position=(0.2 * SIZE[0], 0.1 * SIZE[1]), font_size=10, color=INK)
@@ -65,7 +67,8 @@ def _surface(field: Field, name: str, scale: float) -> pyvista.PolyData:
     import pyvista
     from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter
 
-    kind = np.full(len(field.cells), pyvista.CellType[CELLS[field.cell_type]], dtype=np.uint8)
+    shape = {"tetra10": pyvista.CellType.QUADRATIC_TETRA, "quad": pyvista.CellType.QUAD}
+    kind = np.full(len(field.cells), shape[field.cell_type], dtype=np.uint8)
     counts = np.full((len(field.cells), 1), field.cells.shape[1])
     cells = np.hstack([counts, field.cells]).ravel()
     grid = pyvista.UnstructuredGrid(cells, kind, np.asarray(field.points, dtype=float))

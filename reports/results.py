@@ -337,7 +337,8 @@ class Field:
     """A mesh with results at its nodes: points (N, 3), cells (M, 10; VTK's order of "tetra10") or
     (M, 4; "quad": the surface alone), displacement (N, 3), stress (N, 6: xx, yy, zz, yz, xz, xy),
     von_mises (N,), and envelope (N,): the largest von Mises over all instants at surface nodes, NaN
-    inside. yield_strength: for the factor of safety at each point, None without one.
+    inside. yield_strength: for the factor of safety at each point, None without one. outside: of a
+    `singular` pin the largest stress outside the excluded zones and where it is (x, y, z).
     """
 
     pin: str
@@ -350,6 +351,7 @@ class Field:
     envelope: Floats
     cell_type: str = "tetra10"
     yield_strength: float | None = None
+    outside: tuple[float, tuple[float, float, float]] | None = None
 
 
 @dataclass(frozen=True)

@@ -119,8 +119,7 @@ def shown(name: str, row: Row) -> str:
 
 def _decides(row: Row) -> bool:
     """Whether a row says if the required factor is met; a singular one can only say that not."""
-    singular = row["verdict"] == "singular" and row["meets_required"] == "no"
-    return row["verdict"] == "converged" or singular
+    return row["verdict"] != "singular" or row["meets_required"] == "no"
 
 
 def write_safety_factors(results: Results, directory: Path) -> None:

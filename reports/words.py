@@ -21,8 +21,8 @@ READING = (
 # What each word beside a factor means, one sentence each.
 MEANING = {
     "converged": "the error is within the accuracy that was asked for, so the number is a value.",
-    "unconverged": "the error is larger than was asked for, so the number is no value and decides "
-    "nothing.",
+    "unconverged": "the error is larger than was asked for, so the number is no value; it decides "
+    "only where its whole range of error lies on one side of what is required.",
     "singular": "where stress is largest it grows without bound on finer and finer meshes, so the "
     "true maximum does not exist; the numbers are those outside the excluded zones, where a factor "
     "below the required one is enough to say that the pin misses it, and no factor shows that it "
@@ -46,9 +46,10 @@ def verdict_words(verdict: str, yields: bool | None) -> str:
 def outcome(pin: PinResult) -> str:
     """One word for a row: meets, misses or no value; yields or holds where nothing is required.
 
-    A singular row can only miss or yield: more stress than is read has no bound.
+    An unconverged row may have an error small enough to say whether it meets what is required. A
+    singular one can only miss or yield: more stress than is read has no bound.
     """
-    if pin.verdict not in ("converged", "singular"):
+    if pin.verdict == "rigid" or (pin.verdict == "unconverged" and pin.meets_required is None):
         return "no value"
     if pin.meets_required is not None:
         found = "meets" if pin.meets_required else "misses"

@@ -12,7 +12,7 @@ from reports.numbers import DASH, engineering
 from reports.results import Results, SingularZone
 
 COLUMNS = (
-    *("pin", "case", "zone", "z", "r", "x", "y", "surface_1", "surface_2", "kind"),
+    *("pin", "case", "zone", "z", "radius", "x", "y", "between", "kind"),
     *("exponent", "exponent_theory", "excluded_radius", "governs", "max_von_mises"),
     *("advice", "verdict", "length_unit", "stress_unit"),
 )
@@ -32,6 +32,10 @@ class Zone:
     @property
     def r(self) -> float:
         return hypot(*self.found.location[:2])
+
+    @property
+    def between(self) -> str:
+        return " / ".join(self.found.between)
 
     @property
     def exponents(self) -> str:
@@ -80,7 +84,7 @@ def zone_table(zones: list[Zone], length: str, stress: str) -> tuple[list[str], 
             str(zone.number),
             engineering(zone.z),
             engineering(zone.r),
-            " / ".join(zone.found.between) or DASH,
+            zone.between or DASH,
             zone.found.kind,
             zone.exponents,
             engineering(zone.found.excluded),
@@ -105,7 +109,7 @@ def _rows(results: Results) -> Iterator[list[Cell]]:
         for zone in pin_zones(results, pin.pin)[pin.case]:
             (x, y, z), found = zone.found.location, zone.found
             yield [
-                *(pin.pin, pin.case, zone.number, z, zone.r, x, y, *found.between, found.kind),
+                *(pin.pin, pin.case, zone.number, z, zone.r, x, y, zone.between, found.kind),
                 *(found.exponent, found.exponent_theory, found.excluded, found.governs),
                 *(found.max_von_mises, found.advice, pin.verdict, units.length, units.stress),
             ]

@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 
 from fea.envelope import envelope
+from fea.ladder import Asked, solve_pin
 from fea.material import Material
 from fea.pin_loads import PinLoads
-from fea.refine import refine
 from fea.solid import SolidModel, acting
+from fea.solid_look import SolidAnswer
 from fea.stress import von_mises
 from geometry import CutPin, Flat, Hole, Pin, PinLike, Segment
 from geometry.body_file import BodyFile, Place
@@ -96,16 +97,35 @@ def test_forces_on_a_cut_band_act_at_its_middle(steel: Material) -> None:
     assert envelope(fields, case).scatter == 0.0
 
 
+def on_rim(point: tuple[float, float, float]) -> float:
+    """Distance (m) from the rims of a hole of 6 mm along x through a bar of 20 mm at z = 10 mm."""
+    a = 2.0 * math.pi * np.arange(2000) / 2000
+    y, z = 0.003 * np.cos(a), 0.01 + 0.003 * np.sin(a)
+    x = np.sqrt(0.01**2 - y**2)
+    return float(min(np.linalg.norm(np.stack([s * x, y, z], 1) - point, axis=1).min()
+                     for s in (1.0, -1.0)))  # fmt: skip
+
+
 def test_a_pin_may_be_held_by_a_hole(steel: Material) -> None:
     """By a cross pin, say; its rim is the edge of a clamp."""
     bar = Pin("P", (Segment(0.03, 0.02), Segment(0.02, 0.02, connection="B")))
     pin = CutPin(bar, (Hole(0.01, 0.006),))
     case = PinLoads("case", ("B",), np.array([[[0.0, 0.0, 1000.0]]]))
-    size = MeshSize(across=2.5, corner=1.0)
-    (found,) = refine(pin, steel, ("hole 1",), (case,), 0.5, size, meshes=1)
-    assert found.peak.note.startswith("the peak sits at the edge of a clamp")
-    assert found.fields is not None
-    force = found.fields.support @ found.fields.coefficients(case)[0]
+    (found,) = solve_pin(pin, steel, ("hole 1",), (case,), Asked(0.5, meshes=1))
+    peak = found.peak
+    assert (peak.model, peak.verdict) == ("solid", "singular")
+    (zone,) = peak.singular_at
+    assert (zone.kind, zone.between) == ("the edge of a clamp", ("the body", "what holds it"))
+    assert zone.governs
+    assert "model the hub" in zone.advice
+    assert zone.excluded == pytest.approx(0.1 * 0.02, rel=1e-3)
+    assert zone.max_von_mises > (peak.max_von_mises or math.inf)
+    assert on_rim(zone.location) < zone.excluded
+    assert peak.location is not None
+    assert on_rim(peak.location) > zone.excluded
+    assert isinstance(found.answer, SolidAnswer)
+    fields = found.answer.solution.fields
+    force = fields.support @ fields.coefficients(case)[0]
     assert force[:3] == pytest.approx([0.0, 0.0, -1000.0], abs=1e-6)
 
 
@@ -122,9 +142,16 @@ def test_a_body_that_nothing_holds_closes_its_balance(steel: Material, tmp_path:
     body = SolidBody(BodyFile("P", path, MM, places))
     load = PinLoads("case", ("A", "B", "C"), np.array([[[0, -500.0, 0], [0, 1000.0, 0],
                                                         [0, -480.0, 0]]]))  # fmt: skip
-    (found,) = refine(body, steel, (), (load,), 0.05, meshes=1)
-    assert found.peak.verdict == "unconverged"
-    assert "a sharp inner corner" in found.peak.note
+    (found,) = solve_pin(body, steel, (), (load,), Asked(0.05, meshes=1))
+    assert found.peak.verdict == "singular"
+    assert "no maximum exists: at a sharp corner" in found.peak.note
+    assert "from one mesh only, so the error is not known" in found.peak.note
+    assert found.peak.error_estimate == found.peak.max_von_mises
     assert "a force of 0.02 of the largest load and a couple of 0.0067" in found.peak.note
-    assert found.fields is not None
-    assert np.abs(found.fields.support).max() < 1e-6
+    (zone,) = found.peak.singular_at
+    assert zone.governs
+    step = np.array([-0.075, -0.065])  # where the flat ends
+    assert np.abs(zone.location[2] - step).min() <= zone.excluded
+    assert zone.excluded == pytest.approx(0.1 * 0.02, rel=1e-3)
+    assert isinstance(found.answer, SolidAnswer)
+    assert np.abs(found.answer.solution.fields.support).max() < 1e-6

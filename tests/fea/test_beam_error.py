@@ -9,14 +9,12 @@ import pytest
 
 from fea.beam_error import beam_estimate
 from fea.beam_stress import BeamStress, beam_stress
+from fea.ladder import Asked, solve_pin
 from fea.line_load import acting
 from fea.material import Material
 from fea.notch import BENDING, TENSION, TORSION, shoulder_factor
 from fea.pin_loads import PinLoads, UnitLoad
-from fea.refine import refine
-from fea.solid import PinLoads as SolidLoads
 from geometry import Pin, Segment
-from geometry.solid_mesh import MeshSize
 
 d, L = 0.02, 0.2
 I, A = math.pi / 64 * d**4, math.pi / 4 * d**2  # noqa: E741
@@ -106,10 +104,7 @@ def test_the_error_holds_the_solids_maximum(steel: Material, gap: float, across:
     force = 1000.0 * np.array([[[-0.5, 0, 0], [1.0, 0, 0], [-0.5, 0, 0]]])
     loads = PinLoads("case", ("A", "B", "C"), force)
     found = beam_estimate(beam_stress(pin, steel, acting(loads)), loads)
-    (solid,) = refine(
-        pin, steel, (), (SolidLoads("case", ("A", "B", "C"), force),), 0.05, MeshSize(4.0, arc=3.0),
-        meshes=2,
-    )  # fmt: skip
+    (solid,) = solve_pin(pin, steel, (), (loads,), Asked(0.05, model="solid", meshes=3))
     assert solid.peak.max_von_mises is not None
     assert solid.peak.error_estimate is not None
     assert found.error is not None

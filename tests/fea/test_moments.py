@@ -9,19 +9,20 @@ import pytest
 from numpy.typing import NDArray
 
 from fea.balance import out_of_balance
-from fea.beam_check import axial_stress
 from fea.elasticity import Discretisation
 from fea.envelope import envelope
+from fea.ladder import Asked, solve_pin
 from fea.material import Material
 from fea.pin_loads import PinLoads, UnitLoad
-from fea.refine import refine
 from fea.solid import SolidModel, UnitFields, acting
 from fea.solid_loads import Unit, nodal_loads
+from fea.solid_look import SolidAnswer
 from fea.stress import von_mises
 from fea.surface import resultants, surface
 from geometry import Pin, Segment
 from geometry.solid_mesh import MeshSize, solid_mesh
 from tests.fea.unit_loads import at, forces, moments
+from tests.solid_line import axial_stress
 
 Floats = NDArray[np.float64]
 
@@ -235,15 +236,15 @@ def test_a_floating_pin_in_balance_by_a_moment(steel: Material) -> None:
     left = [out_of_balance(pin, case) for case in cases]
     assert [b.force for b in left] == pytest.approx([0.0] * 4)
     assert [b.couple for b in left] == pytest.approx([0.0, 6.0, 60.0, 1.0], abs=1e-12)
-    size = MeshSize(across=4.0, corner=1.0)
-    ok, less, none, refused = refine(pin, steel, (), cases, 0.5, size, meshes=1)
+    asked = Asked(0.5, model="solid", meshes=1)
+    ok, less, none, refused = solve_pin(pin, steel, (), cases, asked)
     assert "close the balance" not in ok.peak.note
     assert "couple of 0.086 of that times the length" in less.peak.note
     assert "couple of 0.86 of that times the length" in none.peak.note
     assert refused.peak.verdict == "rigid"
     assert "turn it about its axis" in refused.peak.note
-    fields = ok.fields
-    assert fields is not None
+    assert isinstance(ok.answer, SolidAnswer)
+    fields = ok.answer.solution.fields
     assert ok.peak.max_von_mises is not None
     assert (UnitLoad("B", "moment", 1), 1) in fields.loads
     # a diameter from the bands on either side, beams are right: M = 500 N times 30 mm. A is pushed

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fea.peak import Peak, Refinement, discretisation_error
-from fea.refine import FEWEST
+from fea.verdict import FEWEST
 
 
 def sequence(*values: float) -> tuple[Refinement, ...]:
@@ -38,7 +38,7 @@ def test_a_singular_sequence_is_not_taken_for_a_converging_one(p: float, r: floa
 
 def test_agreement_by_chance_does_not_stay_unnoticed() -> None:
     """Values of a real fillet (MPa): the first two agree to 0.03 % and are 4 % below the last. Two
-    meshes are therefore never enough (fea.refine.FEWEST); from three on the estimate must hold.
+    meshes are therefore never enough (fea.verdict.FEWEST); from three on the estimate must hold.
     """
     seen = (34.10, 34.09, 34.8, 35.5, 35.49)
     assert FEWEST == 3
@@ -48,10 +48,17 @@ def test_agreement_by_chance_does_not_stay_unnoticed() -> None:
 
 
 def test_a_change_within_the_scatter_is_no_trend() -> None:
-    seen = sequence(1846.0, 1856.0, 1842.0)
+    """Else changes that do not shrink are one: 3 x 14 / (2^(p/2) - 1), p being the least order."""
+    seen = sequence(1846.0, 1856.0, 1870.0)
     assert discretisation_error(seen, 2.0**0.5, 45.0) == pytest.approx(45.0)
     assert discretisation_error(seen, 2.0**0.5, 10.0) == pytest.approx(42.0)
-    assert discretisation_error(seen, 2.0**0.5) > 200.0
+    assert discretisation_error(seen, 2.0**0.5) == pytest.approx(42.0 / (2.0**0.25 - 1.0))
+    regular = discretisation_error(seen, 2.0**0.5, least_order=1.0)
+    assert regular == pytest.approx(42.0 / (2.0**0.5 - 1.0))
+
+
+def test_to_and_fro_is_no_trend() -> None:
+    assert discretisation_error(sequence(1846.0, 1856.0, 1842.0), 2.0**0.5) == pytest.approx(42.0)
 
 
 def test_nothing_changes() -> None:

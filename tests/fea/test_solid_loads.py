@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 
 from fea.balance import out_of_balance
-from fea.beam_check import axial_stress
 from fea.envelope import envelope
+from fea.ladder import Asked, solve_pin
 from fea.linear import SolveError
 from fea.material import Material
 from fea.pin_loads import BODY, PinLoads, UnitLoad
-from fea.refine import refine
 from fea.solid import SolidModel, acting
 from fea.solid_loads import closed, nodal_loads
 from fea.stress import von_mises
@@ -22,6 +21,7 @@ from fea.surface import Patch, resultants, surface
 from geometry import Pin, Segment
 from geometry.solid_mesh import MeshSize, solid_mesh
 from tests.fea.unit_loads import at, forces, moments
+from tests.solid_line import axial_stress
 
 FREE = Pin(
     "P",
@@ -189,8 +189,9 @@ def test_the_own_weight_counts_in_the_balance(steel: Material) -> None:
 def test_one_band_alone_holds_nothing(steel: Material) -> None:
     pin = Pin("P", (Segment(0.02, 0.02, connection="B"),))
     loads = PinLoads("case", ("B",), np.array([[[0.0, 1.0, 0.0]]]))
-    (found,) = refine(pin, steel, (), (loads,), 0.5)
+    (found,) = solve_pin(pin, steel, (), (loads,), Asked(0.5, model="solid"))
     assert found.peak.verdict == "rigid"
+    assert found.answer is None
     assert "only one connection bears on it" in found.peak.note
     still = PinLoads("still", ("A", "B"), np.zeros((1, 2, 3)))
     assert out_of_balance(FREE, still).refusal is None

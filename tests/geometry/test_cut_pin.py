@@ -70,11 +70,16 @@ def test_a_flat() -> None:
     assert np.minimum(np.abs(z - 0.02), np.abs(z - 0.04)).max() < 1e-9
     assert np.abs(found.corner[:, :2] @ [math.cos(1.0), math.sin(1.0)] - d).max() < 1e-9
     assert np.hypot(*found.rim[:, :2].T) == pytest.approx(np.full(len(found.rim), R), rel=1e-3)
-    assert found.near((d * math.cos(1.0), d * math.sin(1.0), 0.0205), 0.1) == "a sharp inner corner"
-    assert found.near((R, 0.0, 0.0), 0.1) == "the edge of a clamp"
-    assert found.near((-R, 0.0, 0.03), 0.1) is None
+    at = np.array([[d * math.cos(1.0), d * math.sin(1.0), 0.0205], [R, 0, 0], [-R, 0, 0.03]])
+    (corner, near_corner), (rim, near_rim) = found.places(at, 0.1)
+    assert (corner.kind, near_corner.tolist()) == ("sharp corner", [True, False, False])
+    assert (rim.kind, near_rim.tolist()) == ("edge of a clamp", [False, True, False])
+    assert corner.radius == pytest.approx(0.1 * 2.0 * R, rel=1e-3)
+    assert corner.theory is None  # the angle is not known
+    assert [p.kind for p, _ in sharp_edges(space, boundary, ()).places(at, 0.1)] == [corner.kind]
 
 
+@pytest.mark.slow
 def test_holes_may_cross_and_a_profile_keeps_its_surfaces() -> None:
     """Through a bore, through a fillet, and at right angles through each other."""
     profile = Pin(

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import csv
 import json
+import math
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -49,7 +51,7 @@ def test_run_writes_what_the_contract_names(run_once: tuple[Path, str, str]) -> 
     assert results["schema"] == "pinstress-results/1"
     assert results["units"] == {"length": "in", "force": "lbf", "stress": "psi", "time": "s"}
     (pin,) = results["pins"]
-    assert (pin["pin"], pin["case"], pin["model"]) == ("B", "landing", "solid")
+    assert (pin["pin"], pin["case"], pin["model"]) == ("B", "landing", "harmonic")
     assert pin["verdict"] == "converged"
     assert pin["error_estimate"] <= 0.3 * pin["max_von_mises"]
     assert pin["safety_factor"] == pytest.approx(225e3 / pin["max_von_mises"], rel=1e-12)
@@ -107,10 +109,59 @@ def test_a_tolerance_that_is_not_reached_is_status_1(tmp_path: Path) -> None:
     done = pinstress("run", "study.toml", "--no-pictures", cwd=tmp_path)
     assert done.returncode == 1
     last = done.stderr.strip().splitlines()[-1]
-    assert last.startswith("Not reached: B (landing): the peak sits at a sharp inner corner")
+    said = re.match(
+        r"Not reached: B \(landing\): no maximum exists: at a sharp corner \(shoulder 1 / B\) "
+        r"stress grows like distance\^-s, s = (0\.\d\d) measured, 0\.46 by theory; outside of what "
+        r"is excluded, known to ",
+        last,
+    )
+    assert said
+    assert float(said[1]) == pytest.approx(0.456, abs=0.05)
     (pin,) = json.loads((tmp_path / "out" / "study" / "results.json").read_text())["pins"]
+    assert pin["verdict"] == "singular"
+    assert pin["meets_required"] is None  # enough outside says nothing of the corner
+    assert pin["safety_factor"] > 10.0
+    assert pin["error_estimate"] <= 0.05 * pin["max_von_mises"]
+    x, y, z = pin["location"]  # the corner is at r = 1, z = 1.5; 0.1 of 2 is left out around it
+    assert math.hypot(math.hypot(x, y) - 1.0, z - 1.5) > 0.199
+
+
+@pytest.mark.slow
+def test_all_models_answer(run_once: tuple[Path, str, str], tmp_path: Path) -> None:
+    """Each by its name; beam and solid are off the harmonic model by less than their errors add to.
+    The beam's 34 % is not within 30 %, so its status is 1.
+    """
+    (tmp_path / "study.toml").write_text(QUICK)
+    (by_default,) = json.loads((run_once[0] / "out/study/results.json").read_text())["pins"]
+    for model, status, verdict in (
+        ("beam", 1, "unconverged"),
+        ("harmonic", 0, "converged"),
+        ("solid", 0, "converged"),
+    ):
+        done = pinstress("run", "study.toml", "--no-pictures", "--model", model, cwd=tmp_path)
+        assert done.returncode == status, done.stderr
+        (pin,) = json.loads((tmp_path / "out/study/results.json").read_text())["pins"]
+        assert (pin["model"], pin["verdict"]) == (model, verdict)
+        off = abs(pin["max_von_mises"] - by_default["max_von_mises"])
+        assert off <= pin["error_estimate"] + by_default["error_estimate"]
+        assert (off == 0.0) == (model == "harmonic")
+
+
+def test_what_is_asked_decides_how_far_it_goes(tmp_path: Path) -> None:
+    """A factor of 120 is far above the 10 that is required, which three meshes decide; the
+    tolerance would take more, but is not what was asked for.
+    """
+    text = ONE_PIN.replace("tolerance = 0.05", 'goal = "decide"\ntolerance = 0.001')
+    (tmp_path / "study.toml").write_text(text)
+    done = pinstress("run", "study.toml", "--no-pictures", cwd=tmp_path)
+    (pin,) = json.loads((tmp_path / "out/study/results.json").read_text())["pins"]
+    assert (pin["model"], len(pin["history"])) == ("harmonic", 3)
     assert pin["verdict"] == "unconverged"
-    assert pin["meets_required"] is None
+    assert pin["meets_required"] is True
+    assert pin["safety_factor"] > 100.0
+    assert done.returncode == 0
+    assert "Not reached" not in done.stderr
+    assert "1 of 1 pin meets the required safety factor" in " ".join(done.stdout.split())
 
 
 def test_millimetres_and_inches_give_the_same_pin(
@@ -140,7 +191,14 @@ def test_millimetres_and_inches_give_the_same_pin(
     [
         (["study.toml", "--pins", "Q"], ("", ""), "--pins: the study has no pin 'Q'"),
         (["study.toml", "--cases", "lading"], ("", ""), "did you mean 'landing'?"),
-        (["study.toml", "--model", "harmonic"], ("", ""), "not built yet"),
+        (
+            ["study.toml", "--model", "harmonic"],
+            ("fillet = 0.4", "hole = [{ z = 2.5, diameter = 0.2 }]\nfillet = 0.4"),
+            "pin B is no body of revolution, which the harmonic model needs: use auto or solid",
+        ),
+        (["study.toml", "--model", "shell"], ("", ""), "'shell' is not one of 'auto', 'beam'"),
+        (["study.toml"], ("tolerance = 0.05", 'goal = "guess"'), "'value' or 'decide'"),
+        (["study.toml"], ("tolerance = 0.05", "excluded_distance = 0.6"), "excluded_distance"),
         (["study.toml", "--tolerance", "2"], ("", ""), "--tolerance"),
         (["gone.toml"], ("", ""), "gone.toml: no such file"),
         (["study.toml"], ("fillet = 0.4", "fillet = 4"), "does not fit"),
@@ -225,7 +283,8 @@ def test_help_begins_with_an_example(command: str, capsys: pytest.CaptureFixture
 
 
 def test_an_interrupt_leaves_nothing_behind(tmp_path: Path) -> None:
-    (tmp_path / "study.toml").write_text(ONE_PIN)
+    slow = ONE_PIN.replace("tolerance = 0.05", 'model = "solid"\ntolerance = 0.001')
+    (tmp_path / "study.toml").write_text(slow)
     earlier = tmp_path / "out" / "study"
     earlier.mkdir(parents=True)
     (earlier / "results.json").write_text("{}")
@@ -271,14 +330,14 @@ def test_a_failure_keeps_the_earlier_results(tmp_path: Path) -> None:
 def test_numerics_that_fail_are_status_3(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    import fea.refine
+    import fea.harmonic_look
     from geometry.solid_mesh import MeshError
 
     def no_mesh(*_: object) -> None:
         raise MeshError("pin B: no mesh")
 
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(fea.refine, "solid_mesh", no_mesh)
+    monkeypatch.setattr(fea.harmonic_look, "meridian_mesh", no_mesh)
     Path("study.toml").write_text(ONE_PIN)
     assert run_command_line(["run", "study.toml", "--no-pictures"]) == 3
     assert "the numerics failed: pin B: no mesh" in capsys.readouterr().err

@@ -18,23 +18,30 @@ MECHANISMS = ["grenier2008", "bowman2019", "matrix_four_bar", "slider_crank", "e
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("study", "pin"),
+    ("study", "pin", "verdict"),
     [
-        ("bowman2019", "A"),
-        ("matrix_four_bar", "C"),
-        ("slider_crank", "A"),
-        ("kuleuven2014", "trunnion"),
+        ("bowman2019", "A", "converged"),
+        ("matrix_four_bar", "C", "converged"),
+        ("slider_crank", "A", "converged"),
+        ("kuleuven2014", "trunnion", "singular"),
     ],
 )
-def test_the_whole_pipeline(tmp_path: Path, study: str, pin: str) -> None:
+def test_the_whole_pipeline(tmp_path: Path, study: str, pin: str, verdict: str) -> None:
+    """The trunnion's moment is a traction that jumps at its band's edges, where stress grows like a
+    logarithm; away from them it is known as well as the others.
+    """
     out = tmp_path / "out"
     command = ["run", str(STUDIES / f"{study}.toml"), "--pins", pin, "--out", str(out)]
-    assert run_command_line([*command, "--tolerance", "0.1", "--no-pictures"]) == 0
+    status = run_command_line([*command, "--tolerance", "0.1", "--no-pictures"])
+    assert status == (0 if verdict == "converged" else 1)
     found = json.loads((out / "results.json").read_text(encoding="utf-8"))
     for result in found["pins"]:
         assert result["pin"] == pin
-        assert result["verdict"] == "converged"
-        assert result["meets_required"] is True
+        assert result["verdict"] == verdict
+        assert result["meets_required"] is (True if verdict == "converged" else None)
+        assert result["error_estimate"] <= 0.1 * result["max_von_mises"]
+        assert result["safety_factor"] > found["required_safety_factor"]
+        assert ("at the edge of a load" in result["note"]) == (verdict == "singular")
     assert (out / "report.html").is_file()
 
 

@@ -90,7 +90,7 @@ def pin(name: str, case: str) -> PinResult:
         position=0.1 * i if case == "retract" else None,
         safety_factor=factor,
         yields=factor < 1.0,
-        meets_required=factor >= 1.5,
+        meets_required=None if loose else factor >= 1.5,
         dofs=4200 * (i + 1),
         seconds=0.05,
         history=tuple(

@@ -39,7 +39,8 @@ def found() -> Results:
         ("singular", 1.2, False, "misses"),
         ("singular", 0.9, None, "yields"),
         ("unconverged", 3.0, None, "no value"),
-        ("unconverged", 0.5, False, "no value"),
+        ("unconverged", 0.5, False, "misses"),
+        ("unconverged", 3.0, True, "meets"),
         ("rigid", 3.0, None, "no value"),
     ],
 )

@@ -81,7 +81,7 @@ def test_factor_of_safety_at_every_point(solid: Field, tmp_path: Path) -> None:
         pyvista.read(tmp_path / "b.vtu").point_data["factor of safety"],
         meshio.read(tmp_path / "b.vtu").point_data["factor of safety"],
     ):
-        assert found[2] == np.inf
+        assert 1e30 < found[2] < np.inf  # no stress there
         assert np.isnan(found[7])  # inside, as the envelope
         rest = np.delete(np.arange(10), [2, 7])
         np.testing.assert_allclose(found[rest] * strong.envelope[rest], 400.0, rtol=1e-14)

@@ -53,8 +53,8 @@ def test_zones_agree(found: Results, written: Path) -> None:
     for line, (p, z) in zip(rows, flat, strict=True):
         assert (line["pin"], line["case"], line["verdict"]) == (p["pin"], p["case"], p["verdict"])
         assert [float(line[k]) for k in "xyz"] == z["location"]
-        assert float(line["r"]) == hypot(*z["location"][:2])
-        assert [line["surface_1"], line["surface_2"]] == z["between"]
+        assert float(line["radius"]) == hypot(*z["location"][:2])
+        assert line["between"] == " / ".join(z["between"])
         for name in ("exponent", "exponent_theory", "excluded_radius", "max_von_mises"):
             assert (float(line[name]) if line[name] else None) == z[name]
         assert line["governs"] == ("yes" if z["governs"] else "no")
@@ -85,7 +85,7 @@ def test_hand_checks_agree(found: Results, written: Path) -> None:
     for line, (p, c) in zip(rows, flat, strict=True):
         for name in ("time", "stress", "strength", "factor"):
             assert (float(line[name]) if line[name] else None) == c[name]
-        assert [line[k] for k in ("name", "at", "formula", "source")] == [
+        assert [line[k] for k in ("check", "at", "formula", "source")] == [
             c[k] for k in ("name", "at", "formula", "source")
         ]
         assert (float(line["safety_factor"]), line["verdict"]) == (p["safety_factor"], p["verdict"])

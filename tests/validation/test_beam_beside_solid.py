@@ -22,15 +22,16 @@ from fea.beam_stress import beam_stress
 from fea.line_load import acting
 from fea.material import Material
 from fea.pin_loads import PinLoads
-from fea.refine import NEAR, clamp_edges
-from fea.solid import PinLoads as SolidLoads
 from fea.solid import SolidModel
+from fea.solid import acting as acting_on_solid
 from fea.stress import von_mises
+from fea.zones import clamp_rims
 from geometry import Pin, Segment
 from geometry.solid_mesh import MeshSize, solid_mesh
 
 STEEL = Material("steel", 2.0e11, 0.3, 7850.0, 1.0e9)
 SAME_MESH = 0.03
+NEAR = 0.1  # of the diameter
 
 
 @dataclass(frozen=True)
@@ -113,13 +114,13 @@ def test_how_good_beams_are(kind: str) -> None:
 def test_the_solid_gives_what_the_file_says(i: int) -> None:
     """The same mesh again, but gmsh's differ a little between versions: 3 %."""
     row = rows()[i]
-    loads = SolidLoads("case", row.loads.surfaces, row.loads.forces, row.loads.moments)
+    loads = row.loads
     held = tuple(row.pin.surface(name) for name in row.clamps)
-    rims = clamp_edges(row.pin, held)
+    rims = clamp_rims(row.pin, held)
     edges = [z for n in loads.surfaces for z in (row.pin.band(n).z0, row.pin.band(n).z1)]
     edges = list(dict.fromkeys([*edges, *(z for _, z in rims)]))
     mesh = solid_mesh(row.pin, MeshSize(across=4.0, arc=2.5), tuple(edges))
-    fields = SolidModel(row.pin, mesh, STEEL, held).solve(loads.units)
+    fields = SolidModel(row.pin, mesh, STEEL, held).solve(acting_on_solid([loads]))
     nodes = fields.surface.nodes
     stress = von_mises(fields.stress[nodes] @ fields.coefficients(loads)[0])
     x = fields.space.nodes[nodes]

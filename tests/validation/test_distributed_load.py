@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from fea.beam_check import axial_stress
 from fea.distributed_load import axis_load_term, constant_stress, surface_load_term
 from fea.material import Material
 from fea.solid import SolidModel, UnitFields
 from geometry import Pin, Segment
 from geometry.solid_mesh import MeshSize, SolidMesh, solid_mesh
 from tests.fea.unit_loads import forces
+from tests.solid_line import axial_stress
 
 Floats = NDArray[np.float64]
 Field = Callable[[Floats, float], Floats]

@@ -1,0 +1,136 @@
+"""Shoulder fillets: peaks of the harmonic model beside a far finer mesh and Peterson's charts, and
+how long they take.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from benchmarks.random_pins import STEEL
+from fea.circumference import Circumference
+from fea.harmonic import HarmonicModel
+from fea.meridian_fields import MeridianFields
+from fea.notch import BENDING, TENSION, TORSION, shoulder_factor
+from fea.pin_loads import Floats, PinLoads
+from geometry import Pin, Segment
+from geometry.meridian_mesh import SectionSize, meridian_mesh
+
+D = 0.05
+SHAPES = (
+    (1.05, 0.0125),
+    (1.05, 0.025),
+    (1.1, 0.025),
+    (1.1, 0.05),
+    (1.25, 0.0125),
+    (1.25, 0.05),
+    (1.5, 0.025),
+    (1.5, 0.1),
+    (2.0, 0.05),
+    (2.0, 0.2),
+    (3.0, 0.1),
+    (3.0, 0.3),
+)  # D/d, r/d
+KINDS = ("bending", "tension", "torsion")
+CHARTS = (BENDING, TENSION, TORSION)
+QUICK = SectionSize(2.8, 5.6, 0.6)  # for 1 %
+GOOD = SectionSize(6.0, 14.0, 0.3)  # for 0.3 %
+FINEST = SectionSize(20.0, 44.0, 0.1)  # ten times the unknowns of GOOD
+AWAY = 1.5  # diameters from the loaded band to the shoulder
+
+
+@dataclass(frozen=True)
+class Run:
+    """Peaks at the fillet over the nominal stress of the thin shaft, by kind of load: von Mises and
+    first principal; unknowns and seconds, meshing included.
+    """
+
+    von_mises: Floats
+    principal: Floats
+    unknowns: int
+    seconds: float
+
+
+def shoulder(ratio: float, radius: float) -> Pin:
+    """A shaft of diameter D with a shoulder `ratio` times as thick, held at the far end."""
+    thin = Segment(AWAY * D, D)
+    segments = (Segment(0.5 * D, D, connection="A"), thin, Segment(1.5 * ratio * D, ratio * D))
+    return Pin("shoulder", segments, radius * D)
+
+
+def loads(kind: str) -> PinLoads:
+    """Unit nominal stress of a kind in the thin shaft."""
+    area, modulus = np.pi * D**2 / 4.0, np.pi * D**3 / 32.0
+    force, moment = np.zeros((1, 1, 3)), np.zeros((1, 1, 3))
+    if kind == "tension":
+        force[0, 0, 2] = -area  # at the start, which pulls
+    elif kind == "bending":
+        moment[0, 0, 1] = modulus
+    else:
+        moment[0, 0, 2] = 2.0 * modulus
+    return PinLoads(kind, ("A",), force, moment)
+
+
+def run(pin: Pin, size: SectionSize) -> Run:
+    """One mesh, all three kinds of load."""
+    start = time.perf_counter()
+    cases = [loads(kind) for kind in KINDS]
+    units = tuple(load for case in cases for load in case.coefficients())
+    fields = HarmonicModel(pin, meridian_mesh(pin, size), STEEL, ("end",)).solve(units)
+    found = [_peaks(pin, fields, case) for case in cases]
+    spent = time.perf_counter() - start
+    von_mises, principal = np.array(found).T
+    return Run(von_mises, principal, fields.unknowns, spent)
+
+
+def _peaks(pin: Pin, fields: MeridianFields, case: PinLoads) -> tuple[float, float]:
+    r, z = fields.points.T
+    rho = pin.fillet
+    near = (np.abs(z - pin.stations[2]) < 1.2 * rho) & (r < D / 2 + 1.2 * rho)
+    near &= np.arange(len(r)) < fields.skin
+    around = Circumference(fields, case)
+    top = around.top(near)
+    at = np.flatnonzero(near)
+    angles = np.full(len(at), top.angle)
+    s = around.stress(at, np.zeros(len(at), dtype=int), angles)
+    tensor = s[:, [[0, 5, 4], [5, 1, 3], [4, 3, 2]]]
+    return top.value, float(np.abs(np.linalg.eigvalsh(tensor)).max())
+
+
+def shoulders() -> str:
+    """The table."""
+    run(shoulder(*SHAPES[0]), QUICK)  # libraries loaded
+    lines = [
+        "largest von Mises stress at the fillet over the nominal stress; errors in % of a mesh of",
+        "ten times the unknowns; K: first principal stress, beside Peterson's (Pilkey's fit)",
+    ]
+    head = "  ".join(f"{k:>8} {'err':>6} {'quick':>6} {'K':>6} {'K/Pet.':>6}" for k in KINDS)
+    lines.append(f"{'D/d':>5} {'r/d':>7} {'unkn.':>6} {'ms':>5}  {head}")
+    worst, quick_worst, times = 0.0, 0.0, []
+    for shape in SHAPES:
+        pin = shoulder(*shape)
+        quick, good, finest = (run(pin, size) for size in (QUICK, GOOD, FINEST))
+        error = 100.0 * (good.von_mises / finest.von_mises - 1.0)
+        rough = 100.0 * (quick.von_mises / finest.von_mises - 1.0)
+        worst, quick_worst = max(worst, *np.abs(error)), max(quick_worst, *np.abs(rough))
+        times.append(quick.seconds)
+        cells = []
+        for k in range(len(KINDS)):
+            chart = shoulder_factor(CHARTS[k], shape[0] * D, D, shape[1] * D)
+            nominal = finest.principal[k]
+            beside = "     -" if chart is None else f"{nominal / chart:6.3f}"
+            cells.append(
+                f"{finest.von_mises[k]:8.4f} {error[k]:6.2f} {rough[k]:6.2f} "
+                f"{nominal:6.3f} {beside}"
+            )
+        lines.append(
+            f"{shape[0]:5} {shape[1]:7} {quick.unknowns:6} {1e3 * quick.seconds:5.0f}  "
+            + "  ".join(cells)
+        )
+    lines += [
+        f"largest error: {worst:.2f} % (err), {quick_worst:.2f} % (quick)",
+        f"quick mesh, all three loads, meshing included: median {1e3 * np.median(times):.0f} ms",
+    ]
+    return "\n".join(lines)
