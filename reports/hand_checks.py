@@ -17,8 +17,8 @@ MODEL = ("model", "max_von_mises", "safety_factor", "verdict")
 NUMERIC = ("stress", "strength", "factor", "time")
 HAND_CHECKS = (
     "Stresses by hand are nominal: of beam theory or mean over a section, without the "
-    "concentration at corners that the model has; so their factors are larger than the model's "
-    "where a corner governs."
+    "concentration at corners and edges. They are taken everywhere, also where the model's stress "
+    "is not read, such as at a clamp; so their factor may be the smaller one."
 )
 
 

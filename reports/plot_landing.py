@@ -68,4 +68,4 @@ def _notes(members: list[LandingRange]) -> Iterator[str]:
     if any(m.verdict == "unconverged" for m in members):
         yield "\nunconverged: no value"
     if any(m.verdict == "singular" for m in members):
-        yield "\nsingular: outside the excluded zones, no maximum exists"
+        yield "\nsingular: no maximum exists; the factor is that outside the excluded zones"

@@ -38,7 +38,7 @@ def _table(results: Results) -> Table:
         # As Text: a unit in square brackets is no markup.
         table.add_column(Text(heading), justify="right", no_wrap=True)
     # Wide enough for the longest word; two of them stand below each other.
-    table.add_column("verdict", overflow="fold", min_width=len("unconverged"))
+    table.add_column("verdict", overflow="fold", min_width=len("unconverged"), max_width=12)
     for heading in ("published", "ratio") if published else ():
         table.add_column(heading, justify="right", no_wrap=True)
     for pin in results.pins:
