@@ -1,18 +1,20 @@
-"""A pin's profile as an SVG drawing: section, lengths, diameters and bands."""
+"""A pin's profile as an SVG drawing: section, lengths, diameters, bands and singular zones."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from html import escape
 
+from reports.drawing_zones import ZoneMarks
 from reports.numbers import short
 from reports.results import PinShape, Units
 from reports.spread import rows
+from reports.svg import INK, line, text, wide
+from reports.zones import Zone
 
 WIDTH, MARGIN, TALLEST = 760.0, 45.0, 150.0
-LETTER, LINE = 6.1, 14.0  # size of the text
+LINE = 14.0  # height of the text
 FILLS = {"band": "#9dbbe0", "held": "url(#held)", "plain": "#ececec"}
-INK = "#222222"
 
 
 @dataclass(frozen=True)
@@ -33,16 +35,19 @@ class _Piece:
         return self.x + 0.5 * self.width
 
 
-def draw_pin(shape: PinShape, units: Units) -> str:
-    """The drawing as an <svg> element; all its text is escaped."""
+def draw_pin(shape: PinShape, units: Units, zones: list[Zone] | None = None) -> str:
+    """The drawing as an <svg> element; zones: one per circle. All its text is escaped."""
     pieces = _pieces(shape)
     if not pieces:
         return ""
     tops = rows([p.middle for p in pieces], [_text_width(p) for p in pieces])
-    feet = rows([p.middle for p in pieces], [_wide(p.length) for p in pieces])
+    feet = rows([p.middle for p in pieces], [wide(p.length) for p in pieces])
     radius = max(p.radius for p in pieces)
     axis = 8.0 + 2.0 * LINE * (max(tops) + 1) + 12.0 + radius
-    chain = axis + radius + 24.0
+    left, right = pieces[0].x, pieces[-1].x + pieces[-1].width
+    scale = (right - left) / sum(s[0] for s in shape.segments)
+    marks = ZoneMarks(zones or [], left, scale, WIDTH)
+    chain = axis + radius + marks.height + 24.0
     overall = chain + LINE * (max(feet) + 1) + 22.0
     height = overall + 12.0
     parts = [
@@ -54,17 +59,17 @@ def draw_pin(shape: PinShape, units: Units) -> str:
         '<rect width="2" height="6" fill="#777"/></pattern></defs>',
     ]
     parts += [_section(p, axis) for p in pieces]
-    left, right = pieces[0].x, pieces[-1].x + pieces[-1].width
-    parts.append(_line(left - 14, axis, right + 14, axis, 'stroke-dasharray="12 3 2 3"'))
+    parts.append(line(left - 14, axis, right + 14, axis, 'stroke-dasharray="12 3 2 3"'))
     parts += [_leader(p, axis, tops[i]) for i, p in enumerate(pieces)]
     parts += [_label(p, tops[i]) for i, p in enumerate(pieces)]
-    parts += [_dimension(p.x, p.x + p.width, chain, axis + radius) for p in pieces]
+    parts += [_dimension(p.x, p.x + p.width, chain, chain - 24.0) for p in pieces]
     parts += [
-        _text(p.middle, chain + LINE * (feet[i] + 1) - 3.0, p.length) for i, p in enumerate(pieces)
+        text(p.middle, chain + LINE * (feet[i] + 1) - 3.0, p.length) for i, p in enumerate(pieces)
     ]
     parts.append(_dimension(left, right, overall, chain))
     total = f"{short(sum(s[0] for s in shape.segments))} {units.length}"
-    parts.append(_text(0.5 * (left + right), overall + 3.0, total))
+    parts.append(text(0.5 * (left + right), overall + 3.0, total))
+    parts += marks.draw(axis, axis + radius)
     return "".join(parts) + "</svg>"
 
 
@@ -102,12 +107,12 @@ def _section(piece: _Piece, axis: float) -> str:
 
 def _leader(piece: _Piece, axis: float, row: int) -> str:
     foot = 8.0 + 2.0 * LINE * (row + 1)
-    return _line(piece.middle, foot, piece.middle, axis - piece.radius, 'opacity="0.5"')
+    return line(piece.middle, foot, piece.middle, axis - piece.radius, 'opacity="0.5"')
 
 
 def _label(piece: _Piece, row: int) -> str:
     y = 8.0 + 2.0 * LINE * row + 11.0
-    return _text(piece.middle, y, piece.label, halo=True) + _text(
+    return text(piece.middle, y, piece.label, halo=True) + text(
         piece.middle, y + LINE - 1.0, piece.size, halo=True
     )
 
@@ -115,29 +120,10 @@ def _label(piece: _Piece, row: int) -> str:
 def _dimension(left: float, right: float, y: float, from_y: float) -> str:
     """A dimension line with its ticks and the lines that lead to it."""
     ends = (left, right)
-    ticks = [_line(x - 3, y - LINE + 5, x + 3, y - LINE - 1) for x in ends]
-    leads = [_line(x, from_y + 2, x, y - LINE + 5, 'opacity="0.4"') for x in ends]
-    return _line(left, y - LINE + 2, right, y - LINE + 2) + "".join(ticks + leads)
-
-
-def _line(x1: float, y1: float, x2: float, y2: float, more: str = "") -> str:
-    return (
-        f'<line x1="{x1:.2f}" y1="{y1:.2f}" x2="{x2:.2f}" y2="{y2:.2f}" stroke="{INK}" '
-        f'stroke-width="0.8" {more}/>'
-    )
-
-
-def _text(x: float, y: float, text: str, halo: bool = False) -> str:
-    behind = ' stroke="#fff" stroke-width="3" paint-order="stroke"' if halo else ""
-    return (
-        f'<text x="{x:.2f}" y="{y:.2f}" text-anchor="middle" fill="{INK}"{behind}>'
-        f"{escape(text)}</text>"
-    )
+    ticks = [line(x - 3, y - LINE + 5, x + 3, y - LINE - 1) for x in ends]
+    leads = [line(x, from_y + 2, x, y - LINE + 5, 'opacity="0.4"') for x in ends]
+    return line(left, y - LINE + 2, right, y - LINE + 2) + "".join(ticks + leads)
 
 
 def _text_width(piece: _Piece) -> float:
-    return max(_wide(piece.label), _wide(piece.size))
-
-
-def _wide(text: str) -> float:
-    return LETTER * len(text) + 8.0
+    return max(wide(piece.label), wide(piece.size))

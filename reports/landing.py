@@ -16,6 +16,11 @@ COLUMNS = (
     *("safety_factor", "meets_required", "verdict"),
 )
 
+NOTE = (
+    "A factor of an unconverged row is no value; one of a singular row is that outside the "
+    "excluded zones, and can only show that a pin misses what is required."
+)
+
 
 def write_landing(results: Results, directory: Path) -> None:
     """Write landing_range.csv and .md; nothing where no impulse has a range."""
@@ -26,7 +31,7 @@ def write_landing(results: Results, directory: Path) -> None:
         f"# Landing: safety factors over the impulse\n\n{markdown.escaped(results.title)}",
         landing_tables(results),
         "One solution for all: the unit fields of each pin are superposed for every pair. The "
-        "verdict is that of the case itself; a factor of an unconverged peak is no value.",
+        f"verdict is that of the case itself. {NOTE}",
     ]
     (directory / "landing_range.md").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
 
@@ -70,8 +75,15 @@ def _rows(results: Results) -> Iterator[list[Cell]]:
     for r in results.landing:
         for i, factor in enumerate(_factors(r)):
             meets = None
-            if r.verdict == "converged" and factor is not None and required is not None:
-                meets = factor >= required
+            if factor is not None and required is not None:
+                meets = _meets(r.verdict, factor >= required)
             values = (r.impulse_time, r.velocity_change, r.force, r.max_von_mises)
             numbers = (float(v[i]) for v in values)
             yield [r.pin, r.case, *numbers, factor, meets, r.verdict]
+
+
+def _meets(verdict: str, enough: bool) -> bool | None:
+    """Whether the requirement is met; a singular row can only miss it."""
+    if verdict == "singular":
+        return None if enough else False
+    return enough if verdict == "converged" else None

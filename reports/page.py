@@ -9,17 +9,19 @@ from pathlib import Path
 from typing import Any
 
 from reports.drawing import draw_pin
-from reports.landing import landing_blocks
+from reports.hand_checks import HAND_CHECKS
+from reports.landing import NOTE, landing_blocks
 from reports.numbers import DASH, engineering, like, ratio, short
 from reports.page_motion import motion_parts
 from reports.page_rows import pin_parts, reaction_tables
 from reports.plot_names import SVG, drive_names, plot_name
 from reports.published import published_reactions
-from reports.results import Results
+from reports.results import PinShape, Results
 from reports.summary import summary
 from reports.tables import TEXTS, safety_factor_rows, shown, shown_columns
 from reports.template import environment
-from reports.words import MEANING, READING, outcome, word
+from reports.words import BEYOND, MEANING, READING, outcome, verdict_words, word
+from reports.zones import circles, pin_zones
 
 TYPES = {".svg": "image/svg+xml", ".png": "image/png", ".jpg": "image/jpeg"}
 
@@ -64,13 +66,17 @@ def render(
     templates = environment()
     templates.filters.update(eng=engineering, short=_short, word=word, like=like)
     template = templates.get_template("report.html.j2")
-    drawings: dict[str, str] = {s.pin: Markup(draw_pin(s, results.units)) for s in results.shapes}
+    drawings: dict[str, str] = {s.pin: Markup(_drawing(s, results)) for s in results.shapes}
     return template.render(
         results=results,
         units=results.units,
         summary=summary(results),
         reading=READING,
         meaning=MEANING,
+        beyond=BEYOND,
+        verdict_words=verdict_words,
+        hand_checks=HAND_CHECKS,
+        landing_note=NOTE,
         plot=_Plots(plots).uri,
         drive_names=drive_names,
         ratio=ratio,
@@ -84,6 +90,11 @@ def render(
         cases=list(dict.fromkeys(pin.case for pin in results.pins)),
         **_safety_factors(results),
     )
+
+
+def _drawing(shape: PinShape, results: Results) -> str:
+    zones = pin_zones(results, shape.pin).values()
+    return draw_pin(shape, results.units, circles(zone for case in zones for zone in case))
 
 
 def _safety_factors(results: Results) -> dict[str, Any]:

@@ -6,18 +6,35 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reports.results import PinResult, PinShape, ReactionTable, Results
+from reports.hand_checks import hand_check_table
+from reports.results import PinResult, PinShape, ReactionTable, Results, Units
 from reports.words import outcome
+from reports.zones import Zone, pin_zones, zone_table
+
+ZONE_NUMBERS = ("zone", "exponent")
+
+
+@dataclass(frozen=True)
+class Grid:
+    """A table of texts; numeric: which columns hold numbers."""
+
+    head: list[str]
+    body: list[list[str]]
+    numeric: list[bool]
 
 
 @dataclass(frozen=True)
 class PinCase:
-    """A pin's result in one case, one word for it, its picture's address, its position's unit."""
+    """A pin's result in one case, one word for it, its picture's address, its position's unit, its
+    singular zones and its checks by hand.
+    """
 
     result: PinResult
     outcome: str
     picture: str | None
     position_unit: str
+    zones: Grid | None
+    checks: Grid | None
 
 
 @dataclass(frozen=True)
@@ -31,6 +48,11 @@ class PinPart:
     cases: tuple[PinCase, ...]
     moving: tuple[str, ...]
 
+    @property
+    def zoned(self) -> bool:
+        """Whether any case has singular zones."""
+        return any(case.zones for case in self.cases)
+
 
 def pin_parts(
     results: Results, drawings: dict[str, str], pictures: dict[tuple[str, str], str]
@@ -39,6 +61,7 @@ def pin_parts(
     positions = {t.case: t.position_unit for t in results.reactions}
     shapes = {shape.pin: shape for shape in results.shapes}
     names = dict.fromkeys([p.pin for p in results.pins] + list(shapes))
+    zones = {name: pin_zones(results, name) for name in names}
     return [
         PinPart(
             pin=name,
@@ -51,6 +74,8 @@ def pin_parts(
                     outcome(p),
                     pictures.get((p.pin, p.case)),
                     positions.get(p.case) or results.units.length,
+                    _zones(zones[name][p.case], results.units),
+                    Grid(*hand_check_table(p, results.units)) if p.hand_checks else None,
                 )
                 for p in results.pins
                 if p.pin == name
@@ -61,6 +86,13 @@ def pin_parts(
         )
         for number, name in enumerate(names, start=1)
     ]
+
+
+def _zones(zones: list[Zone], units: Units) -> Grid | None:
+    if not zones:
+        return None
+    head, body = zone_table(zones, units.length, units.stress)
+    return Grid(head, body, [name in ZONE_NUMBERS or "[" in name for name in head])
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,8 @@ import numpy as np
 from reports.numbers import short
 from reports.plot_names import plot_name
 from reports.results import LandingRange, Units
-from reports.style import GREY, label_ends, line_style, panels, plain_numbers, save
+from reports.style import GREY, clipped, label_ends, line_style, panels, plain_numbers, save
+from reports.words import word
 
 
 def landing_plot(
@@ -50,8 +52,20 @@ def landing_plot(
                 ylabel="factor of safety",
             )
             plain_numbers(panel)
-            label_ends(figure, panel, lines, [f"pin {m.pin}" for m in members])
-        loose = [m.pin for m in members if m.verdict != "converged"]
-        note = f"\n(no values: the peaks of {', '.join(loose)} did not converge)" if loose else ""
+            label_ends(figure, panel, lines, [_label(m) for m in members])
+        note = "".join(_notes(members))
         figure.suptitle(f"{case}: factors over the impulse{note}", x=0.01, ha="left")
         return save(figure, directory, plot_name("landing-range", case))
+
+
+def _label(m: LandingRange) -> str:
+    """The pin, with its verdict where the factor is not simply a value."""
+    name = clipped(m.pin)
+    return f"pin {name}" if m.verdict == "converged" else f"pin {name}, {word(m.verdict)}"
+
+
+def _notes(members: list[LandingRange]) -> Iterator[str]:
+    if any(m.verdict == "unconverged" for m in members):
+        yield "\nunconverged: no value"
+    if any(m.verdict == "singular" for m in members):
+        yield "\nsingular: no maximum exists; the factor is that outside the excluded zones"

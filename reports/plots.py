@@ -11,7 +11,7 @@ from reports.plot_leg import leg_plots
 from reports.plot_linkage import linkage_plot
 from reports.plot_motion import motion_plots
 from reports.plot_reactions import bars, reaction_plots
-from reports.plot_refinement import refinement_plot
+from reports.plot_refinement import pin_refinement_plot, refinement_plot
 from reports.results import PinResult, Results
 
 
@@ -41,9 +41,14 @@ def save_plots(results: Results, directory: Path) -> list[Path]:
         refined = [pin for pin in results.pins if pin.case == case and _can_be_drawn(pin)]
         if refined:
             paths += refinement_plot(case, refined, units, directory)
+    for name in dict.fromkeys(pin.pin for pin in results.pins):
+        refined = [pin for pin in results.pins if pin.pin == name and _can_be_drawn(pin)]
+        # A single mesh says nothing about others.
+        if any(len(pin.history) > 1 for pin in refined):
+            paths += pin_refinement_plot(name, refined, units, directory)
     return paths
 
 
 def _can_be_drawn(pin: PinResult) -> bool:
     # A logarithmic axis has no place for zero.
-    return len(pin.history) > 0 and all(step.max_von_mises > 0.0 for step in pin.history)
+    return len(pin.history) > 0 and all(s.max_von_mises > 0.0 and s.dofs > 0 for s in pin.history)

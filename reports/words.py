@@ -21,8 +21,8 @@ READING = (
 # What each word beside a factor means, one sentence each.
 MEANING = {
     "converged": "the error is within the accuracy that was asked for, so the number is a value.",
-    "unconverged": "the error is larger than was asked for, so the number is no value and decides "
-    "nothing.",
+    "unconverged": "the error is larger than was asked for, so the number is no value; it decides "
+    "only where its whole range of error lies on one side of what is required.",
     "singular": "where stress is largest it grows without bound on finer and finer meshes, so the "
     "true maximum does not exist; the numbers are those outside the excluded zones, where a factor "
     "below the required one is enough to say that the pin misses it, and no factor shows that it "

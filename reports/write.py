@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from reports.animation import write_animations
-from reports.checks_tables import write_hand_checks, write_singular_zones
+from reports.hand_checks import write_hand_checks
 from reports.json_results import write_json
 from reports.landing import write_landing
 from reports.leg_tables import write_legs
@@ -23,6 +23,7 @@ from reports.tables import (
     write_reactions_pin_axes,
     write_safety_factors,
 )
+from reports.zones import write_zones
 
 
 def write_reports(
@@ -34,11 +35,9 @@ def write_reports(
     """
     drawn = write_loads(results, directory, plots)
     write_safety_factors(results, directory)
+    write_hand_checks(results, directory)
+    write_zones(results, directory)
     write_landing(results, directory)
-    if any(pin.singular_at for pin in results.pins):
-        write_singular_zones(results, directory / "singular_zones.csv")
-    if any(pin.hand_checks for pin in results.pins):
-        write_hand_checks(results, directory / "hand_checks.csv")
     if results.beam_check is not None:
         write_beam_check(results.beam_check, directory / "beam_check.csv")
     return write_page(results, directory, pictures, drawn)

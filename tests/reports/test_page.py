@@ -100,7 +100,8 @@ def test_anchors_lead_somewhere(written: Path) -> None:
 
 def test_page_shows_plots_and_pictures(written: Path) -> None:
     addresses = parse(written).addresses
-    assert sum(a.startswith("data:image/svg+xml") for a in addresses) == 7
+    # 8 of them are the refinements of single pins
+    assert sum(a.startswith("data:image/svg+xml") for a in addresses) == 15
     assert sum(a.startswith("data:image/png") for a in addresses) == 1
 
 

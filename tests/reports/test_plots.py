@@ -50,6 +50,7 @@ def test_every_plot_is_there_as_svg_and_png(small: Results, tmp_path: Path) -> N
         "motion-check",
         "refinement.retract",
         "refinement.landing",
+        *(f"refinement-pin.{pin}" for pin in "ABCDEFGHJ"),
     }
     assert {p.name for p in paths} == {k + end for k in kinds for end in (".svg", ".png")}
     for path in paths:

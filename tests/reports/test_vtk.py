@@ -14,6 +14,7 @@ import pyvista
 from reports import renderer
 from reports.results import Field, Units
 from reports.vtk import render_pin, renderer_problem, write_vtu
+from tests.reports.judged import tube
 
 UNITS = Units("in", "lbf", "psi", "s")
 
@@ -53,6 +54,47 @@ def test_picture(solid: Field, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     picture = np.asarray(pyvista.read(path).active_scalars)
     assert pyvista.read(path).dimensions[:2] == (1200, 800)
     assert len(np.unique(picture, axis=0)) > 50
+
+
+def test_a_surface_of_quads(tmp_path: Path) -> None:
+    field = tube()
+    write_vtu(field, tmp_path / "a.vtu", UNITS)
+    grid = pyvista.read(tmp_path / "a.vtu")
+    assert set(grid.celltypes) == {pyvista.CellType.QUAD}
+    assert set(grid.point_data) == {
+        "displacement [in]",
+        "stress [psi]",
+        "von Mises [psi]",
+        "von Mises envelope [psi]",
+        "factor of safety",
+    }
+    np.testing.assert_array_equal(grid.points, field.points)
+    np.testing.assert_array_equal(grid.point_data["von Mises [psi]"], field.von_mises)
+
+
+def test_factor_of_safety_at_every_point(solid: Field, tmp_path: Path) -> None:
+    envelope = solid.envelope.copy()
+    envelope[2] = 0.0
+    strong = replace(solid, envelope=envelope, yield_strength=400.0)
+    write_vtu(strong, tmp_path / "b.vtu", UNITS)
+    for found in (
+        pyvista.read(tmp_path / "b.vtu").point_data["factor of safety"],
+        meshio.read(tmp_path / "b.vtu").point_data["factor of safety"],
+    ):
+        assert 1e30 < found[2] < np.inf  # no stress there
+        assert np.isnan(found[7])  # inside, as the envelope
+        rest = np.delete(np.arange(10), [2, 7])
+        np.testing.assert_allclose(found[rest] * strong.envelope[rest], 400.0, rtol=1e-14)
+    write_vtu(replace(strong, yield_strength=None), tmp_path / "c.vtu", UNITS)
+    assert "factor of safety" not in pyvista.read(tmp_path / "c.vtu").point_data
+
+
+def test_picture_of_a_surface(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(renderer.WINDOW, os.environ.get(renderer.WINDOW, ""))
+    assert renderer_problem() is None
+    render_pin(tube(), tmp_path / "a.png", UNITS, "pin A, sharp")
+    picture = np.asarray(pyvista.read(tmp_path / "a.png").active_scalars)
+    assert len(np.unique(picture, axis=0)) > 500  # colours of a field, not of one face
 
 
 def test_a_crash_is_a_problem_and_no_crash(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,99 @@
+"""Checks by hand beside the model's factor of safety, as CSV and as Markdown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from reports import markdown
+from reports.csv_files import Cell, write_csv
+from reports.numbers import DASH, engineering, short
+from reports.results import HandCheck, PinResult, Results, Units
+from reports.words import verdict_words
+
+CHECK = ("name", "at", "time", "stress", "strength", "factor", "formula", "source")
+# What the model says of the same pin, its verdict beside its factor.
+MODEL = ("model", "max_von_mises", "safety_factor", "verdict")
+NUMERIC = ("stress", "strength", "factor", "time")
+HAND_CHECKS = (
+    "Stresses by hand are nominal: of beam theory or mean over a section, without the "
+    "concentration at corners and edges. They are taken everywhere, also where the model's stress "
+    "is not read, such as at a clamp; so their factor may be the smaller one."
+)
+
+
+def write_hand_checks(results: Results, directory: Path) -> None:
+    """Write hand_checks.csv and hand_checks.md; nothing where nothing was checked."""
+    checked = [pin for pin in results.pins if pin.hand_checks]
+    if not checked:
+        return
+    units = results.units
+    columns = ("pin", "case", "check", *CHECK[1:], *MODEL, "stress_unit", "time_unit")
+    write_csv(directory / "hand_checks.csv", columns, _rows(checked, units))
+    parts = [f"# Checks by hand: {markdown.escaped(results.title)}", HAND_CHECKS]
+    for pin in checked:
+        title, (head, body, numeric) = f"{pin.pin}, {pin.case}", hand_check_table(pin, units)
+        parts += [f"## {markdown.escaped(title)}", markdown.table(head, body, numeric)]
+    (directory / "hand_checks.md").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
+
+
+def hand_check_table(pin: PinResult, units: Units) -> tuple[list[str], list[list[str]], list[bool]]:
+    """Head, rows and which columns are numbers: the model's answer, then every check, for people.
+
+    The time is left out where there is none.
+    """
+    headings = {
+        "name": "check",
+        "at": "place",
+        "time": f"time [{units.time}]",
+        "stress": f"stress [{units.stress}]",
+        "strength": f"strength [{units.stress}]",
+        "factor": "factor",
+        "formula": "stress from",
+        "source": "source",
+    }
+    if pin.time is None and all(check.time is None for check in pin.hand_checks):
+        headings.pop("time")
+    rows = [_model(pin, units), *(_check(check) for check in pin.hand_checks)]
+    names = list(headings)
+    body = [[row[name] for name in names] for row in rows]
+    return list(headings.values()), body, [name in NUMERIC for name in names]
+
+
+def _model(pin: PinResult, units: Units) -> dict[str, str]:
+    where = DASH
+    if pin.location is not None:
+        where = f"x, y, z = {', '.join(map(engineering, pin.location))} {units.length}"
+    outside = ", outside the excluded zones" if pin.verdict == "singular" else ""
+    verdict = verdict_words(pin.verdict, pin.yields)
+    return {
+        "name": f"{pin.model} model, largest von Mises stress{outside}",
+        "at": where,
+        "time": DASH if pin.time is None else short(pin.time),
+        "stress": engineering(pin.max_von_mises),
+        "strength": "yield",
+        "factor": f"{engineering(pin.safety_factor)} ({verdict})",
+        "formula": "elasticity",
+        "source": DASH,
+    }
+
+
+def _check(check: HandCheck) -> dict[str, str]:
+    return {
+        "name": check.name,
+        "at": check.at,
+        "time": DASH if check.time is None else short(check.time),
+        "stress": engineering(check.stress),
+        "strength": engineering(check.strength),
+        "factor": engineering(check.factor),
+        "formula": check.formula,
+        "source": check.source,
+    }
+
+
+def _rows(checked: list[PinResult], units: Units) -> Iterator[list[Cell]]:
+    for pin in checked:
+        model = [getattr(pin, name) for name in MODEL]
+        for check in pin.hand_checks:
+            own = [getattr(check, name) for name in CHECK]
+            yield [pin.pin, pin.case, *own, *model, units.stress, units.time]
