@@ -15,6 +15,7 @@ from fea.harmonic import HarmonicModel
 from fea.meridian_fields import MeridianFields
 from fea.notch import BENDING, TENSION, TORSION, shoulder_factor
 from fea.pin_loads import Floats, PinLoads
+from fea.stress import TENSOR
 from geometry import Pin, Segment
 from geometry.meridian_mesh import SectionSize, meridian_mesh
 
@@ -95,8 +96,7 @@ def _peaks(pin: Pin, fields: MeridianFields, case: PinLoads) -> tuple[float, flo
     at = np.flatnonzero(near)
     angles = np.full(len(at), top.angle)
     s = around.stress(at, np.zeros(len(at), dtype=int), angles)
-    tensor = s[:, [[0, 5, 4], [5, 1, 3], [4, 3, 2]]]
-    return top.value, float(np.abs(np.linalg.eigvalsh(tensor)).max())
+    return top.value, float(np.abs(np.linalg.eigvalsh(s[:, TENSOR])).max())
 
 
 def shoulders() -> str:

@@ -83,7 +83,7 @@ def solvers() -> str:
         b = np.random.default_rng(0).standard_normal((len(free), 2))
 
         def cholmod(A: Any = A, free: Any = free, b: Any = b) -> object:
-            return linear._cholmod(A, free // 3)(b)
+            return linear.factorize(A, free // 3)(b)
 
         def superlu(A: Any = A, b: Any = b) -> object:
             return linear._superlu(A)(b)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fea.linear import SolveError, factorize
+from fea.linear import Analysis, SolveError
 from fea.material import Material
 from fea.meridian_fields import MeridianFields
 from fea.outline import Outline, shapes
@@ -45,6 +45,7 @@ class HarmonicModel:
         self.clamps = tuple(pin.surface(name) for name in clamps)
         self.space = Section(section)
         self.outline = Outline(self.space)
+        self._analysis: Analysis | None = None  # one for all harmonics: held unknowns stay in it
 
     def solve(self, loads: tuple[UnitLoad, ...], extra: Floats = _NOWHERE) -> MeridianFields:
         """Unit fields, at `extra` points (P, 2) inside the section too.
@@ -104,11 +105,15 @@ class HarmonicModel:
     def _displace(self, n: int, forces: Floats) -> Floats:
         """Unknowns (unknowns, K) under nodal forces."""
         fixed = np.concatenate([self._on_axis(n), self._held(n)])
-        free = np.setdiff1d(np.arange(self.space.unknowns), fixed)
         K = self.space.stiffness(self.material, n)
-        u = np.zeros_like(forces)
-        u[free] = factorize(K[free][:, free], free // 3)(forces[free])
-        return u
+        free = np.ones(K.shape[0])
+        free[fixed] = 0.0
+        row = np.repeat(np.arange(len(free)), np.diff(K.indptr))
+        K.data *= free[row] * free[K.indices]
+        K.data[(K.indices == row) & (free[row] == 0.0)] = K.data.max()  # of no effect
+        if self._analysis is None:
+            self._analysis = Analysis(K)
+        return self._analysis.factorize(K)(forces * free[:, None])
 
     def _on_axis(self, n: int) -> Ints:
         """Unknowns that vanish on the axis, so that displacements are smooth there."""

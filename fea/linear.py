@@ -18,60 +18,82 @@ class SolveError(ArithmeticError):
     """The linear system could not be solved; the message says why and what may help."""
 
 
-def factorize(K: sp.csr_matrix, node: NDArray[np.int64]) -> Solve:
-    """A function that solves K x = b for b (n,) or (n, k); K is symmetric, `node` (n,) tells to
-    which node each unknown belongs (unknowns of a node are eliminated together).
+class Analysis:
+    """Of a symmetric matrix's pattern: the order of elimination and where its factor has entries,
+    found once for all matrices of that pattern (csr, both halves).
 
-    Raises: SolveError when K is not positive definite (a body that is not held), and from the
-    returned function when a solution's relative residual exceeds 1e-8.
+    node: (n,) to which node each unknown belongs, for an order by nested dissection of the nodes,
+    the best for solids; otherwise an approximate minimum degree, as good for sections.
     """
-    try:
-        solve = _cholmod(K, node)
-    except ImportError:
-        solve = _superlu(K)
 
-    def checked(b: Floats) -> Floats:
-        x = solve(b)
-        size = np.linalg.norm(b, axis=0)
-        residual = np.linalg.norm(K @ x - b, axis=0)
-        worst = float(np.max(residual / np.where(size > 0.0, size, 1.0), initial=0.0))
-        if not worst < LARGEST_RESIDUAL:
+    def __init__(self, pattern: sp.csr_matrix, node: NDArray[np.int64] | None = None) -> None:
+        try:
+            self._factor = _Cholmod(pattern, node).factor
+        except ImportError:
+            self._factor = _superlu
+
+    def factorize(self, K: sp.csr_matrix) -> Solve:
+        """A function that solves K x = b for b (n,) or (n, k). It must not be called any more once
+        another matrix has been factored.
+
+        Raises: SolveError when K is not positive definite (a body that is not held), and from the
+        returned function when a solution's relative residual exceeds 1e-8.
+        """
+        solve = self._factor(K)
+
+        def checked(b: Floats) -> Floats:
+            x = solve(b)
+            size = np.linalg.norm(b, axis=0)
+            residual = np.linalg.norm(K @ x - b, axis=0)
+            worst = float(np.max(residual / np.where(size > 0.0, size, 1.0), initial=0.0))
+            if not worst < LARGEST_RESIDUAL:
+                raise SolveError(
+                    f"the solution leaves a relative residual of {worst:.1e} (allowed "
+                    f"{LARGEST_RESIDUAL:.0e}): the matrix is nearly singular; is the pin held, and "
+                    "is Poisson's ratio well below 0.5?"
+                )
+            return x
+
+        return checked
+
+
+def factorize(K: sp.csr_matrix, node: NDArray[np.int64]) -> Solve:
+    """Analysis and factorisation of one matrix."""
+    return Analysis(K, node).factorize(K)
+
+
+class _Cholmod:
+    def __init__(self, pattern: sp.csr_matrix, node: NDArray[np.int64] | None) -> None:
+        from cvxopt import cholmod, matrix, spmatrix
+
+        pattern = pattern if pattern.has_sorted_indices else pattern.sorted_indices()
+        row = np.repeat(np.arange(pattern.shape[0]), np.diff(pattern.indptr))
+        self._upper = np.flatnonzero(pattern.indices >= row)  # by rows: the lower half by columns
+        lower = matrix(pattern.indices[self._upper].astype(np.int64)), matrix(row[self._upper])
+        self._matrix = spmatrix(1.0, *lower, pattern.shape)
+        cholmod.options["supernodal"] = 2  # L L^T, which fails on a matrix that is not definite
+        order = () if node is None else (matrix(_dissection(pattern, node)),)
+        self._factor = cholmod.symbolic(self._matrix, *order)
+
+    def factor(self, K: sp.csr_matrix) -> Solve:
+        from cvxopt import cholmod, matrix
+
+        K = K if K.has_sorted_indices else K.sorted_indices()
+        self._matrix.V = matrix(K.data[self._upper])
+        try:
+            cholmod.numeric(self._matrix, self._factor)
+        except ArithmeticError:
             raise SolveError(
-                f"the solution leaves a relative residual of {worst:.1e} (allowed "
-                f"{LARGEST_RESIDUAL:.0e}): the matrix is nearly singular; is the pin held?"
-            )
-        return x
+                "the stiffness matrix is not positive definite: the pin can still move, or its "
+                "mesh has inverted elements"
+            ) from None
 
-    return checked
+        def solve(b: Floats) -> Floats:
+            x = matrix(np.asfortranarray(b.reshape(len(b), -1)))
+            cholmod.solve(self._factor, x)
+            return np.array(x).reshape(b.shape)
 
-
-def _cholmod(K: sp.csr_matrix, node: NDArray[np.int64]) -> Solve:
-    from cvxopt import cholmod, matrix, spmatrix
-
-    order = matrix(_dissection(K, node))
-    lower = sp.tril(K, format="coo")
-    A = spmatrix(
-        matrix(lower.data),
-        matrix(lower.row.astype(np.int64)),
-        matrix(lower.col.astype(np.int64)),
-        K.shape,
-    )
-    cholmod.options["supernodal"] = 2  # L L^T, which fails on a matrix that is not definite
-    factor = cholmod.symbolic(A, order)
-    try:
-        cholmod.numeric(A, factor)
-    except ArithmeticError:
-        raise SolveError(
-            "the stiffness matrix is not positive definite: the pin can still move, or its mesh "
-            "has inverted elements"
-        ) from None
-
-    def solve(b: Floats) -> Floats:
-        x = matrix(np.asfortranarray(b.reshape(len(b), -1)))
-        cholmod.solve(factor, x)
-        return np.array(x).reshape(b.shape)
-
-    return solve
+        return solve
 
 
 def _dissection(K: sp.csr_matrix, node: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -38,8 +38,9 @@ class Pattern:
         return len(self.columns)
 
     def sums(self, parts: Floats) -> Floats:
-        """Sums (P,) over elements of what each gives to the pairs of its nodes, (M, k, k)."""
-        return np.asarray(self._sum @ parts.ravel())
+        """Sums (P, ..) over elements of what each gives to the pairs of its nodes (M, k, k, ..)."""
+        flat = parts.reshape(self._sum.shape[1], -1)
+        return np.asarray(self._sum @ flat).reshape(len(self), *parts.shape[3:])
 
     def matrix(self, blocks: Floats) -> sp.csr_matrix:
         """The sparse matrix with a block (d, d) for each pair, (P, d, d)."""

@@ -8,6 +8,7 @@ from fea.answer import Picture
 from fea.circumference import Circumference, Ints
 from fea.meridian_fields import MeridianFields
 from fea.pin_loads import Floats, PinLoads
+from fea.stress import ENTRIES, TENSOR
 
 SECTORS = 60
 CLOSE = 1e-9  # of the length: points that are one
@@ -27,19 +28,16 @@ def revolve(fields: MeridianFields, loads: PinLoads, instant: int) -> Picture:
     turn[:, 0, 0], turn[:, 1, 0] = np.cos(angle), np.sin(angle)
     turn[:, 0, 1], turn[:, 1, 1] = -np.sin(angle), np.cos(angle)
     turn[:, 2, 2] = 1.0
-    tensor = turn @ stress[:, [[0, 5, 4], [5, 1, 3], [4, 3, 2]]] @ turn.transpose(0, 2, 1)
+    tensor = turn @ stress[:, TENSOR] @ turn.transpose(0, 2, 1)
     x, y = r[everywhere] * np.cos(angle), r[everywhere] * np.sin(angle)
     return Picture(
         points=np.stack([x, y, z[everywhere]], axis=1),
         cells=_quads(len(rows)),
         cell_type="quad",
         displacement=np.einsum("pab,pb->pa", turn, _moved(fields, loads, at, instant, angle)),
-        stress=np.stack([tensor[:, a, b] for a, b in _COMPONENTS], axis=1),
+        stress=np.stack([tensor[:, a, b] for a, b in ENTRIES], axis=1),
         envelope=_envelope(around, rows, theta),
     )
-
-
-_COMPONENTS = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
 
 
 def _skin(fields: MeridianFields) -> Ints:

@@ -7,7 +7,7 @@ Displacements of harmonic n are u_r = U cos psi, u_theta = V sin psi, u_z = W co
 
 the first four times cos psi, the last two times sin psi. The unknowns are p = (U + V) / 2,
 m = (U - V) / 2 and w = W, in which all conditions on the axis are that some of them vanish. As the
-strains are linear in n, so the stiffness is a quadratic polynomial of n, made once for all n.
+strains are linear in n, the stiffness is quadratic: those of n = 0, 1, 2 give that of any other.
 
 Source: Zienkiewicz & Taylor, The Finite Element Method, ch. on semi-analytical processes.
 """
@@ -22,8 +22,12 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 from skfem import Basis, ElementTriP2
+from skfem.quadrature import get_quadrature
+from skfem.refdom import RefTri
 
 from fea.material import Material
+from fea.pattern import Pattern
+from fea.stress import extension
 from geometry.meridian_mesh import MeridianMesh
 
 Floats = NDArray[np.float64]
@@ -37,7 +41,12 @@ class Section:
 
     def __init__(self, section: MeridianMesh) -> None:
         self.section = section
-        self.basis = Basis(section.mesh, ElementTriP2(), intorder=4)
+        self._samples = get_quadrature(RefTri, 2)[0]  # three, where strains are most exact
+        X, W = get_quadrature(RefTri, 4)
+        points = np.hstack([X, self._samples]), np.append(W, np.zeros(self._samples.shape[1]))
+        self.basis = Basis(section.mesh, ElementTriP2(), quadrature=points)
+        self._quadrature, self._sampled = slice(0, len(W)), slice(len(W), None)
+        self._stiffnesses: dict[int, Floats] = {}
 
     @property
     def unknowns(self) -> int:
@@ -60,40 +69,50 @@ class Section:
 
     @cached_property
     def _weights(self) -> Floats:
-        """Areas times r at the quadrature points (M, Q), m^3."""
+        """Areas times r at all points of the basis (M, Q), m^3."""
         return np.asarray(self.basis.dx * self.basis.global_coordinates()[0])
 
+    @cached_property
+    def _pattern(self) -> Pattern:
+        return Pattern(self.elements, int(self.basis.N))
+
     def stiffness(self, material: Material, n: int) -> sp.csr_matrix:
-        """Stiffness matrix of harmonic n, for displacements as above and round the whole axis."""
-        first, second = self._strains
-        strain = first + n * second if n else first
-        half = np.linalg.cholesky(elasticity(material)).T
-        m = len(self.elements)
-        x = (half @ (strain * np.sqrt(around(n) * self._weights)[:, :, None, None])).reshape(
-            m, -1, 18
-        )
-        return self._assemble(x.transpose(0, 2, 1) @ x)
+        """Stiffness matrix of harmonic n, for displacements as above and round the whole axis. All
+        have the same pattern.
+        """
+        if n < 3:
+            blocks = self._stiffness(material, n)
+        else:
+            zero, one, two = (self._stiffness(material, k) for k in range(3))
+            blocks = (n - 1) * (n - 2) / 2.0 * zero - n * (n - 2) * one + n * (n - 1) / 2.0 * two
+        return self._pattern.matrix(around(n) * blocks)
+
+    def _stiffness(self, material: Material, n: int) -> Floats:
+        """Blocks (P, 3, 3) for the pairs of nodes, per radian."""
+        if n not in self._stiffnesses:
+            first, second = (x[:, self._quadrature] for x in self._strains)
+            strain = first + n * second if n else first
+            half = np.linalg.cholesky(elasticity(material)).T
+            weighted = strain * np.sqrt(self._weights[:, self._quadrature])[:, :, None, None]
+            x = np.tensordot(weighted, half, axes=(2, 1))  # (M, Q, 18, 6)
+            x = x.transpose(0, 2, 1, 3).reshape(len(x), 18, -1)
+            parts = (x @ x.swapaxes(1, 2)).reshape(-1, 6, 3, 6, 3).swapaxes(2, 3)
+            self._stiffnesses[n] = self._pattern.sums(parts)
+        return self._stiffnesses[n]
 
     @cached_property
     def integrals(self) -> Floats:
         """Of the shape functions times r over the section, (N,), m^3."""
         value = np.stack([np.asarray(self.basis.basis[i][0])[0] for i in range(6)], axis=-1)
-        found = (
-            self._weights @ value
-            if value.ndim == 2
-            else np.einsum("mq,mqi->mi", self._weights, value)
-        )
+        found = self._weights @ value
         count = len(self.nodes)
         return np.bincount(self.elements.ravel(), found.ravel(), count).astype(np.float64)
 
-    @cached_property
-    def _samples(self) -> Basis:
-        """The basis at three points of each element, where its strains are most exact."""
-        return Basis(self.section.mesh, ElementTriP2(), intorder=2)
-
     def sampled_strains(self, n: int, u: Floats) -> Floats:
-        """Strains (M, 3, 6, K), shears doubled, of displacements (N, 3, K) at those points."""
-        first, second = self._sampled
+        """Strains (M, 3, 6, K), shears doubled, of displacements (N, 3, K) at three points of each
+        element, where they are most exact.
+        """
+        first, second = (x[:, self._sampled] for x in self._strains)
         strain = first + n * second if n else first
         U, V, W = (u[self.elements, a] for a in range(3))
         unknowns = np.stack([(U + V) / 2.0, (U - V) / 2.0, W], axis=2).reshape(len(strain), 18, -1)
@@ -101,24 +120,9 @@ class Section:
         return np.asarray(found.reshape(*strain.shape[:3], -1))
 
     @cached_property
-    def _sampled(self) -> tuple[Floats, Floats]:
-        return strains_of(self._samples)
-
-    @cached_property
     def extend(self) -> sp.csr_matrix:
-        """Matrix (N, 3 M) from values at those points to values at nodes: each element's extended
-        linearly, and averaged.
-        """
-        at = np.vstack([np.ones(3), self._samples.X])
-        nodes = np.vstack([np.ones(6), ElementTriP2.doflocs.T])
-        extend = np.linalg.solve(at, nodes).T  # (6, 3)
-        m = len(self.elements)
-        row = np.repeat(self.elements.ravel(), 3)
-        column = (3 * np.arange(m)[:, None, None] + np.arange(3)).repeat(6, axis=1).ravel()
-        count = np.bincount(self.elements.ravel())
-        return sp.csr_matrix(
-            (np.tile(extend.ravel(), m) / count[row], (row, column)), shape=(len(count), 3 * m)
-        )
+        """Matrix (N, 3 M) from values at those points to values at nodes."""
+        return extension(self.elements, self._samples, ElementTriP2.doflocs.T)
 
     def values_at(self, points: Floats) -> sp.csr_matrix:
         """Matrix (P, N) from values at nodes to those at points (P, 2) inside the section."""
@@ -136,24 +140,6 @@ class Section:
         column = self.elements[element].ravel()
         shape = (len(points), len(self.nodes))
         return sp.csr_matrix((np.stack(values, axis=1).ravel(), (row, column)), shape=shape)
-
-    @cached_property
-    def _pattern(self) -> tuple[Ints, Ints, Ints, Ints]:
-        """Of the node blocks: order and starts of those that meet, columns and row pointer."""
-        n, elements = int(self.basis.N), self.elements
-        key = (elements[:, :, None] * n + elements[:, None, :]).ravel()
-        order = np.argsort(key, kind="stable")
-        key = key[order]
-        first = np.flatnonzero(np.concatenate([[True], key[1:] != key[:-1]]))
-        row, column = np.divmod(key[first], n)
-        return order, first, column, np.searchsorted(row, np.arange(n + 1))
-
-    def _assemble(self, blocks: Floats) -> sp.csr_matrix:
-        """A sparse matrix from element matrices (M, 18, 18)."""
-        order, first, column, pointer = self._pattern
-        parts = blocks.reshape(-1, 6, 3, 6, 3).transpose(0, 1, 3, 2, 4).reshape(-1, 9)
-        data = np.add.reduceat(parts[order], first, axis=0).reshape(-1, 3, 3)
-        return sp.bsr_matrix((data, column, pointer), shape=(self.unknowns, self.unknowns)).tocsr()
 
 
 def around(n: int) -> float:

@@ -23,7 +23,8 @@ VON_MISES = np.zeros((6, 6))
 VON_MISES[:3, :3] = -0.5
 VON_MISES[range(6), range(6)] = [1.0, 1.0, 1.0, 3.0, 3.0, 3.0]
 
-_PAIR = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])  # component of the stress tensor's entry ab
+TENSOR = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])  # component of the tensor's entry ab
+ENTRIES = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))  # and the reverse
 
 
 def von_mises(stress: Floats) -> Floats:
@@ -32,17 +33,26 @@ def von_mises(stress: Floats) -> Floats:
     return np.asarray(np.sqrt(np.maximum(square, 0.0)))
 
 
+def extension(elements: NDArray[np.int64], samples: Floats, places: Floats) -> sp.csr_matrix:
+    """Matrix (N, M Q) from values at Q samples of each element to values at nodes: each element's
+    extended linearly, and averaged.
+
+    elements: (M, k) node numbers. samples (d, Q), places (d, k): where samples and nodes are in the
+    element. Q = d + 1.
+    """
+    at, nodes = (np.vstack([np.ones(x.shape[1]), x]) for x in (samples, places))
+    extend = np.linalg.solve(at, nodes).T  # (k, Q)
+    m, (k, q) = len(elements), extend.shape
+    row = np.repeat(elements.ravel(), q)
+    column = (q * np.arange(m)[:, None, None] + np.arange(q)).repeat(k, axis=1).ravel()
+    count = np.bincount(elements.ravel())
+    value = np.tile(extend.ravel(), m) / count[row]
+    return sp.csr_matrix((value, (row, column)), shape=(len(count), q * m))
+
+
 def recovery(space: Discretisation) -> sp.csr_matrix:
     """Matrix (N, 4 M) from values at the quadrature points to values at the nodes."""
-    at = np.vstack([np.ones(4), space.basis.X])
-    nodes = np.vstack([np.ones(10), ElementTetP2.doflocs.T])
-    extend = np.linalg.solve(at, nodes).T  # (10, 4)
-    m = len(space.elements)
-    row = np.repeat(space.elements.ravel(), 4)
-    column = (4 * np.arange(m)[:, None, None] + np.arange(4)).repeat(10, axis=1).ravel()
-    count = np.bincount(space.elements.ravel())
-    value = np.tile(extend.ravel(), m) / count[row]
-    return sp.csr_matrix((value, (row, column)), shape=(len(count), 4 * m))
+    return extension(space.elements, space.basis.X, ElementTetP2.doflocs.T)
 
 
 def nodal_stress(space: Discretisation, material: Material, displacement: Floats) -> Floats:
@@ -86,13 +96,10 @@ def with_known_traction(
             ],
             axis=1,
         )[known]
-        s = stress[known, :, k][:, _PAIR]
+        s = stress[known, :, k][:, TENSOR]
         r = t - np.einsum("nab,nb->na", s, n)
         normal_part = np.sum(r * n, axis=1)[:, None, None]
         rn = r[:, :, None] * n[:, None, :]
         s = s + rn + rn.swapaxes(1, 2) - normal_part * n[:, :, None] * n[:, None, :]
-        out[known, :, k] = np.stack([s[:, a, b] for a, b in _TENSOR], axis=1)
+        out[known, :, k] = np.stack([s[:, a, b] for a, b in ENTRIES], axis=1)
     return out
-
-
-_TENSOR = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
