@@ -1,20 +1,22 @@
 """The largest von Mises stress round the axis, by superposing unit fields of several harmonics.
 
-At a point of the section the stress is the sum over n of P_n cos n theta + Q_n sin n theta. With
-one harmonic alone, von Mises squared is a quadratic form of (cos n theta, sin n theta) with entries
-A = P.P, B = P.Q, C = Q.Q (in von Mises' metric), so that its maximum is closed:
+In a metric of von Mises a stress is five numbers whose squares sum to his equivalent squared; round
+the axis three of them go as cos psi and two as sin psi. With one harmonic alone the square is a
+quadratic form of (cos n theta, sin n theta) with entries A, B, C, so that its maximum is closed:
 
     (A + C) / 2 + sqrt(((A - C) / 2)^2 + B^2)
 
 With several, von Mises being a seminorm, the sum of these maxima is a bound from above; only points
 whose bound exceeds what has been found elsewhere are sampled; von Mises squared is a trigonometric
-polynomial, so samples give its highest crest (fea.crest).
+polynomial, so samples give its highest crest (fea.crest). What each unit load can do at a point at
+most is a coarser bound, which says in what order points are looked at and when to stop.
 """
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,19 +24,21 @@ from numpy.typing import NDArray
 from fea.crest import highest_crest
 from fea.meridian_fields import MeridianFields
 from fea.pin_loads import Floats, PinLoads
-from fea.stress import VON_MISES, von_mises
 
 Ints = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
 SAMPLES = 64  # round the axis, at least
 SAMPLES_PER_WAVE = 5  # of von Mises squared
-FIRST = 8  # points, or pairs of points and instants, that are sampled to begin with
-CHUNK = 4096  # points sampled at once
-EVEN = np.array([1.0, 1.0, 1.0, 0.0, 1.0, 0.0])  # components that go as cos psi
-ODD = 1.0 - EVEN
-_SIZES, _AXES = np.linalg.eigh(VON_MISES)
-ROOT = (_AXES * np.sqrt(np.maximum(_SIZES, 0.0))).T[1:]  # (5, 6): ROOT^T ROOT is VON_MISES
+FIRST = 8  # pairs of points and instants that are sampled to begin with
+CHUNK = 4096  # pairs sampled at once
+POINTS = 256  # points looked at together
+EVEN = 3  # so many of the five numbers go as cos psi, the others as sin psi
+METRIC = np.zeros((5, 6))  # METRIC^T METRIC is stress.VON_MISES
+METRIC[0, :3] = np.array([1.0, -1.0, 0.0]) * np.sqrt(0.75)
+METRIC[1, :3] = [-0.5, -0.5, 1.0]
+METRIC[[2, 3, 4], [4, 3, 5]] = np.sqrt(3.0)
+_BACK = np.array([True, True, True, False, True, False])  # stresses that go as cos psi
 
 
 @dataclass(frozen=True)
@@ -47,61 +51,6 @@ class Top:
     angle: float
 
 
-@dataclass(frozen=True)
-class Wave:
-    """One harmonic of a case: stress (S, 6, K) Pa per unit load, coefficients (T, K) by phase."""
-
-    n: int
-    stress: Floats
-    first: Floats
-    second: Floats
-
-    @cached_property
-    def bound(self) -> Floats:
-        """Largest von Mises stress of this harmonic alone, (S, T) Pa."""
-        A, B, C = self.forms
-        if self.n == 0:
-            return np.sqrt(np.maximum(A, 0.0))
-        return np.sqrt(np.maximum((A + C) / 2.0 + np.hypot((A - C) / 2.0, B), 0.0))
-
-    @cached_property
-    def forms(self) -> tuple[Floats, Floats, Floats]:
-        """A, B, C, (S, T) each."""
-        count = self.stress.shape[2]
-        even, odd = (self.stress * part[:, None] for part in (EVEN, ODD))
-        G, H = (np.einsum("sik,ij,sjl->skl", x, VON_MISES, x, optimize=True) for x in (even, odd))
-        G, H = (x.reshape(len(x), count * count) for x in (G, H))
-        a, b = self.first, self.second
-        aa, ab, bb = (
-            (x[:, :, None] * y[:, None, :]).reshape(-1, count * count).T
-            for x, y in ((a, a), (a, b), (b, b))
-        )
-        return G @ aa + H @ bb, G @ ab - H @ ab, G @ bb + H @ aa
-
-    @cached_property
-    def _metric(self) -> tuple[Floats, Floats]:
-        """Even and odd parts of unit stresses (S, 5, K): squares sum to von Mises squared."""
-        even, odd = (ROOT @ (self.stress * part[:, None]) for part in (EVEN, ODD))
-        return even, odd
-
-    def measured(self, points: Ints, angle: float) -> Floats:
-        """At points (J,) and an angle five numbers (J, 5, T) whose squares sum to von Mises
-        squared, and which add up over the waves.
-        """
-        even, odd = (x[points].reshape(-1, x.shape[2]) for x in self._metric)
-        c, s = np.cos(self.n * angle), np.sin(self.n * angle)
-        found = even @ (c * self.first + s * self.second).T
-        found += odd @ (s * self.first - c * self.second).T
-        return np.asarray(found.reshape(len(points), 5, -1))
-
-    def parts(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
-        """P and Q, (J, 6) each, at pairs of points and instants (J,)."""
-        s = self.stress[points]
-        a = np.einsum("jik,jk->ji", s, self.first[instants])
-        b = np.einsum("jik,jk->ji", s, self.second[instants])
-        return EVEN * a - ODD * b, EVEN * b + ODD * a
-
-
 class Circumference:
     """A case on the section's points."""
 
@@ -110,127 +59,193 @@ class Circumference:
         missing = set(acting) - set(fields.loads)
         if missing:
             raise ValueError(f"case {loads.case}: no unit fields for {sorted(missing)}")
+        units = sorted(acting, key=lambda load: load.n)
+        by_phase = np.zeros((len(loads), len(units), 2))
+        for k, load in enumerate(units):
+            by_phase[:, k] = acting[load]
         self.count = len(loads)
         self.points = len(fields.points)
-        self.waves = []
-        for n in sorted({load.n for load in acting}):
-            here = [load for load in acting if load.n == n]
-            stress = fields.stress[:, :, [fields.loads.index(load) for load in here]]
-            by_phase = np.stack([acting[load] for load in here], axis=1)  # (T, K, 2)
-            self.waves.append(Wave(n, stress, by_phase[..., 0], by_phase[..., 1]))
+        self._first, self._second = by_phase[..., 0], by_phase[..., 1]  # (T, K)
+        self._stress = fields.stress[:, :, [fields.loads.index(load) for load in units]]
+        self._five = METRIC @ self._stress  # (S, 5, K)
+        self._n = np.array([load.n for load in units], dtype=np.int64)
+        starts = np.flatnonzero(np.diff(self._n, prepend=-1))
+        self._waves = [slice(*ends) for ends in itertools.pairwise([*starts, len(units)])]
 
-    @cached_property
-    def bound(self) -> Floats:
-        """At least the largest von Mises stress round the axis, (S, T) Pa; exactly it where only
-        one harmonic acts.
+    @property
+    def twists(self) -> bool:
+        """Whether nothing acts but torsion."""
+        return not self._n.any() and not self._first.any()
+
+    def bound(self, points: Ints) -> Floats:
+        """At least the largest von Mises stress round the axis, (J, T) Pa, at points (J,); exactly
+        it where only one harmonic acts.
         """
-        if not self.waves:
-            return np.zeros((self.points, self.count))
-        return np.asarray(sum(wave.bound for wave in self.waves))
+        out = np.zeros((len(points), self.count))
+        for wave in self._waves:
+            a, b = self._first[:, wave], self._second[:, wave]
+            aa, ab, bb = (x[:, :, None] * y[:, None, :] for x, y in ((a, a), (a, b), (b, b)))
+            five = self._five[points, :, wave]
+            even, odd = (x.swapaxes(1, 2) @ x for x in (five[:, :EVEN], five[:, EVEN:]))
+            if self._n[wave.start] == 0:
+                square = _forms(even, aa) + _forms(odd, bb)
+            else:
+                apart = even - odd
+                total = _forms(even + odd, aa + bb)
+                square = _closed(total, _forms(apart, aa - bb), _forms(apart, ab))
+            out += np.sqrt(np.maximum(square, 0.0, out=square), out=square)
+        return out
 
     def largest(self, among: Mask) -> tuple[Floats, Ints, Floats]:
         """Over the points of a mask (S,), at every instant: maximum (T,) Pa, point, angle."""
-        rows = np.flatnonzero(among)
-        bound = self.bound[rows]
-        every = np.arange(self.count)
-        if len(self.waves) < 2:
-            at = bound.argmax(axis=0)
-            _, angle = self.round(rows[at], every)
-            return bound[at, every], rows[at], angle
-        first = np.argpartition(-bound, min(FIRST, len(rows) - 1), axis=0)[:FIRST]
-        i, t = first.ravel(), np.tile(every, len(first))
-        value, angle = self.round(rows[i], t)
-        best = np.zeros(self.count)
-        np.maximum.at(best, t, value)
-        more = np.argwhere(bound > best)
-        value_more, angle_more = self.round(rows[more[:, 0]], more[:, 1])
-        value, angle = np.concatenate([value, value_more]), np.concatenate([angle, angle_more])
-        i, t = np.concatenate([i, more[:, 0]]), np.concatenate([t, more[:, 1]])
-        order = np.lexsort((-value, t))
-        top = order[np.searchsorted(t[order], every)]
-        return value[top], rows[i[top]], angle[top]
+        value, point = self._search(among, together=False)
+        return value, point, self.round(point, np.arange(self.count))[1]
 
     def top(self, among: Mask) -> Top:
-        """Over the points of a mask (S,) and all instants.
+        """Over the points of a mask (S,) and all instants."""
+        value, point = self._search(among, together=True)
+        instant = int(value.argmax())
+        angle = self.round(point[[instant]], np.array([instant]))[1]
+        return Top(float(value[instant]), int(point[instant]), instant, float(angle[0]))
 
-        Pairs of points and instants are sampled in the order of their bounds until the next bound
-        is below what was found.
+    def _search(self, among: Mask, together: bool) -> tuple[Floats, Ints]:
+        """At every instant the maximum (T,) Pa and its point (T,); `together`: the largest of all
+        is right, those of other instants need not be.
+
+        Points are looked at in the order of what they can reach at most.
         """
-        rows = np.flatnonzero(among)
-        bound = self.bound[rows].ravel()
-        best = Top(0.0, int(rows[0]) if len(rows) else 0, 0, 0.0)
-        batch = 1 if len(self.waves) < 2 else FIRST
-        while len(bound):
-            pairs = np.argpartition(-bound, min(batch, len(bound) - 1))[:batch]
-            row, instant = np.divmod(pairs, self.count)
-            value, angle = self.round(rows[row], instant)
-            k = int(value.argmax())
-            if value[k] > best.value:
-                best = Top(float(value[k]), int(rows[row[k]]), int(instant[k]), float(angle[k]))
-            bound[pairs] = -1.0
-            if len(self.waves) < 2 or bound.max() <= best.value:
+        rows, reach = self._in_order(np.flatnonzero(among))
+        best = np.zeros(self.count)
+        point = np.full(self.count, rows[0] if len(rows) else 0)
+        for k in range(0, len(rows), POINTS):
+            if reach[k] <= (best.max() if together else best.min()):
                 break
+            here = rows[k : k + POINTS]
+            bound = self.bound(here)
+            for i, t in self._worth(bound, best, together):
+                value = bound[i, t] if len(self._waves) < 2 else self.round(here[i], t)[0]
+                bound[i, t] = -1.0
+                order = np.argsort(value, kind="stable")
+                i, t, value = i[order], t[order], value[order]
+                more = value > best[t]
+                best[t[more]], point[t[more]] = value[more], here[i[more]]  # the last one stays
+        return best, point
+
+    def _in_order(self, rows: Ints) -> tuple[Ints, Floats]:
+        """Points, those first that can reach most, and how much (Pa): the sum over unit loads of
+        what each of them can do by itself.
+        """
+        five = self._five[rows]
+        even, odd = (np.square(x).sum(axis=1) for x in (five[:, :EVEN], five[:, EVEN:]))
+        each = np.sqrt(np.maximum(even, odd))  # (J, K)
+        most = np.hypot(self._first, self._second).T
+        reach = np.zeros(len(rows))
+        for k in range(0, len(rows), CHUNK):
+            reach[k : k + CHUNK] = (each[k : k + CHUNK] @ most).max(axis=1, initial=0.0)
+        reach *= 1.0 + 1e-12
+        order = np.argsort(-reach, kind="stable")
+        return rows[order], reach[order]
+
+    def _worth(self, bound: Floats, best: Floats, together: bool) -> Iterator[tuple[Ints, Ints]]:
+        """Pairs of points and instants whose bound (J, T) exceeds the best so far, both of which
+        change meanwhile: the highest ones first, then more and more.
+        """
+        batch = FIRST if together else max(FIRST, self.count)
+        while True:
+            i, t = np.nonzero(bound > (best.max() if together else best))
+            if not len(i):
+                return
+            if len(i) > batch:
+                ahead = bound[i, t] if together else bound[i, t] - best[t]
+                few = np.argpartition(-ahead, batch)[:batch]
+                i, t = i[few], t[few]
+            yield i, t
             batch *= 4
-        return best
 
     def round(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
         """Largest von Mises stress (J,) Pa round the axis at pairs of points and instants, and the
         angle (rad) where it is.
         """
-        found = [
-            self._polished(points[k : k + CHUNK], instants[k : k + CHUNK])
-            for k in range(0, len(points), CHUNK)
-        ]
-        if not found:
-            return np.zeros(0), np.zeros(0)
-        return np.concatenate([v for v, _ in found]), np.concatenate([a for _, a in found])
+        value, angle = np.zeros(len(points)), np.zeros(len(points))
+        for k in range(0, len(points), CHUNK):
+            here = slice(k, k + CHUNK)
+            value[here], angle[here] = self._round(points[here], instants[here])
+        return value, angle
 
-    def _polished(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
-        parts = [(wave.n, *wave.parts(points, instants)) for wave in self.waves]
-        if not parts:
-            return np.zeros(len(points)), np.zeros(len(points))
-        if len(parts) == 1:
-            return _closed(*parts[0])
-
-        def at(angles: Floats) -> Floats:
-            return von_mises(np.asarray(sum(_wave(n, P, Q, angles) for n, P, Q in parts)))
-
-        degree = 2 * parts[-1][0]  # of von Mises squared
+    def _round(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
+        n = self._n[[wave.start for wave in self._waves]]
+        back, forth = self._parts(points, instants)  # (J, 5, W)
+        if len(n) < 2:
+            return _one_wave(n, back, forth)
+        degree = 2 * int(n[-1])  # of von Mises squared
         count = max(SAMPLES, SAMPLES_PER_WAVE * degree)
-        even = np.tile(np.arange(count) * 2.0 * np.pi / count, (len(points), 1))
-        angle = highest_crest(at(even) ** 2, degree)
-        return at(angle[:, None])[:, 0], angle
+        even = n[:, None] * (np.arange(count) * 2.0 * np.pi / count)
+        found = np.concatenate([back, forth], axis=2) @ np.concatenate([np.cos(even), np.sin(even)])
+        angle = highest_crest(np.square(found).sum(axis=1), degree)
+        there = n * angle[:, None]
+        found = np.einsum("jiw,jw->ji", back, np.cos(there))
+        found += np.einsum("jiw,jw->ji", forth, np.sin(there))
+        return np.linalg.norm(found, axis=1), angle
+
+    def _parts(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
+        """Of pairs of points and instants what goes as cos n theta and as sin n theta, by wave,
+        (J, 5, W) each.
+        """
+        five = self._five[points]
+        back, forth = (np.empty((len(points), 5, len(self._waves))) for _ in range(2))
+        for w, wave in enumerate(self._waves):
+            a, b = (
+                np.einsum("jik,jk->ji", five[:, :, wave], x[instants, wave])
+                for x in (self._first, self._second)
+            )
+            back[:, :EVEN, w], back[:, EVEN:, w] = a[:, :EVEN], -b[:, EVEN:]
+            forth[:, :EVEN, w], forth[:, EVEN:, w] = b[:, :EVEN], a[:, EVEN:]
+        return back, forth
 
     def squares(self, points: Ints, angle: float) -> Floats:
         """Von Mises squared (J, T) at points (J,) at an angle (rad) and every instant, Pa^2."""
-        if len(self.waves) == 1:
-            A, B, C = (form[points] for form in self.waves[0].forms)
-            c, s = np.cos(self.waves[0].n * angle), np.sin(self.waves[0].n * angle)
-            return np.asarray(c * c * A + 2.0 * c * s * B + s * s * C)
-        found = np.zeros((len(points), 5, self.count))
-        for wave in self.waves:
-            found += wave.measured(points, angle)
-        return np.asarray(np.square(found).sum(axis=1))
+        back, forth = self._amounts(angle)
+        five = self._five[points]
+        even = five[:, :EVEN].reshape(-1, len(self._n)) @ back.T
+        odd = five[:, EVEN:].reshape(-1, len(self._n)) @ forth.T
+        shape = (len(points), -1, self.count)
+        return np.asarray(
+            np.square(even).reshape(shape).sum(axis=1) + np.square(odd).reshape(shape).sum(axis=1)
+        )
 
     def stress(self, points: Ints, instants: Ints, angle: Floats) -> Floats:
         """Stress (J, 6) in Pa at pairs of points and instants and angles (J,): rr, tt, zz, tz, rz,
         rt.
         """
-        out = np.zeros((len(points), 6))
-        for wave in self.waves:
-            out += _wave(wave.n, *wave.parts(points, instants), angle[:, None])[:, 0]
-        return out
+        first, second, stress = self._first[instants], self._second[instants], self._stress[points]
+        c, s = np.cos(self._n * angle[:, None]), np.sin(self._n * angle[:, None])
+        back = np.einsum("jik,jk->ji", stress, c * first + s * second)
+        forth = np.einsum("jik,jk->ji", stress, s * first - c * second)
+        return np.where(_BACK, back, forth)
+
+    def _amounts(self, angle: float) -> tuple[Floats, Floats]:
+        """How much of each unit load's parts there is at an angle, (T, K) each: of those that go
+        as cos psi, and of the others.
+        """
+        c, s = np.cos(self._n * angle), np.sin(self._n * angle)
+        return c * self._first + s * self._second, s * self._first - c * self._second
 
 
-def _wave(n: int, P: Floats, Q: Floats, angles: Floats) -> Floats:
-    """(J, A, 6) at angles (J, A)."""
-    c, s = np.cos(n * angles), np.sin(n * angles)
-    return np.asarray(c[..., None] * P[:, None] + s[..., None] * Q[:, None])
+def _forms(form: Floats, products: Floats) -> Floats:
+    """Quadratic forms (J, K, K) of T pairs of vectors, whose products are (T, K, K); (J, T)."""
+    return np.asarray(form.reshape(len(form), -1) @ products.reshape(len(products), -1).T)
 
 
-def _closed(n: int, P: Floats, Q: Floats) -> tuple[Floats, Floats]:
-    if n == 0:
-        return von_mises(P), np.zeros(len(P))
-    A, B, C = (np.einsum("ji,ik,jk->j", x, VON_MISES, y) for x, y in ((P, P), (P, Q), (Q, Q)))
-    largest = (A + C) / 2.0 + np.hypot((A - C) / 2.0, B)
-    return np.sqrt(np.maximum(largest, 0.0)), 0.5 * np.arctan2(2.0 * B, A - C) / n
+def _closed(total: Floats, apart: Floats, mixed: Floats) -> Floats:
+    """Largest of A cos^2 + 2 B cos sin + C sin^2: total A + C, apart A - C, mixed B."""
+    return np.asarray(total / 2.0 + np.sqrt(apart * apart / 4.0 + mixed * mixed))
+
+
+def _one_wave(n: Ints, back: Floats, forth: Floats) -> tuple[Floats, Floats]:
+    """Largest von Mises stress and its angle, (J,) each, of no wave or of one of harmonic n."""
+    A, B, C = ((x * y).sum(axis=(1, 2)) for x, y in ((back, back), (back, forth), (forth, forth)))
+    if not n.any():
+        return np.sqrt(A), np.zeros(len(A))
+    largest = np.maximum(_closed(A + C, A - C, B), 0.0)
+    angle = 0.5 * np.arctan2(2.0 * B, A - C) / n[0]
+    return np.sqrt(largest), np.asarray(angle)

@@ -175,6 +175,5 @@ def _exponent(
     first = int(np.argmin(distance[:skin]))
     sides = [near < first, near > first]
     side = max(sides, key=lambda s: float(np.median(value[s])) if s.any() else 0.0)
-    twists = all(wave.n == 0 and not wave.first.any() for wave in around.waves)
-    following = place.following_torsion if twists else place.following
+    following = place.following_torsion if around.twists else place.following
     return growth_exponent(d[near[side]], value[side], following)
