@@ -20,7 +20,7 @@ from benchmarks.calculix_deck import write_deck
 from benchmarks.calculix_ours import FILLET, PIN, STEEL, Floats, Ints, Loaded, Ours
 from benchmarks.calculix_run import COMMAND, JOB, Process, Solved, process, run
 from benchmarks.timing import table
-from fea.stress import von_mises
+from fea.tensor import von_mises
 from geometry.solid_mesh import MeshSize, solid_mesh
 
 MISSING = "CalculiX is not installed (no ccx): apt-get install calculix-ccx"

@@ -15,7 +15,7 @@ from fea.harmonic import HarmonicModel
 from fea.meridian_fields import MeridianFields
 from fea.notch import BENDING, TENSION, TORSION, shoulder_factor
 from fea.pin_loads import Floats, PinLoads
-from fea.stress import TENSOR
+from fea.tensor import TENSOR
 from geometry import Pin, Segment
 from geometry.meridian_mesh import SectionSize, meridian_mesh
 

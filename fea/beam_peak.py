@@ -13,7 +13,7 @@ import numpy as np
 from fea.beam_stress import BeamStress
 from fea.line_load import shares
 from fea.pin_loads import Floats, PinLoads
-from fea.stress import VON_MISES
+from fea.tensor import VON_MISES
 
 ANGLES = 48
 _THETA = 2.0 * np.pi * np.arange(ANGLES) / ANGLES

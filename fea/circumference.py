@@ -221,7 +221,7 @@ class Circumference:
         c, s = np.cos(self._n * angle[:, None]), np.sin(self._n * angle[:, None])
         back = np.einsum("jik,jk->ji", stress, c * first + s * second)
         forth = np.einsum("jik,jk->ji", stress, s * first - c * second)
-        return np.where(_BACK, back, forth)
+        return np.asarray(np.where(_BACK, back, forth))
 
     def _amounts(self, angle: float) -> tuple[Floats, Floats]:
         """How much of each unit load's parts there is at an angle, (T, K) each: of those that go

@@ -16,6 +16,7 @@ from skfem import Basis, ElementTetP2, MeshTet2
 
 from fea.material import Material
 from fea.pattern import Pattern
+from fea.tensor import ENTRIES
 
 Floats = NDArray[np.float64]
 
@@ -78,6 +79,4 @@ class Discretisation:
         u = displacement[self.elements]
         h = np.einsum("mqia,mib->mqab", self.gradients, u, optimize=True)
         h = 0.5 * (h + h.swapaxes(2, 3))
-        return np.stack(
-            [h[..., a, b] for a, b in ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))], -1
-        )
+        return np.stack([h[..., a, b] for a, b in ENTRIES], -1)

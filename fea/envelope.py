@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from fea.pin_loads import PinLoads
 from fea.solid import UnitFields
-from fea.stress import VON_MISES
+from fea.tensor import VON_MISES
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -38,9 +38,8 @@ class Envelope:
     maxima: (T,) the same at every instant.
 
     scatter: half its range over the directions, Pa. location: where it is (m) with the loads as
-    they are. field: (S,) each surface node's largest over all instants, Pa, and coefficients: (L,)
-    unit loads at the governing instant, with the loads as they are. inside: of regions that the
-    maximum leaves out, the largest stress (Pa) and where it is (m).
+    they are. field: (S,) each surface node's largest over all instants, Pa. inside: of regions that
+    the maximum leaves out, the largest stress (Pa) and where it is (m).
     """
 
     maximum: float
@@ -48,7 +47,6 @@ class Envelope:
     instant: int
     location: tuple[float, float, float]
     field: Floats
-    coefficients: Floats
     maxima: Floats
     inside: tuple[tuple[float, Point], ...] = ()
 
@@ -95,7 +93,6 @@ def envelope(
         instant=instant,
         location=place(nodes[among], as_is[among, instant]),
         field=np.sqrt(np.maximum(as_is.max(axis=1), 0.0)),
-        coefficients=fields.coefficients(loads)[instant],
         maxima=maxima,
         inside=tuple(
             (float(np.sqrt(as_is[m].max())), place(nodes[m], as_is[m].max(axis=1))) for m in within

@@ -146,17 +146,17 @@ def _beam(
         return {}  # a beam is never that exact
     out = {}
     for case in cases:
+        places = _places(job, (case,)) if asked.model == "auto" else ()
+        if any(p.kind != "edge of a load" for p in places):
+            continue  # no maximum where beams know none
         start = time.perf_counter()
         answer = BeamAnswer(pin, job.material, job.held, case)
         found = answer.estimate
         peak = answer.peak(asked.tolerance, time.perf_counter() - start, notes.get(case.case, ""))
         why = "beam: asked for"
         if asked.model == "auto":
-            if (
-                any(p.kind != "edge of a load" for p in _places(job, (case,)))
-                or found.error is None
-            ):
-                continue  # no maximum where beams know none
+            if found.error is None:
+                continue
             if job.decided(found.maximum, found.error):
                 why = "beam: the required factor lies outside of what its error leaves open"
             elif peak.verdict == "converged":

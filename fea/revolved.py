@@ -8,7 +8,7 @@ from fea.answer import Picture
 from fea.circumference import Circumference, Ints
 from fea.meridian_fields import MeridianFields
 from fea.pin_loads import Floats, PinLoads
-from fea.stress import ENTRIES, TENSOR
+from fea.tensor import ENTRIES, TENSOR
 
 SECTORS = 60
 CLOSE = 1e-9  # of the length: points that are one

@@ -27,7 +27,7 @@ from skfem.refdom import RefTri
 
 from fea.material import Material
 from fea.pattern import Pattern
-from fea.stress import extension
+from fea.recovery import extension
 from geometry.meridian_mesh import MeridianMesh
 
 Floats = NDArray[np.float64]

@@ -1,8 +1,7 @@
-"""Stress at the nodes from a displacement field, and von Mises' equivalent of it.
+"""Stress at the nodes of a solid from a displacement field.
 
 Values at the quadrature points are extended linearly to each element's nodes and averaged there;
-on the surface the traction is known, and the stress is corrected to carry exactly that. Components
-are xx, yy, zz, yz, xz, xy.
+on the surface the traction is known, and the stress is corrected to carry exactly that.
 """
 
 from __future__ import annotations
@@ -14,40 +13,11 @@ from skfem import ElementTetP2
 
 from fea.elasticity import Discretisation
 from fea.material import Material
+from fea.recovery import extension
 from fea.surface import SMOOTH, Surface
+from fea.tensor import ENTRIES, TENSOR
 
 Floats = NDArray[np.float64]
-
-# von Mises squared is s . VON_MISES s
-VON_MISES = np.zeros((6, 6))
-VON_MISES[:3, :3] = -0.5
-VON_MISES[range(6), range(6)] = [1.0, 1.0, 1.0, 3.0, 3.0, 3.0]
-
-TENSOR = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])  # component of the tensor's entry ab
-ENTRIES = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))  # and the reverse
-
-
-def von_mises(stress: Floats) -> Floats:
-    """Von Mises' equivalent stress (...) of stresses (..., 6)."""
-    square = np.einsum("...a,ab,...b->...", stress, VON_MISES, stress)
-    return np.asarray(np.sqrt(np.maximum(square, 0.0)))
-
-
-def extension(elements: NDArray[np.int64], samples: Floats, places: Floats) -> sp.csr_matrix:
-    """Matrix (N, M Q) from values at Q samples of each element to values at nodes: each element's
-    extended linearly, and averaged.
-
-    elements: (M, k) node numbers. samples (d, Q), places (d, k): where samples and nodes are in the
-    element. Q = d + 1.
-    """
-    at, nodes = (np.vstack([np.ones(x.shape[1]), x]) for x in (samples, places))
-    extend = np.linalg.solve(at, nodes).T  # (k, Q)
-    m, (k, q) = len(elements), extend.shape
-    row = np.repeat(elements.ravel(), q)
-    column = (q * np.arange(m)[:, None, None] + np.arange(q)).repeat(k, axis=1).ravel()
-    count = np.bincount(elements.ravel())
-    value = np.tile(extend.ravel(), m) / count[row]
-    return sp.csr_matrix((value, (row, column)), shape=(len(count), q * m))
 
 
 def recovery(space: Discretisation) -> sp.csr_matrix:

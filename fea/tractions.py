@@ -34,10 +34,6 @@ class Traction:
         """Amplitudes (..., 3), Pa, at z (...) in m."""
         return np.asarray(self.mean + self.slope * (z[..., None] - self.middle))
 
-    def times(self, factor: float) -> Traction:
-        """So many of it."""
-        return Traction(self.surface, self.middle, factor * self.mean, factor * self.slope)
-
 
 ALONG_X = np.array([1.0, -1.0, 0.0])  # amplitudes of a traction of constant direction, n = 1
 PUSHING = np.array([2.0, 0.0, 0.0])  # amplitudes of a pressure with the same resultant

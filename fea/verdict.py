@@ -13,11 +13,7 @@ from fea.zones import Place
 LEAST_ORDER = {"harmonic": 1.0}  # meshes of sections have points at the rims of what is excluded
 FEWEST = 3  # meshes before a maximum may be called converged: two can agree by chance
 
-ARTICLES = {
-    "sharp corner": "a sharp corner",
-    "edge of a clamp": "the edge of a clamp",
-    "edge of a load": "the edge of a load",
-}
+ARTICLES = {"sharp corner": "a", "edge of a clamp": "the", "edge of a load": "the"}
 
 
 @dataclass(frozen=True)
@@ -62,11 +58,11 @@ class Seen:
 
 
 def zones(look: Look, places: Sequence[Place]) -> tuple[SingularZone, ...]:
-    """What is to be told of each singular place that is loaded at all."""
+    """What is to be told of each singular place."""
     return tuple(
         SingularZone(
             location=inside.location,
-            kind=ARTICLES[place.kind],
+            kind=f"{ARTICLES[place.kind]} {place.kind}",
             between=place.between,
             exponent=inside.exponent,
             exponent_theory=place.theory,

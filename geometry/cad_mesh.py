@@ -15,7 +15,7 @@ import numpy as np
 
 from geometry.body_file import BodyFile
 from geometry.cut import near
-from geometry.gmsh_session import gmsh_model, silence
+from geometry.gmsh_session import gmsh_model, set_size, silence
 from geometry.pin import GeometryError
 from geometry.solid_mesh import (
     SMALLEST_JACOBIAN,
@@ -187,11 +187,7 @@ def _set_sizes(gmsh: Any, size: MeshSize, cuts: list[float]) -> None:
         tags.append(near(gmsh, "CurvesList", rims, thin / size.corner, size.growth))
     tags.append(field.add("MathEval"))
     field.setString(tags[-1], "F", f"{far!r}")
-    least = field.add("Min")
-    field.setNumbers(least, "FieldsList", tags)
-    field.setAsBackgroundMesh(least)
-    for option in ("MeshSizeExtendFromBoundary", "MeshSizeFromPoints", "MeshSizeFromCurvature"):
-        gmsh.option.setNumber(f"Mesh.{option}", 0)
+    set_size(gmsh, tags)
 
 
 def _curvature(gmsh: Any, face: int, whole: float) -> tuple[float, bool]:

@@ -24,6 +24,17 @@ def gmsh_model(name: str) -> Iterator[Any]:
         gmsh.finalize()
 
 
+def set_size(gmsh: Any, fields: list[int]) -> None:
+    """Element size as the least of fields, and by nothing else."""
+    field = gmsh.model.mesh.field
+    least = field.add("Min")
+    field.setNumbers(least, "FieldsList", fields)
+    if fields:
+        field.setAsBackgroundMesh(least)
+    for option in ("MeshSizeExtendFromBoundary", "MeshSizeFromPoints", "MeshSizeFromCurvature"):
+        gmsh.option.setNumber(f"Mesh.{option}", 0)
+
+
 @contextmanager
 def silence() -> Iterator[None]:
     """Nothing on standard output, to which OpenCASCADE writes what it makes of a file."""

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from skfem import MeshTri2
 
-from geometry.gmsh_session import gmsh_model
+from geometry.gmsh_session import gmsh_model, set_size
 from geometry.meridian import RZ, Arc, Edge, meridian
 from geometry.pin import Pin
 from geometry.solid_mesh import MeshError
@@ -178,12 +178,7 @@ def _set_sizes(gmsh: Any, pin: Pin, size: SectionSize, spots: tuple[Spot, ...]) 
         if steep:
             grow(tuple(points), size.growth * reach, reach, size.growth)
     gmsh.model.geo.synchronize()
-    least = field.add("Min")
-    field.setNumbers(least, "FieldsList", fields)
-    if fields:
-        field.setAsBackgroundMesh(least)
-    for option in ("MeshSizeExtendFromBoundary", "MeshSizeFromPoints", "MeshSizeFromCurvature"):
-        gmsh.option.setNumber(f"Mesh.{option}", 0)
+    set_size(gmsh, fields)
     gmsh.option.setNumber("Mesh.MeshSizeMax", far)
 
 

@@ -14,7 +14,7 @@ from skfem.io.meshio import from_meshio
 
 from geometry.cut import cut_solid, grade, name_faces
 from geometry.cut_pin import CutPin
-from geometry.gmsh_session import gmsh_model
+from geometry.gmsh_session import gmsh_model, set_size
 from geometry.meridian import Edge, meridian, sharp_corners
 from geometry.pin import Pin
 from geometry.revolve import revolve
@@ -187,11 +187,7 @@ def _set_sizes(
             field.setString(tags[-1], "F", f"{h!r}+{grow}")
     tags.append(field.add("MathEval"))
     field.setString(tags[-1], "F", f"{far!r}")
-    least = field.add("Min")
-    field.setNumbers(least, "FieldsList", tags)
-    field.setAsBackgroundMesh(least)
-    for option in ("MeshSizeExtendFromBoundary", "MeshSizeFromPoints", "MeshSizeFromCurvature"):
-        gmsh.option.setNumber(f"Mesh.{option}", 0)
+    set_size(gmsh, tags)
 
 
 def _jacobians(gmsh: Any) -> NDArray[np.float64]:

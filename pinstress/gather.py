@@ -8,7 +8,7 @@ from fea.hand_checks import hand_checks
 from fea.ladder import Solution
 from fea.peak import Peak, SingularZone
 from fea.pin_loads import Floats
-from fea.stress import von_mises
+from fea.tensor import von_mises
 from geometry import CutPin, Pin
 from pinstress.build import CaseLoads
 from pinstress.gather_loads import drive_position, mechanics

@@ -15,7 +15,7 @@ from fea.material import Material
 from fea.pin_loads import PinLoads
 from fea.solid import SolidModel, acting
 from fea.solid_look import SolidAnswer
-from fea.stress import von_mises
+from fea.tensor import von_mises
 from geometry import CutPin, Flat, Hole, Pin, PinLike, Segment
 from geometry.body_file import BodyFile, Place
 from geometry.meshing import solid_mesh

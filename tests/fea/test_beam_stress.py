@@ -14,7 +14,7 @@ from fea.circle import Circle
 from fea.line_load import acting
 from fea.material import Material
 from fea.pin_loads import Floats, PinLoads
-from fea.stress import von_mises
+from fea.tensor import von_mises
 from geometry import Pin, Segment
 
 d, L = 0.02, 0.2

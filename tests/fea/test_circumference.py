@@ -16,7 +16,7 @@ from fea import circumference
 from fea.circumference import Circumference
 from fea.meridian_fields import MeridianFields
 from fea.pin_loads import Floats, PinLoads
-from fea.stress import von_mises
+from fea.tensor import von_mises
 
 EVERY = np.linspace(0.0, 2.0 * np.pi, 7200, endpoint=False)
 

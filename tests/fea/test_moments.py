@@ -17,8 +17,8 @@ from fea.pin_loads import PinLoads, UnitLoad
 from fea.solid import SolidModel, UnitFields, acting
 from fea.solid_loads import Unit, nodal_loads
 from fea.solid_look import SolidAnswer
-from fea.stress import von_mises
 from fea.surface import resultants, surface
+from fea.tensor import von_mises
 from geometry import Pin, Segment
 from geometry.solid_mesh import MeshSize, solid_mesh
 from tests.fea.unit_loads import at, forces, moments

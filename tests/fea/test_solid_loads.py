@@ -16,8 +16,8 @@ from fea.material import Material
 from fea.pin_loads import BODY, PinLoads, UnitLoad
 from fea.solid import SolidModel, acting
 from fea.solid_loads import closed, nodal_loads
-from fea.stress import von_mises
 from fea.surface import Patch, resultants, surface
+from fea.tensor import von_mises
 from geometry import Pin, Segment
 from geometry.solid_mesh import MeshSize, solid_mesh
 from tests.fea.unit_loads import at, forces, moments

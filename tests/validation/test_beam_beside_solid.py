@@ -24,7 +24,7 @@ from fea.material import Material
 from fea.pin_loads import PinLoads
 from fea.solid import SolidModel
 from fea.solid import acting as acting_on_solid
-from fea.stress import von_mises
+from fea.tensor import von_mises
 from fea.zones import clamp_rims
 from geometry import Pin, Segment
 from geometry.solid_mesh import MeshSize, solid_mesh

@@ -1,0 +1,25 @@
+"""The order of a tensor's components, and von Mises' equivalent of a stress.
+
+Components are xx, yy, zz, yz, xz, xy; of a section rr, tt, zz, tz, rz, rt.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+# von Mises squared is s . VON_MISES s
+VON_MISES = np.zeros((6, 6))
+VON_MISES[:3, :3] = -0.5
+VON_MISES[range(6), range(6)] = [1.0, 1.0, 1.0, 3.0, 3.0, 3.0]
+
+TENSOR = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])  # component of the tensor's entry ab
+ENTRIES = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))  # and the reverse
+
+
+def von_mises(stress: Floats) -> Floats:
+    """Von Mises' equivalent stress (...) of stresses (..., 6)."""
+    square = np.einsum("...a,ab,...b->...", stress, VON_MISES, stress)
+    return np.asarray(np.sqrt(np.maximum(square, 0.0)))
