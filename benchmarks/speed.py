@@ -14,10 +14,8 @@ from skfem import Basis, ElementTetP2, ElementVector, MeshTet2
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
 from benchmarks.timing import seconds, table
-from fea import linear
 from fea.elasticity import Discretisation
 from fea.material import Material
-from fea.surface import held_nodes
 from geometry import Pin, Segment
 from geometry.solid_mesh import MeshSize, solid_mesh
 from loads import motion_reactions, move
@@ -68,29 +66,6 @@ def assembly() -> str:
 def _form(mesh: MeshTet2, order: int | None) -> object:
     form = linear_elasticity(*lame_parameters(STEEL.youngs_modulus, STEEL.poisson_ratio))
     return form.assemble(Basis(mesh, ElementVector(ElementTetP2()), intorder=order))
-
-
-def solvers() -> str:
-    """CHOLMOD with METIS beside SuperLU: factor and solve two right-hand sides."""
-    rows = []
-    for across in (2.0, 4.0):
-        space = Discretisation(solid_mesh(PIN, MeshSize(across, arc=1.5)).mesh)
-        K = space.stiffness(STEEL)
-        held = held_nodes(space, ("start",))
-        fixed = (3 * held[:, None] + np.arange(3)).ravel()
-        free = np.setdiff1d(np.arange(space.unknowns), fixed)
-        A = K[free][:, free]
-        b = np.random.default_rng(0).standard_normal((len(free), 2))
-
-        def cholmod(A: Any = A, free: Any = free, b: Any = b) -> object:
-            return linear.factorize(A, free // 3)(b)
-
-        def superlu(A: Any = A, b: Any = b) -> object:
-            return linear._superlu(A)(b)
-
-        one, two = seconds(cholmod, 2), seconds(superlu, 1)
-        rows.append((len(free), one, two, two / one))
-    return table(("unknowns", "CHOLMOD, s", "SuperLU, s", "ratio"), rows)
 
 
 # runs the command line and ends stderr with the largest memory of its own process, kB

@@ -5,6 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable
 
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
 
 def seconds(work: Callable[[], object], runs: int = 3) -> float:
     """Least wall time of a few runs, s."""
@@ -24,3 +29,8 @@ def table(head: tuple[str, ...], rows: Iterable[tuple[object, ...]]) -> str:
 
 def _text(cell: object) -> str:
     return f"{cell:.3g}" if isinstance(cell, float) else str(cell)
+
+
+def power(size: Floats, cost: Floats) -> float:
+    """The power of the size with which a cost grows, by least squares of the logarithms."""
+    return float(np.polyfit(np.log(size), np.log(cost), 1)[0])

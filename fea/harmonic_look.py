@@ -104,15 +104,15 @@ class HarmonicAnswer:
 
     def maxima(self, loads: PinLoads) -> Floats:
         """Largest von Mises stress (T,) Pa at every instant outside the places."""
-        outside = _outside(self.fields, self._places)[0]
-        return Circumference(self.fields, loads).largest(outside)[0]
+        among, _ = outside(self.fields, self._places)
+        return Circumference(self.fields, loads).largest(among)[0]
 
     def picture(self, loads: PinLoads, instant: int) -> Picture:
         """The surface at one instant, with its envelope over all."""
         return revolve(self.fields, loads, instant)
 
 
-def _outside(fields: MeridianFields, places: tuple[Place, ...]) -> tuple[Mask, list[Floats]]:
+def outside(fields: MeridianFields, places: tuple[Place, ...]) -> tuple[Mask, list[Floats]]:
     """Points outside all places, and their distances (S,) from each, m."""
     r, z = fields.points.T
     distances = [np.hypot(r - p.r, z - p.z) for p in places]
@@ -126,8 +126,8 @@ def harmonic_look(solution: HarmonicSolution, places: tuple[Place, ...], loads: 
     """Maximum outside the places, and what is inside them."""
     fields = solution.fields
     around = Circumference(fields, loads)
-    outside, distances = _outside(fields, places)
-    top = around.top(outside)
+    among, distances = outside(fields, places)
+    top = around.top(among)
     return Look(
         unknowns=fields.unknowns,
         maximum=top.value,

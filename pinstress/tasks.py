@@ -73,15 +73,16 @@ def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, 
         body = np.zeros(3)
         if not clamps and material(study, study.table.pin[pin.name].material).density:
             body = _own_weight(given, applied)
-        cases.append(_loads(case, applied, given.reactions, spread, body))
+        cases.append(pin_loads(case, applied, given.reactions, spread, body))
         if given.range is not None:
-            ranges[case] = _loads(case, applied, given.range.reactions, spread, body)
+            ranges[case] = pin_loads(case, applied, given.range.reactions, spread, body)
     return Task(pin, clamps, tuple(cases), left_out, ranges)
 
 
-def _loads(
+def pin_loads(
     case: str, applied: list[str], reactions: Reactions, distribution: Distribution, body: Floats
 ) -> PinLoads:
+    """Reactions at some connections of a pin; body: (T, 3) m/s^2 or what broadcasts to it."""
     forces = np.stack([reactions.in_pin_axes(c) for c in applied], axis=1)
     moments = np.stack([reactions.moment_in_pin_axes(c) for c in applied], axis=1)
     return PinLoads(case, tuple(applied), forces, moments, distribution, body)

@@ -1,0 +1,77 @@
+"""How costs grow with the number of unknowns, stage by stage: fitted powers."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from benchmarks.accuracy import LOAD, PIN, STEEL
+from benchmarks.timing import power, table
+from fea.circumference import Circumference
+from fea.envelope import envelope
+from fea.harmonic import HarmonicModel
+from fea.solid import SolidModel, acting
+from geometry.meridian_mesh import SectionSize, meridian_mesh
+from geometry.solid_mesh import MeshSize, solid_mesh
+
+SECTION, SECTIONS = SectionSize(3.0, 6.0, 0.5), (1.0, 1.6, 2.5, 4.0, 6.3)
+SOLID, SOLIDS = MeshSize(across=3.0, arc=1.5), (1.0, 1.4, 2.0, 2.8)
+RUNS = 3
+
+
+def growth() -> str:
+    """Seconds of the smallest and the largest mesh, and the powers."""
+    rows = [
+        *_rows("harmonic", ("meshing", "solving one harmonic", "maximum"), [
+            lambda f=f: _harmonic(SECTION.finer(f)) for f in SECTIONS
+        ]),
+        *_rows("solid", ("meshing", "assembly", "solving, stresses", "maximum"), [
+            lambda f=f: _solid(SOLID.finer(f)) for f in SOLIDS
+        ]),
+    ]  # fmt: skip
+    head = ("model", "stage", "unknowns", "s", "unknowns", "s", "time ~")
+    return f"Least of {RUNS} runs; powers fitted over all meshes:\n\n{table(head, rows)}"
+
+
+Timed = tuple[int, list[float]]
+
+
+def _rows(
+    model: str, stages: tuple[str, ...], meshes: list[Callable[[], Timed]]
+) -> list[tuple[object, ...]]:
+    runs = [[work() for work in meshes] for _ in range(RUNS)]
+    counts = np.array([unknowns for unknowns, _ in runs[0]], dtype=np.float64)
+    spent = np.min([[stage for _, stage in run] for run in runs], axis=0)  # (meshes, stages)
+    stages, spent = (*stages, "in all"), np.column_stack([spent, spent.sum(axis=1)])
+    first, last = (f"{int(counts[k]):,}" for k in (0, -1))
+    return [
+        (model, stage, first, float(s[0]), last, float(s[-1]), f"n^{power(counts, s):.2f}")
+        for stage, s in zip(stages, spent.T, strict=True)
+    ]
+
+
+def _harmonic(size: SectionSize) -> Timed:
+    marks = [time.perf_counter()]
+    mesh = meridian_mesh(PIN, size)
+    marks.append(time.perf_counter())
+    fields = HarmonicModel(PIN, mesh, STEEL, ("start",)).solve(tuple(LOAD.coefficients()))
+    marks.append(time.perf_counter())
+    Circumference(fields, LOAD).top(fields.points[:, 1] > 0.01)
+    marks.append(time.perf_counter())
+    return fields.unknowns, np.diff(marks).tolist()
+
+
+def _solid(size: MeshSize) -> Timed:
+    marks = [time.perf_counter()]
+    mesh = solid_mesh(PIN, size, (PIN.stations[1], PIN.length))
+    marks.append(time.perf_counter())
+    model = SolidModel(PIN, mesh, STEEL, ("start",))
+    assert model.stiffness is not None
+    marks.append(time.perf_counter())
+    fields = model.solve(acting([LOAD]))
+    marks.append(time.perf_counter())
+    envelope(fields, LOAD)
+    marks.append(time.perf_counter())
+    return model.unknowns, np.diff(marks).tolist()

@@ -1,0 +1,203 @@
+"""Linear solvers on the solid model's matrix: time and memory of factoring and two solves.
+
+Every point is a process of its own, which reads the matrix from a file; memory is what it takes
+above that. A point past the limits is shown with the reason.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from benchmarks.timing import power, table
+from fea.linear import Floats, Solve
+
+Ints = NDArray[np.int64]
+
+ACROSS = (6.3, 9.2, 12.2, 18.0)  # elements over the shaft
+SECONDS, GIGABYTES = 75.0, 12.0
+NAMES = {
+    "cholmod": "CHOLMOD, nested dissection",
+    "superlu": "SuperLU, minimum degree",
+    "pardiso": "PARDISO (MKL)",
+    "multigrid": "smoothed aggregation + CG",
+}
+_RIGHT_HAND_SIDES = 2
+
+
+def linear_solvers() -> str:
+    """Seconds and megabytes by unknowns, and the powers of the unknowns with which they grow."""
+    counts: list[int] = []
+    found: dict[str, list[tuple[float, float] | str]] = {name: [] for name in NAMES}
+    with tempfile.TemporaryDirectory() as folder:
+        for k, across in enumerate(ACROSS):
+            file = Path(folder) / f"{k}.npz"
+            counts.append(int(_child("matrix", str(across), str(file))["unknowns"]))
+            for name in NAMES:
+                found[name].append(_point(name, file))
+            file.unlink()
+    return "\n\n".join(
+        (
+            f"Factoring and {_RIGHT_HAND_SIDES} right-hand sides, s (MB above the matrix); a "
+            f"point is given up after {SECONDS:.0f} s or {GIGABYTES:.0f} GB:",
+            table(
+                ("unknowns", *(f"{n:,}" for n in counts), "time ~", "memory ~"),
+                [
+                    (NAMES[name], *map(_cell, row), *_growth(counts, row))
+                    for name, row in found.items()
+                ],
+            ),
+        )
+    )
+
+
+def _cell(point: tuple[float, float] | str) -> str:
+    return point if isinstance(point, str) else f"{point[0]:.2g} ({point[1]:.0f})"
+
+
+def _growth(counts: list[int], row: list[tuple[float, float] | str]) -> tuple[str, str]:
+    done = [(n, *p) for n, p in zip(counts, row, strict=True) if not isinstance(p, str)]
+    if len(done) < 2:
+        return "", ""
+    n, seconds, memory = np.array(done).T
+    return f"n^{power(n, seconds):.2f}", f"n^{power(n, memory):.2f}"
+
+
+def _point(name: str, file: Path) -> tuple[float, float] | str:
+    try:
+        found = _child("solve", name, str(file))
+    except subprocess.TimeoutExpired:
+        return f"over {SECONDS:.0f} s"
+    except subprocess.CalledProcessError as error:
+        last = error.stderr.strip().splitlines()[-1:] or [f"status {error.returncode}"]
+        missing = re.search(r"No module named '(\w+)'", last[0])
+        return f"{missing[1]} not installed" if missing else last[0][:60]
+    return found["seconds"], found["megabytes"]
+
+
+def _child(*arguments: str) -> dict[str, float]:
+    command = [sys.executable, "-m", "benchmarks.linear_solvers", *arguments]
+    done = subprocess.run(
+        command, capture_output=True, text=True, check=True, timeout=SECONDS + 30.0
+    )
+    found: dict[str, float] = json.loads(done.stdout.splitlines()[-1])
+    return found
+
+
+def _matrix(across: float, file: Path) -> dict[str, float]:
+    """Write the matrix of a cantilever with a fillet, and the nodes of its unknowns."""
+    from benchmarks.speed import PIN, STEEL
+    from fea.elasticity import Discretisation
+    from fea.surface import held_nodes
+    from geometry.solid_mesh import MeshSize, solid_mesh
+
+    space = Discretisation(solid_mesh(PIN, MeshSize(across, arc=1.5)).mesh)
+    fixed = (3 * held_nodes(space, ("start",))[:, None] + np.arange(3)).ravel()
+    free = np.setdiff1d(np.arange(space.unknowns), fixed)
+    K = space.stiffness(STEEL)[free][:, free]
+    np.savez(file, data=K.data, indices=K.indices, indptr=K.indptr, free=free, nodes=space.nodes)
+    return {"unknowns": len(free)}
+
+
+def _solve(name: str, file: Path) -> dict[str, float]:
+    resource.setrlimit(resource.RLIMIT_AS, (int(GIGABYTES * 2**30),) * 2)
+    resource.setrlimit(resource.RLIMIT_CPU, (int(2 * SECONDS),) * 2)
+    with np.load(file) as stored:
+        K = sp.csr_matrix((stored["data"], stored["indices"], stored["indptr"]))
+        free, nodes = stored["free"], stored["nodes"]
+    b = np.random.default_rng(0).standard_normal((len(free), _RIGHT_HAND_SIDES))
+    factor = SOLVERS[name](K, free, nodes)
+    before = _memory("VmRSS")
+    Path("/proc/self/clear_refs").write_text("5")  # the largest so far starts anew
+    start = time.perf_counter()
+    x = factor()(b)
+    spent = time.perf_counter() - start
+    largest = _memory("VmHWM")
+    residual = np.linalg.norm(K @ x - b) / np.linalg.norm(b)
+    if not residual < 1e-6:
+        raise ArithmeticError(f"residual {residual:.0e}")
+    return {"seconds": spent, "megabytes": largest - before}
+
+
+def _memory(key: str) -> float:
+    """Of this process, MB, as Linux tells it."""
+    status = Path("/proc/self/status").read_text()
+    return float(re.findall(rf"{key}:\s*(\d+)", status)[0]) / 1024.0
+
+
+Make = Callable[[sp.csr_matrix, Ints, Floats], Callable[[], Solve]]
+
+
+def _cholmod(K: sp.csr_matrix, free: Ints, nodes: Floats) -> Callable[[], Solve]:
+    import cvxopt.cholmod  # noqa: F401, so that imports are not timed
+    import pymetis  # noqa: F401
+
+    from fea.linear import factorize
+
+    return lambda: factorize(K, free // 3)
+
+
+def _superlu(K: sp.csr_matrix, free: Ints, nodes: Floats) -> Callable[[], Solve]:
+    from fea.linear import _superlu
+
+    return lambda: _superlu(K)
+
+
+def _pardiso(K: sp.csr_matrix, free: Ints, nodes: Floats) -> Callable[[], Solve]:
+    from pypardiso import PyPardisoSolver
+
+    def factor() -> Solve:
+        solver = PyPardisoSolver(mtype=2)
+        upper = sp.triu(K, format="csr")
+        return lambda b: np.asarray(solver.solve(upper, np.asfortranarray(b)))
+
+    return factor
+
+
+def _multigrid(K: sp.csr_matrix, free: Ints, nodes: Floats) -> Callable[[], Solve]:
+    import pyamg
+
+    x, y, z = nodes[free // 3].T
+    motions = np.zeros((len(free), 6))
+    motions[np.arange(len(free)), free % 3] = 1.0
+    for k, (first, second) in enumerate(((1, 2), (2, 0), (0, 1))):  # turns about x, y, z
+        for axis, arm in ((first, -(x, y, z)[second]), (second, (x, y, z)[first])):
+            on = free % 3 == axis
+            motions[on, 3 + k] = arm[on]
+
+    def factor() -> Solve:
+        levels = pyamg.smoothed_aggregation_solver(
+            K.tobsr((3, 3)) if len(free) % 3 == 0 else K, B=motions
+        )
+
+        def solve(b: Floats) -> Floats:
+            columns = [levels.solve(column, tol=1e-8, accel="cg", maxiter=300) for column in b.T]
+            return np.stack(columns, axis=1)
+
+        return solve
+
+    return factor
+
+
+SOLVERS: dict[str, Make] = {
+    "cholmod": _cholmod,
+    "superlu": _superlu,
+    "pardiso": _pardiso,
+    "multigrid": _multigrid,
+}
+
+if __name__ == "__main__":
+    what, name, path = sys.argv[1:]
+    found = _matrix(float(name), Path(path)) if what == "matrix" else _solve(name, Path(path))
+    print(json.dumps(found))

@@ -1,0 +1,111 @@
+"""What choices of the model are worth, on the floating pins of the landing gear with fillets:
+how they are held, how links press on them, Fourier terms of that pressure, instants of the motion.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.timing import table
+from fea.circumference import Circumference
+from fea.harmonic_look import harmonic_look, harmonic_solution, outside
+from fea.ladder import STEP, Asked, places_of, solve_pin
+from fea.material import Material
+from fea.pin_loads import PinLoads
+from geometry import Pin
+from pinstress import load_study
+from pinstress.build import CaseLoads
+from pinstress.pins import material
+from pinstress.pipeline import prepare
+from pinstress.tasks import Task, pin_loads
+
+STUDY = Path(__file__).parent.parent / "studies" / "grenier2008_improved.toml"
+CASE = "retract"
+PUBLISHED = {"C": "C2", "E": "E1", "F": "F1", "G": "G3", "J": "J3"}  # bands clamped there
+TERMS = (1, 2, 4, 6, 8, 10, 12)
+TRUE_TERMS = 20
+LEVEL = 2  # of the mesh for what is compared on one mesh
+INSTANTS = (6, 11, 21, 51, 101, 201)
+TRUE_INSTANTS = 4001
+
+
+@cache
+def _gear() -> tuple[dict[str, Task], CaseLoads, Material]:
+    plan = prepare(load_study(STUDY), pins=PUBLISHED, cases=[CASE])
+    found = {task.pin.name: task for task in plan.tasks}
+    return found, plan.loads[CASE], material(plan.study, plan.study.table.pin["C"].material)
+
+
+def holding() -> str:
+    """Maxima of the same pin and forces, by how the pin is held and how the links press."""
+    found, _, steel = _gear()
+    rows = []
+    for name, band in PUBLISHED.items():
+        pin, (loads,) = found[name].pin, found[name].loads
+        free = [c for c in loads.surfaces if c != band]
+        keep = [loads.surfaces.index(c) for c in free]
+        clamped = PinLoads(CASE, tuple(free), loads.forces[:, keep], loads.moments[:, keep])
+        ways = (
+            ((band,), clamped),
+            ((), replace(loads, distribution="uniform")),
+            ((), loads),
+        )
+        peaks = [solve_pin(pin, steel, held, (way,), Asked())[0].peak for held, way in ways]
+        values = [p.max_von_mises or float("nan") for p in peaks]
+        told = [f"{v / 1e6:.2f} {p.verdict}" for v, p in zip(values, peaks, strict=True)]
+        rows.append((name, *told, values[0] / values[2], values[1] / values[2]))
+    head = ("pin", "clamped, uniform", "balanced, uniform", "balanced, pressure")
+    return "\n\n".join(
+        (
+            "Largest von Mises stress of the retraction, MPa; of singular ones that outside the "
+            "excluded zones. The ratios are to the last way:",
+            table((*head, "clamped / pressure", "uniform / pressure"), rows),
+        )
+    )
+
+
+def terms() -> str:
+    """Maxima by the highest harmonic of the bearing pressure, on one mesh."""
+    found, _, steel = _gear()
+    rows = []
+    for name, task in found.items():
+        pin, loads = _revolved(task), replace(task.loads[0], terms=TRUE_TERMS)
+        places = places_of(pin, steel, (), (loads,))
+        solution = harmonic_solution(pin, steel, (), (loads,), places, LEVEL, STEP)
+        true = harmonic_look(solution, places, loads).maximum
+        few = (harmonic_look(solution, places, replace(loads, terms=n)).maximum for n in TERMS)
+        rows.append((name, *(f"{100.0 * (value / true - 1.0):+.2f}" for value in few)))
+    head = ("pin", *(f"n <= {n}" for n in TERMS))
+    told = f"Change of the maximum from that with terms up to {TRUE_TERMS}, %:"
+    return f"{told}\n\n{table(head, rows)}"
+
+
+def instants() -> str:
+    """Error of the maximum over the motion by the number of even instants at which it is read."""
+    found, given, steel = _gear()
+    assert given.at is not None
+    assert given.reactions.times is not None
+    start, end = given.reactions.times[[0, -1]]
+    counts = (*INSTANTS, TRUE_INSTANTS)
+    sampled = [given.at(np.linspace(start, end, n)) for n in counts]
+    rows = []
+    for name, task in found.items():
+        pin, (asked,) = _revolved(task), task.loads
+        applied, weightless = list(asked.surfaces), np.zeros(3)
+        cases = [pin_loads(CASE, applied, r, asked.distribution, weightless) for r in sampled]
+        places = places_of(pin, steel, (), (cases[-1],))
+        solution = harmonic_solution(pin, steel, (), (cases[-1],), places, LEVEL, STEP)
+        among, _ = outside(solution.fields, places)
+        *few, true = (Circumference(solution.fields, loads).top(among).value for loads in cases)
+        rows.append((name, *(f"{100.0 * (value / true - 1.0):+.3f}" for value in few)))
+    told = f"Error of the maximum over the retraction beside that of {TRUE_INSTANTS} instants, %:"
+    return f"{told}\n\n{table(('pin', *map(str, INSTANTS)), rows)}"
+
+
+def _revolved(task: Task) -> Pin:
+    assert isinstance(task.pin, Pin)
+    return task.pin

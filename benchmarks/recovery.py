@@ -1,0 +1,82 @@
+"""Ways to find the stress at a fillet from the same displacements: error of the peak by mesh."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from benchmarks.accuracy import LOAD, PIN, STEEL
+from benchmarks.timing import table
+from fea.circumference import Circumference
+from fea.harmonic import HarmonicModel, _polar
+from fea.meridian_fields import MeridianFields
+from fea.section import elasticity
+from fea.solid import SolidModel, acting
+from fea.stress import nodal_stress
+from fea.tensor import von_mises
+from geometry.meridian_mesh import SectionSize, meridian_mesh
+from geometry.solid_mesh import MeshSize, solid_mesh
+
+FINER = (1.0, 1.4, 2.0, 2.8)
+SECTION = SectionSize(3.0, 6.0, 0.5)
+FINEST = SectionSize(24.0, 50.0, 0.08)
+SOLID = MeshSize(across=3.0, arc=1.5)
+FILLET = (0.02, 0.024)  # z, m: from the shoulder to the tangent
+
+
+def recovery() -> str:
+    """Errors of the largest von Mises stress in the fillet, %."""
+    true = _section(FINEST)[1]
+
+    def row(model: str, unknowns: int, averaged: float, known: float) -> tuple[object, ...]:
+        errors = (100.0 * (value / true - 1.0) for value in (averaged, known))
+        return model, f"{unknowns:,}", *(f"{error:+.2f}" for error in errors)
+
+    rows = []
+    for factor in FINER:
+        size = SECTION.finer(factor)
+        averaged, known, unknowns = _section(size)
+        rows.append(row("section", unknowns, averaged, known))
+    for factor in FINER:
+        rows.append(row("solid", *_solid(SOLID.finer(factor))))
+    head = ("mesh", "unknowns", "averages of extrapolated stress, %", "with the known traction, %")
+    return (
+        "Peak at a fillet in bending beside that of a far finer section. On a section the known "
+        "traction goes with strains along the surface, on a solid with a correction:\n\n"
+        + table(head, rows)
+    )
+
+
+def _section(size: SectionSize) -> tuple[float, float, int]:
+    """Peaks by averages and as the harmonic model has it, Pa, and unknowns."""
+    (load,) = LOAD.coefficients()
+    model = HarmonicModel(PIN, meridian_mesh(PIN, size), STEEL, ("start",))
+    fields = model.solve((load,))
+    space = model.space
+    u = _polar(model._displace(load.n, model._applied(load.n, [load])[0]))
+    stress = elasticity(STEEL) @ space.sampled_strains(load.n, u)
+    averaged = (space.extend @ stress.reshape(-1, 6))[:, :, None]
+    plain = MeridianFields(
+        space.nodes, (load,), averaged, np.zeros((len(averaged), 3, 1)), 0, space.unknowns
+    )
+    return _peak(plain), _peak(fields), space.unknowns
+
+
+def _peak(fields: MeridianFields) -> float:
+    r, z = fields.points.T
+    near = (z >= FILLET[0]) & (z <= FILLET[1]) & (r >= PIN.segments[1].diameter / 2.0 * (1 - 1e-9))
+    return Circumference(fields, LOAD).top(near).value
+
+
+def _solid(size: MeshSize) -> tuple[int, float, float]:
+    """Unknowns and peaks by averages and with the known traction, Pa."""
+    mesh = solid_mesh(PIN, size, (PIN.stations[1], PIN.length))
+    model = SolidModel(PIN, mesh, STEEL, ("start",))
+    fields = model.solve(acting([LOAD]))
+    c = fields.coefficients(LOAD)[0]
+    x = fields.space.nodes
+    near = (x[:, 2] >= FILLET[0]) & (x[:, 2] <= FILLET[1])
+    near &= np.isin(np.arange(len(x)), fields.surface.nodes)
+    averaged = nodal_stress(fields.space, STEEL, fields.displacement) @ c
+    known = fields.stress @ c
+    peaks = [float(von_mises(stress[near]).max()) for stress in (averaged, known)]
+    return model.unknowns, peaks[0], peaks[1]
