@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -25,10 +26,10 @@ def growth() -> str:
     """Seconds of the smallest and the largest mesh, and the powers."""
     rows = [
         *_rows("harmonic", ("meshing", "solving one harmonic", "maximum"), [
-            lambda f=f: _harmonic(SECTION.finer(f)) for f in SECTIONS
+            partial(_harmonic, SECTION.finer(f)) for f in SECTIONS
         ]),
         *_rows("solid", ("meshing", "assembly", "solving, stresses", "maximum"), [
-            lambda f=f: _solid(SOLID.finer(f)) for f in SOLIDS
+            partial(_solid, SOLID.finer(f)) for f in SOLIDS
         ]),
     ]  # fmt: skip
     head = ("model", "stage", "unknowns", "s", "unknowns", "s", "time ~")
