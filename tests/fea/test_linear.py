@@ -58,6 +58,6 @@ def test_an_indefinite_matrix_is_refused() -> None:
 
 
 def test_a_wrong_solution_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(linear, "_cholmod", lambda K, node: lambda b: 1.001 * b)
+    monkeypatch.setattr(linear._Cholmod, "factor", lambda self, K: lambda b: 1.001 * b)
     with pytest.raises(SolveError, match=r"relative residual of 1\.0e-03"):
         factorize(sp.csr_matrix(sp.eye_array(3)), np.arange(3))(np.ones(3))
