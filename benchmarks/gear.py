@@ -65,7 +65,7 @@ def _one(plan: Plan) -> list[tuple[object, ...]]:
     places = places_of(pin, steel, task.clamps, (loads,))
     rows: list[tuple[object, ...]] = []
     for level in range(3):
-        unknowns = []
+        unknowns: list[int] = []
 
         def solve(level: int = level, unknowns: list[int] = unknowns) -> None:
             held = tuple(pin.surface(c) for c in task.clamps)
