@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import click
@@ -22,12 +23,14 @@ class Opinions:
         self.plan = plan
         self.found: list[Opinion] = []
 
-    def ask(self, task: Task, peaks: tuple[Peak, ...]) -> None:
+    def ask(self, task: Task, peaks: tuple[Peak, ...], progress: Callable[[str], None]) -> None:
         """Solve the rows of a task once more. Raises: MeshError, SolveError."""
         study = self.plan.study
         steel = material(study, study.table.pin[task.pin.name].material)
         distance = self.plan.asked.distance
-        self.found += second_opinions(task.pin, steel, task.clamps, task.loads, peaks, distance)
+        self.found += second_opinions(
+            task.pin, steel, task.clamps, task.loads, peaks, distance, progress
+        )
         pins, cases = list(study.table.pin), list(self.plan.loads)
         self.found.sort(key=lambda o: (pins.index(o.pin), cases.index(o.case)))
 
