@@ -21,8 +21,9 @@ def record(name: str, text: str) -> Path:
 
 
 def machine() -> str:
-    """Processor and cores."""
+    """Processor, cores, and how busy they were: other work stretches wall times."""
     lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     models = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
     model = models[0] if models else platform.machine()
-    return f"{len(os.sched_getaffinity(0))} cores of {model}"
+    cores, load = len(os.sched_getaffinity(0)), os.getloadavg()[1]
+    return f"{cores} cores of {model}, load {load:.1f}"

@@ -79,7 +79,8 @@ def ratios(name: str, costs: list[Cost]) -> str:
             ("time on all cores", c.processor),
             ("memory", c.megabytes),
         ):
-            row += [f"{ours:.3g}", f"{theirs:.3g}", f"{ours / theirs:.2f}"]
+            digits = 0 if what == "memory" else 1
+            row += [f"{ours:.{digits}f}", f"{theirs:.{digits}f}", f"{ours / theirs:.2f}"]
             if ours > theirs:
                 lost.append(f"{what} at {c.unknowns} unknowns ({ours / theirs:.2f})")
         rows.append(tuple(row))

@@ -118,7 +118,7 @@ def test_a_process_is_measured_and_its_failure_told(tmp_path: Path) -> None:
 
 def test_where_we_take_more_is_said() -> None:
     told = ratios("X", [Cost(10, (1.0, 2.0), (3.0, 4.0), (6.0, 5.0)), Cost(20, *[(1.0, 2.0)] * 3)])
-    assert "| 10 | 1 | 2 | 0.50 | 3 | 4 | 0.75 | 6 | 5 | 1.20 |" in told
+    assert "| 10 | 1.0 | 2.0 | 0.50 | 3.0 | 4.0 | 0.75 | 6 | 5 | 1.20 |" in told
     assert "Where ours takes more: memory at 10 unknowns (1.20)." in told
     assert "Ours takes less everywhere." in ratios("X", [Cost(20, *[(1.0, 2.0)] * 3)])
 
