@@ -3,10 +3,10 @@ BIN := .venv/bin
 LOCKBIN := .venv-lock/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test check bench docs lock clean
+.PHONY: help setup demo test test-peers check bench docs lock clean
 
 help: ## list the targets
-	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | expand -t 10
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | expand -t 12
 
 setup: .venv/.ready ## make .venv with everything pinstress needs (run by the targets that need it)
 
@@ -21,6 +21,10 @@ demo: setup ## run studies/grenier2008.toml and tell where its report is
 test: setup ## run the tests; ARGS="..." goes to pytest
 	$(BIN)/python -m pytest $(ARGS)
 
+test-peers: setup ## run the tests beside CalculiX, which root gets installed
+	@sh scripts/peers.sh
+	$(BIN)/python -m pytest -m peers $(ARGS)
+
 check: setup ## lint, format check, types, import contracts, strict docs build
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
@@ -34,11 +38,15 @@ bench: setup ## run the benchmarks
 docs: setup ## build the documentation into build/docs; a warning is an error
 	$(BIN)/sphinx-build --quiet --nitpicky --fail-on-warning --keep-going -b html docs build/docs
 
-lock: ## bring requirements.lock up to pyproject.toml; LOCKFLAGS=--upgrade takes the newest of all
+COMPILE = $(LOCKBIN)/uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest \
+	--generate-hashes --no-emit-index-url --no-annotate --custom-compile-command "make lock" $(LOCKFLAGS)
+
+# The second file has what the benchmarks need besides, in versions that go with the first.
+lock: ## bring the lock files up to pyproject.toml; LOCKFLAGS=--upgrade takes the newest of all
 	@test -x $(LOCKBIN)/uv || { python3 -m venv .venv-lock && $(LOCKBIN)/pip install --quiet uv; }
-	$(LOCKBIN)/uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest \
-		--generate-hashes --no-emit-index-url --no-annotate --extra dev \
-		--custom-compile-command "make lock" $(LOCKFLAGS) --output-file requirements.lock pyproject.toml
+	$(COMPILE) --extra dev --output-file requirements.lock pyproject.toml
+	$(COMPILE) --extra bench --constraint requirements.lock --output-file requirements-bench.lock \
+		pyproject.toml
 
 clean: ## remove .venv, caches and built documents; results in out/ stay
 	rm -rf .venv .venv-lock build dist .mypy_cache .pytest_cache .ruff_cache .import_linter_cache \

@@ -7,31 +7,20 @@ the surface to carry the known traction.
 
 from __future__ import annotations
 
-import pickle
-import shutil
-import sys
-import tempfile
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
-from benchmarks.calculix_deck import write_deck
-from benchmarks.calculix_ours import FILLET, PIN, STEEL, Floats, Ints, Loaded, Ours
-from benchmarks.calculix_run import COMMAND, JOB, Process, Solved, process, run
+from benchmarks.calculix_ours import FILLET, STEEL, Floats, Ints, Loaded, Ours
+from benchmarks.processes import Process, process
+from benchmarks.solid_peers import FINER, bare_mesh, cost, ratios, solved_by_us
 from benchmarks.timing import table
+from fea.calculix import COMMAND, JOB, TO_GET, Solved, installed, solved
+from fea.calculix_deck import write_deck
 from fea.tensor import von_mises
-from geometry.solid_mesh import MeshSize, solid_mesh
 
-MISSING = "CalculiX is not installed (no ccx): apt-get install calculix-ccx"
-ROOT = Path(__file__).parent.parent
-COARSE = MeshSize(across=3.8, arc=1.9)
-SOLVE = """
-from pathlib import Path
-from benchmarks.calculix_ours import main
-main(Path({!r}), Path({!r}))
-"""
-FINER = (1.0, 1.65, 2.24)  # about 30,000, 90,000 and 190,000 unknowns
+MISSING = f"CalculiX is not installed (no {COMMAND}); {TO_GET}"
+AGREEMENT = ("unknowns", "displacements", "our peak", "ours, averaged only", "CalculiX's peak")
 
 
 @dataclass(frozen=True)
@@ -42,6 +31,7 @@ class Pair:
     ours: Ours
     process: Process
     theirs: Solved
+    their_process: Process
 
     @property
     def unknowns(self) -> int:
@@ -61,27 +51,29 @@ class Pair:
 
 def calculix() -> str:
     """Agreement, time and memory of both on three meshes of a shoulder fillet in bending."""
-    if shutil.which(COMMAND) is None:
+    if not installed():
         return MISSING
-    pairs = [pair(COARSE.finer(factor)) for factor in FINER]
+    pairs = [pair(factor) for factor in FINER]
+    costs = [
+        cost(
+            p.unknowns,
+            (p.ours.to_stress, p.their_process.seconds),
+            p.process,
+            p.their_process,
+        )
+        for p in pairs
+    ]
     return "\n\n".join(
         (
             "Largest difference of displacements, relative to the largest; peaks of von Mises "
             "stress at the fillet, MPa:",
             table(AGREEMENT, map(_agreement, pairs)),
-            "Ours from the bare mesh on; CalculiX's whole run, of which reading and writing are a "
-            "small part. The ratio is CalculiX's run to ours with stresses:",
-            table(TIME, map(_time, pairs)),
-            "Whole processes, ours with Python's start and its libraries: time on all cores (which "
-            "other work on the machine disturbs less) and largest memory:",
-            table(WHOLE, map(_whole, pairs)),
+            "Time is wall time, ours from the bare mesh to the stresses, CalculiX's of its whole "
+            "run, of which reading and writing are a small part; the other columns are of whole "
+            "processes, ours with Python's start and its libraries:",
+            ratios("CalculiX", costs),
         )
     )
-
-
-AGREEMENT = ("unknowns", "displacements", "our peak", "ours, averaged only", "CalculiX's peak")
-TIME = ("unknowns", "assembly + solve, s", "with stresses, s", "CalculiX, s", "its clock", "ratio")
-WHOLE = ("unknowns", "ours, s", "CalculiX, s", "ratio", "ours, MB", "CalculiX, MB", "ratio")
 
 
 def _agreement(p: Pair) -> tuple[object, ...]:
@@ -89,45 +81,23 @@ def _agreement(p: Pair) -> tuple[object, ...]:
     return p.unknowns, p.difference, *(f"{p.peak(s) / 1e6:.5g}" for s in stresses)
 
 
-def _time(p: Pair) -> tuple[object, ...]:
-    ours, theirs = p.ours, p.theirs
-    ratio = theirs.process.seconds / ours.to_stress
-    run_and_clock = theirs.process.seconds, theirs.own_seconds
-    return p.unknowns, ours.to_displacement, ours.to_stress, *run_and_clock, ratio
+def pair(factor: float) -> Pair:
+    """Both solutions on a mesh so many times finer than the coarse one, one after the other.
 
-
-def _whole(p: Pair) -> tuple[object, ...]:
-    ours, theirs = p.process, p.theirs.process
-    return (
-        p.unknowns,
-        ours.processor,
-        theirs.processor,
-        theirs.processor / ours.processor,
-        round(ours.megabytes),
-        round(theirs.megabytes),
-        theirs.megabytes / ours.megabytes,
-    )
-
-
-def pair(size: MeshSize) -> Pair:
-    """Both solutions on a mesh of the given size, one after the other.
-
-    Raises: RunError when a process fails.
+    Raises: RunError when a process fails, CalculixError when CalculiX does.
     """
-    mesh = solid_mesh(PIN, size).mesh
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        given, found = folder / "mesh", folder / "ours"
-        given.write_bytes(pickle.dumps(mesh))  # before Loaded, which leaves results in the mesh
+    with bare_mesh(factor) as (mesh, folder):
         pin = Loaded(mesh)
         space, boundary = pin.space, pin.boundary
-        deck = folder / f"{JOB}.inp"
-        write_deck(deck, space.nodes, space.elements, STEEL, pin.held, pin.forces)
+        fixed = (3 * pin.held[:, None] + np.arange(3)).ravel()
+        write_deck(folder / f"{JOB}.inp", space.nodes, space.elements, STEEL, fixed, pin.forces)
         on_fillet = np.isin(boundary.facets, mesh.boundaries[FILLET])
-        ours = process([sys.executable, "-c", SOLVE.format(str(given), str(found))], ROOT)
+        ours, process_of_ours = solved_by_us(folder)
+        theirs = process([COMMAND, "-i", JOB], folder)
         return Pair(
             np.unique(boundary.corners[on_fillet]),
-            pickle.loads(found.read_bytes()),
             ours,
-            run(folder),
+            process_of_ours,
+            solved(folder, theirs.output),
+            theirs,
         )

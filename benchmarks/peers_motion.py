@@ -16,7 +16,10 @@ from benchmarks.timing import table
 from loads import mobility
 from loads.linkage import Floats
 
-MISSING = "exudyn and mujoco are not installed: .venv/bin/pip install -e '.[bench]'"
+MISSING = (
+    "exudyn and mujoco are not installed: "
+    ".venv/bin/pip install --require-hashes -r requirements-bench.lock"
+)
 
 Quantities = dict[str, Floats]  # (T, 2) of each connection, sums where they share, (T, 1) the drive
 

@@ -7,10 +7,11 @@ Where the beam's stress is s at a point, elasticity's is taken to lie within
 
 p being the sum of nominal pressures on the band that has most, F / (d L) and what axial forces,
 moments and torques add, on a tube times radius over wall. A notch's part holds the deviation of
-Peterson's factors (up to 11 % low in bending), that von Mises is 8 to 10 % below the largest
-principal stress, and that a shoulder feels loads a diameter away. At a root the clamp hinders the
-hoop strain, which lowers von Mises. Between two clamps the moments depend on how stiff these are;
-from built-in to hinged ends the largest of a uniform load grows by half, w L^2 / 12 to w L^2 / 8.
+Peterson's factors (up to 11 % low in bending, 21 % in tension), that von Mises is 8 to 10 % below
+the largest principal stress, and that a shoulder feels loads a diameter away. At a root the clamp
+hinders the hoop strain, which lowers von Mises. Between two clamps the moments depend on how stiff
+these are; from built-in to hinged ends the largest of a uniform load grows by half, w L^2 / 12 to
+w L^2 / 8.
 
 The five numbers are measured, on stubby and slender pins (bands half a diameter long and longer)
 beside fine solid models, in which the largest stress counts further than 0.1 diameters from edges

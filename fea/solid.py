@@ -32,10 +32,11 @@ Ints = NDArray[np.int64]
 @dataclass(frozen=True)
 class UnitFields:
     """Fields of L unit loads, each in one phase: displacement (N, 3, L) in m, stress (N, 6, L) in
-    Pa, both per unit of load.
+    Pa, both per unit of load, and the nodal forces (N, 3, L) in N that they came from.
 
-    support: (6, L) force and moment of the clamps about (0, 0, 0), from the residual of the system;
-    minus those of the load when all is well. revolved: whether the pin is the same all round.
+    fixed: displacement components that were held, 3 n + c for component c of node n. support:
+    (6, L) force and moment of the clamps about (0, 0, 0), from the residual of the system; minus
+    those of the load when all is well. revolved: whether the pin is the same all round.
     """
 
     space: Discretisation
@@ -43,6 +44,8 @@ class UnitFields:
     loads: tuple[Unit, ...]
     displacement: Floats
     stress: Floats
+    forces: Floats
+    fixed: Ints
     support: Floats
     revolved: bool = True
 
@@ -119,7 +122,15 @@ class SolidModel:
         stress = nodal_stress(self.space, self.material, displacement)
         stress = with_known_traction(stress, boundary, loads.traction, held)
         return UnitFields(
-            self.space, boundary, units, displacement, stress, support, self.pin.revolved
+            self.space,
+            boundary,
+            units,
+            displacement,
+            stress,
+            loads.forces,
+            self.fixed,
+            support,
+            self.pin.revolved,
         )
 
     def _displace(self, F: Floats) -> tuple[Floats, Floats]:

@@ -77,7 +77,8 @@ def example(text: str) -> str:
     help=example("pinstress run studies/grenier2008.toml --pins B,E --out out/trial")
     + "\nThe whole pipeline: reactions, stresses, safety factors. Prints the table and writes "
     "tables, plots, VTK files and report.html.\n\n"
-    "Exit status: 0 done; 1 done, but a requested accuracy was not reached; 2 bad input; "
+    "Exit status: 0 done; 1 done, but a requested accuracy was not reached or the second opinion "
+    "differs; 2 bad input; "
     "3 the numerics failed; 130 interrupted."
 )
 @click.argument("study", type=click.Path(path_type=Path))
@@ -97,6 +98,11 @@ def example(text: str) -> str:
     help="On the maximum stress, instead of the study's.",
 )
 @click.option("--no-pictures", is_flag=True, help="Neither plots nor rendered pins: faster.")
+@click.option(
+    "--second-opinion",
+    type=click.Choice(["ccx"]),
+    help="Have CalculiX solve every row once more on the solid model's mesh, and compare.",
+)
 def run(
     study: Path,
     out: Path | None,
@@ -105,7 +111,10 @@ def run(
     model: str | None,
     tolerance: float | None,
     no_pictures: bool,
+    second_opinion: str | None,
 ) -> int:
+    if second_opinion is not None:
+        _require_calculix()
     from pinstress.study import load_study
 
     loaded = load_study(study)
@@ -113,7 +122,18 @@ def run(
     from pinstress.write import run_and_write
 
     chosen: dict[str, Any] = {"pins": pins, "cases": cases, "model": model, "tolerance": tolerance}
-    return run_and_write(loaded, directory, pictures=not no_pictures, **chosen)
+    second = second_opinion is not None
+    return run_and_write(loaded, directory, pictures=not no_pictures, second=second, **chosen)
+
+
+def _require_calculix() -> None:
+    import shutil
+
+    if shutil.which("ccx") is None:  # as fea.calculix, without waiting for numpy
+        raise InputError(
+            "--second-opinion ccx: CalculiX is not installed (no command ccx); on Debian and "
+            "Ubuntu: sudo apt-get install --no-install-recommends calculix-ccx"
+        )
 
 
 @commands.command(

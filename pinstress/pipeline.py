@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from fea.ladder import Asked, Model, Solution, solve_pin
+from fea.peak import Peak
 from pinstress import checks, gather
 from pinstress.build import CaseLoads, case_loads
 from pinstress.errors import InputError
@@ -21,6 +22,7 @@ from reports.results import Field, LandingRange, Results
 
 Progress = Callable[[str, float], None]
 Keep = Callable[[Field], None]
+Ask = Callable[[Task, tuple[Peak, ...], Callable[[str], None]], None]
 
 
 def select(names: Iterable[str], wanted: Iterable[str] | None, what: str) -> list[str]:
@@ -107,11 +109,13 @@ def solve(
     plan: Plan,
     keep: Keep = lambda _: None,
     progress: Progress = lambda _, __: None,
+    ask: Ask = lambda _, __, ___: None,
 ) -> Results:
     """Solve every pin of a plan.
 
     keep: called with every pin's field as soon as it is there. progress: called with what is being
-    done and the part of the work that is behind.
+    done and the part of the work that is behind. ask: called with every task, its peaks, and whom
+    to tell what is being done.
 
     Raises: ArithmeticError (MeshError, SolveError) when the numerics fail.
     """
@@ -129,6 +133,7 @@ def solve(
         for solution in found:
             if (field := gather.field(study, task, solution)) is not None:
                 keep(field)
+        ask(task, tuple(s.peak for s in found), tell)
         if task is plan.checked and study.table.beam_check is not None:
             tell(f"pin {task.pin.name}, beam check")
             beam = checks.beam_check(study, task, material)

@@ -13,6 +13,7 @@ from rich.console import Console
 
 from pinstress.output import replacing, require_replaceable
 from pinstress.pipeline import Progress, loads_only, prepare, solve
+from pinstress.second_opinion import Opinions
 from pinstress.study import Study
 from reports.results import Field, Results, Units
 from reports.terminal import print_safety_factors
@@ -21,10 +22,13 @@ from reports.vtk import render_pin, renderer_problem, write_vtu
 from reports.write import write_loads, write_reports
 
 
-def run_and_write(study: Study, directory: Path, *, pictures: bool, **chosen: Any) -> int:
+def run_and_write(
+    study: Study, directory: Path, *, pictures: bool, second: bool = False, **chosen: Any
+) -> int:
     """Run a study into a folder; returns the exit status.
 
-    chosen: what pinstress.pipeline.prepare takes. Raises: InputError, ArithmeticError.
+    second: whether CalculiX is asked for its opinion, too. chosen: what pinstress.pipeline.prepare
+    takes. Raises: InputError, ArithmeticError.
     """
     require_replaceable(directory)
     plan = prepare(study, **chosen)
@@ -32,6 +36,7 @@ def run_and_write(study: Study, directory: Path, *, pictures: bool, **chosen: An
     drawn: dict[tuple[str, str], Path] = {}
     s = study.system
     units = Units(s.length, s.force, s.stress, s.time)
+    opinions = Opinions(plan) if second else None
     with replacing(directory) as staging:
         vtk = staging / "vtk"
         vtk.mkdir()
@@ -46,15 +51,21 @@ def run_and_write(study: Study, directory: Path, *, pictures: bool, **chosen: An
                 drawn[field.pin, field.case] = picture
 
         with progress_bar() as progress:
-            results = solve(plan, keep, progress)
+            ask = {"ask": opinions.ask} if opinions else {}
+            results = solve(plan, keep, progress, **ask)
             progress("report", 1.0)
             write_reports(results, staging, drawn, plots=pictures)
+            if opinions:
+                opinions.write(staging)
     print_safety_factors(results, _console())
+    if opinions:
+        opinions.show(_console())
     _tell_left_out(results)
     if problem is not None:
         click.echo(f"No pictures of the pins: {problem}", err=True)
     click.echo(f"Report: {directory / 'report.html'}", err=True)
-    return _tell_not_reached(results, study.table.analysis.goal == "decide")
+    status = _tell_not_reached(results, study.table.analysis.goal == "decide")
+    return max(status, opinions.tell_disagreements()) if opinions else status
 
 
 def loads_and_write(study: Study, directory: Path, *, plots: bool, cases: list[str] | None) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -198,8 +199,8 @@ def test_only_what_acts_is_solved_for() -> None:
 
 
 def test_a_load_without_a_field_is_not_dropped(bar: UnitFields) -> None:
-    only = UnitFields(bar.space, bar.surface, bar.loads[:5], bar.displacement[..., :5],
-                      bar.stress[..., :5], bar.support[:, :5])  # fmt: skip
+    only = replace(bar, loads=bar.loads[:5], displacement=bar.displacement[..., :5],
+                   stress=bar.stress[..., :5], support=bar.support[:, :5])  # fmt: skip
     twist = PinLoads("case", ("B",), np.zeros((1, 1, 3)), np.array([0.0, 0.0, 1.0]))
     with pytest.raises(ValueError, match=r"no unit fields for .*'B', kind='moment', n=0"):
         envelope(only, twist)

@@ -1,4 +1,4 @@
-"""An input deck for CalculiX: quadratic tetrahedra, held nodes and nodal forces as we have them."""
+"""An input deck for CalculiX: quadratic tetrahedra, supports and nodal forces as we have them."""
 
 from __future__ import annotations
 
@@ -29,40 +29,47 @@ def c3d10(nodes: Floats, elements: Ints) -> Ints:
 
 
 def write_deck(
-    path: Path, nodes: Floats, elements: Ints, material: Material, held: Ints, forces: Floats
+    path: Path, nodes: Floats, elements: Ints, material: Material, fixed: Ints, forces: Floats
 ) -> None:
     """Write a deck that asks for displacements (.dat) and averaged stresses (.frd) at the nodes.
 
-    nodes: (N, 3), m. elements: (M, 10), as for `c3d10`. held: nodes that do not move. forces:
-    (N, 3) on the nodes, N. CalculiX numbers nodes and elements from 1.
+    nodes: (N, 3), m. elements: (M, 10), as for `c3d10`. fixed: displacement components that are
+    nought, 3 n + c for component c of node n. forces: (N, 3) on the nodes, N.
     """
     with path.open("w") as file:
-        for line in _lines(nodes, elements, material, held, forces):
+        for line in _lines(nodes, elements, material, fixed, forces):
             file.write(line + "\n")
 
 
-def _lines(
-    nodes: Floats, elements: Ints, material: Material, held: Ints, forces: Floats
-) -> Iterator[str]:
+def mesh_lines(kind: str, nodes: Floats, elements: Ints, material: Material) -> Iterator[str]:
+    """Nodes (N, 3), m, in the set ALL, elements of a kind (C3D10, CAX6), and their material.
+
+    CalculiX numbers nodes and elements from 1.
+    """
     yield "*NODE, NSET=ALL"
     for number, (x, y, z) in enumerate(nodes, 1):
-        yield f"{number}, {_real(x)}, {_real(y)}, {_real(z)}"
-    yield "*ELEMENT, TYPE=C3D10, ELSET=PIN"
-    for number, element in enumerate(c3d10(nodes, elements) + 1, 1):
+        yield f"{number}, {real(x)}, {real(y)}, {real(z)}"
+    yield f"*ELEMENT, TYPE={kind}, ELSET=PIN"
+    for number, element in enumerate(elements + 1, 1):
         yield f"{number}, " + ", ".join(map(str, element))
-    yield "*NSET, NSET=HELD"
-    yield from (f"{number}," for number in held + 1)
     yield "*MATERIAL, NAME=ONE"
     yield "*ELASTIC"
-    yield f"{_real(material.youngs_modulus)}, {_real(material.poisson_ratio)}"
+    yield f"{real(material.youngs_modulus)}, {real(material.poisson_ratio)}"
     yield "*SOLID SECTION, ELSET=PIN, MATERIAL=ONE"
+
+
+def _lines(
+    nodes: Floats, elements: Ints, material: Material, fixed: Ints, forces: Floats
+) -> Iterator[str]:
+    yield from mesh_lines("C3D10", nodes, c3d10(nodes, elements), material)
     yield "*BOUNDARY"
-    yield "HELD, 1, 3"
+    for node, axis in zip(*divmod(fixed, 3), strict=True):
+        yield f"{node + 1}, {axis + 1}"
     yield "*STEP"
     yield "*STATIC"
     yield "*CLOAD"
     for node, axis in np.argwhere(forces):
-        yield f"{node + 1}, {axis + 1}, {_real(forces[node, axis])}"
+        yield f"{node + 1}, {axis + 1}, {real(forces[node, axis])}"
     yield "*NODE PRINT, NSET=ALL"
     yield "U"
     yield "*EL FILE"
@@ -70,7 +77,8 @@ def _lines(
     yield "*END STEP"
 
 
-def _real(x: float) -> str:
-    # CalculiX reads 20 characters of a number: the exponent of a longer one is cut off, and it says
-    # "nonpositive jacobian"
+def real(x: float) -> str:
+    """A number as CalculiX reads it: of more than 20 characters it cuts off the exponent, and says
+    "nonpositive jacobian".
+    """
     return f"{x:.11g}"

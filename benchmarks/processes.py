@@ -1,0 +1,59 @@
+"""Other programs and our own solver, each in its own process, with its time and memory."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+THREADS = 2
+
+# Linux counts the largest memory of a child from before it starts its program, when it still has
+# its parent's: so the parent must be small. Ends stderr with seconds of wall time and of processor
+# time, and kB.
+PROBE = """
+import resource, subprocess, sys, time
+start = time.perf_counter()
+status = subprocess.run(sys.argv[1:]).returncode
+spent = time.perf_counter() - start
+used = resource.getrusage(resource.RUSAGE_CHILDREN)
+print(f"\\n{spent} {used.ru_utime + used.ru_stime} {used.ru_maxrss}", file=sys.stderr)
+sys.exit(status)
+"""
+
+
+class RunError(RuntimeError):
+    """A process failed; the message has the end of what it printed."""
+
+
+@dataclass(frozen=True)
+class Process:
+    """A finished process. seconds: wall time; processor: time on all cores, s; megabytes: its
+    largest memory.
+    """
+
+    output: str
+    seconds: float
+    processor: float
+    megabytes: float
+
+
+def process(arguments: list[str], folder: Path) -> Process:
+    """Run a command in a folder, on two threads.
+
+    Raises: RunError when its status is not 0.
+    """
+    done = subprocess.run(
+        [sys.executable, "-I", "-c", PROBE, *arguments],
+        cwd=folder,
+        env=os.environ | {"OMP_NUM_THREADS": str(THREADS)},
+        capture_output=True,
+        text=True,
+    )
+    if done.returncode:
+        said = (done.stdout + done.stderr).strip()[-1000:]
+        raise RunError(f"{arguments[0]} ended with status {done.returncode}:\n{said}")
+    spent, processor, memory = map(float, done.stderr.split()[-3:])
+    return Process(done.stdout, spent, processor, memory / 1024.0)

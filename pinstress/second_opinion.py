@@ -1,0 +1,55 @@
+"""CalculiX's opinion on every row of a run: asked pin by pin, written, shown and told."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import click
+from rich.console import Console
+
+from fea.peak import Peak
+from fea.second_opinion import Opinion, second_opinions
+from pinstress.pins import material
+from pinstress.pipeline import Plan
+from pinstress.tasks import Task
+from reports.second_opinion import print_second_opinion, write_second_opinion
+
+
+class Opinions:
+    """The opinions on a plan's rows so far."""
+
+    def __init__(self, plan: Plan) -> None:
+        self.plan = plan
+        self.found: list[Opinion] = []
+
+    def ask(self, task: Task, peaks: tuple[Peak, ...], progress: Callable[[str], None]) -> None:
+        """Solve the rows of a task once more. Raises: MeshError, SolveError."""
+        study = self.plan.study
+        steel = material(study, study.table.pin[task.pin.name].material)
+        distance = self.plan.asked.distance
+        self.found += second_opinions(
+            task.pin, steel, task.clamps, task.loads, peaks, distance, progress
+        )
+        pins, cases = list(study.table.pin), list(self.plan.loads)
+        self.found.sort(key=lambda o: (pins.index(o.pin), cases.index(o.case)))
+
+    def write(self, directory: Path) -> None:
+        """second_opinion.csv."""
+        system = self.plan.study.system
+        path = directory / "second_opinion.csv"
+        write_second_opinion(self.found, path, system.factor("stress"), system.stress)
+
+    def show(self, console: Console) -> None:
+        """The table, and what it says in a sentence."""
+        system = self.plan.study.system
+        print_second_opinion(self.found, console, system.factor("stress"), system.stress)
+
+    def tell_disagreements(self) -> int:
+        """Say on stderr where the programs differ; the exit status."""
+        for o in self.found:
+            if o.complaint:
+                click.echo(
+                    f"Second opinion differs: pin {o.pin} ({o.case}): {o.complaint}.", err=True
+                )
+        return int(any(o.complaint for o in self.found))

@@ -1,0 +1,88 @@
+"""`pinstress run --second-opinion ccx`: without CalculiX, with one that is wrong, and with it."""
+
+from __future__ import annotations
+
+import csv
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from pinstress.cli import run_command_line
+from tests.conftest import ROOT
+
+ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()
+
+
+def run(folder: Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    (folder / "study.toml").write_text(ONE_PIN.replace("tolerance = 0.05", "tolerance = 0.3"))
+    command = "run study.toml --second-opinion ccx --no-pictures --out out"
+    return subprocess.run(
+        [sys.executable, "-m", "pinstress", *command.split()],
+        cwd=folder,
+        env=os.environ | environment,
+        capture_output=True,
+        text=True,
+    )
+
+
+def put(folder: Path, script: str) -> dict[str, str]:
+    """The environment with a `ccx` of ours first."""
+    (folder / "ccx").write_text(f"#!/bin/sh\n{script}\n")
+    (folder / "ccx").chmod(0o755)
+    return {"PATH": f"{folder}:{os.environ['PATH']}"}
+
+
+def opinion(folder: Path) -> dict[str, str]:
+    (row,) = csv.DictReader((folder / "out" / "second_opinion.csv").read_text().splitlines())
+    return row
+
+
+def test_without_calculix_it_says_how_to_get_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Before anything else: the study is not even there."""
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert run_command_line(["run", str(tmp_path / "no.toml"), "--second-opinion", "ccx"]) == 2
+    told = capsys.readouterr().err
+    assert "sudo apt-get install --no-install-recommends calculix-ccx" in told
+    assert "no.toml" not in told
+
+
+def test_a_calculix_that_fails_is_told_and_the_results_are_kept(tmp_path: Path) -> None:
+    done = run(tmp_path, **put(tmp_path, "echo no luck; exit 201"))
+    assert done.returncode == 1
+    assert "Second opinion differs: pin B (landing): ccx ended with status 201" in done.stderr
+    assert "CalculiX agrees in 0 of 1 rows" in done.stdout
+    row = opinion(tmp_path)
+    assert row["agrees"] == "no"
+    assert "no luck" in row["note"]
+    assert (tmp_path / "out" / "results.json").is_file()
+
+
+@pytest.mark.peers
+def test_calculix_agrees(tmp_path: Path) -> None:
+    done = run(tmp_path, TMPDIR=str(tmp_path))
+    assert done.returncode == 0, done.stderr
+    assert "CalculiX agrees in 1 of 1 rows" in done.stdout
+    row = opinion(tmp_path)
+    assert (row["pin"], row["case"], row["agrees"], row["unit"]) == ("B", "landing", "yes", "psi")
+    assert float(row["displacement_difference"]) < 1e-6
+    ours, theirs = float(row["max_von_mises_same_mesh"]), float(row["max_von_mises_calculix"])
+    assert theirs == pytest.approx(ours, rel=1e-4)
+    assert theirs == pytest.approx(float(row["max_von_mises"]), rel=0.2)
+    assert not list(tmp_path.glob("pinstress-ccx-*"))  # working files are gone
+
+
+@pytest.mark.peers
+def test_a_calculix_with_another_modulus_is_told(tmp_path: Path) -> None:
+    """Its stresses are the same, its displacements are not."""
+    real = subprocess.run(["which", "ccx"], capture_output=True, text=True, check=True)
+    script = f"sed -i '/ELASTIC/{{n;s/^[^,]*/1e11/}}' job.inp && exec {real.stdout.strip()} \"$@\""
+    done = run(tmp_path, **put(tmp_path, script))
+    assert done.returncode == 1
+    assert "displacements on the same mesh differ by" in done.stderr
+    assert "von Mises" not in done.stderr
+    assert opinion(tmp_path)["agrees"] == "no"
