@@ -32,8 +32,9 @@ check: setup ## lint, format check, types, import contracts, strict docs build
 	$(BIN)/lint-imports --no-logo
 	@$(MAKE) --no-print-directory docs
 
-bench: setup ## run the benchmarks
-	$(BIN)/python -m benchmarks
+bench: setup ## run all benchmarks and write their tables into docs/measured (about 20 minutes)
+	$(BIN)/pip install --quiet --require-hashes -r requirements-bench.lock
+	$(BIN)/python -m benchmarks --record
 
 docs: setup ## build the documentation into build/docs; a warning is an error
 	$(BIN)/sphinx-build --quiet --nitpicky --fail-on-warning --keep-going -b html docs build/docs
