@@ -10,7 +10,6 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from skfem import ElementTetP2
 
 from fea.elasticity import Discretisation
 from fea.material import Material
@@ -33,16 +32,18 @@ def von_mises(stress: Floats) -> Floats:
 
 
 def recovery(space: Discretisation) -> sp.csr_matrix:
-    """Matrix (N, 4 M) from values at the quadrature points to values at the nodes."""
-    at = np.vstack([np.ones(4), space.basis.X])
-    nodes = np.vstack([np.ones(10), ElementTetP2.doflocs.T])
-    extend = np.linalg.solve(at, nodes).T  # (10, 4)
-    m = len(space.elements)
-    row = np.repeat(space.elements.ravel(), 4)
-    column = (4 * np.arange(m)[:, None, None] + np.arange(4)).repeat(10, axis=1).ravel()
+    """Matrix (N, Q M) from values at the quadrature points to values at the nodes."""
+    m, k = space.elements.shape
+    q = space.basis.X.shape[1]
+    extend = np.ones((k, q))  # of linear elements, whose stress is the same all over
+    if space.quadratic:
+        at = np.vstack([np.ones(q), space.basis.X])
+        extend = np.linalg.solve(at, np.vstack([np.ones(k), space.basis.elem.doflocs.T])).T
+    row = np.repeat(space.elements.ravel(), q)
+    column = (q * np.arange(m)[:, None, None] + np.arange(q)).repeat(k, axis=1).ravel()
     count = np.bincount(space.elements.ravel())
     value = np.tile(extend.ravel(), m) / count[row]
-    return sp.csr_matrix((value, (row, column)), shape=(len(count), 4 * m))
+    return sp.csr_matrix((value, (row, column)), shape=(len(count), q * m))
 
 
 def nodal_stress(space: Discretisation, material: Material, displacement: Floats) -> Floats:
