@@ -12,6 +12,7 @@ from geometry import Pin
 from geometry.elements import Element
 from pinstress.climb import (
     HARMONIC,
+    USUAL,
     Climb,
     chosen,
     climb_harmonic,
@@ -83,16 +84,17 @@ def prepare(study: Study, pin: str, case: str, tolerance: float | None = None) -
 def chart(
     plan: Plan,
     measure: Measure,
-    meshes: int = 5,
+    meshes: int | None = None,
     runs: int = 3,
     progress: Progress = lambda _, __: None,
 ) -> Chart:
-    """Climb all ladders. measure: of one rung. meshes: of each solid element. runs: of which
+    """Climb all ladders. measure: of one rung. meshes: of each solid element, by
+    default as many as are quick. runs: of which
     measured times are medians.
 
     Raises: SolveError when there is no reference.
     """
-    about, behind = len(HARMONIC) + 3 * meshes + 4, 0
+    about, behind = len(HARMONIC) + 3 * (meshes or USUAL) + 4, 0
 
     def tell(message: str) -> None:
         nonlocal behind

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from fea.ladder import MESHES, MOST_UNKNOWNS, STEP, Asked, enough
 from fea.linear import SolveError
@@ -16,11 +16,12 @@ from pinstress.own_process import Measure, Measured
 
 HARMONIC = (-4, -2, 0, 1, 2, 3)  # levels of meshes (fea.rungs)
 FIRST: dict[Element, int] = {"linear": -1, "straight": -3, "curved": -3}
-FEWEST = 4  # meshes of an element, however large
+USUAL, FEWEST = 5, 4  # meshes of an element, however large
 MOST = 150_000  # unknowns of a solid that is charted; of one that has no other reference:
 MOST_BELOW_REFERENCE = 50_000
 MOST_OF_REFERENCE = 400_000
-BEYOND = (2, 3, 4)  # levels of the reference above the finest harmonic mesh
+ORDER = 10.0  # times the unknowns of the finest that is charted
+FEWEST_OF_REFERENCE = 3
 
 
 @dataclass
@@ -44,6 +45,14 @@ class Climb:
             self.done.append((rung, found))
         return found
 
+    def drop_repeated(self) -> None:
+        """Leave out the last but one where the last is the same mesh, which places that need small
+        elements keep from being coarser.
+        """
+        (_, one), (_, two) = self.done[-2:]
+        if one.look and two.look and one.look.unknowns == two.look.unknowns:
+            del self.done[-2]
+
     def looks(self, like: Rung) -> tuple[Look, ...]:
         """Of the same model and element, from a run's first mesh on."""
         return tuple(
@@ -66,6 +75,7 @@ def climb_harmonic(climb: Climb) -> None:
     """The usual levels, and on to where `auto` ends."""
     for level in HARMONIC:
         found = climb.to(Rung("harmonic", level=level))
+        climb.drop_repeated()
     while (
         climb.auto == "harmonic"
         and found.look is not None
@@ -77,51 +87,67 @@ def climb_harmonic(climb: Climb) -> None:
         found = climb.to(Rung("harmonic", level=level))
 
 
-def climb_solid(climb: Climb, element: Element, meshes: int) -> None:
-    """Meshes finer and finer, until they are many or large, or one passes a limit."""
+def climb_solid(climb: Climb, element: Element, meshes: int | None) -> None:
+    """Finer and finer meshes, as many as asked for or until they get large, or pass a limit."""
     pin = climb.problem.pin
     step = 2 if pin.meshed else 1  # it can only be halved
     first = 0 if pin.meshed else FIRST[element]
     most = MOST if isinstance(pin, Pin) else MOST_BELOW_REFERENCE
-    for k in range(meshes):
+    for k in range(meshes or USUAL):
         found = climb.to(Rung("solid", element, first + step * k))
         if found.failed.startswith("passed the limit"):
             return  # so would those that are finer
         growth = STEP ** (3 * step)
-        few = 2 if pin.meshed else FEWEST
+        few = meshes or (2 if pin.meshed else FEWEST)
         if found.look is not None and k + 1 >= few and found.look.unknowns * growth > most:
             return
 
 
 def harmonic_reference(climb: Climb) -> tuple[Rung, Seen]:
-    """Meshes of sixteen times the unknowns of the finest that is charted, and two on the way."""
-    top = max(r.level for r, _ in climb.done if r.model == "harmonic")
+    """Finer and finer from twice as fine as the finest that is charted, until an order larger."""
+    level, charted = _finest(climb, "harmonic")
     looks: list[Look] = []
-    for beyond in BEYOND:
-        rung = Rung("harmonic", level=top + beyond)
-        found = climb.to(rung, keep=False)
+    level += 1
+    while len(looks) < FEWEST_OF_REFERENCE or looks[-1].unknowns < ORDER * charted[-1].unknowns:
+        level += 1
+        found = climb.to(Rung("harmonic", level=level), keep=False)
         if found.look is None:
-            raise SolveError(f"the reference, on the harmonic model's finest mesh: {found.failed}")
+            raise SolveError(f"the reference, harmonic mesh {level + 1}: {found.failed}")
         looks.append(found.look)
-    return rung, climb.seen("harmonic", tuple(looks))
+        if looks[-1].unknowns > MOST_OF_REFERENCE:
+            break
+    return Rung("harmonic", level=level), climb.seen("harmonic", tuple(looks))
 
 
 def solid_reference(climb: Climb) -> tuple[Rung, Seen]:
-    """The solid model on the finest meshes that are not charted, with the finest that are."""
-    like = Rung("solid", "curved")
-    looks = list(climb.looks(like))
+    """The solid model on finer meshes than are charted, as far as its unknowns allow."""
+    level, charted = _finest(climb, "solid")
+    looks = list(charted)
     step = 2 if climb.problem.pin.meshed else 1
-    rung = Rung("solid", "curved", max(r.level for r, _ in climb.done if r.element == "curved"))
-    charted = len(looks)
-    while looks and looks[-1].unknowns * STEP ** (3 * step) <= MOST_OF_REFERENCE:
-        rung = replace(rung, level=rung.level + step)
-        found = climb.to(rung, keep=False)
+    while (
+        looks[-1].unknowns < ORDER * charted[-1].unknowns
+        and looks[-1].unknowns * STEP ** (3 * step) <= MOST_OF_REFERENCE
+    ):
+        found = climb.to(Rung("solid", "curved", level + step), keep=False)
         if found.look is None:
             break
         looks.append(found.look)
-    if len(looks) == charted:
+        level += step
+    if len(looks) == len(charted):
         raise SolveError("no solid mesh finer than those charted could be solved as a reference")
-    return rung, climb.seen("solid", tuple(looks))
+    return Rung("solid", "curved", level), climb.seen("solid", tuple(looks))
+
+
+def _finest(climb: Climb, model: str) -> tuple[int, tuple[Look, ...]]:
+    """The finest level of a model's best element, and all its looks.
+
+    Raises: SolveError when there is none.
+    """
+    of_it = [(r.level, m) for r, m in climb.done if r.model == model and r.element == "curved"]
+    looks = tuple(m.look for _, m in of_it if m.look)
+    if not looks:
+        raise SolveError(f"no mesh of the {model} model could be solved: {of_it[0][1].failed}")
+    return max(level for level, m in of_it if m.look), looks
 
 
 def chosen(climb: Climb) -> Rung | None:

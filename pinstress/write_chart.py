@@ -26,7 +26,7 @@ def chart_and_write(
     case: str,
     out: Path | None,
     tolerance: float | None,
-    meshes: int,
+    meshes: int | None,
     runs: int,
     limits: Limits,
 ) -> int:

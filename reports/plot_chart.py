@@ -24,7 +24,7 @@ SHORT = {
     "curved quadratic tetrahedra": "solid, curved",
 }
 ROOM = 2.5  # factor beyond the outermost points
-LINE = 118  # letters of a line of the foot
+LINE = 135  # letters of a line of the foot
 
 
 def chart_plot(chart: Chart, directory: Path) -> list[Path]:
@@ -32,7 +32,7 @@ def chart_plot(chart: Chart, directory: Path) -> list[Path]:
     of = f"median of {chart.runs} runs" if chart.runs > 1 else "one run"
     across: tuple[tuple[str, Callable[[ChartPoint], float]], ...] = (
         (f"time [s], meshing included, {of}", lambda p: p.seconds or 0.0),
-        (f"peak memory [MB] above the bare process's {chart.bare:.0f}", lambda p: p.memory or 0.0),
+        ("peak memory above the bare process [MB]", lambda p: p.memory or 0.0),
     )
     foot = _foot(chart)
     with panels(1, 2, height=3.5 + 0.14 * len(foot), sharey=True) as (figure, axes):
@@ -59,6 +59,20 @@ def _draw(figure: Figure, axes: Axes, chart: Chart, value: Callable[[ChartPoint]
     axes.set_ylim(min(*errors, floor) / ROOM, max(*errors, chart.tolerance) * ROOM)
     axes.axhspan(axes.get_ylim()[0], floor, color="#eeeeee", linewidth=0.0)
     axes.axhline(chart.tolerance, color=GREY, linewidth=1.0)
+    for level, text in (
+        (chart.tolerance, f"tolerance {percent(chart.tolerance)}"),
+        (floor, "error of the reference"),
+    ):
+        axes.annotate(
+            text,
+            (1.0, level),
+            xycoords=("axes fraction", "data"),
+            xytext=(-3, 2),
+            textcoords="offset points",
+            ha="right",
+            fontsize=7.5,
+            color="#666666",
+        )
     for order, curve in enumerate(chart.curves.values()):
         style = line_style(order)
         at = [value(p) for p in curve], [max(error(p), floor / 3.0) for p in curve]
