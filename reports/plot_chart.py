@@ -24,21 +24,21 @@ SHORT = {
     "curved quadratic tetrahedra": "solid, curved",
 }
 ROOM = 2.5  # factor beyond the outermost points
-LINE = 135  # letters of a line of the foot
+LINE = 128  # letters of a line of the foot
 
 
 def chart_plot(chart: Chart, directory: Path) -> list[Path]:
     """Draw chart.svg and chart.png: two log-log panels with a common axis of errors."""
-    of = f"median of {chart.runs} runs" if chart.runs > 1 else "one run"
     across: tuple[tuple[str, Callable[[ChartPoint], float]], ...] = (
-        (f"time [s], meshing included, {of}", lambda p: p.seconds or 0.0),
-        ("peak memory above the bare process [MB]", lambda p: p.memory or 0.0),
+        ("time, meshing included [s]", lambda p: p.seconds or 0.0),
+        ("peak memory above bare process [MB]", lambda p: p.memory or 0.0),
     )
     foot = _foot(chart)
     with panels(1, 2, height=3.5 + 0.14 * len(foot), sharey=True) as (figure, axes):
         for panel, (heading, value) in zip(axes, across, strict=True):
             _draw(figure, panel, chart, value)
             panel.set_xlabel(heading)
+        _levels(axes[-1], chart)
         axes[0].set_ylabel("error of the maximum von Mises stress")
         figure.suptitle(
             f"pin {clipped(chart.pin)}, {clipped(chart.case, 40)}: error against cost",
@@ -51,7 +51,7 @@ def chart_plot(chart: Chart, directory: Path) -> list[Path]:
 
 
 def _draw(figure: Figure, axes: Axes, chart: Chart, value: Callable[[ChartPoint], float]) -> None:
-    floor = max(chart.reference.error, 1e-9)
+    floor = _floor(chart)
     errors = [max(error(p), floor / 3.0) for curve in chart.curves.values() for p in curve]
     costs = [value(p) for curve in chart.curves.values() for p in curve]
     axes.set(xscale="log", yscale="log")
@@ -59,20 +59,6 @@ def _draw(figure: Figure, axes: Axes, chart: Chart, value: Callable[[ChartPoint]
     axes.set_ylim(min(*errors, floor) / ROOM, max(*errors, chart.tolerance) * ROOM)
     axes.axhspan(axes.get_ylim()[0], floor, color="#eeeeee", linewidth=0.0)
     axes.axhline(chart.tolerance, color=GREY, linewidth=1.0)
-    for level, text in (
-        (chart.tolerance, f"tolerance {percent(chart.tolerance)}"),
-        (floor, "error of the reference"),
-    ):
-        axes.annotate(
-            text,
-            (1.0, level),
-            xycoords=("axes fraction", "data"),
-            xytext=(-3, 2),
-            textcoords="offset points",
-            ha="right",
-            fontsize=7.5,
-            color="#666666",
-        )
     for order, curve in enumerate(chart.curves.values()):
         style = line_style(order)
         at = [value(p) for p in curve], [max(error(p), floor / 3.0) for p in curve]
@@ -88,8 +74,25 @@ def _draw(figure: Figure, axes: Axes, chart: Chart, value: Callable[[ChartPoint]
     axes.xaxis.set_minor_formatter(NullFormatter())
 
 
+def _levels(axes: Axes, chart: Chart) -> None:
+    """What the two levels are, right of the panel, where no curve is."""
+    for level, text, side in (
+        (chart.tolerance, f"tolerance\n{percent(chart.tolerance)}", "bottom"),
+        (_floor(chart), "error of the\nreference", "top"),
+    ):
+        axes.annotate(
+            text, (1.0, level), xycoords=("axes fraction", "data"), xytext=(4, 0),
+            textcoords="offset points", va=side, fontsize=7.5, color="#666666",
+        )  # fmt: skip
+
+
+def _floor(chart: Chart) -> float:
+    """The error of the reference, above nought."""
+    return max(chart.reference.error, 1e-9)
+
+
 def _labels(chart: Chart, value: Callable[[ChartPoint], float]) -> list[Label]:
-    floor = max(chart.reference.error, 1e-9)
+    floor = _floor(chart)
 
     def at(p: ChartPoint) -> tuple[float, float]:
         return value(p), max(error(p), floor / 3.0)
@@ -104,9 +107,11 @@ def _labels(chart: Chart, value: Callable[[ChartPoint], float]) -> list[Label]:
 
 def _foot(chart: Chart) -> list[str]:
     """Lines under the panels: reference, what the grey is, what failed."""
+    of = f"median of {chart.runs} runs" if chart.runs > 1 else "one run"
     said = [
-        f"{reference_line(chart)} Grey: errors below that are not told apart from nought.",
+        f"{reference_line(chart)} Grey: errors below that are not told "
+        f"apart from nought. Times: {of}; bare process: {chart.bare:.0f} MB.",
         *([chart.note] if chart.note else []),
         *failures(chart),
     ]
-    return [line for text in said for line in textwrap.wrap(text, LINE)]
+    return [line for text in said for line in textwrap.wrap(text.replace(" %", "\u00a0%"), LINE)]
