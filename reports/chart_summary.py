@@ -154,13 +154,18 @@ def reference_line(chart: Chart) -> str:
 
 def failures(chart: Chart) -> list[str]:
     """What could not be charted, and why, those alike together."""
-    found: dict[tuple[str, str, str], int] = {}
+    meshes: dict[tuple[str, str], int] = {}
+    found: dict[tuple[str, str, str], list[int]] = {}
     for p in chart.points:
+        meshes[p.model, p.element] = number = meshes.get((p.model, p.element), 0) + 1
         if p.failed:
-            key = (p.model, p.element, p.failed)
-            found[key] = found.get(key, 0) + 1
-    return [
-        f"Failed: {model}" + (f" ({element})" if model == "solid" else "")
-        + (f", {n} meshes" if n > 1 else "") + f": {why}"
-        for (model, element, why), n in found.items()
-    ]  # fmt: skip
+            found.setdefault((p.model, p.element, p.failed), []).append(number)
+    out = []
+    for (model, element, why), numbers in found.items():
+        if meshes[model, element] == len(numbers):
+            which = "" if len(numbers) == 1 else ", all meshes"
+        else:
+            which = f", mesh{'es' if len(numbers) > 1 else ''} {', '.join(map(str, numbers))}"
+        what = f"{model} ({element})" if model == "solid" else model
+        out.append(f"Failed: {what}{which}: {why}")
+    return out

@@ -22,7 +22,7 @@ from pinstress.chart import Plan, chart, prepare
 from pinstress.cli import run_command_line
 from pinstress.own_process import Limits, Measured, measure
 from pinstress.write_chart import _tell_not_reached
-from reports.chart import Chart, write_chart_csv
+from reports.chart import Chart, ChartPoint, write_chart_csv
 from reports.chart_summary import cost, failures, reference_line, staying, summary
 from reports.plot_chart import chart_plot
 
@@ -172,7 +172,7 @@ def test_a_beam_that_is_right_by_chance_is_told_from_one_that_knows(made_up: Cha
     assert "auto does not rely on it: the error that a beam can vouch for here is 34 %" in told
 
 
-def test_what_failed_is_shown_with_its_reason(plan: Plan, tmp_path: Path) -> None:
+def test_what_failed_is_shown_with_its_reason(plan: Plan, made_up: Chart, tmp_path: Path) -> None:
     """One that passes a limit ends its ladder; any other failure is a point among others."""
     fails = {("solid", "linear"): "passed the limit of 9 s", ("solid", "straight"): "no mesh"}
     found = chart(plan, MadeUp(fails))
@@ -180,8 +180,10 @@ def test_what_failed_is_shown_with_its_reason(plan: Plan, tmp_path: Path) -> Non
     assert [p.failed for p in found.points if p.element == STRAIGHT] == ["no mesh"] * 5
     assert failures(found) == [
         f"Failed: solid ({LINEAR}): passed the limit of 9 s",
-        f"Failed: solid ({STRAIGHT}), 5 meshes: no mesh",
+        f"Failed: solid ({STRAIGHT}), all meshes: no mesh",
     ]
+    one = (*made_up.points, ChartPoint("solid", CURVED, failed="no mesh"))
+    assert failures(replace(made_up, points=one)) == [f"Failed: solid ({CURVED}), mesh 6: no mesh"]
     write_chart_csv(found, tmp_path)
     rows = list(csv.DictReader((tmp_path / "chart.csv").read_text().splitlines()))
     (row,) = [r for r in rows if r["element"] == LINEAR]
