@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 from fea.ladder import Asked, solve_pin
@@ -75,9 +76,10 @@ def prepare(study: Study, pin: str, case: str, tolerance: float | None = None) -
         raise InputError(f"{study.path}: pin {pin}, case {case}: there is nothing to chart: {why}")
     beam_error = None
     if isinstance(task.pin, Pin):
-        beam = first(replace(asked, model="beam"))
-        if beam.max_von_mises and beam.error_estimate is not None:
-            beam_error = beam.error_estimate / beam.max_von_mises
+        with suppress(ValueError, ArithmeticError):  # the chart will say why
+            beam = first(replace(asked, model="beam"))
+            if beam.max_von_mises and beam.error_estimate is not None:
+                beam_error = beam.error_estimate / beam.max_von_mises
     return Plan(study, problem, asked, peak, beam_error)
 
 
@@ -88,9 +90,8 @@ def chart(
     runs: int = 3,
     progress: Progress = lambda _, __: None,
 ) -> Chart:
-    """Climb all ladders. measure: of one rung. meshes: of each solid element, by
-    default as many as are quick. runs: of which
-    measured times are medians.
+    """Climb all ladders. measure: of one rung. meshes: of each solid element, by default as many as
+    are quick. runs: of which times are medians.
 
     Raises: SolveError when there is no reference.
     """

@@ -95,8 +95,8 @@ def climb_solid(climb: Climb, element: Element, meshes: int | None) -> None:
     most = MOST if isinstance(pin, Pin) else MOST_BELOW_REFERENCE
     for k in range(meshes or USUAL):
         found = climb.to(Rung("solid", element, first + step * k))
-        if found.failed.startswith("passed the limit"):
-            return  # so would those that are finer
+        if found.over:
+            return
         growth = STEP ** (3 * step)
         few = meshes or (2 if pin.meshed else FEWEST)
         if found.look is not None and k + 1 >= few and found.look.unknowns * growth > most:

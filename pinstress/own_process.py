@@ -37,7 +37,8 @@ class Measured:
     """look: what the mesh says, None where it `failed`, for that reason. seconds: the median of the
     runs, each from the mesh to the maximum over the motion, without the start of the interpreter
     and imports. memory: the largest during the first run above the process with its libraries
-    loaded, MB; bare: that process, MB.
+    loaded, MB; bare: that process, MB. over: it failed because it passed a limit, as finer meshes
+    would.
     """
 
     look: Look | None
@@ -45,6 +46,7 @@ class Measured:
     memory: float = 0.0
     bare: float = 0.0
     failed: str = ""
+    over: bool = False
 
 
 Measure = Callable[[Problem, Rung, tuple[Look, ...], int], Measured]  # int: of how many runs
@@ -61,6 +63,7 @@ def measure(
         with (place / "messages").open("wb") as messages:
             process = subprocess.Popen(
                 [sys.executable, "-c", CODE, folder],
+                stdin=subprocess.DEVNULL,
                 stdout=messages,
                 stderr=messages,
                 env={**os.environ, "PYTHONPATH": paths},
@@ -73,7 +76,7 @@ def measure(
                 process.kill()
             process.wait()
         if passed:
-            return Measured(None, failed=passed)
+            return Measured(None, failed=passed, over=True)
         with suppress(OSError, EOFError):
             found: Measured = pickle.loads((place / "result").read_bytes())
             return found

@@ -65,7 +65,7 @@ class MadeUp:
         self, problem: Problem, rung: Rung, before: tuple[Look, ...], runs: int
     ) -> Measured:
         if reason := self.fails.get((rung.model, rung.element if rung.model == "solid" else "")):
-            return Measured(None, failed=reason)
+            return Measured(None, failed=reason, over="limit" in reason)
         part = {"linear": 4.0, "straight": 2.0, "curved": 1.0}[rung.element]
         error, unknowns, spent, memory = {
             "beam": (0.3, 0, 1e-3, 1.0),
