@@ -172,7 +172,7 @@ def loads(study: Path, out: Path | None, cases: list[str] | None, no_pictures: b
     type=click.FloatRange(0.0, min_open=True),
     default=120.0,
     show_default=True,
-    help="Of a point's process, s: what passes it is shown as failed.",
+    help="Of a point's process, s: what passes it is shown as failed; the reference has none.",
 )
 @click.option(
     "--memory-limit", type=click.FloatRange(0.0, min_open=True), default=4000.0,

@@ -12,7 +12,7 @@ from fea.rungs import Problem, Rung
 from fea.verdict import Seen
 from geometry import Pin
 from geometry.elements import Element
-from pinstress.own_process import Measure, Measured
+from pinstress.own_process import Job, Measure, Measured
 
 HARMONIC = (-4, -2, 0, 1, 2, 3)  # levels of meshes (fea.rungs)
 FIRST: dict[Element, int] = {"linear": -1, "straight": -3, "curved": -3}
@@ -40,7 +40,8 @@ class Climb:
         """Climb a rung; `keep` it as a point of the chart."""
         self.tell(f"{rung.model} model")
         below = self.looks(rung) if rung.model == "harmonic" and rung.level > 0 else ()
-        found = self.measure(self.problem, rung, below[-1:], self.runs if keep else 1)
+        runs = self.runs if keep else 1
+        found = self.measure(Job(self.problem, rung, below[-1:], runs, reference=not keep))
         if keep:
             self.done.append((rung, found))
         return found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import math
 import os
 import pickle
 import re
@@ -13,7 +14,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from fea.look import Look
@@ -49,16 +50,29 @@ class Measured:
     over: bool = False
 
 
-Measure = Callable[[Problem, Rung, tuple[Look, ...], int], Measured]  # int: of how many runs
+@dataclass(frozen=True)
+class Job:
+    """A rung to be climbed, with looks `before` (fea.rungs), so many times. reference: whatever
+    time it takes.
+    """
+
+    problem: Problem
+    rung: Rung
+    before: tuple[Look, ...] = ()
+    runs: int = 1
+    reference: bool = False
 
 
-def measure(
-    problem: Problem, rung: Rung, before: tuple[Look, ...], runs: int, limits: Limits
-) -> Measured:
+Measure = Callable[[Job], Measured]
+
+
+def measure(job: Job, limits: Limits) -> Measured:
     """Climb a rung in its own process, which is ended when it passes a limit."""
+    if job.reference:
+        limits = replace(limits, seconds=math.inf)
     with tempfile.TemporaryDirectory(prefix="pinstress-") as folder:
         place = Path(folder)
-        (place / "job").write_bytes(pickle.dumps((problem, rung, before, runs)))
+        (place / "job").write_bytes(pickle.dumps(job))
         paths = os.pathsep.join(p for p in sys.path if p)
         with (place / "messages").open("wb") as messages:
             process = subprocess.Popen(
@@ -108,7 +122,7 @@ def memory(pid: int | str, what: str) -> float:
     return float(found[1]) / 1024.0 if found else 0.0
 
 
-def climb(problem: Problem, rung: Rung, before: tuple[Look, ...], runs: int) -> Measured:
+def climb(job: Job) -> Measured:
     """Climb a rung here and now; for a process that does nothing else."""
     with suppress(ImportError):  # none of their time and memory is the model's
         import gmsh  # noqa: F401
@@ -118,9 +132,9 @@ def climb(problem: Problem, rung: Rung, before: tuple[Look, ...], runs: int) -> 
     bare, spent, peak = memory("self", "VmRSS"), [], 0.0
     with suppress(OSError):
         Path("/proc/self/clear_refs").write_text("5")  # forgets what imports took for a moment
-    for run in range(runs):
+    for run in range(job.runs):
         start = time.perf_counter()
-        found = look_at(problem, rung, before)
+        found = look_at(job.problem, job.rung, job.before)
         spent.append(time.perf_counter() - start)
         if run == 0:
             look, peak = found, memory("self", "VmHWM")
@@ -130,10 +144,10 @@ def climb(problem: Problem, rung: Rung, before: tuple[Look, ...], runs: int) -> 
 def serve(folder: str) -> None:
     """What the process does: a job read from a folder, the result left there."""
     place = Path(folder)
-    problem, rung, before, runs = pickle.loads((place / "job").read_bytes())
+    job = pickle.loads((place / "job").read_bytes())
     (place / "bare").write_text(str(memory("self", "VmRSS")))
     try:
-        found = climb(problem, rung, before, runs)
+        found = climb(job)
     except MemoryError:
         found = Measured(None, failed="out of memory")
     except (ArithmeticError, ValueError) as error:  # MeshError, SolveError; what cannot be asked

@@ -16,11 +16,11 @@ from pathlib import Path
 import pytest
 
 from fea.look import Look
-from fea.rungs import Problem, Rung
+from fea.rungs import Rung
 from pinstress import load_study
 from pinstress.chart import Plan, chart, prepare
 from pinstress.cli import run_command_line
-from pinstress.own_process import Limits, Measured, measure
+from pinstress.own_process import Job, Limits, Measured, measure
 from pinstress.write_chart import _tell_not_reached
 from reports.chart import Chart, ChartPoint, write_chart_csv
 from reports.chart_summary import cost, failures, reference_line, staying, summary
@@ -61,9 +61,8 @@ class MadeUp:
 
     fails: dict[tuple[str, str], str]
 
-    def __call__(
-        self, problem: Problem, rung: Rung, before: tuple[Look, ...], runs: int
-    ) -> Measured:
+    def __call__(self, job: Job) -> Measured:
+        rung = job.rung
         if reason := self.fails.get((rung.model, rung.element if rung.model == "solid" else "")):
             return Measured(None, failed=reason, over="limit" in reason)
         part = {"linear": 4.0, "straight": 2.0, "curved": 1.0}[rung.element]
@@ -216,7 +215,7 @@ def test_the_chart_is_the_same_bytes_every_time(made_up: Chart, tmp_path: Path) 
 def test_a_point_in_its_own_process(plan: Plan) -> None:
     """What it says is the same every time; its time and memory are its own."""
     rung = Rung("harmonic", level=0)
-    one, two = (measure(plan.problem, rung, (), runs, Limits()) for runs in (1, 2))
+    one, two = (measure(Job(plan.problem, rung, runs=n), Limits()) for n in (1, 2))
     assert one.look is not None
     assert one.look == two.look
     assert 0.0 < one.seconds < 60.0
@@ -236,7 +235,7 @@ def test_a_point_that_passes_a_limit_or_cannot_be_fails(
     plan: Plan, rung: Rung, limits: Limits, reason: str
 ) -> None:
     start = time.monotonic()
-    found = measure(plan.problem, rung, (), 1, limits)
+    found = measure(Job(plan.problem, rung), limits)
     assert found.look is None
     assert reason in found.failed
     assert time.monotonic() - start < 60.0
