@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
@@ -12,9 +13,11 @@ from fea.beam_error import BeamEstimate, beam_estimate
 from fea.beam_peak import harmonics, highest
 from fea.beam_stress import BeamStress, beam_stress
 from fea.line_load import acting
+from fea.look import Look
 from fea.material import Material
 from fea.peak import Peak, Refinement
 from fea.pin_loads import Floats, PinLoads
+from fea.zones import Place
 from geometry import Pin
 
 
@@ -35,6 +38,19 @@ class BeamAnswer:
     def maxima(self, loads: PinLoads) -> Floats:
         """Largest von Mises stress (T,) Pa at every instant."""
         return np.asarray(highest(harmonics(self._beam, loads)).von_mises.max(axis=0))
+
+    def look(self, places: Sequence[Place]) -> Look:
+        """The largest stress outside the places, as the other models tell it."""
+        found = highest(harmonics(self._beam, self.case))
+        r, z = self._beam.points.T
+        outside = np.ones(len(r), dtype=bool)
+        for p in places:
+            outside &= np.hypot(r - p.r, z - p.z) >= p.radius
+        value = np.where(outside[:, None], found.von_mises, 0.0)
+        point, instant = (int(i) for i in np.unravel_index(value.argmax(), value.shape))
+        at, theta = float(r[point]), float(found.theta[point, instant])
+        location = (at * math.cos(theta), at * math.sin(theta), float(z[point]))
+        return Look(0, float(value[point, instant]), instant, location)
 
     def picture(self, loads: PinLoads, instant: int) -> Picture | None:
         """None: a beam has no field over its surface."""

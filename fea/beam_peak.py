@@ -40,7 +40,7 @@ class Highest:
 def harmonics(beam: BeamStress, loads: PinLoads) -> Floats:
     """Stress (3, S, 6, T) in Pa: constant, times cos theta, times sin theta."""
     c = shares(beam.loads, loads)
-    across = np.array([load.n == 1 for load in beam.loads])
+    across = np.array([load.n == 1 for load in beam.loads], dtype=bool)
     first, second = (np.einsum("sik,tk->sit", beam.stress, c[:, p] * across) for p in (0, 1))
     even, odd = (np.einsum("sik,tk->sit", beam.stress, c[:, p] * ~across) for p in (0, 1))
     a, b, s = even, first.copy(), second.copy()

@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from skfem import Basis, ElementTetP2, MeshTet2
+from skfem import Basis, ElementTetP1, ElementTetP2, MeshTet1, MeshTet2
 
 from fea.material import Material
 from fea.pattern import Pattern
@@ -22,14 +22,17 @@ Floats = NDArray[np.float64]
 
 
 class Discretisation:
-    """Quadratic tetrahedra on a mesh (m), 4 quadrature points each.
+    """Tetrahedra on a mesh (m) with K nodes and Q quadrature points each: 10 and 4 of quadratic
+    ones, 4 and 1 of linear ones (MeshTet1).
 
     Unknown 3 n + c is component c of the displacement of node n; node numbers are the mesh's.
     """
 
-    def __init__(self, mesh: MeshTet2) -> None:
+    def __init__(self, mesh: MeshTet1) -> None:
         self.mesh = mesh
-        self.basis = Basis(mesh, ElementTetP2(), intorder=2)
+        self.quadratic = isinstance(mesh, MeshTet2)
+        element, order = (ElementTetP2(), 2) if self.quadratic else (ElementTetP1(), 1)
+        self.basis = Basis(mesh, element, intorder=order)
 
     @property
     def unknowns(self) -> int:
@@ -43,18 +46,18 @@ class Discretisation:
 
     @cached_property
     def elements(self) -> NDArray[np.int64]:
-        """Node numbers (M, 10): corners, then edges 01, 12, 02, 03, 13, 23."""
+        """Node numbers (M, K): corners, then edges 01, 12, 02, 03, 13, 23."""
         return np.ascontiguousarray(self.basis.element_dofs.T).astype(np.int64)
 
     @cached_property
     def gradients(self) -> Floats:
-        """Derivatives of the shape functions at the quadrature points, (M, 4, 10, 3), 1/m."""
-        grad = np.stack([self.basis.basis[i][0].grad for i in range(10)])  # (10, 3, M, 4)
+        """Derivatives of the shape functions at the quadrature points, (M, Q, K, 3), 1/m."""
+        grad = np.stack([part[0].grad for part in self.basis.basis])  # (K, 3, M, Q)
         return np.ascontiguousarray(grad.transpose(2, 3, 0, 1))
 
     @cached_property
     def weights(self) -> Floats:
-        """Quadrature weights times det J, (M, 4), m^3."""
+        """Quadrature weights times det J, (M, Q), m^3."""
         return np.asarray(self.basis.dx)
 
     def stiffness(self, material: Material) -> sp.csr_matrix:
@@ -64,7 +67,7 @@ class Discretisation:
         lam, mu = material.lame
         pattern = Pattern(self.elements, int(self.basis.N))
         g = self.gradients * np.sqrt(self.weights)[:, :, None, None]
-        d = np.ascontiguousarray(np.moveaxis(g, 3, 0))  # (3, M, 4, 10)
+        d = np.ascontiguousarray(np.moveaxis(g, 3, 0))  # (3, M, Q, K)
         s = [[pattern.sums(a.swapaxes(1, 2) @ b) for b in d] for a in d]
         blocks = np.empty((len(pattern), 3, 3))
         for a, b in np.ndindex(3, 3):
@@ -73,7 +76,7 @@ class Discretisation:
         return pattern.matrix(blocks)
 
     def strain(self, displacement: Floats) -> Floats:
-        """Strains (M, 4, 6) at the quadrature points for a displacement (N, 3) in m:
+        """Strains (M, Q, 6) at the quadrature points for a displacement (N, 3) in m:
         xx, yy, zz, yz, xz, xy, shears as tensor components.
         """
         u = displacement[self.elements]

@@ -107,12 +107,16 @@ class _Job:
     progress: Progress
 
     def decided(self, maximum: float, error: float) -> bool:
-        """Whether the interval of the factor of safety is all on one side of what is required."""
-        strength, required = self.material.yield_strength, self.asked.required
-        if self.asked.goal != "decide" or strength is None or required is None:
-            return False
-        limit = strength / required
-        return maximum + error < limit or maximum - error > limit
+        return decided(self.asked, self.material, maximum, error)
+
+
+def decided(asked: Asked, material: Material, maximum: float, error: float) -> bool:
+    """Whether the interval of the factor of safety is all on one side of what is required."""
+    strength, required = material.yield_strength, asked.required
+    if asked.goal != "decide" or strength is None or required is None:
+        return False
+    limit = strength / required
+    return maximum + error < limit or maximum - error > limit
 
 
 def places_of(
@@ -207,7 +211,7 @@ def _refined(
                 seen.get(case.case), pin.name, case.case, model, now, spent, ratio
             )
             start = time.perf_counter()
-        if all(_enough(job, s) for s in seen.values()):
+        if all(enough(asked, job.material, s) for s in seen.values()):
             break
     why = _why(job, model)
     peaks = {
@@ -226,11 +230,12 @@ def _with(
     return Seen(pin, case, model, (*looks, look), (*seconds, spent), ratio)
 
 
-def _enough(job: _Job, seen: Seen) -> bool:
+def enough(asked: Asked, material: Material, seen: Seen) -> bool:
+    """Whether these meshes answer what was asked."""
     if len(seen.looks) < FEWEST:
         return False
     maximum = seen.looks[-1].maximum
-    return seen.known(job.asked.tolerance) or job.decided(maximum, seen.error)
+    return seen.known(asked.tolerance) or decided(asked, material, maximum, seen.error)
 
 
 def _why(job: _Job, model: str) -> Callable[[Seen, Peak], str]:

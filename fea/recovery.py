@@ -14,10 +14,13 @@ def extension(elements: NDArray[np.int64], samples: Floats, places: Floats) -> s
     extended linearly, and averaged.
 
     elements: (M, k) node numbers. samples (d, Q), places (d, k): where samples and nodes are in the
-    element. Q = d + 1.
+    element. Q = d + 1, or 1 where values are the same all over an element.
     """
-    at, nodes = (np.vstack([np.ones(x.shape[1]), x]) for x in (samples, places))
-    extend = np.linalg.solve(at, nodes).T  # (k, Q)
+    if samples.shape[1] == 1:
+        extend = np.ones((places.shape[1], 1))
+    else:
+        at, nodes = (np.vstack([np.ones(x.shape[1]), x]) for x in (samples, places))
+        extend = np.linalg.solve(at, nodes).T  # (k, Q)
     m, (k, q) = len(elements), extend.shape
     row = np.repeat(elements.ravel(), q)
     column = (q * np.arange(m)[:, None, None] + np.arange(q)).repeat(k, axis=1).ravel()

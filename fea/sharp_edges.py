@@ -66,8 +66,9 @@ def sharp_edges(space: Discretisation, surface: Surface, clamps: tuple[str, ...]
     held = np.zeros(len(surface.facets), dtype=bool)
     for name in clamps:
         held |= np.isin(surface.facets, space.mesh.boundaries[name])
-    middle = surface.corners[:, 3:].ravel(order="F")  # a node on an edge, shared by two facets
-    order = np.argsort(middle, kind="stable").reshape(-1, 2)
+    ends = np.sort(np.stack([surface.corners[:, [a, b]] for a, b, _ in SIDES]), axis=2)
+    side_of = ends[..., 0] * np.int64(len(space.nodes)) + ends[..., 1]  # shared by two facets
+    order = np.argsort(side_of.ravel(), kind="stable").reshape(-1, 2)
     facet, side = (order % len(surface.facets)).T, (order // len(surface.facets)).T
     nodes = np.array(SIDES)[side[1]]  # of the second facet: ends, across
     two = surface.corners[facet[1]]
@@ -81,7 +82,9 @@ def sharp_edges(space: Discretisation, surface: Surface, clamps: tuple[str, ...]
     turn = np.arctan2(np.sum(normal * into, axis=1), np.sum(normal * other, axis=1))
     corner = (turn > TURN) & ~(held[facet[0]] & held[facet[1]])
     rim = held[facet[0]] != held[facet[1]]
-    edge = np.stack([a, middle[order[:, 0]], b], axis=1)
+    edge = np.stack([a, b], axis=1)
+    if space.quadratic:
+        edge = np.column_stack([edge, two[np.arange(len(two)), 3 + side[1]]])
     corners, rims = (x[np.unique(edge[on])] for on in (corner, rim))
     radius = _outer_radius(space.nodes[surface.nodes], np.concatenate([corners, rims]))
     return SharpEdges(corners, rims, radius)
@@ -91,7 +94,7 @@ def _plane_normals(nodes: Floats, surface: Surface) -> Floats:
     """Outward unit normals (F, 3) of the triangles between the facets' corners."""
     x = nodes[surface.corners[:, :3]]
     normals = np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0])
-    mean = surface.normals[:, 3:].sum(axis=1)
+    mean = surface.normals[:, -3:].sum(axis=1)  # amid the sides, where there are nodes
     normals *= np.sign(np.sum(normals * mean, axis=1))[:, None]
     return np.asarray(normals / np.linalg.norm(normals, axis=1, keepdims=True))
 

@@ -1,4 +1,4 @@
-"""The solid model: a pin in quadratic tetrahedra under unit loads.
+"""The solid model: a pin in tetrahedra, quadratic ones by default, under unit loads.
 
 One factorisation per mesh; each unit load that acts has a field per phase, of which the stress at
 any instant of any case is a linear combination.

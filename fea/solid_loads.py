@@ -18,11 +18,12 @@ from geometry import Band, GeometryError, PinLike
 Unit = tuple[UnitLoad, int]  # a unit load and its phase
 
 RESULTANT_TOLERANCE = 1e-10
+CURVED_AREA, STRAIGHT_AREA = 0.01, 0.1  # of a band that a mesh's sides may cut off
 
 
 @dataclass(frozen=True)
 class NodalLoads:
-    """L loads: traction (F, 6, 3, L) at the nodes of the boundary's facets, Pa, and the nodal
+    """L loads: traction (F, K, 3, L) at the nodes of the boundary's facets, Pa, and the nodal
     forces (N, 3, L), N, per unit of each.
     """
 
@@ -41,6 +42,7 @@ def nodal_loads(
 
     Raises: SolveError when the mesh cannot carry one, or a body load lacks the density.
     """
+    lost = CURVED_AREA if boundary.curved else STRAIGHT_AREA
     t = np.zeros((*boundary.normals.shape, len(units)))
     F = np.zeros((*space.nodes.shape, len(units)))
     for name in dict.fromkeys(load.surface for load, _ in units):
@@ -50,7 +52,7 @@ def nodal_loads(
             F[..., here] = _body_forces(material, space, loads)
             continue
         patch, band = Patch(space, boundary, name), _band(pin, name)
-        if band is not None and pin.revolved and abs(patch.area / band.area - 1.0) > 0.01:
+        if band is not None and pin.revolved and abs(patch.area / band.area - 1.0) > lost:
             raise SolveError(
                 f"pin {pin.name}: surface {name} has {patch.area / band.area:.3f} of its true "
                 "area in the mesh; make the mesh finer"
@@ -110,7 +112,7 @@ def _closing(
     patches: dict[str, Patch],
     pressure: bool,
 ) -> tuple[Floats, Floats]:
-    """Closing tractions (F, 6, 3, 6), Pa, and their nodal forces (N, 3, 6)."""
+    """Closing tractions (F, K, 3, 6), Pa, and their nodal forces (N, 3, 6)."""
     fields: list[Floats] = []
     for n, phase in ((1, 0), (1, 1), (0, 0), (0, 1)):
         for everywhere in closing_tractions(pin, n, phase, pressure):
@@ -163,9 +165,9 @@ def _body_forces(material: Material, space: Discretisation, units: list[Unit]) -
         raise SolveError(
             f"material {material.name} has no density, which loads on the whole pin need"
         )
-    shapes = np.stack([np.asarray(space.basis.basis[i][0]) for i in range(10)])  # (10, M or 1, 4)
-    shares = np.einsum("imq,mq->mi", np.broadcast_to(shapes, (10, *space.weights.shape)),
-                       space.weights)  # fmt: skip
+    shapes = np.stack([np.asarray(part[0]) for part in space.basis.basis])  # (K, M or 1, Q)
+    shapes = np.broadcast_to(shapes, (len(shapes), *space.weights.shape))
+    shares = np.einsum("imq,mq->mi", shapes, space.weights)
     mass = material.density * np.bincount(
         space.elements.ravel(), shares.ravel(), minlength=len(space.nodes)
     )

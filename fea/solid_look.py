@@ -17,6 +17,7 @@ from fea.sharp_edges import sharp_edges
 from fea.solid import SolidModel, UnitFields, acting
 from fea.zones import Place, clamp_rims
 from geometry import CutPin, Pin, PinLike
+from geometry.elements import Element
 from geometry.meshing import solid_mesh
 from geometry.pin import FACES
 from geometry.solid_mesh import MeshSize
@@ -49,6 +50,7 @@ def solid_solution(
     places: tuple[Place, ...],
     size: MeshSize,
     distance: float,
+    element: Element = "curved",
 ) -> SolidSolution:
     """All unit loads of the cases on a mesh, which is finer at edges of bands and clamps.
 
@@ -61,7 +63,7 @@ def solid_solution(
     if isinstance(profile, Pin):
         turned = tuple(name for name in clamps if name in (*FACES, *profile.labels))
         edges += tuple(z for _, z in clamp_rims(profile, turned))
-    mesh = solid_mesh(pin, size, tuple(dict.fromkeys(edges)))
+    mesh = solid_mesh(pin, size, tuple(dict.fromkeys(edges)), element)
     units = acting(cases) or ((UnitLoad(names[0], "force", 1), 0),)  # of which there is nought
     fields = SolidModel(pin, mesh, material, clamps).solve(units)
     x = fields.space.nodes[fields.surface.nodes]
@@ -96,7 +98,7 @@ class SolidAnswer:
         return Picture(
             points=fields.space.nodes,
             cells=fields.space.elements,
-            cell_type="tetra10",
+            cell_type="tetra10" if fields.space.quadratic else "tetra",
             displacement=fields.displacement @ c,
             stress=fields.stress @ c,
             envelope=over_all,

@@ -9,7 +9,6 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from skfem import ElementTetP2
 
 from fea.elasticity import Discretisation
 from fea.material import Material
@@ -21,8 +20,8 @@ Floats = NDArray[np.float64]
 
 
 def recovery(space: Discretisation) -> sp.csr_matrix:
-    """Matrix (N, 4 M) from values at the quadrature points to values at the nodes."""
-    return extension(space.elements, space.basis.X, ElementTetP2.doflocs.T)
+    """Matrix (N, Q M) from values at the quadrature points to values at the nodes."""
+    return extension(space.elements, space.basis.X, space.basis.elem.doflocs.T)
 
 
 def nodal_stress(space: Discretisation, material: Material, displacement: Floats) -> Floats:

@@ -14,22 +14,30 @@ from fea.elasticity import Discretisation
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+_PLANE = 1e-6  # difference of unit normals on a plane facet, by round-off and gmsh's
 SMOOTH = 0.97  # cosine between a node's normals below which it sits on an edge of the body
 
 _NODES = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]])
 
 
-def _shapes(x: Floats, y: Floats) -> Floats:
-    """The six quadratic functions on the triangle (corners, edges 01, 12, 02), (Q, 6)."""
+def _shapes(x: Floats, y: Floats, nodes: int) -> Floats:
+    """The six quadratic functions on the triangle (corners, edges 01, 12, 02), or the three linear
+    ones, (Q, K).
+    """
     w = 1.0 - x - y
+    if nodes == 3:
+        return np.stack([w, x, y], 1)
     return np.stack(
         [w * (2 * w - 1), x * (2 * x - 1), y * (2 * y - 1), 4 * w * x, 4 * x * y, 4 * w * y], 1
     )
 
 
-def _slopes(x: Floats, y: Floats) -> Floats:
-    """Their derivatives by x and y, (Q, 6, 2)."""
+def _slopes(x: Floats, y: Floats, nodes: int) -> Floats:
+    """Their derivatives by x and y, (Q, K, 2)."""
     w, zero = 1.0 - x - y, 0.0 * x
+    if nodes == 3:
+        one = zero + 1.0
+        return np.stack([np.stack([-one, one, zero], 1), np.stack([-one, zero, one], 1)], 2)
     by_x = [1 - 4 * w, 4 * x - 1, zero, 4 * (w - x), 4 * y, -4 * y]
     by_y = [1 - 4 * w, zero, 4 * y - 1, -4 * x, 4 * x, 4 * (w - y)]
     return np.stack([np.stack(by_x, 1), np.stack(by_y, 1)], 2)
@@ -37,8 +45,8 @@ def _slopes(x: Floats, y: Floats) -> Floats:
 
 @dataclass(frozen=True)
 class Surface:
-    """nodes: (S,) node numbers on the boundary. facets: (F,) facet numbers. corners: (F, 6) node
-    numbers. normals: (F, 6, 3) outward unit vectors at those nodes.
+    """nodes: (S,) node numbers on the boundary. facets: (F,) facet numbers. corners: (F, K) node
+    numbers, K = 6, or 3 on linear elements. normals: (F, K, 3) outward unit vectors at those nodes.
     """
 
     nodes: Ints
@@ -46,15 +54,21 @@ class Surface:
     corners: Ints
     normals: Floats
 
+    @property
+    def curved(self) -> bool:
+        """Whether any facet is."""
+        return not np.allclose(self.normals, self.normals[:, :1], atol=_PLANE)
+
 
 def surface(space: Discretisation) -> Surface:
     """The whole boundary of the mesh."""
     mesh = space.mesh
     facets = np.asarray(mesh.boundary_facets())
-    vertices = mesh.facets[:, facets].T
-    corners = np.concatenate([vertices, mesh.nvertices + mesh.f2e[:, facets].T], axis=1)
+    corners = vertices = mesh.facets[:, facets].T
+    if space.quadratic:
+        corners = np.concatenate([vertices, mesh.nvertices + mesh.f2e[:, facets].T], axis=1)
     x = space.nodes[corners]
-    normals = _area_vectors(x, _NODES[:, 0], _NODES[:, 1])
+    normals = _area_vectors(x, *_NODES[: corners.shape[1]].T)
     normals /= np.linalg.norm(normals, axis=2, keepdims=True)
     middle = space.nodes[space.elements[mesh.f2t[0, facets]][:, :4]].mean(axis=1)
     # by the plane between the corners: a curved facet may bulge past the middle of its element
@@ -73,7 +87,7 @@ def held_nodes(space: Discretisation, surfaces: tuple[str, ...]) -> Ints:
 class Patch:
     """One named surface and the tractions that load it.
 
-    rows: (P,) its facets among the boundary's. area: m^2. Tractions (P, 6, 3, L) are values at the
+    rows: (P,) its facets among the boundary's. area: m^2. Tractions (P, K, 3, L) are values at the
     nodes of its facets, in Pa for each unit of load, and quadratic between them.
     """
 
@@ -83,7 +97,7 @@ class Patch:
         self._nodes = space.nodes
         (x, y), weight = get_quadrature(RefTri, 4)
         size = np.linalg.norm(_area_vectors(space.nodes[self._corners], x, y), axis=2) * weight
-        shapes = _shapes(x, y)
+        shapes = _shapes(x, y, self._corners.shape[1])
         self._mass = np.einsum("pq,qi,qj->pij", size, shapes, shapes)
         self.area = float(size.sum())
 
@@ -95,11 +109,11 @@ class Patch:
 
     @property
     def points(self) -> Floats:
-        """Nodes of its facets, (P, 6, 3), m."""
+        """Nodes of its facets, (P, K, 3), m."""
         return np.asarray(self._nodes[self._corners])
 
     def exactly(self, traction: Floats, target: Floats, middle: float) -> Floats:
-        """The traction (P, 6, 3, L) with the resultants `target` (6, L): force and moment about
+        """The traction (P, K, 3, L) with the resultants `target` (6, L): force and moment about
         (0, 0, middle), N and N m.
 
         The mesh's surface is not quite round, and holes may be cut into it, so a traction has
@@ -124,6 +138,6 @@ def resultants(nodes: Floats, forces: Floats, z: float = 0.0) -> Floats:
 
 
 def _area_vectors(x: Floats, at_x: Floats, at_y: Floats) -> Floats:
-    """Cross products of the tangents of facets with nodes x (F, 6, 3) at Q points, (F, Q, 3)."""
-    tangents = np.einsum("qfc,tfa->tqca", _slopes(at_x, at_y), x)
+    """Cross products of the tangents of facets with nodes x (F, K, 3) at Q points, (F, Q, 3)."""
+    tangents = np.einsum("qfc,tfa->tqca", _slopes(at_x, at_y, x.shape[1]), x)
     return np.cross(tangents[:, :, 0], tangents[:, :, 1])

@@ -17,14 +17,8 @@ from geometry.body_file import BodyFile
 from geometry.cut import near
 from geometry.gmsh_session import gmsh_model, set_size, silence
 from geometry.pin import GeometryError
-from geometry.solid_mesh import (
-    SMALLEST_JACOBIAN,
-    MeshError,
-    MeshSize,
-    SolidMesh,
-    collect,
-    repair,
-)
+from geometry.solid_mesh import MeshError, MeshSize, SolidMesh
+from geometry.tetrahedra import SMALLEST_JACOBIAN, collect, repair
 
 FLAT = 1e-9  # curvature times the body's size below which a surface is plane
 

@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from geometry import solid_mesh as turned
 from geometry.cut_pin import CutPin
+from geometry.elements import Element, with_element
 from geometry.pin import Pin
 from geometry.pin_like import PinLike
 from geometry.solid_body import SolidBody
 from geometry.solid_mesh import MeshSize, SolidMesh
 
 
-def solid_mesh(pin: PinLike, size: MeshSize, edges: tuple[float, ...] = ()) -> SolidMesh:
+def solid_mesh(
+    pin: PinLike, size: MeshSize, edges: tuple[float, ...] = (), element: Element = "curved"
+) -> SolidMesh:
     """Mesh a pin; `edges` are z (m) of further circles on the surface to refine at,
     which for a body from a file are the ends of its bands.
 
     Raises: MeshError.
     """
     if isinstance(pin, SolidBody):
-        return pin.mesh(size)
+        made = pin.mesh(size)
+        return replace(made, mesh=with_element(made.mesh, element))
     assert isinstance(pin, Pin | CutPin)
-    return turned.solid_mesh(pin, size, edges)
+    return turned.solid_mesh(pin, size, edges, element)

@@ -1,4 +1,4 @@
-"""The solid of a pin as second-order curved tetrahedra, by gmsh, with every surface named."""
+"""The solid of a pin as tetrahedra, by gmsh, with every surface named."""
 
 from __future__ import annotations
 
@@ -6,25 +6,20 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-import meshio
 import numpy as np
 from numpy.typing import NDArray
-from skfem import MeshTet2
-from skfem.io.meshio import from_meshio
+from skfem import MeshTet1
 
 from geometry.cut import cut_solid, grade, name_faces
 from geometry.cut_pin import CutPin
+from geometry.elements import Element
 from geometry.gmsh_session import gmsh_model, set_size
 from geometry.meridian import Edge, meridian, sharp_corners
 from geometry.pin import Pin
 from geometry.revolve import revolve
+from geometry.tetrahedra import SMALLEST_JACOBIAN, collect, repair
 
-SMALLEST_JACOBIAN = 0.1  # min / max of det J that every element must exceed
 MOST_ELEMENTS = 1e6
-MOST_REPAIRS = 8  # halvings of an edge's curvature
-TETRA10, TRIANGLE6 = 11, 9  # gmsh's element types
-GMSH_TO_VTK_TETRA10 = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]
-GMSH_EDGES = ((0, 1), (1, 2), (2, 0), (3, 0), (2, 3), (1, 3))  # of its nodes 4 to 9
 
 
 class MeshError(ArithmeticError):
@@ -50,13 +45,14 @@ class MeshSize:
 
 @dataclass(frozen=True)
 class SolidMesh:
-    """mesh: quadratic tetrahedra, m; its `boundaries` map surface names to facets.
+    """mesh: tetrahedra, m, quadratic ones unless others were asked for (geometry.elements); its
+    `boundaries` map surface names to facets.
 
     jacobian: smallest min/max det J of all elements. repaired: number of elements whose edges were
     straightened to get there.
     """
 
-    mesh: MeshTet2
+    mesh: MeshTet1
     jacobian: float
     repaired: int
 
@@ -67,14 +63,16 @@ class SolidMesh:
         return points
 
 
-def solid_mesh(pin: Pin | CutPin, size: MeshSize, edges: tuple[float, ...] = ()) -> SolidMesh:
+def solid_mesh(
+    pin: Pin | CutPin, size: MeshSize, edges: tuple[float, ...] = (), element: Element = "curved"
+) -> SolidMesh:
     """Mesh a pin; `edges` are z (m) of further circles on the surface to refine at.
 
     Raises: MeshError when elements stay inverted or slivers after repair and on a finer mesh.
     """
     tried = []
     for factor in (1.0, 1.15, 1.35):
-        mesh, jacobian, repaired = _mesh(pin, size.finer(factor), edges)
+        mesh, jacobian, repaired = _mesh(pin, size.finer(factor), edges, element)
         if jacobian > SMALLEST_JACOBIAN:
             return SolidMesh(mesh, jacobian, repaired)
         tried.append(jacobian)
@@ -87,8 +85,8 @@ def solid_mesh(pin: Pin | CutPin, size: MeshSize, edges: tuple[float, ...] = ())
 
 
 def _mesh(
-    pin: Pin | CutPin, size: MeshSize, edges: tuple[float, ...]
-) -> tuple[MeshTet2, float, int]:
+    pin: Pin | CutPin, size: MeshSize, edges: tuple[float, ...], element: Element
+) -> tuple[MeshTet1, float, int]:
     profile = pin.profile if isinstance(pin, CutPin) else pin
     _require_reasonable(profile, size)
     with gmsh_model(pin.name) as gmsh:
@@ -105,6 +103,9 @@ def _mesh(
                 surfaces = _name_surfaces(gmsh, pin, outline)
             _set_sizes(gmsh, profile, size, edges, more)
             gmsh.model.mesh.generate(3)
+            if element == "linear":
+                return collect(gmsh, surfaces), 1.0, 0
+            gmsh.option.setNumber("Mesh.SecondOrderLinear", int(element == "straight"))
             gmsh.model.mesh.setOrder(2)
             jacobian, repaired = repair(gmsh)
             return collect(gmsh, surfaces), jacobian, repaired
@@ -188,63 +189,3 @@ def _set_sizes(
     tags.append(field.add("MathEval"))
     field.setString(tags[-1], "F", f"{far!r}")
     set_size(gmsh, tags)
-
-
-def _jacobians(gmsh: Any) -> NDArray[np.float64]:
-    """min/max det J of every tetrahedron (gmsh bounds them by Bezier coefficients)."""
-    tags = gmsh.model.mesh.getElementsByType(TETRA10)[0]
-    low = np.asarray(gmsh.model.mesh.getElementQualities(tags, "minDetJac"))
-    high = np.asarray(gmsh.model.mesh.getElementQualities(tags, "maxDetJac"))
-    ratios: NDArray[np.float64] = low / high
-    return ratios
-
-
-def repair(gmsh: Any) -> tuple[float, int]:
-    """Straighten the edges of bad elements, half-way at a time, until all are good.
-
-    Returns the smallest min/max Jacobian and how many elements were touched. gmsh's own optimiser
-    for curved elements is not used: it can abort the whole process.
-    """
-    touched: set[int] = set()
-    ratios = _jacobians(gmsh)
-    for _ in range(MOST_REPAIRS):
-        bad = np.flatnonzero(ratios <= SMALLEST_JACOBIAN)
-        if not len(bad):
-            break
-        touched.update(bad.tolist())
-        nodes = gmsh.model.mesh.getElementsByType(TETRA10)[1].reshape(-1, 10)[bad]
-        for (a, b), middle in zip(GMSH_EDGES, range(4, 10), strict=True):
-            for i, k, m in np.unique(nodes[:, [a, b, middle]], axis=0):
-                ends = [np.asarray(gmsh.model.mesh.getNode(n)[0]) for n in (i, k)]
-                now = np.asarray(gmsh.model.mesh.getNode(m)[0])
-                gmsh.model.mesh.setNode(m, list((now + (ends[0] + ends[1]) / 2.0) / 2.0), [])
-        ratios = _jacobians(gmsh)
-    return float(ratios.min()), len(touched)
-
-
-def collect(gmsh: Any, surfaces: dict[str, list[int]]) -> MeshTet2:
-    tags, coordinates, _ = gmsh.model.mesh.getNodes()
-    row = np.zeros(int(tags.max()) + 1, dtype=np.int64)
-    row[tags] = np.arange(len(tags))
-    nodes = gmsh.model.mesh.getElementsByType(TETRA10)[1].reshape(-1, 10)[:, GMSH_TO_VTK_TETRA10]
-    triangles: list[NDArray[np.int64]] = []
-    sets: dict[str, list[NDArray[np.int64]]] = {}
-    count = 0
-    for name, faces in surfaces.items():
-        for face in faces:
-            facets = gmsh.model.mesh.getElementsByType(TRIANGLE6, face)[1].reshape(-1, 6)[:, :3]
-            triangles.append(row[facets])
-            sets.setdefault(name, []).append(np.arange(count, count + len(facets)))
-            count += len(facets)
-    tetrahedra = row[nodes]
-    corners = np.unique(tetrahedra[:, :4])  # first, because facets are told by their corners
-    used = np.concatenate([corners, np.setdiff1d(tetrahedra, corners)])
-    packed = np.full(len(row), -1)
-    packed[used] = np.arange(len(used))
-    empty = np.zeros(0, dtype=np.int64)
-    solid = meshio.Mesh(
-        coordinates.reshape(-1, 3)[used],
-        [("tetra10", packed[tetrahedra]), ("triangle", packed[np.concatenate(triangles)])],
-        cell_sets={name: [empty, np.concatenate(rows)] for name, rows in sets.items()},
-    )
-    return from_meshio(solid, ignore_orientation=True)

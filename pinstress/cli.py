@@ -157,6 +157,69 @@ def loads(study: Path, out: Path | None, cases: list[str] | None, no_pictures: b
 
 
 @commands.command(
+    help=example("pinstress chart studies/one_pin.toml --pin B --case landing")
+    + "\nHow much time and memory each model and mesh takes for how much error, on your own pin: "
+    "chart.csv, chart.svg, chart.png, and a table. Every mesh is solved in its own process; about "
+    "three minutes.\n\n"
+    "Exit status: 0 done; 1 done, but nothing charted is within the tolerance, or the reference "
+    "is not known well enough to say; 2 bad input; 3 the numerics failed; 130 interrupted."
+)
+@click.argument("study", type=click.Path(path_type=Path))
+@click.option("--pin", required=True, metavar="NAME", help="The pin.")
+@click.option("--case", required=True, metavar="NAME", help="The case; all its instants count.")
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="Folder to write [out/<study>-chart.PIN.CASE]."
+)
+@click.option(
+    "--tolerance",
+    type=click.FloatRange(0.0, 1.0, min_open=True, max_open=True),
+    help="The line to be met, instead of the study's.",
+)
+@click.option(
+    "--meshes",
+    type=click.IntRange(1, 9),
+    help="Of each solid element [5, or 4 if they get large]; each takes about twice the last.",
+)
+@click.option(
+    "--runs",
+    type=click.IntRange(1),
+    default=3,
+    show_default=True,
+    help="Of which times are the median.",
+)
+@click.option(
+    "--time-limit",
+    type=click.FloatRange(0.0, min_open=True),
+    default=120.0,
+    show_default=True,
+    help="Of a point's process, s: what passes it is shown as failed; the reference has none.",
+)
+@click.option(
+    "--memory-limit", type=click.FloatRange(0.0, min_open=True), default=4000.0,
+    show_default=True, help="The same in MB above the bare process.",
+)  # fmt: skip
+def chart(
+    study: Path,
+    pin: str,
+    case: str,
+    out: Path | None,
+    tolerance: float | None,
+    meshes: int | None,
+    runs: int,
+    time_limit: float,
+    memory_limit: float,
+) -> int:
+    from pinstress.study import load_study
+
+    loaded = load_study(study)
+    from pinstress.own_process import Limits
+    from pinstress.write_chart import chart_and_write
+
+    limits = Limits(time_limit, memory_limit)
+    return chart_and_write(loaded, pin, case, out, tolerance, meshes, runs, limits)
+
+
+@commands.command(
     help=example("pinstress check studies/grenier2008.toml")
     + "\nRead and validate everything without solving; say what would be run."
 )

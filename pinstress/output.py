@@ -14,24 +14,25 @@ from pinstress.errors import InputError
 MARK = "results.json"  # a folder with it is ours to replace
 
 
-def require_replaceable(directory: Path) -> None:
+def require_replaceable(directory: Path, mark: str = MARK) -> None:
     """Raises: InputError when writing to `directory` would destroy something that is not ours."""
-    if directory.is_dir() and any(directory.iterdir()) and not (directory / MARK).is_file():
+    if directory.is_dir() and any(directory.iterdir()) and not (directory / mark).is_file():
         raise InputError(
-            f"--out: {directory} holds files that are not results of pinstress; name an empty or "
-            "new folder"
+            f"--out: {directory} holds files that are not results of pinstress to replace (it has "
+            f"no {mark}); name an empty or new folder"
         )
     if directory.exists() and not directory.is_dir():
         raise InputError(f"--out: {directory} is a file; name a folder")
 
 
 @contextmanager
-def replacing(directory: Path) -> Iterator[Path]:
-    """A folder to write into that becomes `directory` when the block ends without an error.
+def replacing(directory: Path, mark: str = MARK) -> Iterator[Path]:
+    """A folder to write into that becomes `directory` when the block ends without an error; one
+    that is there already is replaced if it holds a file `mark`.
 
     Raises: InputError when the folder cannot be made.
     """
-    require_replaceable(directory)
+    require_replaceable(directory, mark)
     directory = directory.resolve()
     made = [p for p in directory.parents if not p.exists()]
     try:

@@ -25,8 +25,13 @@ Keep = Callable[[Field], None]
 Ask = Callable[[Task, tuple[Peak, ...], Callable[[str], None]], None]
 
 
-def select(names: Iterable[str], wanted: Iterable[str] | None, what: str) -> list[str]:
-    """The wanted names, or all. Raises: InputError for one that is not there."""
+def select(
+    names: Iterable[str], wanted: Iterable[str] | None, what: str, option: str = ""
+) -> list[str]:
+    """The wanted names, or all. option: which named them, --{what}s by default.
+
+    Raises: InputError for one that is not there.
+    """
     names = list(names)
     if wanted is None:
         return names
@@ -34,7 +39,7 @@ def select(names: Iterable[str], wanted: Iterable[str] | None, what: str) -> lis
         if name not in names:
             near = difflib.get_close_matches(name, names, n=1)
             hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(names)}"
-            raise InputError(f"--{what}s: the study has no {what} {name!r}; {hint}")
+            raise InputError(f"{option or f'--{what}s'}: the study has no {what} {name!r}; {hint}")
     return [n for n in names if n in set(wanted)]
 
 

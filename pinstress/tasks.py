@@ -49,7 +49,11 @@ def tasks(study: Study, pins: list[str], loads: dict[str, CaseLoads]) -> list[Ta
             f"{study.path}: the study has no pins; pinstress loads gives the reactions alone"
         )
     if not out:
-        raise InputError(f"{study.path}: none of the cases loads any of the pins")
+        many = "s" if len(loads) > 1 else ""
+        raise InputError(
+            f"{study.path}: case{many} {', '.join(loads)} {'do' if many else 'does'} not load "
+            f"pin{'s' if len(pins) > 1 else ''} {', '.join(pins)}"
+        )
     return out
 
 

@@ -57,9 +57,9 @@ def run_and_write(
             write_reports(results, staging, drawn, plots=pictures)
             if opinions:
                 opinions.write(staging)
-    print_safety_factors(results, _console())
+    print_safety_factors(results, console())
     if opinions:
-        opinions.show(_console())
+        opinions.show(console())
     _tell_left_out(results)
     if problem is not None:
         click.echo(f"No pictures of the pins: {problem}", err=True)
@@ -74,12 +74,13 @@ def loads_and_write(study: Study, directory: Path, *, plots: bool, cases: list[s
     results = loads_only(study, cases)
     with replacing(directory) as staging:
         write_loads(results, staging, plots=plots)
-    print_loads(results, _console())
+    print_loads(results, console())
     click.echo(f"Written: {directory}", err=True)
     return 0
 
 
-def _console() -> Console:
+def console() -> Console:
+    """Standard output, as wide as the terminal."""
     wide = {} if sys.stdout.isatty() else {"width": 120}  # a file has no width of its own
     return Console(**wide)  # type: ignore[arg-type]
 

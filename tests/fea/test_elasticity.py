@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from skfem import Basis, ElementTetP2, ElementVector, MeshTet, MeshTet2
+from skfem import Basis, ElementTetP1, ElementTetP2, ElementVector, MeshTet, MeshTet2
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
 from fea.elasticity import Discretisation
@@ -14,16 +14,20 @@ from fea.material import Material
 from fea.stress import nodal_stress
 from fea.surface import surface
 from geometry import Pin
+from geometry.elements import Element, with_element
 from geometry.solid_mesh import MeshSize, solid_mesh
 
 Floats = NDArray[np.float64]
 
 
-def test_the_matrix_is_scikit_fems(cantilever_pin: Pin, steel: Material) -> None:
-    """On curved elements with the same quadrature; 1e-12 of its largest entry is round-off."""
-    space = Discretisation(solid_mesh(cantilever_pin, MeshSize(across=2.0, arc=1.0)).mesh)
+@pytest.mark.parametrize("element", ["linear", "straight", "curved"])
+def test_the_matrix_is_scikit_fems(cantilever_pin: Pin, steel: Material, element: Element) -> None:
+    """With the same quadrature; 1e-12 of its largest entry is round-off."""
+    size = MeshSize(across=2.0, arc=1.0)
+    space = Discretisation(solid_mesh(cantilever_pin, size, element=element).mesh)
     ours = space.stiffness(steel)
-    basis = Basis(space.mesh, ElementVector(ElementTetP2()), intorder=2)
+    theirs_own, order = (ElementTetP1(), 1) if element == "linear" else (ElementTetP2(), 2)
+    basis = Basis(space.mesh, ElementVector(theirs_own), intorder=order)
     lam, mu = lame_parameters(steel.youngs_modulus, steel.poisson_ratio)
     theirs = linear_elasticity(lam, mu).assemble(basis)
     # their numbering keeps vertices, edges apart as ours does, component by component within each
@@ -31,16 +35,17 @@ def test_the_matrix_is_scikit_fems(cantilever_pin: Pin, steel: Material) -> None
     assert difference < 1e-12
 
 
-@pytest.mark.parametrize(("straight", "imbalance"), [(True, 1e-12), (False, 5e-3)])
-def test_patch(cantilever_pin: Pin, steel: Material, straight: bool, imbalance: float) -> None:
+@pytest.mark.parametrize(
+    ("element", "imbalance"), [("linear", 1e-12), ("straight", 1e-12), ("curved", 5e-3)]
+)
+def test_patch(cantilever_pin: Pin, steel: Material, element: Element, imbalance: float) -> None:
     """A linear displacement gives its constant stress exactly, and is in equilibrium: exactly on
     straight-sided elements; on coarse curved ones but for the four-point rule, which does not
     integrate a varying det J exactly (2e-3 here, 1e-4 on the meshes that are used).
     """
-    mesh = solid_mesh(cantilever_pin, MeshSize(across=2.0, arc=1.5)).mesh
-    if straight:
-        mesh = MeshTet2.from_mesh(MeshTet(mesh.p[:, : mesh.nvertices], mesh.t))
-    space = Discretisation(mesh)
+    curved = solid_mesh(cantilever_pin, MeshSize(across=2.0, arc=1.5)).mesh
+    space = Discretisation(with_element(curved, element))
+    assert surface(space).curved == (element == "curved")
     H = np.array([[1.0, 0.2, -0.4], [0.5, -0.7, 0.1], [0.3, 0.6, 0.9]]) * 1e-3
     u = space.nodes @ H.T
     e = 0.5 * (H + H.T)

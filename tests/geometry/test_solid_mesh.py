@@ -9,8 +9,8 @@ import pytest
 
 from fea.elasticity import Discretisation
 from fea.surface import Patch, surface
-from geometry import Pin, Segment, meridian
-from geometry import solid_mesh as module
+from geometry import Pin, Segment, meridian, tetrahedra
+from geometry.elements import with_element
 from geometry.gmsh_session import gmsh_model
 from geometry.solid_mesh import MeshError, MeshSize, solid_mesh
 
@@ -81,8 +81,8 @@ def test_bad_elements_are_repaired(monkeypatch: pytest.MonkeyPatch) -> None:
     assert solid.jacobian > 0.1
     assert Discretisation(solid.mesh).weights.min() > 0.0
     assert Discretisation(solid.mesh).weights.sum() == pytest.approx(pin.volume, rel=1e-3)
-    monkeypatch.setattr(module, "MOST_REPAIRS", 0)
-    monkeypatch.setattr(module, "SMALLEST_JACOBIAN", 1.5)  # more than any element can have
+    monkeypatch.setattr(tetrahedra, "MOST_REPAIRS", 0)
+    monkeypatch.setattr("geometry.solid_mesh.SMALLEST_JACOBIAN", 1.5)  # more than any has
     with pytest.raises(MeshError, match="inverted or sliver elements at three sizes"):
         solid_mesh(pin, MeshSize(across=2.5).finer(2.0**0.5), edges)
 
@@ -95,12 +95,12 @@ def test_the_jacobian_measure_sees_an_inverted_element() -> None:
         gmsh.option.setNumber("Mesh.MeshSizeMin", 1.0)
         gmsh.model.mesh.generate(3)
         gmsh.model.mesh.setOrder(2)
-        assert module._jacobians(gmsh) == pytest.approx(1.0)
+        assert tetrahedra._jacobians(gmsh) == pytest.approx(1.0)
         nodes = gmsh.model.mesh.getElementsByType(11)[1].reshape(-1, 10)[0]
         a, b = (np.array(gmsh.model.mesh.getNode(n)[0]) for n in nodes[[0, 3]])
         gmsh.model.mesh.setNode(int(nodes[4]), list(a + 1.2 * (b - a)), [])
-        assert module._jacobians(gmsh).min() < 0.0
-        jacobian, touched = module.repair(gmsh)
+        assert tetrahedra._jacobians(gmsh).min() < 0.0
+        jacobian, touched = tetrahedra.repair(gmsh)
         assert jacobian > 0.1
         assert touched >= 1
 
@@ -116,3 +116,24 @@ def test_very_small_and_very_large_pins(diameter: float) -> None:
     pin = Pin("P", (Segment(2 * diameter, diameter), Segment(diameter, 1.5 * diameter)))
     solid = solid_mesh(pin, MeshSize())
     assert Discretisation(solid.mesh).weights.sum() == pytest.approx(pin.volume, rel=1e-3)
+
+
+def test_other_elements_stand_on_the_same_vertices(cantilever_pin: Pin) -> None:
+    """As gmsh makes them and as they are made from its curved ones; straight sides cut off a part
+    of a cylinder, which on the same mesh is the same for linear and quadratic elements.
+    """
+    size = MeshSize(across=3.0)
+    curved = solid_mesh(cantilever_pin, size).mesh
+    volumes = {}
+    for element in ("linear", "straight"):
+        direct = solid_mesh(cantilever_pin, size, element=element).mesh
+        made = with_element(curved, element)
+        assert direct.p.shape == made.p.shape
+        assert set(direct.boundaries) == set(made.boundaries) == set(curved.boundaries)
+        for mesh in (direct, made):
+            space = Discretisation(mesh)
+            assert Patch(space, surface(space), "start").area < 0.998 * np.pi * 0.015**2
+        volumes[element] = [Discretisation(m).weights.sum() for m in (direct, made)]
+    assert volumes["linear"] == pytest.approx(volumes["straight"], rel=1e-9)
+    assert volumes["linear"][0] == pytest.approx(volumes["linear"][1], rel=5e-3)
+    assert max(volumes["linear"]) < 0.99 * cantilever_pin.volume

@@ -17,7 +17,7 @@ from fea.linear import factorize
 from fea.material import Material
 from fea.stress import nodal_stress, with_known_traction
 from fea.surface import Patch, surface
-from geometry.solid_mesh import SMALLEST_JACOBIAN, collect, repair
+from geometry.tetrahedra import SMALLEST_JACOBIAN, collect, repair
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
