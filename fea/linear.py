@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Solve = Callable[[Floats], Floats]
 
-LARGEST_RESIDUAL = 1e-8  # of a solution, relative to its load
+# Of a solution, relative to its load. Round-off alone leaves 1e-7 on a pin 100 diameters long and
+# 2e-6 on a tube bored to 99 %, whose answers are right to as much; a pin that is not held leaves 0.1.
+LARGEST_RESIDUAL = 1e-5
 
 
 class SolveError(ArithmeticError):
@@ -23,7 +25,7 @@ def factorize(K: sp.csr_matrix, node: NDArray[np.int64]) -> Solve:
     which node each unknown belongs (unknowns of a node are eliminated together).
 
     Raises: SolveError when K is not positive definite (a body that is not held), and from the
-    returned function when a solution's relative residual exceeds 1e-8.
+    returned function when a solution's relative residual exceeds 1e-5.
     """
     try:
         solve = _cholmod(K, node)

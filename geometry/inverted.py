@@ -31,7 +31,7 @@ def _bernstein(at: Floats) -> Floats:
     """The cubic polynomials of Bernstein at barycentric points (Q, 4): (Q, 20)."""
     powers = _lattice(CUBIC)
     times = [factorial(CUBIC) / prod(map(factorial, p)) for p in powers.tolist()]
-    return np.prod(at[:, None, :] ** powers, axis=2) * np.array(times)
+    return np.asarray(np.prod(at[:, None, :] ** powers, axis=2) * np.array(times))
 
 
 def distortion(made: Quadratic) -> Floats:
