@@ -12,7 +12,8 @@ Floats = NDArray[np.float64]
 Solve = Callable[[Floats], Floats]
 
 # Of a solution, relative to its load. Round-off alone leaves 1e-7 on a pin 100 diameters long and
-# 2e-6 on a tube bored to 99 %, whose answers are right to as much; a pin that is not held leaves 0.1.
+# 2e-6 on a tube bored to 99 %, whose answers are right to as much; a pin that nothing holds leaves
+# 0.1.
 LARGEST_RESIDUAL = 1e-5
 
 

@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 from benchmarks.failures.asked import command, row, task, told
 from benchmarks.failures.draw import INK, decades, line_style, note, ratio_line, ticks
 from benchmarks.failures.entry import Entry
-from benchmarks.failures.fields import MPA, Mesh, even, finest, graded, revolved, towardsfrom fea.corner import plane_exponent
+from benchmarks.failures.fields import MPA, Mesh, even, finest, graded, revolved, towards
+from fea.corner import plane_exponent
 from fea.meridian_fields import MeridianFields
 from fea.pin_loads import Floats
 from reports.numbers import engineering
