@@ -200,8 +200,8 @@ def _draw_towards(axes: Axes, g: Growth) -> None:
     axes.loglog(at, 1.12 * line, **line_style(1))
     measured = g.zone.exponent or 0.0
     note(
-        axes, at[len(at) // 2], 1.12 * line[len(at) // 2],
-        f"theory: s = {g.theory:.3f}\nmeasured: {measured:.3f}", (14, 8), line_style(1)["color"],
+        axes, at[-1], 1.12 * line[-1],
+        f"theory: s = {g.theory:.3f}\nmeasured: {measured:.3f}", (8, 14), line_style(1)["color"],
     )  # fmt: skip
     axes.axvline(g.zone.excluded, color="#8a8a8a", linewidth=0.8)
     note(

@@ -29,9 +29,9 @@ def note(
 
 
 def ratio_line(axes: Axes, x: Floats, y: Floats, text: str) -> None:
-    """A line to compare with, named at its first point."""
+    """A line to compare with, named at its second point."""
     axes.plot(x, y, **line_style(1))
-    note(axes, float(x[0]), float(y[0]), text, (4.0, -10.0), line_style(1)["color"])
+    note(axes, float(x[1]), float(y[1]), text, (8.0, -10.0), line_style(1)["color"])
 
 
 def decades(*axes: Axes, which: str = "both") -> None:

@@ -104,7 +104,7 @@ def _linear(mesh: Any, material: Material, forces: Floats) -> tuple[Floats, Floa
     """Displacements (V, 3) and stresses (V, 6), averaged, of linear tetrahedra with the corners of
     a quadratic mesh, held at z = 0; forces (N, 3) of middle nodes go to the ends of their edges.
     """
-    corners = MeshTet1(mesh.doflocs[:, : mesh.nvertices], mesh.t)
+    corners = MeshTet1(np.ascontiguousarray(mesh.doflocs[:, : mesh.nvertices]), mesh.t)
     f = forces[: mesh.nvertices].copy()
     for end in mesh.edges:
         np.add.at(f, end, 0.5 * forces[mesh.nvertices :])
@@ -196,7 +196,7 @@ def _size(strain: list[Any], mu: float) -> Floats:
 def _triangles(space: Section, forces: Floats, material: Material) -> float:
     """Of linear triangles, averaged at their corners."""
     mesh, count = space.section.mesh, space.section.mesh.nvertices
-    corners = MeshTri1(mesh.doflocs[:, :count], mesh.t)
+    corners = MeshTri1(np.ascontiguousarray(mesh.doflocs[:, :count]), mesh.t)
     f = forces[:count].copy()
     for end in mesh.facets:
         np.add.at(f, end, 0.5 * forces[count:])
