@@ -185,6 +185,8 @@ def _draw(left: Axes, right: Axes, shapes: tuple[Shape, ...], ratio: str) -> Non
     ours = np.array([s.found.max_von_mises or 0.0 for s in shapes]) / truth
     error = np.array([s.found.error_estimate or 0.0 for s in shapes]) / truth
     left.semilogy(x, [s.naive / s.truth for s in shapes], "o-", color=INK, ms=4)
+    for k, s in zip(x, shapes, strict=True):
+        note(left, float(k), s.naive / s.truth, f"{s.naive / s.truth:.2g}", (7.0, -8.0))
     left.axhline(1.0, color="#8a8a8a", linewidth=0.8)
     left.set(ylabel="naive value over the truth", title="the naive value")
     left.yaxis.set_minor_formatter(NullFormatter())

@@ -17,6 +17,7 @@ from benchmarks.failures.page import HEAD, PAGE, PICTURES
 from pinstress.cli import run_command_line
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("found", "theory", "off"),
     [(corners.sharp_corner, 0.4555, 0.05), (corners.clamped_edge, 0.2888, 0.03)],
@@ -34,6 +35,7 @@ def test_a_corners_peak_grows_and_its_exponent_is_measured(
     assert g.zone.exponent == pytest.approx(theory, abs=off)
 
 
+@pytest.mark.slow
 def test_a_clamp_that_looks_converged_on_two_meshes() -> None:
     g = corners.looks_converged()
     first, second, *later = (m.maximum for m in g.meshes)
@@ -52,6 +54,7 @@ def test_the_edge_of_a_uniform_load_is_a_logarithm() -> None:
     assert "log(1/distance)" in e.found.note
 
 
+@pytest.mark.slow
 def test_linear_elements_lock_in_bending() -> None:
     b = locking.bending()
     linear, own = b.linear / b.truth, b.quadratic / b.truth
@@ -61,6 +64,7 @@ def test_linear_elements_lock_in_bending() -> None:
     assert own[-1, 1] == pytest.approx(1.0, abs=0.02)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", range(3))
 def test_poissons_ratio_towards_one_half(case: int) -> None:
     r = locking.incompressible()[case]
@@ -91,6 +95,7 @@ def test_the_command_ends_with_status_3(name: str, capsys: pytest.CaptureFixture
     assert "inverted elements" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("family", "naive"),
     [(shapes.slender, 0.01), (shapes.fillets, 0.4), (shapes.tubes, 0.02)],
@@ -124,6 +129,7 @@ def test_a_pin_that_nothing_holds() -> None:
     assert (f.found.verdict, f.found.max_von_mises) == ("rigid", None)
 
 
+@pytest.mark.slow
 def test_stiff_and_soft_supports() -> None:
     stiff, soft = row("supports", "stiff"), row("supports", "soft")
     assert (stiff.verdict, soft.verdict) == ("singular", "converged")
@@ -176,6 +182,7 @@ def test_refused_linkages_end_with_status_2(name: str, capsys: pytest.CaptureFix
     assert mechanisms.refusal(name).partition(": ")[2] in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_the_page_names_every_entry_and_its_picture() -> None:
     text = PAGE.read_text(encoding="utf-8")
     assert text.startswith(HEAD)
