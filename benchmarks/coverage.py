@@ -13,6 +13,7 @@ from typing import Any
 from benchmarks.random_pins import STEEL, Trial, trials
 from fea.harmonic_look import harmonic_look, harmonic_solution
 from fea.ladder import STEP, Asked, Solution, places_of, solve_pin
+from fea.material import Material
 
 Row = dict[str, Any]
 
@@ -29,13 +30,13 @@ def solved(trial: Trial, tolerance: float = 0.02) -> Solution:
     return found
 
 
-def truth(trial: Trial, meshes: int) -> float:
-    """Maximum outside the singular places on a much finer mesh, Pa."""
-    places = places_of(trial.pin, STEEL, trial.clamps, (trial.loads,))
+def truth(trial: Trial, meshes: int, material: Material = STEEL, beyond: int = BEYOND) -> float:
+    """Maximum outside the singular places on a mesh, `beyond` the last of `meshes`, Pa."""
+    places = places_of(trial.pin, material, trial.clamps, (trial.loads,))
     held = tuple(trial.pin.surface(c) for c in trial.clamps)
-    level = meshes - 1 + BEYOND
+    level = meshes - 1 + beyond
     loads = replace(trial.loads, terms=TERMS)
-    fine = harmonic_solution(trial.pin, STEEL, held, (loads,), places, level, STEP)
+    fine = harmonic_solution(trial.pin, material, held, (loads,), places, level, STEP)
     return harmonic_look(fine, places, loads).maximum
 
 

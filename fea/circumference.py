@@ -83,18 +83,28 @@ class Circumference:
         """
         out = np.zeros((len(points), self.count))
         for wave in self._waves:
-            a, b = self._first[:, wave], self._second[:, wave]
-            aa, ab, bb = (x[:, :, None] * y[:, None, :] for x, y in ((a, a), (a, b), (b, b)))
-            five = self._five[points, :, wave]
-            even, odd = (x.swapaxes(1, 2) @ x for x in (five[:, :EVEN], five[:, EVEN:]))
-            if self._n[wave.start] == 0:
-                square = _forms(even, aa) + _forms(odd, bb)
-            else:
-                apart = even - odd
-                total = _forms(even + odd, aa + bb)
-                square = _closed(total, _forms(apart, aa - bb), _forms(apart, ab))
-            out += np.sqrt(np.maximum(square, 0.0, out=square), out=square)
+            out += self._alone(points, wave)
         return out
+
+    def last(self, points: Ints) -> tuple[int, Floats]:
+        """The highest harmonic that acts, and its largest stress by itself, (J, T) Pa."""
+        if not self._waves:
+            return 0, np.zeros((len(points), self.count))
+        wave = self._waves[-1]
+        return int(self._n[wave.start]), self._alone(points, wave)
+
+    def _alone(self, points: Ints, wave: slice) -> Floats:
+        a, b = self._first[:, wave], self._second[:, wave]
+        aa, ab, bb = (x[:, :, None] * y[:, None, :] for x, y in ((a, a), (a, b), (b, b)))
+        five = self._five[points, :, wave]
+        even, odd = (x.swapaxes(1, 2) @ x for x in (five[:, :EVEN], five[:, EVEN:]))
+        if self._n[wave.start] == 0:
+            square = _forms(even, aa) + _forms(odd, bb)
+        else:
+            apart = even - odd
+            total = _forms(even + odd, aa + bb)
+            square = _closed(total, _forms(apart, aa - bb), _forms(apart, ab))
+        return np.sqrt(np.maximum(square, 0.0, out=square), out=square)
 
     def largest(self, among: Mask) -> tuple[Floats, Ints, Floats]:
         """Over the points of a mask (S,), at every instant: maximum (T,) Pa, point, angle."""

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from fea.answer import Picture
-from fea.circumference import Circumference, Mask
+from fea.circumference import Circumference, Mask, Top
 from fea.exponent import growth_exponent
 from fea.harmonic import HarmonicModel
 from fea.look import FELT, Inside, Look, Point
@@ -27,6 +27,7 @@ EDGE = 0.04  # element at the edge of any band, of the diameter
 LOGARITHM = 0.2  # element at a load's edge, of the excluded distance
 MATTERS = 0.5  # of the maximum elsewhere
 RIM = 32  # points round a place
+REST = 0.6  # of a pressure's last harmonic, at most what follows it: terms go as +-1/(n^2 - 1)
 READ = (4.0, 0.01)  # exponents: from so many elements to so much of the diameter
 
 
@@ -137,7 +138,18 @@ def harmonic_look(solution: HarmonicSolution, places: tuple[Place, ...], loads: 
             _inside(solution, around, p, d, close)
             for p, d, close in zip(places, distances, solution.close, strict=True)
         ),
+        left_out=_left_out(around, loads, top),
     )
+
+
+def _left_out(around: Circumference, loads: PinLoads, top: Top) -> float:
+    """Of a bearing pressure's series, by its last harmonic at the maximum (a thin tube that becomes
+    oval feels more of it than a solid pin).
+    """
+    n, largest = around.last(np.array([top.point]))
+    if loads.distribution != "cosine" or n != loads.terms:
+        return 0.0
+    return REST * float(largest[0, top.instant])
 
 
 def _location(point: Floats, angle: float) -> Point:

@@ -11,7 +11,10 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Solve = Callable[[Floats], Floats]
 
-LARGEST_RESIDUAL = 1e-8  # of a solution, relative to its load
+# Of a solution, relative to its load. Round-off alone leaves 1e-7 on a pin 100 diameters long and
+# 2e-6 on a tube bored to 99 %, whose answers are right to as much; a pin that nothing holds leaves
+# 0.1.
+LARGEST_RESIDUAL = 1e-5
 
 
 class SolveError(ArithmeticError):
@@ -37,7 +40,7 @@ class Analysis:
         another matrix has been factored.
 
         Raises: SolveError when K is not positive definite (a body that is not held), and from the
-        returned function when a solution's relative residual exceeds 1e-8.
+        returned function when a solution's relative residual exceeds 1e-5.
         """
         solve = self._factor(K)
 

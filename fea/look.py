@@ -27,7 +27,8 @@ class Look:
     """maximum: largest von Mises stress (Pa) outside all singular places, at `location` (m) at the
     governing `instant`. places: what is inside of each.
 
-    scatter: of the maximum by the mesh alone, where it was seen, Pa.
+    scatter: of the maximum by the mesh alone, where it was seen, Pa. left_out: by how much the
+    harmonics of a bearing pressure that are not taken may change the maximum, Pa.
     """
 
     unknowns: int
@@ -36,3 +37,4 @@ class Look:
     location: Point
     places: tuple[Inside, ...] = ()
     scatter: float = 0.0
+    left_out: float = 0.0

@@ -44,7 +44,7 @@ class Seen:
         if len(self.looks) == 1:
             return last.maximum
         least = LEAST_ORDER.get(self.model, 0.5)
-        return discretisation_error(self.history, self.ratio, last.scatter, least)
+        return discretisation_error(self.history, self.ratio, last.scatter, least) + last.left_out
 
     @property
     def relative(self) -> float:

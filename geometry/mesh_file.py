@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.body_file import BodyFile
+from geometry.inverted import distortion, folded
 from geometry.pin import GeometryError
-from geometry.quadratic import Quadratic, find_facets, quadratic
+from geometry.quadratic import find_facets, quadratic
 from geometry.solid_mesh import MeshError, SolidMesh
 
 Ints = NDArray[np.int64]
@@ -41,16 +42,24 @@ def mesh_from_file(file: BodyFile) -> SolidMesh:
     points = np.asarray(mesh.points, dtype=float) * file.unit
     cells = np.concatenate([b.data for b in mesh.cells if b.type.startswith("tetra")])
     made = quadratic(points, cells.astype(np.int64))
-    jacobian = _jacobian(made)
-    if not jacobian > 0.0:
-        raise MeshError(f"{where}: it has inverted elements; repair them where it was made")
+    shape = distortion(made)
+    if wrong := int(np.sum(~(shape > 0.0))):
+        raise MeshError(
+            f"{where}: it has inverted elements, {wrong} bent inside out; repair them where it was "
+            "made"
+        )
+    if wrong := folded(made.mesh):
+        raise MeshError(
+            f"{where}: it has inverted elements: at {wrong} facets one lies over its neighbour; "
+            "repair them where it was made"
+        )
     named = {name: find_facets(made, t) for name, t in _triangles(mesh).items() if len(t)}
     for name, nodes in mesh.point_sets.items():
         facets = made.mesh.facets[:, made.mesh.boundary_facets()].T
         on = np.isin(facets, made.vertex[np.asarray(nodes, dtype=np.int64)]).all(axis=1)
         if on.any():
             named.setdefault(str(name), made.mesh.boundary_facets()[on])
-    return SolidMesh(made.mesh.with_boundaries(named), jacobian, 0)
+    return SolidMesh(made.mesh.with_boundaries(named), float(shape.min()), 0)
 
 
 def _read(file: BodyFile) -> meshio.Mesh:
@@ -84,10 +93,3 @@ def _triangles(mesh: meshio.Mesh) -> dict[str, Ints]:
             if dimension == 2 and block.type in SURFACES and name not in mesh.cell_sets:
                 out.setdefault(name, []).append(block.data[np.asarray(tags) == tag, :3])
     return {name: np.concatenate(parts).astype(np.int64) for name, parts in out.items()}
-
-
-def _jacobian(made: Quadratic) -> float:
-    """Smallest min/max of det J over the elements, at their nodes."""
-    det = made.determinants()
-    det = det * np.sign(det.mean(axis=1, keepdims=True))
-    return float((det.min(axis=1) / det.max(axis=1)).min())

@@ -29,10 +29,10 @@ class Quadratic:
     nodes: Ints
     vertex: Ints
 
-    def determinants(self) -> Floats:
-        """det J at the nodes of all elements, (M, 10)."""
-        slopes = _slopes(ElementTetP2.doflocs)
-        x = self.mesh.doflocs.T[self.nodes]
+    def determinants(self, at: Floats, elements: Ints | slice = slice(None)) -> Floats:
+        """det J of elements at reference points (Q, 3), (M, Q)."""
+        slopes = _slopes(at)
+        x = self.mesh.doflocs.T[self.nodes[elements]]
         return np.asarray(np.linalg.det(np.einsum("mia,qib->mqab", x, slopes)))
 
 

@@ -1,0 +1,80 @@
+"""The studies of the gallery, and what pinstress answers to them."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+from fea.material import Material
+from pinstress import load_study
+from pinstress.pins import material
+from pinstress.pipeline import Plan, prepare, solve
+from pinstress.study import Study
+from pinstress.tasks import Task
+from reports.numbers import engineering, ratio
+from reports.results import PinResult, Results
+
+ROOT = Path(__file__).parents[2]
+STUDIES = ROOT / "studies" / "failures"
+
+
+def command(name: str, verb: str = "run", *more: str) -> str:
+    """What a reader types."""
+    return " ".join((f"pinstress {verb} studies/failures/{name}.toml", *more))
+
+
+@cache
+def study(name: str) -> Study:
+    """A study by its file's stem."""
+    return load_study(STUDIES / f"{name}.toml")
+
+
+@cache
+def plan(name: str) -> Plan:
+    """Its pins and loads, before anything is solved."""
+    return prepare(study(name))
+
+
+def task(name: str, pin: str = "P") -> Task:
+    """How a pin is held and loaded, in all cases of the study."""
+    return next(t for t in plan(name).tasks if t.pin.name == pin)
+
+
+def material_of(name: str, pin: str = "P") -> Material:
+    """What a pin is made of."""
+    return material(study(name), study(name).table.pin[pin].material)
+
+
+@cache
+def answer(name: str) -> Results:
+    """What `pinstress run` finds, with its own choice of model and meshes."""
+    return solve(plan(name))
+
+
+def row(name: str, pin: str = "P", case: str | None = None) -> PinResult:
+    """One row of the answer."""
+    rows = (r for r in answer(name).pins if r.pin == pin and case in (None, r.case))
+    return next(rows)
+
+
+def told(found: PinResult, unit: str = "MPa") -> str:
+    """A row as a sentence: verdict, value with error, note."""
+    if found.max_von_mises is None:
+        return f"`{found.verdict}`: {found.note}."
+    error = engineering(found.error_estimate, 2)
+    value = f"{engineering(found.max_von_mises)} ± {error} {unit}"
+    return f"`{found.verdict}`, {value}: {found.note}."
+
+
+def contains(found: PinResult, truth: float) -> bool:
+    """Whether the estimated error holds the true maximum (in the study's unit)."""
+    if found.max_von_mises is None or found.error_estimate is None:
+        return False
+    return abs(found.max_von_mises - truth) <= found.error_estimate
+
+
+def off(value: float, truth: float) -> float:
+    """Relative error in %."""
+    share = ratio(value, truth)
+    assert share is not None
+    return 100.0 * (share - 1.0)

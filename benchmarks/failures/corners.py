@@ -1,0 +1,289 @@
+"""Places without a maximum: a sharp corner, the edge of a clamp, the edge of a uniform load."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from benchmarks.failures.asked import command, row, task, told
+from benchmarks.failures.draw import INK, decades, line_style, note, ratio_line, ticks
+from benchmarks.failures.entry import Entry
+from benchmarks.failures.fields import MPA, Mesh, even, finest, graded, revolved, towards
+from fea.corner import plane_exponent
+from fea.meridian_fields import MeridianFields
+from fea.pin_loads import Floats
+from reports.numbers import engineering
+from reports.results import PinResult, SingularZone
+
+ACROSS = (5.0, 10.0, 20.0, 40.0)
+CLOSEST = 1e-4  # element at the corner, of the diameter
+NU = 0.3
+WILLIAMS = "M. L. Williams, J. Appl. Mech. 19 (1952) 526"
+
+
+@dataclass(frozen=True)
+class Growth:
+    """meshes: of one element size each. distance (J,) m, stress (J,) Pa: towards the place on a
+    graded mesh. theory: exponent. zone: what pinstress found there, in the row `found`.
+    """
+
+    meshes: tuple[Mesh, ...]
+    distance: Floats
+    stress: Floats
+    theory: float
+    zone: SingularZone
+    found: PinResult
+
+    @property
+    def growth(self) -> float:
+        """Of the peak at the last halving of the elements."""
+        return self.meshes[-1].maximum / self.meshes[-2].maximum
+
+
+@cache
+def growth(name: str, kind: str, theory: float, across: tuple[float, ...] = ACROSS) -> Growth:
+    """The peak on ever finer meshes, and the stress towards the place, of a study's pin."""
+    found = row(name)
+    (zone,) = (z for z in found.singular_at if z.kind == kind)
+    x, y, z = zone.location
+    r = float(np.hypot(x, y))
+    distance, stress = towards(name, r * 1e-3, z * 1e-3, CLOSEST * 2e-3 * r)
+    return Growth(tuple(even(name, n)[0] for n in across), distance, stress, theory, zone, found)
+
+
+def sharp_corner() -> Growth:
+    """An inner corner of 270 degrees."""
+    theory = plane_exponent(1.5 * np.pi, NU, "free", "free")
+    return growth("sharp_corner", "a sharp corner", theory)
+
+
+def clamped_edge() -> Growth:
+    """The rim of a clamped face, 90 degrees."""
+    theory = plane_exponent(0.5 * np.pi, NU, "clamped", "free")
+    return growth("clamped_edge", "the edge of a clamp", theory)
+
+
+def looks_converged() -> Growth:
+    """A clamp's edge that coarse meshes do not see beside a fillet."""
+    theory = plane_exponent(0.5 * np.pi, NU, "clamped", "free")
+    return growth("looks_converged", "the edge of a clamp", theory, (3.0, 6.0, 12.0, 24.0, 48.0))
+
+
+@dataclass(frozen=True)
+class LoadEdge:
+    """sizes (K,) m of elements; shear (K,) Pa at the edge of the uniform load; slope: of the shear
+    by log(1/distance) on a graded mesh, Pa; theory: the same; found: what pinstress says.
+    """
+
+    sizes: Floats
+    shear: Floats
+    slope: float
+    theory: float
+    found: PinResult
+
+
+@cache
+def load_edge() -> LoadEdge:
+    """The circumferential shear at the edge of the middle band, whose traction q T jumps by the
+    difference of the bands' tractions: the antiplane half plane has q / pi log(1/d).
+    """
+    name = "load_edge"
+    pin, loads = revolved(name), task(name).loads[0]
+    left, middle = pin.band("left"), pin.band("middle")
+    edge = middle.radius, middle.z0
+    forces = loads.forces[0, :, 1]
+
+    def shear(fields: MeridianFields) -> tuple[Floats, Floats]:
+        amounts = np.array([forces[loads.surfaces.index(load.surface)] for load in fields.loads])
+        distance = np.hypot(*(fields.points[: fields.skin] - edge).T)
+        return distance, np.abs(fields.stress[: fields.skin, 3] @ amounts)
+
+    sizes, highest = [], []
+    for across in ACROSS:
+        mesh, fields = even(name, across)
+        distance, stress = shear(fields)
+        sizes.append(mesh.size)
+        highest.append(float(stress[distance.argmin()]))
+    d, stress = shear(graded(name, *edge, CLOSEST * 2.0 * middle.radius))
+    near = (d > 5e-4 * middle.radius) & (d < 0.02 * middle.radius)
+    slope = float(np.polyfit(-np.log(d[near]), stress[near], 1)[0])
+    jump = abs(forces[0] / left.area - forces[1] / middle.area)
+    return LoadEdge(np.array(sizes), np.array(highest), slope, jump / np.pi, row(name))
+
+
+def entries() -> tuple[Entry, ...]:
+    """Of this family."""
+    return (
+        _entry(
+            sharp_corner(),
+            "sharp_corner",
+            "A sharp inner corner",
+            "Where two free faces meet at an inner angle of 270°, the stress of linear elasticity "
+            f"grows like distance$^{{-s}}$ ({WILLIAMS}); a real corner has a radius.",
+        ),
+        _entry(
+            clamped_edge(),
+            "clamped_edge",
+            "The rim of a clamped face",
+            "A rigid clamp forbids the end face to contract; at its rim the stress has no bound "
+            f"({WILLIAMS}). No hub is rigid.",
+        ),
+        _looks(looks_converged()),
+        _logarithm(load_edge()),
+    )
+
+
+def _entry(g: Growth, name: str, title: str, physics: str) -> Entry:
+    first, last = g.meshes[0], g.meshes[-1]
+    outside = finest(name) / MPA
+    return Entry(
+        name,
+        title,
+        physics,
+        f"The largest stress on one mesh: {engineering(first.maximum / MPA, 3)} MPa with elements "
+        f"of {first.size * 1e3:g} mm, {engineering(last.maximum / MPA, 3)} MPa with "
+        f"{last.size * 1e3:.2g} mm. At the last halving it still grows by "
+        f"{100 * (g.growth - 1):.0f} %.",
+        f"No maximum exists: s = {g.theory:.3f}, {100 * (2**g.theory - 1):.0f} % for every "
+        f"halving, for ever. Outside a tenth of the diameter it is "
+        f"{engineering(outside)} MPa (a mesh of four times the unknowns).",
+        f"{told(g.found)} {_outside(g.found, outside)}",
+        (command(name),),
+        "Left: the peak rises with every halving of the elements. Right: the stress rises along "
+        "the line of the theory's exponent towards the place",
+        lambda figure, axes: _draw_growth(figure, axes, g),
+    )
+
+
+def _outside(found: PinResult, truth: float) -> str:
+    """How good the value outside the excluded zones is."""
+    value, error = found.max_von_mises or 0.0, found.error_estimate or 0.0
+    return (
+        f"The value outside is {100 * abs(value / truth - 1):.1f} % from the true one, by its own "
+        f"estimate {100 * error / value:.1f} %."
+    )
+
+
+def _draw_growth(figure: Figure, axes: list[Axes], g: Growth) -> None:
+    left, right = axes
+    size = np.array([m.size for m in g.meshes]) * 1e3
+    peak = np.array([m.maximum for m in g.meshes]) / MPA
+    left.loglog(size, peak, "o-", color=INK, ms=4)
+    ratio_line(left, size, peak[-1] * (size / size[-1]) ** -g.theory, "theory's slope")
+    left.invert_xaxis()
+    left.set(xlabel="size of the elements [mm]", ylabel="largest von Mises stress [MPa]")
+    note(
+        left,
+        size[-1],
+        peak[-1],
+        f"+{100 * (g.growth - 1):.0f} % in\nthis halving",
+        (-10, 0),
+        INK,
+        "right",
+    )
+    _draw_towards(right, g)
+    decades(right)
+    ticks(left, size, (400.0, 500.0, 600.0, 800.0, 1000.0, 1200.0))
+    ticks(right, None, (500.0, 1000.0, 2000.0))
+
+
+def _draw_towards(axes: Axes, g: Growth) -> None:
+    d, stress = g.distance * 1e3, g.stress / MPA
+    axes.loglog(d, stress, color=INK)
+    k = d < 0.02 * d[-1]
+    at = d[k]
+    line = stress[0] * (at / d[0]) ** -g.theory
+    axes.loglog(at, 1.12 * line, **line_style(1))
+    measured = g.zone.exponent or 0.0
+    note(
+        axes, at[-1], 1.12 * line[-1],
+        f"theory: s = {g.theory:.3f}\nmeasured: {measured:.3f}", (8, 14), line_style(1)["color"],
+    )  # fmt: skip
+    axes.axvline(g.zone.excluded, color="#8a8a8a", linewidth=0.8)
+    note(
+        axes, g.zone.excluded, stress.max(), "not read\nleft of here", (-4, -14), "#666666", "right"
+    )
+    axes.set(xlabel="distance from the place [mm]", ylabel="von Mises stress [MPa]")
+
+
+def _looks(g: Growth) -> Entry:
+    first, second, *_, last = g.meshes
+    apart = 100 * abs(second.maximum / first.maximum - 1)
+    return Entry(
+        "looks_converged",
+        "A clamp that looks converged",
+        "A clamp's singularity is weak: on coarse meshes it hides behind any fillet, and two "
+        "meshes that agree say nothing of it.",
+        f"Two meshes, of {first.unknowns} and {second.unknowns} unknowns, agree to {apart:.2f} %: "
+        f"{engineering(second.maximum / MPA, 3)} MPa at the fillet, so converged.",
+        f"The next meshes give {', '.join(engineering(m.maximum / MPA, 3) for m in g.meshes[2:])} "
+        f"MPa, at the rim of the clamp, with no end (s = {g.theory:.3f}); at the fillet it is "
+        f"{engineering(finest('looks_converged') / MPA)} MPa.",
+        f"{told(g.found)} {_outside(g.found, finest('looks_converged') / MPA)} "
+        "It knows from the drawing where stress has no bound, asks for three "
+        "meshes at least, and grades them towards such places.",
+        (command("looks_converged"),),
+        "The peak stands still on two meshes and then rises without end",
+        lambda figure, axes: _draw_looks(axes[0], g, last),
+        panels=1,
+    )
+
+
+def _draw_looks(axes: Axes, g: Growth, last: Mesh) -> None:
+    unknowns = np.array([m.unknowns for m in g.meshes])
+    peak = np.array([m.maximum for m in g.meshes]) / MPA
+    axes.semilogx(unknowns, peak, "o-", color=INK, ms=4)
+    note(axes, unknowns[1], peak[1], "two meshes agree", (0, -14), INK, "center")
+    note(
+        axes, unknowns[-1], peak[-1], "the rim of the clamp,\nwithout end", (-10, -4), INK, "right"
+    )
+    own = [(s.dofs, s.max_von_mises) for s in g.found.history]
+    axes.semilogx(*zip(*own, strict=True), "s", color=line_style(1)["color"], ms=4)
+    x, y = own[-1]
+    note(
+        axes, x, y, "pinstress: outside the clamp's rim,\nthe rim told by name", (10, -4),
+        line_style(1)["color"],
+    )  # fmt: skip
+    axes.set(xlabel="unknowns", ylabel="largest von Mises stress [MPa]")
+    axes.set_ylim(0.9 * peak.min(), 1.06 * peak.max())
+    decades(axes, which="x")
+
+
+def _logarithm(e: LoadEdge) -> Entry:
+    first, last = e.shear[0] / MPA, e.shear[-1] / MPA
+    outside = finest("load_edge") / MPA
+    return Entry(
+        "load_edge",
+        "The edge of a uniform load",
+        "A traction of constant direction on a band has a circumferential part, which jumps at the "
+        "band's edge; the shear beside a jump q grows like (q/π) log(1/distance) (the antiplane "
+        "half plane; Timoshenko & Goodier have the plane one). A bearing pressure has no such "
+        "jump.",
+        f"The shear at the edge of the middle band: {engineering(first, 3)} MPa on the coarsest "
+        f"mesh, {engineering(last, 3)} MPa on the finest, so slowly that any two meshes seem to "
+        "agree.",
+        f"Every halving adds {engineering(e.theory * np.log(2) / MPA, 3)} MPa by theory "
+        f"({engineering(e.slope * np.log(2) / MPA, 3)} measured): a logarithm, which no mesh ends. "
+        f"Outside a hundredth of the diameter the maximum is {engineering(outside)} MPa.",
+        f'{told(e.found)} {_outside(e.found, outside)} The advice is `distribution = "cosine"`.',
+        (command("load_edge"),),
+        "The shear at the band's edge grows by the same amount at every halving of the elements",
+        lambda figure, axes: _draw_logarithm(axes[0], e),
+        panels=1,
+    )
+
+
+def _draw_logarithm(axes: Axes, e: LoadEdge) -> None:
+    size = e.sizes * 1e3
+    axes.semilogx(size, e.shear / MPA, "o-", color=INK, ms=4)
+    line = (e.shear[-1] + e.theory * np.log(e.sizes[-1] / e.sizes)) / MPA - 3.0
+    axes.semilogx(size, line, **line_style(1))
+    note(axes, size[1], line[1], "theory: (q/π) log(1/size)", (0, -14), line_style(1)["color"])
+    note(axes, size[2], e.shear[2] / MPA, "at the edge of the band", (-8, 6), INK, "right")
+    axes.invert_xaxis()
+    axes.set(xlabel="size of the elements [mm]", ylabel="circumferential shear [MPa]")
+    ticks(axes, size)

@@ -1,0 +1,53 @@
+"""What the pictures of the gallery share, beside reports.style."""
+
+from __future__ import annotations
+
+from matplotlib.axes import Axes
+from matplotlib.ticker import FuncFormatter, NullFormatter, NullLocator
+
+from fea.pin_loads import Floats
+from reports.numbers import short
+from reports.style import GREY, INK, line_style
+
+__all__ = ["GREY", "INK", "decades", "line_style", "note", "ratio_line", "ticks"]
+
+
+def note(
+    axes: Axes,
+    x: float,
+    y: float,
+    text: str,
+    shift: tuple[float, float] = (6.0, 0.0),
+    color: str = INK,
+    align: str = "left",
+) -> None:
+    """Text beside a point, `shift` in points."""
+    axes.annotate(
+        text, (x, y), xytext=shift, textcoords="offset points", color=color, fontsize=8.5,
+        ha=align, va="center", linespacing=1.15,
+    )  # fmt: skip
+
+
+def ratio_line(axes: Axes, x: Floats, y: Floats, text: str) -> None:
+    """A line to compare with, named at its second point."""
+    axes.plot(x, y, **line_style(1))
+    note(axes, float(x[1]), float(y[1]), text, (8.0, -10.0), line_style(1)["color"])
+
+
+def decades(*axes: Axes, which: str = "both") -> None:
+    """Tick labels of logarithmic axes as plain numbers, those in between bare."""
+    for one in axes:
+        for name, axis in (("x", one.xaxis), ("y", one.yaxis)):
+            if which in (name, "both"):
+                axis.set_major_formatter(FuncFormatter(lambda value, _: short(value)))
+                axis.set_minor_formatter(NullFormatter())
+
+
+def ticks(axes: Axes, x: Floats | None = None, y: tuple[float, ...] = ()) -> None:
+    """Marks of logarithmic axes at these values only."""
+    for axis, values in ((axes.xaxis, x), (axes.yaxis, y)):
+        if values is not None and len(values):
+            axis.set_ticks(
+                values, [f"{value:.2g}" if value < 10 else f"{value:g}" for value in values]
+            )
+            axis.set_minor_locator(NullLocator())

@@ -1,0 +1,145 @@
+"""Elements that are no elements: folded over their neighbours, bent inside out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from matplotlib.axes import Axes
+from skfem import Basis, ElementTetP2
+
+from benchmarks.failures.asked import STUDIES, command, row, study, told
+from benchmarks.failures.broken_meshes import FOLDED, INSIDE_OUT, MM, TURNED
+from benchmarks.failures.draw import INK, line_style, note
+from benchmarks.failures.entry import Entry
+from fea.envelope import envelope
+from fea.pin_loads import Floats, PinLoads
+from fea.solid import SolidModel, acting
+from geometry.inverted import distortion, folded
+from geometry.places import with_places
+from geometry.quadratic import Quadratic, quadratic
+from geometry.solid_body import SolidBody
+from geometry.solid_mesh import MeshError, SolidMesh
+from pinstress.pins import material, pin
+from reports.numbers import engineering
+
+FORCE = 1e4  # N
+MPA = 1e6
+
+
+@dataclass(frozen=True)
+class Broken:
+    """volume (m^3), the sum of all elements' sizes; tip: displacement (m) of the loaded band, and
+    peak: largest von Mises stress (Pa) half-way between clamp and band, which a program finds that
+    does not look at signs; shape (M,): least over largest det J. told: what pinstress says.
+    """
+
+    volume: float
+    peak: float
+    shape: Floats
+    folds: int
+    told: str
+
+
+def read(name: str) -> Quadratic:
+    """A mesh file without any check."""
+    import meshio
+
+    found = meshio.read(STUDIES / f"{name}.msh")
+    (block,) = found.cells
+    return quadratic(np.asarray(found.points) * MM, np.asarray(block.data, dtype=np.int64))
+
+
+@cache
+def broken(name: str) -> Broken:
+    """A file of studies/failures, solved all the same."""
+    made = read(name)
+    sound = pin(study(TURNED), "P")
+    assert isinstance(sound, SolidBody)
+    mesh = with_places(made.mesh, sound.file)
+    steel = material(study(TURNED), "steel")
+    loads = PinLoads("push", ("link",), np.array([[[0.0, -FORCE, 0.0]]]))
+    model = SolidModel(sound, SolidMesh(mesh, 1.0, 0), steel, ("start",))
+    fields = model.solve(acting((loads,)))
+    z = fields.space.nodes[fields.surface.nodes][:, 2]
+    peak = envelope(fields, loads, (z > 10 * MM) & (z < 40 * MM)).maximum
+    volume = float(Basis(made.mesh, ElementTetP2(), intorder=2).dx.sum())
+    return Broken(volume, peak, distortion(made), folded(made.mesh), refusal(name))
+
+
+@cache
+def refusal(name: str) -> str:
+    """What pinstress says of the study; empty if it takes it."""
+    try:
+        pin(study(name), "P")
+    except MeshError as error:
+        return str(error)
+    return ""
+
+
+def entries() -> tuple[Entry, ...]:
+    """Of this family."""
+    sound, over, out = broken(TURNED), broken(FOLDED), broken(INSIDE_OUT)
+    return (
+        Entry(
+            FOLDED,
+            "An inverted element in a mesh file",
+            "One inner node beyond the far side of its own elements folds them over their "
+            "neighbours. Assembly takes the size of det J and the numbering decides its sign, so "
+            "neither tells.",
+            f"{engineering(over.peak / MPA, 3)} MPa between clamp and load, from elements of "
+            f"together {engineering(over.volume / MM**3, 4)} mm³.",
+            f"{engineering(sound.peak / MPA, 3)} MPa on the sound mesh, of "
+            f"{engineering(sound.volume / MM**3, 4)} mm³.",
+            f"Refused: {over.told}. It asks of every inner facet whether its two elements are on "
+            "two sides of it; a file whose elements merely name their nodes in either sense is "
+            f"taken: {told(row(TURNED))}",
+            (command(FOLDED), command(TURNED)),
+            "The folded mesh gives another stress than the sound one and is refused",
+            lambda figure, axes: _draw(axes[0], axes[1], sound, over, "one node moved"),
+        ),
+        Entry(
+            INSIDE_OUT,
+            "Quadratic elements bent inside out",
+            "The node in the middle of an edge may bend an element so far that det J changes sign "
+            "inside of it, also between all its nodes and integration points.",
+            f"{engineering(out.peak / MPA, 3)} MPa, {100 * abs(out.peak / sound.peak - 1):.0f} "
+            "% off, from "
+            "one node of one edge.",
+            f"{engineering(sound.peak / MPA, 3)} MPa on the sound mesh.",
+            f"Refused: {out.told}. det J is a cubic polynomial, and the signs of its coefficients "
+            "of Bernstein prove it positive everywhere (`geometry/inverted.py`); meshes of its own "
+            "must keep det J above a tenth of its largest.",
+            (command(INSIDE_OUT),),
+            "The bent mesh gives another stress than the sound one and is refused",
+            lambda figure, axes: _draw(axes[0], axes[1], sound, out, "one edge bent"),
+        ),
+    )
+
+
+def _draw(left: Axes, right: Axes, sound: Broken, wrong: Broken, what: str) -> None:
+    texts = ("sound mesh", f"{what}:\na number all the same,\nwhich pinstress refuses")
+    for k, (mesh, text) in enumerate(zip((sound, wrong), texts, strict=True)):
+        color = (INK, line_style(1)["color"])[k]
+        left.plot(mesh.peak / MPA, k, ("o", "X")[k], color=color, ms=7)
+        note(left, mesh.peak / MPA, k, text, (8, -2), color)
+        right.plot(np.sort(mesh.shape), drawstyle="steps-post", **line_style(k))
+        right.set(xlabel="elements, in order", ylabel="least over largest det J")
+        if wrong.folds:
+            right.clear()
+    left.set(xlabel="von Mises stress away from the clamp [MPa]", yticks=[], ylim=(-0.5, 1.6))
+    low, high = sorted((sound.peak / MPA, wrong.peak / MPA))
+    left.set_xlim(low - 0.2 * (high - low), high + 1.6 * (high - low))
+    if wrong.folds:
+        for k, mesh in enumerate((sound, wrong)):
+            color = (INK, line_style(1)["color"])[k]
+            right.plot(mesh.volume / MM**3, k, ("o", "X")[k], color=color, ms=7)
+            note(right, mesh.volume / MM**3, k, f"{engineering(mesh.volume / MM**3)} mm³", (0, 12),
+                 color, "center")  # fmt: skip
+        a, b = sound.volume / MM**3, wrong.volume / MM**3
+        right.set(xlabel="volume of all elements [mm³]", yticks=[], ylim=(-0.5, 1.6))
+        right.set_xlim(a - 0.5 * (b - a), b + 0.5 * (b - a))
+    else:
+        right.axhline(0.0, color="#8a8a8a", linewidth=0.8)
+        note(right, 0.5 * len(wrong.shape), wrong.shape.min() * 0.9, "inside out", (0, 0))

@@ -1,0 +1,253 @@
+"""How a pin is held: not at all, by rigid clamps or soft lugs; and what its support carries."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from matplotlib.axes import Axes
+from scipy.sparse.linalg import splu
+
+from benchmarks.failures.asked import command, contains, material_of, row, task, told
+from benchmarks.failures.draw import INK, decades, line_style, note
+from benchmarks.failures.entry import Entry
+from benchmarks.failures.fields import MPA, finest, revolved
+from fea.circumference import Circumference
+from fea.meridian_fields import MeridianFields
+from fea.outline import Outline, shapes
+from fea.pin_loads import Floats, PinLoads, UnitLoad
+from fea.section import Section
+from fea.section_stress import inner_nodes, section_stress
+from fea.skin import AT
+from fea.solid import SolidModel
+from fea.surface import Patch, resultants
+from fea.tractions import traction
+from geometry.meridian_mesh import SectionSize, meridian_mesh
+from geometry.solid_mesh import MeshSize, solid_mesh
+from reports.numbers import engineering, ten_to
+from reports.results import PinResult
+
+ACROSS = (3.0, 4.0, 5.0, 6.0, 8.0)
+FORCE = 1e4  # N
+MESHES = (2.0, 3.0, 4.0, 6.0)  # elements across, of the solid
+
+
+@dataclass(frozen=True)
+class Free:
+    """across (K,): elements; stress (K,) Pa and motion (K,) m of a pin that nothing holds, as an LU
+    factorisation has them without a word; push: what is out of balance, N; found: our answer.
+    """
+
+    across: Floats
+    stress: Floats
+    motion: Floats
+    push: float
+    found: PinResult
+
+
+@cache
+def free_pin() -> Free:
+    """The loads of the study on the singular matrix of harmonic 1."""
+    stress, motion = zip(*(_unheld(n) for n in ACROSS), strict=True)
+    push = float(np.abs(task("free_pin").loads[0].forces[0].sum(axis=0)).max())
+    return Free(np.array(ACROSS), np.array(stress), np.array(motion), push, row("free_pin"))
+
+
+def _unheld(across: float) -> tuple[float, float]:
+    """Largest von Mises stress (Pa) and displacement (m)."""
+    pin, loads, steel = revolved("free_pin"), task("free_pin").loads[0], material_of("free_pin")
+    space = Section(meridian_mesh(pin, SectionSize(across)))
+    outline = Outline(space)
+    free = np.setdiff1d(np.arange(space.unknowns), _axis(space))
+    forces, parts = _summed(outline, loads)
+    K = space.stiffness(steel, 1)[free][:, free].tocsc()
+    unknowns = np.zeros(space.unknowns)
+    unknowns[free] = splu(K, permc_spec="MMD_AT_PLUS_A").solve(forces[free])
+    p, m, w = unknowns.reshape(-1, 3).T
+    u = np.stack([p + m, p - m, w], axis=1)[..., None]
+    nowhere = space.values_at(np.zeros((0, 2)))
+    moved, found = section_stress(space, outline, steel, 1, u, parts[..., None], (), nowhere)
+    skin = np.einsum("qi,eia->eqa", shapes(AT), space.nodes[outline.nodes]).reshape(-1, 2)
+    points = np.concatenate([skin, space.nodes[inner_nodes(space, outline)]])
+    unit = (UnitLoad("left", "force", 1),)
+    fields = MeridianFields(points, unit, found, moved, len(skin), space.unknowns)
+    one = PinLoads("one", ("left",), np.array([[[0.0, 1.0, 0.0]]]))
+    return Circumference(fields, one).top(np.ones(len(points), bool)).value, float(
+        np.abs(moved).max()
+    )
+
+
+def _axis(space: Section) -> Floats:
+    return np.concatenate([3 * space.section.axis, 3 * space.section.axis + 2])
+
+
+def _summed(outline: Outline, loads: PinLoads) -> tuple[Floats, Floats]:
+    """Forces on the unknowns (n,) and tractions (E, 3, 3) of the whole case, along y as along x."""
+    pin, y = revolved("free_pin"), loads.forces[0, :, 1]
+    parts = [(traction(pin, UnitLoad(name, "force", 1)),) for name in loads.surfaces]
+    R, T, Z = sum(f * outline.forces(part, 1) for f, part in zip(y, parts, strict=True)).T
+    spread = sum(f * outline.traction(part) for f, part in zip(y, parts, strict=True))
+    return np.stack([R + T, R - T, Z], axis=1).ravel(), np.asarray(spread)
+
+
+@dataclass(frozen=True)
+class Support:
+    """across (K,) elements; surface, residual (K,): errors of the clamp's force (relative) from the
+    stresses on its face, and from the residual of the system.
+    """
+
+    across: Floats
+    unknowns: Floats
+    surface: Floats
+    residual: Floats
+
+
+@cache
+def reactions() -> Support:
+    """The clamp of the study clamped_edge, on solid meshes."""
+    name = "clamped_edge"
+    pin, steel = revolved(name), material_of(name)
+    unknowns, surface, residual = [], [], []
+    for across in MESHES:
+        mesh = solid_mesh(pin, MeshSize(across=across, corner=1.0))
+        fields = SolidModel(pin, mesh, steel, ("start",)).solve(
+            ((UnitLoad("link", "force", 1), 1),)
+        )
+        patch = Patch(fields.space, fields.surface, "start")
+        at = fields.surface.corners[patch.rows]
+        tension = _pull(fields.stress[at, :, 0], fields.surface.normals[patch.rows])
+        read = resultants(fields.space.nodes, patch.nodal_forces(tension[..., None]))[:, 0]
+        unknowns.append(fields.space.unknowns)
+        surface.append(abs(float(read[1]) + 1.0))
+        residual.append(abs(float(fields.support[1, 0]) + 1.0))
+    return Support(
+        np.array(MESHES), np.array(unknowns, dtype=float), np.array(surface), np.array(residual)
+    )
+
+
+def _pull(stress: Floats, normals: Floats) -> Floats:
+    """Traction (P, 6, 3) of stress (P, 6, 6): xx, yy, zz, yz, xz, xy."""
+    tensor = stress[..., [[0, 5, 4], [5, 1, 3], [4, 3, 2]]]
+    return np.asarray(np.einsum("pqab,pqb->pqa", tensor, normals))
+
+
+def entries() -> tuple[Entry, ...]:
+    """Of this family."""
+    return (_free(free_pin()), _supports(), _reactions(reactions()))
+
+
+def _free(f: Free) -> Entry:
+    stresses = ", ".join(engineering(s / MPA, 3) for s in f.stress)
+    return Entry(
+        "free_pin",
+        "A pin that nothing holds",
+        "Without supports the stiffness matrix is singular; round-off makes its last pivots small "
+        "numbers instead of noughts, so that a factorisation succeeds.",
+        f"SuperLU gives {stresses} MPa on five meshes, plausible stresses all, and "
+        "displacements of "
+        f"{engineering(f.motion.min() / 1e3, 2)} km and more, which nobody prints.",
+        f"The loads leave {engineering(f.push, 3)} N that nothing carries: the pin flies off.",
+        f"{told(f.found)} No matrix is factorised.",
+        (command("free_pin"),),
+        "Stresses on five meshes scatter without sense, displacements are of hundreds of thousands "
+        "of kilometres",
+        lambda figure, axes: _draw_free(axes[0], axes[1], f),
+    )
+
+
+def _draw_free(left: Axes, right: Axes, f: Free) -> None:
+    left.plot(f.across, f.stress / MPA, "o-", color=INK, ms=4)
+    left.set(
+        xlabel="elements over the diameter", ylabel="largest von Mises stress [MPa]", ylim=(0, None)
+    )
+    right.plot(f.across, f.motion / 1e6, "o-", color=INK, ms=4)
+    right.set(xlabel="elements over the diameter", ylabel="displacement [1000 km]", ylim=(0, None))
+    note(left, f.across[1], f.stress[1] / MPA, "looks like a stress", (10, 0))
+    note(right, f.across[1], f.motion[1] / 1e6, "of a pin 80 mm long", (10, 0))
+
+
+def _supports() -> Entry:
+    stiff, soft = row("supports", "stiff"), row("supports", "soft")
+    values = [engineering(r.max_von_mises, 3) for r in (stiff, soft)]
+    truths = [finest("supports", pin) / MPA for pin in ("stiff", "soft")]
+    held = all(contains(r, t) for r, t in zip((stiff, soft), truths, strict=True))
+    return Entry(
+        "supports",
+        "Stiff and soft supports",
+        "A pin between two lugs bends as a beam that is built in, if they are rigid, and as one "
+        "simply supported, if they are soft (bending moments F l/8 against F l/4 in the "
+        "textbooks).",
+        "One of the two, according to taste.",
+        "Between them: it hangs on the stiffness of lugs that a study of the pin does not have.",
+        "Pinstress has no supports of finite stiffness; it answers both ends of the range. "
+        "Clamped: "
+        f"{told(stiff)} With the lugs' forces on it and no clamp: {told(soft)} From {values[0]} to "
+        f"{values[1]} MPa real lugs are free to be. Meshes of four times the unknowns give "
+        f"{' and '.join(engineering(t) for t in truths)} MPa, "
+        + ("within both errors." if held else "not within both errors."),
+        (command("supports"),),
+        "The soft pin's largest stress is three times the rigidly clamped one's",
+        lambda figure, axes: _draw_supports(axes[0], stiff, soft),
+        panels=1,
+    )
+
+
+def _draw_supports(axes: Axes, stiff: PinResult, soft: PinResult) -> None:
+    for y, (found, text) in enumerate(((stiff, "rigid clamps"), (soft, "the lugs' forces alone"))):
+        value, error = found.max_von_mises or 0.0, found.error_estimate or 0.0
+        axes.errorbar(value, y, xerr=error, fmt="s", color=line_style(1)["color"], capsize=3)
+        note(
+            axes,
+            value,
+            y,
+            f"{text}:\n{engineering(value, 3)} MPa, {found.verdict}",
+            (0, 22),
+            INK,
+            "center",
+        )
+    low, high = (r.max_von_mises or 0.0 for r in (stiff, soft))
+    axes.plot([low, high], [0, 1], color="#8a8a8a", linestyle=(0, (1.2, 1.4)))
+    note(axes, (low + high) / 2, 0.5, "lugs of finite stiffness", (10, -6), "#555555")
+    axes.set(
+        xlabel="largest von Mises stress [MPa]", xlim=(0, 1.3 * high), ylim=(-0.6, 1.9), yticks=[]
+    )
+
+
+def _reactions(s: Support) -> Entry:
+    read = ", ".join(f"{100 * e:.0f} %" for e in s.surface)
+    return Entry(
+        "reactions",
+        "Reactions read from the stress on the support",
+        "At the rim of a clamp the stress has no bound, and what a mesh has of it is wrong to "
+        "first "
+        "order; the residual of the system of equations is in equilibrium with the loads whatever "
+        "the mesh (Galerkin's orthogonality with the rigid motions).",
+        f"The stresses on the held face, summed: the transverse force is off by {read} on ever "
+        "finer "
+        "meshes.",
+        f"{engineering(FORCE, 3)} N, by equilibrium.",
+        "The forces of clamps are those of the residual (`fea/solid.py`), here right to "
+        f"{_power(float(s.residual.max()))} on all meshes; a solution whose clamps do not "
+        "answer its "
+        "loads to 10⁻⁶ is refused.",
+        (command("clamped_edge", "run", "--model solid"),),
+        "The error of the summed stresses stays at a tenth, that of the residual at round-off",
+        lambda figure, axes: _draw_reactions(axes[0], s),
+        panels=1,
+    )
+
+
+def _power(error: float) -> str:
+    return ten_to(int(np.ceil(np.log10(error))))
+
+
+def _draw_reactions(axes: Axes, s: Support) -> None:
+    color = line_style(1)["color"]
+    axes.loglog(s.unknowns, s.surface, "o-", color=INK, ms=4)
+    axes.loglog(s.unknowns, s.residual, "s--", color=color, ms=4)
+    note(axes, s.unknowns[1], s.surface[1], "stresses on the face, summed", (0, -12), INK)
+    note(axes, s.unknowns[1], s.residual[1], "residual of the system", (0, 14), color)
+    axes.set(xlabel="unknowns", ylabel="error of the clamp's force", ylim=(1e-15, 3.0))
+    decades(axes, which="x")
+    axes.yaxis.set_major_formatter(lambda value, _: ten_to(round(np.log10(value))))
