@@ -99,7 +99,7 @@ def instants() -> str:
         cases = [pin_loads(CASE, applied, r, asked.distribution, weightless) for r in sampled]
         places = places_of(pin, steel, (), (cases[-1],))
         solution = harmonic_solution(pin, steel, (), (cases[-1],), places, LEVEL, STEP)
-        among, _ = outside(solution.fields, places)
+        among = outside(solution.fields, places)
         *few, true = (Circumference(solution.fields, loads).top(among).value for loads in cases)
         rows.append((name, *(f"{100.0 * (value / true - 1.0):+.3f}" for value in few)))
     told = f"Error of the maximum over the retraction beside that of {TRUE_INSTANTS} instants, %:"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -105,7 +105,7 @@ class HarmonicAnswer:
 
     def maxima(self, loads: PinLoads) -> Floats:
         """Largest von Mises stress (T,) Pa at every instant outside the places."""
-        among, _ = outside(self.fields, self._places)
+        among = outside(self.fields, self._places)
         return Circumference(self.fields, loads).largest(among)[0]
 
     def picture(self, loads: PinLoads, instant: int) -> Picture:
@@ -113,30 +113,49 @@ class HarmonicAnswer:
         return revolve(self.fields, loads, instant)
 
 
-def outside(fields: MeridianFields, places: tuple[Place, ...]) -> tuple[Mask, list[Floats]]:
-    """Points outside all places, and their distances (S,) from each, m."""
+def outside(fields: MeridianFields, places: tuple[Place, ...]) -> Mask:
+    """Points (S,) outside all places."""
+    return _outside_of(fields, places, _distances(fields, places), [True] * len(places))
+
+
+def _distances(fields: MeridianFields, places: tuple[Place, ...]) -> list[Floats]:
+    """Of the points from each place, (S,) m."""
     r, z = fields.points.T
-    distances = [np.hypot(r - p.r, z - p.z) for p in places]
-    outside = np.ones(len(r), dtype=bool)
-    for p, d in zip(places, distances, strict=True):
-        outside &= d >= p.radius * (1.0 - 1e-9)
-    return outside, distances
+    return [np.hypot(r - p.r, z - p.z) for p in places]
 
 
-def harmonic_look(solution: HarmonicSolution, places: tuple[Place, ...], loads: PinLoads) -> Look:
-    """Maximum outside the places, and what is inside them."""
+def _outside_of(
+    fields: MeridianFields, places: tuple[Place, ...], distances: list[Floats], acts: list[bool]
+) -> Mask:
+    out = np.ones(len(fields.points), dtype=bool)
+    for p, d, here in zip(places, distances, acts, strict=True):
+        if here:
+            out &= d >= p.radius * (1.0 - 1e-9)
+    return out
+
+
+def harmonic_look(
+    solution: HarmonicSolution,
+    places: tuple[Place, ...],
+    loads: PinLoads,
+    own: Collection[Place] | None = None,
+) -> Look:
+    """Maximum outside the places, and what is inside them. own: those of this case, where others
+    have more; all by default.
+    """
     fields = solution.fields
     around = Circumference(fields, loads)
-    among, distances = outside(fields, places)
-    top = around.top(among)
+    acts = [own is None or p in own for p in places]
+    distances = _distances(fields, places)
+    top = around.top(_outside_of(fields, places, distances, acts))
     return Look(
         unknowns=fields.unknowns,
         maximum=top.value,
         instant=top.instant,
         location=_location(fields.points[top.point], top.angle),
         places=tuple(
-            _inside(solution, around, p, d, close)
-            for p, d, close in zip(places, distances, solution.close, strict=True)
+            replace(_inside(solution, around, p, d, close), acts=own_place)
+            for p, d, close, own_place in zip(places, distances, solution.close, acts, strict=True)
         ),
         left_out=_left_out(around, loads, top),
     )

@@ -8,7 +8,7 @@ solid     any other body, and to check the others               (fea.solid_look)
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Literal
@@ -17,7 +17,7 @@ from fea.answer import Answer
 from fea.balance import Balance, out_of_balance
 from fea.beam_answer import BeamAnswer
 from fea.beam_error import PLAIN
-from fea.harmonic_look import HarmonicAnswer, harmonic_look, harmonic_solution
+from fea.harmonic_look import HarmonicAnswer, HarmonicSolution, harmonic_look, harmonic_solution
 from fea.look import Look
 from fea.material import Material
 from fea.peak import Peak
@@ -181,8 +181,9 @@ def _refined(
     pin, asked = job.pin, job.asked
     ratio = HALF if pin.meshed else STEP
     places = _places(job, cases)
+    own = {case.case: _places(job, (case,)) for case in cases}
     seen: dict[str, Seen] = {}
-    answer: Answer | None = None
+    answers: dict[str, Answer] = {}
     for level in range(asked.meshes or MESHES[model]):
         largest = max((s.looks[-1].unknowns for s in seen.values()), default=0)
         if level and largest * ratio ** GROWTH[model] > MOST_UNKNOWNS[model]:
@@ -196,14 +197,14 @@ def _refined(
             section = harmonic_solution(
                 pin, job.material, job.held, cases, places, level, ratio, last
             )
-            found, look = places, partial(harmonic_look, section, places)
-            answer = HarmonicAnswer(section, places)
+            found, look = places, partial(_own_look, section, places, own)
+            answers = {case: HarmonicAnswer(section, mine) for case, mine in own.items()}
         else:
             size = MeshSize().finer(ratio**level)
             solid = solid_solution(pin, job.material, job.held, cases, places, size, asked.distance)
             before = {case: s.looks[-1] for case, s in seen.items()}
             found, look = solid.places, partial(solid_look, solid, before, ratio)
-            answer = SolidAnswer(solid)
+            answers = dict.fromkeys(own, SolidAnswer(solid))
         for case in cases:
             now = look(case)
             spent = time.perf_counter() - start
@@ -218,9 +219,18 @@ def _refined(
         case: judge(s, found, asked.tolerance, notes.get(case, "")) for case, s in seen.items()
     }
     return {
-        case: Solution(replace(peak, why=why(seen[case], peak)), answer)
+        case: Solution(replace(peak, why=why(seen[case], peak)), answers[case])
         for case, peak in peaks.items()
     }
+
+
+def _own_look(
+    section: HarmonicSolution,
+    places: tuple[Place, ...],
+    own: Mapping[str, tuple[Place, ...]],
+    case: PinLoads,
+) -> Look:
+    return harmonic_look(section, places, case, own[case.case])
 
 
 def _with(

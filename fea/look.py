@@ -13,13 +13,15 @@ FELT = 0.1  # of a place's radius: a place governs if at this distance it has th
 class Inside:
     """Of a singular place: the largest von Mises stress in it (Pa), which only says how fine the
     mesh is, where (x, y, z in m); felt: the largest further away than FELT of its radius; and the
-    exponent with which stress was seen to grow, None where that could not be measured.
+    exponent with which stress was seen to grow, None where that could not be measured. acts: false
+    where only other cases of the pin load the place, so that stress has a bound there.
     """
 
     maximum: float
     felt: float
     location: Point
     exponent: float | None = None
+    acts: bool = True
 
 
 @dataclass(frozen=True)

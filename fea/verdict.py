@@ -72,6 +72,7 @@ def zones(look: Look, places: Sequence[Place]) -> tuple[SingularZone, ...]:
             advice=place.advice,
         )
         for place, inside in zip(places, look.places, strict=True)
+        if inside.acts
     )
 
 

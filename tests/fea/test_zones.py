@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fea.corner import antiplane_exponent, plane_exponent
+from fea.ladder import solve_pin
+from fea.material import Material
+from fea.pin_loads import PinLoads
 from fea.zones import singular_places
 from geometry import GeometryError, Pin, Segment
 
@@ -163,3 +167,26 @@ def test_a_fillet_lost_in_rounding_is_a_sharp_corner(rises: bool) -> None:
     (place,) = singular_places(pin, (), (), NU)
     assert place.kind == "sharp corner"
     assert place.advice.startswith("a fillet of at least 0.1 x")
+
+
+def test_a_case_has_its_own_places(steel: Material) -> None:
+    """Beside a case whose tractions shear, one of pressures has a maximum as it has by itself; its
+    meshes are finer at the edges of loads then, so the values agree within their errors only.
+    """
+    pin = Pin("P", tuple(Segment(0.008, 0.02, connection=name) for name in "ABC"))
+    forces = np.array([[[0.0, 1e4, 0.0], [0.0, -2e4, 0.0], [0.0, 1e4, 0.0]]])
+    shears = PinLoads("shears", ("A", "B", "C"), forces)
+    presses = PinLoads("presses", ("A", "B", "C"), forces, distribution="cosine")
+    (alone,) = solve_pin(pin, steel, (), (presses,))
+    one, other = solve_pin(pin, steel, (), (shears, presses))
+    assert one.peak.verdict == "singular"
+    assert other.peak.verdict == alone.peak.verdict == "converged"
+    assert not other.peak.singular_at
+    values, errors = zip(
+        *((s.peak.max_von_mises or 0.0, s.peak.error_estimate or 0.0) for s in (alone, other)),
+        strict=True,
+    )
+    assert abs(values[0] - values[1]) < sum(errors)
+    assert alone.answer is not None
+    assert other.answer is not None
+    assert other.answer.maxima(presses)[0] == pytest.approx(values[1], rel=1e-12)
