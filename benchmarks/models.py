@@ -1,0 +1,67 @@
+"""Beam, harmonic and solid model on three pins of different kind: cost of an error of 1 %."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+
+from benchmarks.timing import table
+from pinstress import load_study
+from pinstress.chart import chart, prepare
+from pinstress.own_process import Limits, measure
+from reports.chart import Chart
+from reports.chart_summary import cost, error, percent, seconds
+from reports.numbers import engineering
+from reports.plot_chart import chart_plot
+
+ROOT = Path(__file__).parent.parent
+PINS = (
+    ("one_pin.toml", "B", "landing"),
+    ("charted/hollow.toml", "P", "pulled"),
+    ("charted/floating.toml", "P", "pressed"),
+)
+DRAWN = 1
+TOLERANCE, MESHES, RUNS = 0.01, 6, 1
+LIMITS = Limits(seconds=200.0, memory=6000.0)
+
+
+def models() -> str:
+    """The table; draws the chart of the second pin in docs/images."""
+    rows = []
+    for k, (study, pin, case) in enumerate(PINS):
+        plan = prepare(load_study(ROOT / "studies" / study), pin, case, TOLERANCE)
+        found = chart(plan, partial(measure, limits=LIMITS), MESHES, RUNS)
+        if k == DRAWN:
+            chart_plot(found, ROOT / "docs" / "images")
+        rows.append((f"`{study}`", *_row(found)))
+    head = ("study", "beam", "its error", "harmonic", "solid", "solid / harmonic", "memory")
+    return (
+        f"Time (and memory above the bare process) of an error of {percent(TOLERANCE)}, read "
+        "between the meshes; of the solid model the fastest kind of element. Where it never stays "
+        "within that error, what its finest mesh takes, and how far that is off:\n\n"
+        + table(head, rows)
+    )
+
+
+def _row(found: Chart) -> tuple[str, ...]:
+    curves = found.curves
+    beam = next((c[0] for (model, _), c in curves.items() if model == "beam"), None)
+    (plane,) = (c for (model, _), c in curves.items() if model == "harmonic")
+    solids = [c for (model, _), c in curves.items() if model == "solid"]
+    told: tuple[str, ...] = (
+        ("-", "-") if beam is None else (seconds(beam.seconds), percent(error(beam)))
+    )
+    ours = cost(plane, TOLERANCE)
+    if ours is None:
+        return *told, "not reached", "-", "-", "-"
+    reached = [c for curve in solids if (c := cost(curve, TOLERANCE))]
+    if reached:
+        body = min(reached, key=lambda c: c.seconds)
+        told += (seconds(ours.seconds), seconds(body.seconds))
+        spent, memory, more = body.seconds, body.memory, ""
+    else:
+        best = min((curve[-1] for curve in solids), key=error)
+        spent, memory, more = best.seconds or 0.0, best.memory or 0.0, "more than "
+        told += (seconds(ours.seconds), f"{seconds(spent)}, {percent(error(best))} off")
+    ratios = (spent / ours.seconds, memory / ours.memory)
+    return *told, *(f"{more}{engineering(r, 2)}" for r in ratios)
