@@ -11,6 +11,7 @@ from fea.peak import Peak, Refinement, SingularZone, Verdict, discretisation_err
 from fea.zones import Place
 
 LEAST_ORDER = {"harmonic": 1.0}  # meshes of sections have points at the rims of what is excluded
+NOISE = {"harmonic": 0.02}  # of the maximum on the first mesh, where nodes happen to lie; ~ h^2
 FEWEST = 3  # meshes before a maximum may be called converged: two can agree by chance
 
 ARTICLES = {"sharp corner": "a", "edge of a clamp": "the", "edge of a load": "the"}
@@ -39,12 +40,17 @@ class Seen:
 
     @property
     def error(self) -> float:
-        """Estimated error of the last maximum, Pa."""
+        """Estimated error of the last maximum, Pa: from the meshes' sequence, but never less than
+        what a mesh is off by where its nodes happen to lie; and what the loads leave out.
+        """
         last = self.looks[-1]
         if len(self.looks) == 1:
             return last.maximum
         least = LEAST_ORDER.get(self.model, 0.5)
-        return discretisation_error(self.history, self.ratio, last.scatter, least) + last.left_out
+        estimate = discretisation_error(self.history, self.ratio, last.scatter, least)
+        finer = self.ratio ** (len(self.looks) - 1)
+        noise = NOISE.get(self.model, 0.0) * last.maximum / finer**2
+        return max(estimate, noise) + last.left_out
 
     @property
     def relative(self) -> float:
