@@ -21,7 +21,7 @@ PINS = (
     ("charted/floating.toml", "P", "pressed"),
 )
 DRAWN = 1
-TOLERANCE, MESHES, RUNS = 0.01, 6, 1
+TOLERANCE, MESHES, RUNS = 0.01, 5, 1
 LIMITS = Limits(seconds=200.0, memory=6000.0)
 
 
