@@ -20,7 +20,7 @@ ARTICLES = {"sharp corner": "a", "edge of a clamp": "the", "edge of a load": "th
 @dataclass(frozen=True)
 class Seen:
     """The meshes of one case so far, coarse to fine, each `ratio` times finer than the one before;
-    seconds: what each took.
+    seconds: what each took. first: how many meshes of a run are coarser than the first of these.
     """
 
     pin: str
@@ -29,6 +29,7 @@ class Seen:
     looks: tuple[Look, ...]
     seconds: tuple[float, ...]
     ratio: float
+    first: int = 0
 
     @property
     def history(self) -> tuple[Refinement, ...]:
@@ -48,7 +49,7 @@ class Seen:
             return last.maximum
         least = LEAST_ORDER.get(self.model, 0.5)
         estimate = discretisation_error(self.history, self.ratio, last.scatter, least)
-        finer = self.ratio ** (len(self.looks) - 1)
+        finer = self.ratio ** (self.first + len(self.looks) - 1)
         noise = NOISE.get(self.model, 0.0) * last.maximum / finer**2
         return max(estimate, noise) + last.left_out
 

@@ -65,11 +65,11 @@ class Climb:
         """Whether a run of the model would end here."""
         return enough(self.asked, self.problem.material, self.seen(model, looks))
 
-    def seen(self, model: str, looks: tuple[Look, ...]) -> Seen:
+    def seen(self, model: str, looks: tuple[Look, ...], first: int = 0) -> Seen:
         """Successive meshes as a run sees them."""
         ratio = 2.0 if self.problem.pin.meshed else STEP
         name, case = self.problem.pin.name, self.problem.loads.case
-        return Seen(name, case, model, looks, (0.0,) * len(looks), ratio)
+        return Seen(name, case, model, looks, (0.0,) * len(looks), ratio, first)
 
 
 def climb_harmonic(climb: Climb) -> None:
@@ -117,7 +117,8 @@ def harmonic_reference(climb: Climb) -> tuple[Rung, Seen]:
         looks.append(found.look)
         if looks[-1].unknowns > MOST_OF_REFERENCE:
             break
-    return Rung("harmonic", level=level), climb.seen("harmonic", tuple(looks))
+    first = level - len(looks) + 1
+    return Rung("harmonic", level=level), climb.seen("harmonic", tuple(looks), first)
 
 
 def solid_reference(climb: Climb) -> tuple[Rung, Seen]:
