@@ -123,7 +123,7 @@ def entries() -> tuple[Entry, ...]:
             "sharp_corner",
             "A sharp inner corner",
             "Where two free faces meet at an inner angle of 270°, the stress of linear elasticity "
-            f"grows like distance$^{{-s}}$ ({WILLIAMS}); a real corner has a radius.",
+            f"grows like distance^-s ({WILLIAMS}); a real corner has a radius.",
         ),
         _entry(
             clamped_edge(),

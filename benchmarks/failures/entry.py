@@ -32,12 +32,12 @@ class Entry:
     @property
     def text(self) -> str:
         """Its section of the page."""
-        shown = "\n".join(f"    {command}" for command in self.commands)
+        shown = "\n".join(self.commands)
         return (
             f"## {self.title}\n\n{self.physics}\n\n"
             f"![{self.picture}](images/failures/{self.name}.svg)\n\n"
             f"- **The naive answer.** {self.naive}\n"
             f"- **The truth.** {self.truth}\n"
             f"- **What pinstress says.** {self.says}\n\n"
-            f"{shown}\n"
+            f"```sh\n{shown}\n```\n"
         )

@@ -191,4 +191,4 @@ def test_the_page_names_every_entry_and_its_picture() -> None:
         assert (PICTURES / f"{entry.name}.svg").is_file()
         for command in entry.commands:
             assert (STUDIES.parents[1] / command.split()[2]).is_file()
-            assert f"    {command}\n" in text
+            assert f"\n{command}\n" in text
