@@ -170,18 +170,12 @@ def _pardiso(K: sp.csr_matrix, free: Ints, nodes: Floats) -> Callable[[], Solve]
 def _multigrid(K: sp.csr_matrix, free: Ints, nodes: Floats) -> Callable[[], Solve]:
     import pyamg
 
-    x, y, z = nodes[free // 3].T
-    motions = np.zeros((len(free), 6))
-    motions[np.arange(len(free)), free % 3] = 1.0
-    for k, (first, second) in enumerate(((1, 2), (2, 0), (0, 1))):  # turns about x, y, z
-        for axis, arm in ((first, -(x, y, z)[second]), (second, (x, y, z)[first])):
-            on = free % 3 == axis
-            motions[on, 3 + k] = arm[on]
+    from fea.solid import rigid_modes
+
+    motions = rigid_modes(nodes)[free]
 
     def factor() -> Solve:
-        levels = pyamg.smoothed_aggregation_solver(
-            K.tobsr((3, 3)) if len(free) % 3 == 0 else K, B=motions
-        )
+        levels = pyamg.smoothed_aggregation_solver(K.tobsr((3, 3)), B=motions)
 
         def solve(b: Floats) -> Floats:
             columns = [levels.solve(column, tol=1e-8, accel="cg", maxiter=300) for column in b.T]

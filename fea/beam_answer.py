@@ -17,7 +17,7 @@ from fea.look import Look
 from fea.material import Material
 from fea.peak import Peak, Refinement
 from fea.pin_loads import Floats, PinLoads
-from fea.zones import Place
+from fea.zones import Place, outside
 from geometry import Pin
 
 
@@ -43,10 +43,7 @@ class BeamAnswer:
         """The largest stress outside the places, as the other models tell it."""
         found = highest(harmonics(self._beam, self.case))
         r, z = self._beam.points.T
-        outside = np.ones(len(r), dtype=bool)
-        for p in places:
-            outside &= np.hypot(r - p.r, z - p.z) >= p.radius
-        value = np.where(outside[:, None], found.von_mises, 0.0)
+        value = np.where(outside(places, r, z)[:, None], found.von_mises, 0.0)
         point, instant = (int(i) for i in np.unravel_index(value.argmax(), value.shape))
         at, theta = float(r[point]), float(found.theta[point, instant])
         location = (at * math.cos(theta), at * math.sin(theta), float(z[point]))

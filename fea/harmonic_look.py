@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from fea.answer import Picture
-from fea.circumference import Circumference, Mask, Top
+from fea.circumference import Circumference, Top
 from fea.exponent import growth_exponent
 from fea.harmonic import HarmonicModel
 from fea.look import FELT, Inside, Look, Point
@@ -17,7 +17,7 @@ from fea.material import Material
 from fea.meridian_fields import MeridianFields
 from fea.pin_loads import Floats, PinLoads
 from fea.revolved import revolve
-from fea.zones import Place
+from fea.zones import Place, outside
 from geometry import Pin
 from geometry.meridian_mesh import SectionSize, Spot, meridian_mesh
 
@@ -105,33 +105,12 @@ class HarmonicAnswer:
 
     def maxima(self, loads: PinLoads) -> Floats:
         """Largest von Mises stress (T,) Pa at every instant outside the places."""
-        among = outside(self.fields, self._places)
+        among = outside(self._places, *self.fields.points.T)
         return Circumference(self.fields, loads).largest(among)[0]
 
     def picture(self, loads: PinLoads, instant: int) -> Picture:
         """The surface at one instant, with its envelope over all."""
         return revolve(self.fields, loads, instant)
-
-
-def outside(fields: MeridianFields, places: tuple[Place, ...]) -> Mask:
-    """Points (S,) outside all places."""
-    return _outside_of(fields, places, _distances(fields, places), [True] * len(places))
-
-
-def _distances(fields: MeridianFields, places: tuple[Place, ...]) -> list[Floats]:
-    """Of the points from each place, (S,) m."""
-    r, z = fields.points.T
-    return [np.hypot(r - p.r, z - p.z) for p in places]
-
-
-def _outside_of(
-    fields: MeridianFields, places: tuple[Place, ...], distances: list[Floats], acts: list[bool]
-) -> Mask:
-    out = np.ones(len(fields.points), dtype=bool)
-    for p, d, here in zip(places, distances, acts, strict=True):
-        if here:
-            out &= d >= p.radius * (1.0 - 1e-9)
-    return out
 
 
 def harmonic_look(
@@ -145,17 +124,17 @@ def harmonic_look(
     """
     fields = solution.fields
     around = Circumference(fields, loads)
-    acts = [own is None or p in own for p in places]
-    distances = _distances(fields, places)
-    top = around.top(_outside_of(fields, places, distances, acts))
+    mine = places if own is None else own
+    r, z = fields.points.T
+    top = around.top(outside(mine, r, z))
     return Look(
         unknowns=fields.unknowns,
         maximum=top.value,
         instant=top.instant,
         location=_location(fields.points[top.point], top.angle),
         places=tuple(
-            replace(_inside(solution, around, p, d, close), acts=own_place)
-            for p, d, close, own_place in zip(places, distances, solution.close, acts, strict=True)
+            replace(_inside(solution, around, p, np.hypot(r - p.r, z - p.z), close), acts=p in mine)
+            for p, close in zip(places, solution.close, strict=True)
         ),
         left_out=_left_out(around, loads, top),
     )

@@ -106,9 +106,6 @@ class _Job:
     asked: Asked
     progress: Progress
 
-    def decided(self, maximum: float, error: float) -> bool:
-        return decided(self.asked, self.material, maximum, error)
-
 
 def decided(asked: Asked, material: Material, maximum: float, error: float) -> bool:
     """Whether the interval of the factor of safety is all on one side of what is required."""
@@ -161,7 +158,7 @@ def _beam(
         if asked.model == "auto":
             if found.error is None:
                 continue
-            if job.decided(found.maximum, found.error):
+            if decided(job.asked, job.material, found.maximum, found.error):
                 why = "beam: the required factor lies outside of what its error leaves open"
             elif peak.verdict == "converged":
                 why = "beam: its error is within the tolerance"
@@ -262,7 +259,7 @@ def _why(job: _Job, model: str) -> Callable[[Seen, Peak], str]:
             chosen = f"harmonic: no beam knows this maximum to {job.asked.tolerance:.1%}"
         if seen.known(job.asked.tolerance):
             return f"{chosen}; its error is within the tolerance on {len(seen.looks)} meshes"
-        if job.decided(peak.max_von_mises or 0.0, seen.error):
+        if decided(job.asked, job.material, peak.max_von_mises or 0.0, seen.error):
             return f"{chosen}; its error leaves no doubt on which side of the required factor it is"
         return f"{chosen}; the largest mesh allowed does not reach the tolerance"
 

@@ -20,7 +20,7 @@ from fea.look import Look
 from fea.material import Material
 from fea.pin_loads import PinLoads
 from fea.solid_look import solid_solution
-from fea.zones import Place
+from fea.zones import Place, outside
 from geometry import Pin, PinLike
 from geometry.elements import Element
 from geometry.solid_mesh import MeshSize
@@ -80,8 +80,6 @@ def _solid_look(problem: Problem, rung: Rung) -> Look:
     )  # fmt: skip
     fields = solution.fields
     x = fields.space.nodes[fields.surface.nodes]
-    outside = solution.outside
-    for p in problem.places:
-        outside &= np.hypot(np.hypot(x[:, 0], x[:, 1]) - p.r, x[:, 2] - p.z) >= p.radius
-    top = envelope(fields, problem.loads, outside)
+    among = solution.outside & outside(problem.places, np.hypot(x[:, 0], x[:, 1]), x[:, 2])
+    top = envelope(fields, problem.loads, among)
     return Look(fields.space.unknowns, top.maximum, top.instant, top.location, (), top.scatter)

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
 
 from fea.corner import Side, antiplane_exponent, plane_exponent
 from geometry import Pin, Vertex, vertices
 
+Floats = NDArray[np.float64]
 Kind = Literal["sharp corner", "edge of a clamp", "edge of a load"]
 
 FLAT = 1e-9  # rad: two surfaces that meet at pi within this are one smooth surface
@@ -74,6 +79,14 @@ def singular_places(
     pushed = {pin.surface(name) for name in loaded}
     found = (_place(pin, v, held, pushed, nu, distance) for v in vertices(pin))
     return tuple(place for place in found if place is not None)
+
+
+def outside(places: Iterable[Place], r: Floats, z: Floats) -> NDArray[np.bool_]:
+    """Which of the points at r, z (S,), m, are in none of the places."""
+    out = np.ones(len(r), dtype=bool)
+    for p in places:
+        out &= np.hypot(r - p.r, z - p.z) >= p.radius * (1.0 - 1e-9)
+    return out
 
 
 def clamp_rims(pin: Pin, clamps: tuple[str, ...]) -> tuple[tuple[float, float], ...]:
