@@ -99,6 +99,14 @@ def example(text: str) -> str:
 )
 @click.option("--no-pictures", is_flag=True, help="Neither plots nor rendered pins: faster.")
 @click.option(
+    "--vtk",
+    type=click.Choice(["model", "surface", "motion", "none"]),
+    default="model",
+    show_default=True,
+    help="Fields for ParaView: as the model has them (the skin of a revolved pin, all of a meshed "
+    "solid), skins only, also along every motion (large), or none.",
+)
+@click.option(
     "--second-opinion",
     type=click.Choice(["ccx"]),
     help="Have CalculiX solve every row once more on the solid model's mesh, and compare.",
@@ -111,6 +119,7 @@ def run(
     model: str | None,
     tolerance: float | None,
     no_pictures: bool,
+    vtk: str,
     second_opinion: str | None,
 ) -> int:
     if second_opinion is not None:
@@ -122,8 +131,8 @@ def run(
     from pinstress.write import run_and_write
 
     chosen: dict[str, Any] = {"pins": pins, "cases": cases, "model": model, "tolerance": tolerance}
-    second = second_opinion is not None
-    return run_and_write(loaded, directory, pictures=not no_pictures, second=second, **chosen)
+    chosen |= {"second": second_opinion is not None, "vtk": vtk}
+    return run_and_write(loaded, directory, pictures=not no_pictures, **chosen)
 
 
 def _require_calculix() -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 from fea.ladder import Asked, Model, Solution, solve_pin
 from fea.peak import Peak
-from pinstress import checks, gather
+from pinstress import checks, gather, gather_fields
 from pinstress.build import CaseLoads, case_loads
 from pinstress.errors import InputError
 from pinstress.measures import published_values
@@ -53,7 +53,8 @@ def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
 class Plan:
     """All that is known before anything is solved: every input is read and found usable.
 
-    checked: the task whose pin the beam check compares, if any.
+    checked: the task whose pin the beam check compares, if any. motion: whether fields are wanted
+    along the whole motion.
     """
 
     study: Study
@@ -62,6 +63,7 @@ class Plan:
     tasks: list[Task]
     published: Published
     checked: Task | None
+    motion: bool = False
 
 
 def prepare(
@@ -71,10 +73,12 @@ def prepare(
     cases: Iterable[str] | None = None,
     model: Model | None = None,
     tolerance: float | None = None,
+    motion: bool = False,
 ) -> Plan:
     """Find the reactions and lay out what is to be solved.
 
-    pins, cases: names; all by default. model, tolerance: instead of the study's.
+    pins, cases: names; all by default. model, tolerance: instead of the study's. motion: whether
+    fields are wanted along the whole motion, too.
 
     Raises: InputError for bad input.
     """
@@ -96,7 +100,7 @@ def prepare(
                 f"{study.path}: pin {task.pin.name} is no body of revolution, which the "
                 f"{asked.model} model needs: use auto or solid"
             )
-    return Plan(study, asked, loads, todo, published, checked)
+    return Plan(study, asked, loads, todo, published, checked, motion)
 
 
 def _asked(study: Study, model: Model | None, tolerance: float | None) -> Asked:
@@ -136,7 +140,9 @@ def solve(
         material = material_of(study, study.table.pin[task.pin.name].material)
         found = solve_pin(task.pin, material, task.clamps, task.loads, plan.asked, tell)
         for solution in found:
-            if (field := gather.field(study, task, solution)) is not None:
+            case = plan.loads[solution.peak.case]
+            field = gather_fields.field(study, task, solution, case, plan.motion)
+            if field is not None:
                 keep(field)
         ask(task, tuple(s.peak for s in found), tell)
         if task is plan.checked and study.table.beam_check is not None:

@@ -18,32 +18,40 @@ from pinstress.study import Study
 from reports.results import Field, Results, Units
 from reports.terminal import print_safety_factors
 from reports.terminal_loads import print_loads
-from reports.vtk import render_pin, renderer_problem, write_vtu
+from reports.vtk import render_pin, renderer_problem, surface, write_pin
 from reports.write import write_loads, write_reports
 
 
 def run_and_write(
-    study: Study, directory: Path, *, pictures: bool, second: bool = False, **chosen: Any
+    study: Study,
+    directory: Path,
+    *,
+    pictures: bool,
+    second: bool = False,
+    vtk: str = "model",
+    **chosen: Any,
 ) -> int:
     """Run a study into a folder; returns the exit status.
 
-    second: whether CalculiX is asked for its opinion, too. chosen: what pinstress.pipeline.prepare
-    takes. Raises: InputError, ArithmeticError.
+    second: whether CalculiX is asked for its opinion, too. vtk: which fields are written, as --vtk
+    says. chosen: what pinstress.pipeline.prepare takes. Raises: InputError, ArithmeticError.
     """
     require_replaceable(directory)
-    plan = prepare(study, **chosen)
+    plan = prepare(study, motion=vtk == "motion", **chosen)
     problem = renderer_problem() if pictures else None
     drawn: dict[tuple[str, str], Path] = {}
     s = study.system
     units = Units(s.length, s.force, s.stress, s.time)
     opinions = Opinions(plan) if second else None
     with replacing(directory) as staging:
-        vtk = staging / "vtk"
-        vtk.mkdir()
+        if vtk != "none":
+            (staging / "vtk").mkdir()
 
         def keep(field: Field) -> None:
             name = f"{field.pin}_{field.case}"
-            write_vtu(field, vtk / f"{name}.vtu", units)
+            if vtk != "none":
+                shown = surface(field) if vtk == "surface" else field
+                write_pin(shown, staging / "vtk", units)
             if pictures and problem is None:
                 picture = staging / "plots" / f"pin_{name}.png"
                 picture.parent.mkdir(exist_ok=True)

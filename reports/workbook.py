@@ -105,7 +105,7 @@ def _format(column: Sequence[Cell]) -> str:
     largest = max(map(abs, numbers))
     if not SMALL <= largest < LARGE:
         return "0.000E+00"
-    return FORMATS.get(int(np.floor(np.log10(largest))), "#,##0")
+    return FORMATS.get(int(np.floor(np.log10(largest))), "#,##0.0")
 
 
 def _width(heading: str, column: Sequence[Cell]) -> float:
