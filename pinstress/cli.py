@@ -11,6 +11,8 @@ from typing import Any
 
 import click
 
+from pinstress.cli_more import completion, init, schema, view
+from pinstress.command import example, names
 from pinstress.errors import InputError
 
 REACHED, NOT_REACHED, BAD_INPUT, NUMERICS_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
@@ -49,16 +51,6 @@ def _interrupt(*_: object) -> None:
     raise KeyboardInterrupt
 
 
-def _names(_: click.Context, __: click.Parameter, value: str | None) -> list[str] | None:
-    """A,B as a list."""
-    if value is None:
-        return None
-    names = [n.strip() for n in value.split(",") if n.strip()]
-    if not names:
-        raise click.BadParameter("names none; write for instance A,B")
-    return names
-
-
 @click.group(
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog="A first run: pinstress init trial && pinstress run trial/one_pin.toml",
@@ -66,11 +58,6 @@ def _names(_: click.Context, __: click.Parameter, value: str | None) -> list[str
 @click.version_option(package_name="pinstress")
 def commands() -> None:
     """Stresses and safety factors of the pins of a linkage."""
-
-
-def example(text: str) -> str:
-    """A help text that begins with an example, kept on its own line."""
-    return f"\b\nExample: {text}\n"
 
 
 @commands.command(
@@ -85,8 +72,8 @@ def example(text: str) -> str:
 @click.option(
     "--out", type=click.Path(path_type=Path), help="Folder to write [out/<study's name>]."
 )
-@click.option("--pins", callback=_names, metavar="A,B", help="These pins only.")
-@click.option("--cases", callback=_names, metavar="X,Y", help="These cases only.")
+@click.option("--pins", callback=names, metavar="A,B", help="These pins only.")
+@click.option("--cases", callback=names, metavar="X,Y", help="These cases only.")
 @click.option(
     "--model",
     type=click.Choice(["auto", "beam", "harmonic", "solid"]),
@@ -111,6 +98,9 @@ def example(text: str) -> str:
     type=click.Choice(["ccx"]),
     help="Have CalculiX solve every row once more on the solid model's mesh, and compare.",
 )
+@click.option("--json", "as_json", is_flag=True, help="Print results.json instead of the table.")
+@click.option("--quiet", is_flag=True, help="No progress and no notes; what failed is still said.")
+@click.option("--open", "opens", is_flag=True, help="Open the report in the browser at the end.")
 def run(
     study: Path,
     out: Path | None,
@@ -121,6 +111,9 @@ def run(
     no_pictures: bool,
     vtk: str,
     second_opinion: str | None,
+    as_json: bool,
+    quiet: bool,
+    opens: bool,
 ) -> int:
     if second_opinion is not None:
         _require_calculix()
@@ -128,11 +121,11 @@ def run(
 
     loaded = load_study(study)
     directory = out or Path("out") / loaded.name
-    from pinstress.write import run_and_write
+    from pinstress.write import Wanted, run_and_write
 
+    wanted = Wanted(not no_pictures, second_opinion is not None, vtk, as_json, quiet, opens)
     chosen: dict[str, Any] = {"pins": pins, "cases": cases, "model": model, "tolerance": tolerance}
-    chosen |= {"second": second_opinion is not None, "vtk": vtk}
-    return run_and_write(loaded, directory, pictures=not no_pictures, **chosen)
+    return run_and_write(loaded, directory, wanted, **chosen)
 
 
 def _require_calculix() -> None:
@@ -153,16 +146,19 @@ def _require_calculix() -> None:
 @click.option(
     "--out", type=click.Path(path_type=Path), help="Folder to write [out/<study's name>-loads]."
 )
-@click.option("--cases", callback=_names, metavar="X,Y", help="These cases only.")
+@click.option("--cases", callback=names, metavar="X,Y", help="These cases only.")
 @click.option("--no-pictures", is_flag=True, help="No plots: faster.")
-def loads(study: Path, out: Path | None, cases: list[str] | None, no_pictures: bool) -> int:
+@click.option("--quiet", is_flag=True, help="No notes; what failed is still said.")
+def loads(
+    study: Path, out: Path | None, cases: list[str] | None, no_pictures: bool, quiet: bool
+) -> int:
     from pinstress.study import load_study
 
     loaded = load_study(study)
     from pinstress.write import loads_and_write
 
     directory = out or Path("out") / f"{loaded.name}-loads"
-    return loads_and_write(loaded, directory, plots=not no_pictures, cases=cases)
+    return loads_and_write(loaded, directory, plots=not no_pictures, cases=cases, quiet=quiet)
 
 
 @commands.command(
@@ -240,35 +236,5 @@ def check(study: Path) -> None:
     click.echo(describe(load_study(study)))
 
 
-@commands.command(
-    help=example("pinstress init trial")
-    + "\nWrite a small commented study, one_pin.toml, that runs as it is."
-)
-@click.argument("directory", type=click.Path(path_type=Path, file_okay=False), default=Path("."))
-def init(directory: Path) -> None:
-    from pinstress.studies import shipped
-
-    target = directory / "one_pin.toml"
-    if target.exists():
-        raise InputError(f"{target} exists already; name another folder")
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-        target.write_text(shipped("one_pin.toml").read_text(encoding="utf-8"), encoding="utf-8")
-    except OSError as error:
-        raise InputError(f"{target}: cannot be written ({error.strerror})") from None
-    click.echo(str(target))
-    click.echo(f"Next: pinstress run {target}", err=True)
-
-
-@commands.command(
-    help=example("pinstress schema > study.schema.json")
-    + "\nPrint the JSON Schema of the study file, for editors."
-)
-def schema() -> None:
-    import json
-
-    from pinstress.schema import StudyTable
-
-    made = StudyTable.model_json_schema()
-    made["$schema"] = "https://json-schema.org/draft/2020-12/schema"
-    click.echo(json.dumps(made, indent=2))
+for _command in (init, schema, view, completion):
+    commands.add_command(_command)

@@ -5,12 +5,14 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import click
 from rich.console import Console
 
+from pinstress.command import open_page
 from pinstress.output import replacing, require_replaceable
 from pinstress.pipeline import Progress, loads_only, prepare, solve
 from pinstress.second_opinion import Opinions
@@ -22,68 +24,82 @@ from reports.vtk import render_pin, renderer_problem, surface, write_pin
 from reports.write import write_loads, write_reports
 
 
-def run_and_write(
-    study: Study,
-    directory: Path,
-    *,
-    pictures: bool,
-    second: bool = False,
-    vtk: str = "model",
-    **chosen: Any,
-) -> int:
+@dataclass(frozen=True)
+class Wanted:
+    """What a run is to give besides its numbers: pictures; CalculiX's second opinion; fields (vtk,
+    as --vtk names them); results.json on stdout instead of the table; no progress and no notes;
+    the report opened.
+    """
+
+    pictures: bool = True
+    second: bool = False
+    vtk: str = "model"
+    as_json: bool = False
+    quiet: bool = False
+    opens: bool = False
+
+
+def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Any) -> int:
     """Run a study into a folder; returns the exit status.
 
-    second: whether CalculiX is asked for its opinion, too. vtk: which fields are written, as --vtk
-    says. chosen: what pinstress.pipeline.prepare takes. Raises: InputError, ArithmeticError.
+    chosen: what pinstress.pipeline.prepare takes. Raises: InputError, ArithmeticError.
     """
     require_replaceable(directory)
-    plan = prepare(study, motion=vtk == "motion", **chosen)
-    problem = renderer_problem() if pictures else None
+    plan = prepare(study, motion=wanted.vtk == "motion", **chosen)
+    problem = renderer_problem() if wanted.pictures else None
     drawn: dict[tuple[str, str], Path] = {}
     s = study.system
     units = Units(s.length, s.force, s.stress, s.time)
-    opinions = Opinions(plan) if second else None
+    opinions = Opinions(plan) if wanted.second else None
     with replacing(directory) as staging:
-        if vtk != "none":
+        if wanted.vtk != "none":
             (staging / "vtk").mkdir()
 
         def keep(field: Field) -> None:
-            name = f"{field.pin}_{field.case}"
-            if vtk != "none":
-                shown = surface(field) if vtk == "surface" else field
+            if wanted.vtk != "none":
+                shown = surface(field) if wanted.vtk == "surface" else field
                 write_pin(shown, staging / "vtk", units)
-            if pictures and problem is None:
-                picture = staging / "plots" / f"pin_{name}.png"
+            if wanted.pictures and problem is None:
+                picture = staging / "plots" / f"pin_{field.pin}_{field.case}.png"
                 picture.parent.mkdir(exist_ok=True)
                 render_pin(field, picture, units, f"pin {field.pin}, {field.case}")
                 drawn[field.pin, field.case] = picture
 
-        with progress_bar() as progress:
+        with progress_bar(wanted.quiet) as progress:
             ask = {"ask": opinions.ask} if opinions else {}
             results = solve(plan, keep, progress, **ask)
             progress("report", 1.0)
-            write_reports(results, staging, drawn, plots=pictures)
+            write_reports(results, staging, drawn, plots=wanted.pictures)
             if opinions:
                 opinions.write(staging)
-    print_safety_factors(results, console())
-    if opinions:
-        opinions.show(console())
-    _tell_left_out(results)
-    if problem is not None:
-        click.echo(f"No pictures of the pins: {problem}", err=True)
-    click.echo(f"Report: {directory / 'report.html'}", err=True)
+    if wanted.as_json:
+        click.echo((directory / "results.json").read_text(encoding="utf-8"), nl=False)
+    else:
+        print_safety_factors(results, console())
+        if opinions:
+            opinions.show(console())
+    if not wanted.quiet:
+        _tell_left_out(results)
+        if problem is not None:
+            click.echo(f"No pictures of the pins: {problem}", err=True)
+        click.echo(f"Report: {directory / 'report.html'}", err=True)
+    if wanted.opens:
+        open_page(directory / "report.html")
     status = _tell_not_reached(results, study.table.analysis.goal == "decide")
     return max(status, opinions.tell_disagreements()) if opinions else status
 
 
-def loads_and_write(study: Study, directory: Path, *, plots: bool, cases: list[str] | None) -> int:
+def loads_and_write(
+    study: Study, directory: Path, *, plots: bool, cases: list[str] | None, quiet: bool = False
+) -> int:
     """The mechanics of a study into a folder; returns the exit status. Raises: InputError."""
     require_replaceable(directory)
     results = loads_only(study, cases)
     with replacing(directory) as staging:
         write_loads(results, staging, plots=plots)
     print_loads(results, console())
-    click.echo(f"Written: {directory}", err=True)
+    if not quiet:
+        click.echo(f"Written: {directory}", err=True)
     return 0
 
 
@@ -123,15 +139,20 @@ def _tell_not_reached(results: Results, decide: bool) -> int:
 
 
 @contextmanager
-def progress_bar() -> Iterator[Progress]:
+def progress_bar(quiet: bool = False) -> Iterator[Progress]:
     """A bar on stderr while it is a terminal; nothing otherwise."""
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich import progress as rich
 
-    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+    columns = (
+        rich.TextColumn("{task.description}"),
+        rich.BarColumn(),
+        rich.TimeElapsedColumn(),
+        rich.TextColumn("left"),
+        rich.TimeRemainingColumn(),
+    )
     console = Console(stderr=True)
-    with Progress(
-        *columns, console=console, transient=True, disable=not console.is_terminal
-    ) as bar:
+    silent = quiet or not console.is_terminal
+    with rich.Progress(*columns, console=console, transient=True, disable=silent) as bar:
         task = bar.add_task("reactions", total=1.0)
 
         def tell(message: str, part: float) -> None:
