@@ -11,7 +11,7 @@ from typing import Any
 
 import click
 
-from pinstress.cli_more import completion, init, schema, view
+from pinstress.cli_more import completion, init, schema, size, view
 from pinstress.command import example, names
 from pinstress.errors import InputError
 
@@ -236,5 +236,5 @@ def check(study: Path) -> None:
     click.echo(describe(load_study(study)))
 
 
-for _command in (init, schema, view, completion):
+for _command in (init, schema, size, view, completion):
     commands.add_command(_command)

@@ -1,4 +1,4 @@
-"""The commands beside the pipeline: init, schema, view, completion."""
+"""The commands beside the pipeline: init, schema, size, view, completion."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from pinstress.command import example
+from pinstress.command import example, names
 from pinstress.errors import InputError
 
 
@@ -85,3 +85,53 @@ def completion(context: click.Context, shell: str) -> None:
     found, root = get_completion_class(shell), context.find_root().command
     assert found is not None
     click.echo(found(root, {}, "pinstress", "_PINSTRESS_COMPLETE").source())
+
+
+@click.command(
+    help=example("pinstress size studies/one_pin.toml --fos 10 --step 0.125")
+    + "\nThe smallest diameters of every pin that reach a factor of safety in all cases, and a new "
+    "study file with them. A pin keeps its lengths and its proportions across the axis (diameters, "
+    "bores, fillets). The new study is run before it is written.\n\n"
+    "Exit status: 0 done; 1 done, but a pin does not reach the factor as a value; 2 bad input; "
+    "3 the numerics failed; 130 interrupted."
+)
+@click.argument("study", type=click.Path(path_type=Path))
+@click.option(
+    "--fos",
+    type=click.FloatRange(0.0, min_open=True),
+    help="The factor to reach, instead of the study's required_safety_factor.",
+)
+@click.option("--pins", callback=names, metavar="A,B", help="These pins only.")
+@click.option(
+    "--step",
+    metavar="LENGTH",
+    help='Round diameters up to multiples of this, in the study\'s unit or its own ("1 mm").',
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, dir_okay=False),
+    metavar="FILE",
+    help="The new study [beside the study: <its name>_sized.toml].",
+)
+@click.option("--quiet", is_flag=True, help="No progress and no notes; what failed is still said.")
+def size(
+    study: Path,
+    fos: float | None,
+    pins: list[str] | None,
+    step: str | None,
+    out: Path | None,
+    quiet: bool,
+) -> int:
+    from pinstress.study import load_study
+    from pinstress.units import to_si
+
+    loaded = load_study(study)
+    try:
+        metres = None if step is None else to_si(step, "length", loaded.system)
+    except ValueError as error:
+        raise InputError(f"--step: {error}") from None
+    if metres is not None and metres <= 0.0:
+        raise InputError("--step: must be positive")
+    from pinstress.write_size import size_and_write
+
+    return size_and_write(loaded, fos, out, pins, metres, quiet)
