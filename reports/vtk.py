@@ -13,7 +13,15 @@ from reports.renderer import renderer_problem
 from reports.results import BandLoad, Field, Floats, Units
 from reports.vtk_file import Block, Data, write_block, write_multiblock, write_series
 
-__all__ = ["point_data", "render_pin", "renderer_problem", "surface", "write_pin", "write_vtu"]
+__all__ = [
+    "block",
+    "point_data",
+    "render_pin",
+    "renderer_problem",
+    "surface",
+    "write_pin",
+    "write_vtu",
+]
 
 # From xx, yy, zz, yz, xz, xy to the order of VTK's symmetric tensors, XX YY ZZ XY YZ XZ.
 VTK_SYMMETRIC = (0, 1, 2, 5, 3, 4)
@@ -44,10 +52,14 @@ def point_data(field: Field, units: Units) -> dict[str, Floats]:
 
 def write_vtu(field: Field, path: Path, units: Units) -> None:
     """Write a VTU file with results at the nodes, and its time."""
+    write_block(block(field, units), path)
+
+
+def block(field: Field, units: Units) -> Block:
+    """What a VTU file has of a field."""
     # "TimeValue" is the name by which VTK knows a file's time.
     time: Data = {} if field.time is None else {"TimeValue": np.array([field.time])}
-    data = point_data(field, units)
-    write_block(Block(field.points, field.cells, field.cell_type, data, whole=time), path)
+    return Block(field.points, field.cells, field.cell_type, point_data(field, units), whole=time)
 
 
 def write_pin(field: Field, directory: Path, units: Units) -> None:

@@ -41,7 +41,7 @@ def write_block(block: Block, path: Path) -> None:
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
     writer = vtkXMLUnstructuredGridWriter()
-    writer.SetInputData(_grid(block))
+    writer.SetInputData(grid(block))
     writer.SetFileName(str(path))
     writer.SetDataModeToBinary()  # appended raw it would be a quarter less, but none for meshio
     writer.SetHeaderTypeToUInt64()
@@ -51,27 +51,28 @@ def write_block(block: Block, path: Path) -> None:
         raise OSError(f"{path}: VTK could not write it")
 
 
-def _grid(block: Block) -> Any:
+def grid(block: Block) -> Any:
+    """The same as a vtkUnstructuredGrid."""
     from vtkmodules.util.numpy_support import numpy_to_vtk
     from vtkmodules.vtkCommonCore import vtkPoints
     from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
 
-    grid, points, cells = vtkUnstructuredGrid(), vtkPoints(), vtkCellArray()
+    made, points, cells = vtkUnstructuredGrid(), vtkPoints(), vtkCellArray()
     points.SetData(numpy_to_vtk(_numbers(block.points), deep=True))
-    grid.SetPoints(points)
+    made.SetPoints(points)
     count, width = block.cells.shape
     ends = np.arange(0, count * width + 1, width, dtype=np.int32)
     nodes = np.ascontiguousarray(block.cells, dtype=np.int32).ravel()
     cells.SetData(numpy_to_vtk(ends, deep=True), numpy_to_vtk(nodes, deep=True))
-    grid.SetCells(TYPES[block.cell_type], cells)
+    made.SetCells(TYPES[block.cell_type], cells)
     for place, data in (
-        (grid.GetPointData(), block.point_data),
-        (grid.GetCellData(), block.cell_data),
-        (grid.GetFieldData(), block.whole),
+        (made.GetPointData(), block.point_data),
+        (made.GetCellData(), block.cell_data),
+        (made.GetFieldData(), block.whole),
     ):
         for name, values in data.items():
             place.AddArray(_array(name, values, seven=data is not block.whole))
-    return grid
+    return made
 
 
 def _array(name: str, values: NDArray[Any] | Sequence[str], seven: bool) -> Any:
