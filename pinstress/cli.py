@@ -87,11 +87,11 @@ def commands() -> None:
 @click.option("--no-pictures", is_flag=True, help="Neither plots nor rendered pins: faster.")
 @click.option(
     "--vtk",
-    type=click.Choice(["model", "surface", "motion", "none"]),
+    type=click.Choice(["model", "surface", "solid", "motion", "none"]),
     default="model",
     show_default=True,
     help="Fields for ParaView: as the model has them (the skin of a revolved pin, all of a meshed "
-    "solid), skins only, also along every motion (large), or none.",
+    "solid), skins only, also all of revolved pins (large), also along every motion (large), none.",
 )
 @click.option(
     "--second-opinion",

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 
 from fea.answer import Answer
+from fea.harmonic_look import HarmonicAnswer
 from fea.ladder import Solution
 from fea.peak import Peak
 from fea.pin_loads import PinLoads
+from fea.revolved import revolve_solid
 from fea.tensor import von_mises
 from pinstress.build import CaseLoads
 from pinstress.pins import material as material_of
@@ -17,15 +20,16 @@ from pinstress.study import Study
 from pinstress.tasks import Task
 from reports import results as plain
 
+Also = Literal["motion", "solid"] | None
 STILLS = 50  # of a motion, besides the governing instant
 
 
 def field(
-    study: Study, task: Task, solution: Solution, case: CaseLoads, motion: bool = False
+    study: Study, task: Task, solution: Solution, case: CaseLoads, also: Also = None
 ) -> plain.Field | None:
     """A pin's field at its governing instant; None if not solved, or if the model has none.
 
-    motion: whether with the others, at most STILLS of them.
+    also: with the other instants, at most STILLS of them, or with all of a revolved pin.
     """
     peak, unit = solution.peak, study.system.factor
     loads = next(x for x in task.loads if x.case == peak.case)
@@ -51,11 +55,28 @@ def field(
         time=None if times is None else float(times[peak.instant]),
         loads=_bands(study, task, loads, peak.instant),
         stills=()
-        if times is None or not motion
+        if times is None or also != "motion"
         else tuple(
             _still(study, task, solution.answer, loads, i, float(times[i]))
             for i in instants(len(loads), peak.instant)
         ),
+        volume=_volume(study, solution.answer, loads, peak.instant) if also == "solid" else None,
+    )
+
+
+def _volume(study: Study, answer: Answer, loads: PinLoads, instant: int) -> plain.Volume | None:
+    """All of a revolved pin; a solid model's field has it already."""
+    if not isinstance(answer, HarmonicAnswer):
+        return None
+    unit, shown = study.system.factor, revolve_solid(answer.fields, loads, instant)
+    stress = shown.stress / unit("stress")
+    return plain.Volume(
+        shown.points / unit("length"),
+        shown.cells,
+        shown.cell_type,
+        shown.displacement / unit("length"),
+        stress,
+        von_mises(stress),
     )
 
 

@@ -12,6 +12,7 @@ from fea.peak import Peak
 from pinstress import checks, gather, gather_fields
 from pinstress.build import CaseLoads, case_loads
 from pinstress.errors import InputError
+from pinstress.gather_fields import Also
 from pinstress.measures import published_values
 from pinstress.mechanism import linkage
 from pinstress.pins import material as material_of
@@ -53,8 +54,8 @@ def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
 class Plan:
     """All that is known before anything is solved: every input is read and found usable.
 
-    checked: the task whose pin the beam check compares, if any. motion: whether fields are wanted
-    along the whole motion.
+    checked: the task whose pin the beam check compares, if any. also: which fields are wanted
+    beside those of the model at the governing instant.
     """
 
     study: Study
@@ -63,7 +64,7 @@ class Plan:
     tasks: list[Task]
     published: Published
     checked: Task | None
-    motion: bool = False
+    also: Also = None
 
 
 def prepare(
@@ -73,12 +74,12 @@ def prepare(
     cases: Iterable[str] | None = None,
     model: Model | None = None,
     tolerance: float | None = None,
-    motion: bool = False,
+    also: Also = None,
 ) -> Plan:
     """Find the reactions and lay out what is to be solved.
 
-    pins, cases: names; all by default. model, tolerance: instead of the study's. motion: whether
-    fields are wanted along the whole motion, too.
+    pins, cases: names; all by default. model, tolerance: instead of the study's. also:
+    fields along the whole motion, or of all of a revolved pin.
 
     Raises: InputError for bad input.
     """
@@ -100,7 +101,7 @@ def prepare(
                 f"{study.path}: pin {task.pin.name} is no body of revolution, which the "
                 f"{asked.model} model needs: use auto or solid"
             )
-    return Plan(study, asked, loads, todo, published, checked, motion)
+    return Plan(study, asked, loads, todo, published, checked, also)
 
 
 def _asked(study: Study, model: Model | None, tolerance: float | None) -> Asked:
@@ -141,7 +142,7 @@ def solve(
         found = solve_pin(task.pin, material, task.clamps, task.loads, plan.asked, tell)
         for solution in found:
             case = plan.loads[solution.peak.case]
-            field = gather_fields.field(study, task, solution, case, plan.motion)
+            field = gather_fields.field(study, task, solution, case, plan.also)
             if field is not None:
                 keep(field)
         ask(task, tuple(s.peak for s in found), tell)

@@ -45,7 +45,8 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Any) 
     chosen: what pinstress.pipeline.prepare takes. Raises: InputError, ArithmeticError.
     """
     require_replaceable(directory)
-    plan = prepare(study, motion=wanted.vtk == "motion", **chosen)
+    also: Any = wanted.vtk if wanted.vtk in ("motion", "solid") else None
+    plan = prepare(study, also=also, **chosen)
     problem = renderer_problem() if wanted.pictures else None
     drawn: dict[tuple[str, str], Path] = {}
     s = study.system

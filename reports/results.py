@@ -362,13 +362,28 @@ class Still:
 
 
 @dataclass(frozen=True)
+class Volume:
+    """All of a revolved pin: points (N, 3), cells (M, 6; "wedge"), displacement (N, 3), stress
+    (N, 6) as a Field's, von_mises (N,).
+    """
+
+    points: Floats
+    cells: NDArray[np.int64]
+    cell_type: str
+    displacement: Floats
+    stress: Floats
+    von_mises: Floats
+
+
+@dataclass(frozen=True)
 class Field:
     """A mesh with results at its nodes: points (N, 3), cells (M, 10; VTK's order of "tetra10") or
     (M, 4; "quad": the surface alone), displacement (N, 3), stress (N, 6: xx, yy, zz, yz, xz, xy),
     von_mises (N,), and envelope (N,): the largest von Mises over all instants at surface nodes, NaN
     inside. yield_strength: for the factor of safety at each point, None without one. outside: of a
     `singular` pin the largest stress outside the excluded zones and where it is (x, y, z). time:
-    None without a motion. loads: what acts at this instant. stills: along the motion, if wanted.
+    None without a motion. loads: what acts at this instant. stills: along the motion, and
+    volume: all of a revolved pin, if wanted.
     """
 
     pin: str
@@ -386,6 +401,7 @@ class Field:
     time: float | None = None
     loads: tuple[BandLoad, ...] = ()
     stills: tuple[Still, ...] = ()
+    volume: Volume | None = None
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import numpy as np
 
 from reports.picture import render_pin
 from reports.renderer import renderer_problem
-from reports.results import BandLoad, Field, Floats, Units
+from reports.results import BandLoad, Field, Floats, Units, Volume
 from reports.vtk_file import Block, Data, write_block, write_multiblock, write_series
 
 __all__ = [
@@ -63,8 +63,8 @@ def block(field: Field, units: Units) -> Block:
 
 
 def write_pin(field: Field, directory: Path, units: Units) -> None:
-    """Write PIN_CASE.vtu, and PIN_CASE.vtm, which adds its loads and bands (PIN_CASE/*.vtu); with
-    stills PIN_CASE.pvd, the same along the motion.
+    """Write PIN_CASE.vtu, and PIN_CASE.vtm, which adds loads, bands and volume (PIN_CASE/*.vtu);
+    with stills PIN_CASE.pvd, the same along the motion.
     """
     name = f"{field.pin}_{field.case}"
     write_vtu(field, directory / f"{name}.vtu", units)
@@ -76,7 +76,11 @@ def write_pin(field: Field, directory: Path, units: Units) -> None:
     texts = {"pin": [field.pin], "case": [field.case], "verdict": [field.verdict]}
     write_block(replace(_loads(field.loads, units), whole=texts), beside / "loads.vtu")
     write_block(_bands(field.loads, units), beside / "bands.vtu")
-    blocks = {kind: f"{name}/{kind}.vtu" for kind in ("loads", "bands")}
+    kinds = ["loads", "bands"]
+    if field.volume is not None:
+        write_block(_volume(field.volume, units), beside / "solid.vtu")
+        kinds.append("solid")
+    blocks = {kind: f"{name}/{kind}.vtu" for kind in kinds}
     write_multiblock({"pin": f"{name}.vtu", **blocks}, directory / f"{name}.vtm")
     if field.stills:
         parts = _write_stills(surface(field), beside, units)
@@ -84,6 +88,15 @@ def write_pin(field: Field, directory: Path, units: Units) -> None:
             [(time, kind, f"{name}/{file}") for time, kind, file in parts],
             directory / f"{name}.pvd",
         )
+
+
+def _volume(volume: Volume, units: Units) -> Block:
+    data = {
+        f"displacement [{units.length}]": volume.displacement,
+        f"stress [{units.stress}]": volume.stress[:, VTK_SYMMETRIC],
+        f"von Mises [{units.stress}]": volume.von_mises,
+    }
+    return Block(volume.points, volume.cells, volume.cell_type, data)
 
 
 def _write_stills(field: Field, directory: Path, units: Units) -> list[tuple[float, str, str]]:

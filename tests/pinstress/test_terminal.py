@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import pty
 import re
@@ -136,6 +137,31 @@ def test_a_motion_has_its_governing_instant(swept: Path) -> None:
     assert largest[1] == pytest.approx(whole, rel=1e-6)
     force = np.hypot([0.0, 300.0, 200.0], [100.0, 900.0, 0.0])
     np.testing.assert_allclose(largest, whole * force / force[1], rtol=2e-3)
+
+
+def test_all_of_a_revolved_pin(tmp_path: Path) -> None:
+    """Its volume is the pin's but for what a polygon of 60 sides has less, and through any section
+    of its free part goes the moment of the load beyond.
+    """
+    (tmp_path / "study.toml").write_text(QUICK)
+    command = ["run", str(tmp_path / "study.toml"), "--no-pictures", "--quiet", "--vtk", "solid"]
+    assert run_command_line([*command, "--out", str(tmp_path / "out")]) == 0
+    blocks: Any = pyvista.read(tmp_path / "out" / "vtk" / "B_landing.vtm")
+    solid = blocks["solid"]
+    volumes = solid.compute_cell_sizes().cell_data["Volume"]
+    polygon = math.sin(2.0 * math.pi / 60) / (2.0 * math.pi / 60)
+    fillet = (
+        2.0 * math.pi * 0.4**2 * (1.4 * (1.0 - math.pi / 4.0) - 0.4 * (5.0 / 6.0 - math.pi / 4))
+    )
+    exact = math.pi * (4.0 * 1.5 + 1.0 * 2.0) + fillet
+    assert volumes.min() > 0.0
+    assert volumes.sum() == pytest.approx(polygon * exact, rel=1e-3)
+    # 988.86 lbf on the band from 1.9 to 3.5 in, of which 0.8 in lie beyond z = 2.7.
+    cut = solid.slice(normal="z", origin=(0.0, 0.0, 2.7)).triangulate()
+    cut = cut.point_data_to_cell_data().compute_cell_sizes()
+    axial = cut.cell_data["stress [psi]"][:, 2]
+    moment = float((axial * cut.cell_centers().points[:, 1] * cut.cell_data["Area"]).sum())
+    assert moment == pytest.approx(988.86 * 0.8 / 1.6 * 0.4, rel=0.02)
 
 
 @pytest.mark.parametrize(
