@@ -99,6 +99,12 @@ def example(text: str) -> str:
 )
 @click.option("--no-pictures", is_flag=True, help="Neither plots nor rendered pins: faster.")
 @click.option(
+    "--jobs",
+    type=click.IntRange(1),
+    metavar="N",
+    help="So many processes at a time [as many as there are cores]; the results are the same.",
+)
+@click.option(
     "--second-opinion",
     type=click.Choice(["ccx"]),
     help="Have CalculiX solve every row once more on the solid model's mesh, and compare.",
@@ -111,10 +117,14 @@ def run(
     model: str | None,
     tolerance: float | None,
     no_pictures: bool,
+    jobs: int | None,
     second_opinion: str | None,
 ) -> int:
     if second_opinion is not None:
         _require_calculix()
+    from pinstress.workers import hold_threads
+
+    hold_threads()
     from pinstress.study import load_study
 
     loaded = load_study(study)
@@ -123,7 +133,9 @@ def run(
 
     chosen: dict[str, Any] = {"pins": pins, "cases": cases, "model": model, "tolerance": tolerance}
     second = second_opinion is not None
-    return run_and_write(loaded, directory, pictures=not no_pictures, second=second, **chosen)
+    return run_and_write(
+        loaded, directory, pictures=not no_pictures, second=second, jobs=jobs, **chosen
+    )
 
 
 def _require_calculix() -> None:
@@ -148,7 +160,9 @@ def _require_calculix() -> None:
 @click.option("--no-pictures", is_flag=True, help="No plots: faster.")
 def loads(study: Path, out: Path | None, cases: list[str] | None, no_pictures: bool) -> int:
     from pinstress.study import load_study
+    from pinstress.workers import hold_threads
 
+    hold_threads()
     loaded = load_study(study)
     from pinstress.write import loads_and_write
 
