@@ -13,6 +13,7 @@ import click
 
 from pinstress.errors import InputError
 
+INTERRUPTS = signal.SIGINT, signal.SIGTERM, signal.SIGHUP
 REACHED, NOT_REACHED, BAD_INPUT, NUMERICS_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
 
 
@@ -20,7 +21,9 @@ def run_command_line(arguments: list[str]) -> int:
     """Exit status of a command: 0 done, 1 something asked for was not reached, 2 bad input, 3 the
     numerics failed, 130 interrupted.
     """
-    signal.signal(signal.SIGTERM, _interrupt)
+    for each in INTERRUPTS:
+        if signal.getsignal(each) != signal.SIG_IGN:  # nohup, or a job in the background
+            signal.signal(each, _interrupt)
     try:
         status = commands.main(arguments, prog_name="pinstress", standalone_mode=False)
         return int(status or REACHED)
@@ -46,6 +49,8 @@ def run_command_line(arguments: list[str]) -> int:
 
 
 def _interrupt(*_: object) -> None:
+    for each in INTERRUPTS:
+        signal.signal(each, signal.SIG_IGN)  # clearing up is not interrupted once more
     raise KeyboardInterrupt
 
 

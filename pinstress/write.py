@@ -12,6 +12,7 @@ from typing import Any
 import click
 from rich.console import Console
 
+from pinstress.file_names import field_name
 from pinstress.output import replacing, require_replaceable
 from pinstress.pipeline import loads_only, prepare, results_of
 from pinstress.second_opinion import Opinions
@@ -57,7 +58,7 @@ def run_and_write(
         vtk.mkdir()
 
         def keep(field: Field) -> None:
-            name = f"{field.pin}_{field.case}"
+            name = field_name(field.pin, field.case)
             write_vtu(field, vtk / f"{name}.vtu", units)
             if pictures and problem is None:
                 picture = staging / "plots" / f"pin_{name}.png"
@@ -73,7 +74,7 @@ def run_and_write(
             drawn = {
                 (p.pin, p.case): path
                 for p in results.pins
-                if (path := staging / "plots" / f"pin_{p.pin}_{p.case}.png").is_file()
+                if (path := staging / "plots" / f"pin_{field_name(p.pin, p.case)}.png").is_file()
             }
             progress("report", 1.0)
             write_reports(results, staging, drawn, pictures, partial(_draw, most))
