@@ -12,6 +12,7 @@ from fea.answer import Picture
 from fea.envelope import envelope
 from fea.look import Inside, Look
 from fea.material import Material
+from fea.memory import require_memory
 from fea.pin_loads import Floats, PinLoads, UnitLoad
 from fea.sharp_edges import sharp_edges
 from fea.solid import SolidModel, UnitFields, acting
@@ -51,11 +52,12 @@ def solid_solution(
     size: MeshSize,
     distance: float,
     element: Element = "curved",
+    memory: float | None = None,
 ) -> SolidSolution:
     """All unit loads of the cases on a mesh, which is finer at edges of bands and clamps.
 
     places: of a body of revolution; those of any other are found on its mesh, `distance` (of the
-    diameter) wide. Raises: MeshError, SolveError.
+    diameter) wide. memory: as in fea.ladder.Asked. Raises: MeshError, SolveError.
     """
     names = tuple(dict.fromkeys(name for c in cases for name in c.surfaces))
     edges = tuple(z for name in names for z in (pin.band(name).z0, pin.band(name).z1))
@@ -65,7 +67,9 @@ def solid_solution(
         edges += tuple(z for _, z in clamp_rims(profile, turned))
     mesh = solid_mesh(pin, size, tuple(dict.fromkeys(edges)), element)
     units = acting(cases) or ((UnitLoad(names[0], "force", 1), 0),)  # of which there is nought
-    fields = SolidModel(pin, mesh, material, clamps).solve(units)
+    model = SolidModel(pin, mesh, material, clamps)
+    require_memory(pin.name, model.unknowns, memory)
+    fields = model.solve(units)
     x = fields.space.nodes[fields.surface.nodes]
     if isinstance(pin, Pin):
         powers = tuple(p for p in places if p.kind != "edge of a load")  # a mesh of a solid is no
