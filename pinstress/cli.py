@@ -110,6 +110,12 @@ def example(text: str) -> str:
     help="So many processes at a time [as many as there are cores]; the results are the same.",
 )
 @click.option(
+    "--memory-limit",
+    type=click.FloatRange(0.0, min_open=True),
+    metavar="MB",
+    help="What a solid model may take [80 % of what is free]; past it no finer mesh is solved.",
+)
+@click.option(
     "--second-opinion",
     type=click.Choice(["ccx"]),
     help="Have CalculiX solve every row once more on the solid model's mesh, and compare.",
@@ -123,6 +129,7 @@ def run(
     tolerance: float | None,
     no_pictures: bool,
     jobs: int | None,
+    memory_limit: float | None,
     second_opinion: str | None,
 ) -> int:
     if second_opinion is not None:
@@ -136,7 +143,13 @@ def run(
     directory = out or Path("out") / loaded.name
     from pinstress.write import run_and_write
 
-    chosen: dict[str, Any] = {"pins": pins, "cases": cases, "model": model, "tolerance": tolerance}
+    chosen: dict[str, Any] = {
+        "pins": pins,
+        "cases": cases,
+        "model": model,
+        "tolerance": tolerance,
+        "memory": memory_limit,
+    }
     second = second_opinion is not None
     return run_and_write(
         loaded, directory, pictures=not no_pictures, second=second, jobs=jobs, **chosen

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from fea.ladder import Asked, Model
+from fea.memory import allowed_memory
 from pinstress import checks
 from pinstress.build import CaseLoads, case_loads
 from pinstress.errors import InputError
@@ -63,10 +64,12 @@ def prepare(
     cases: Iterable[str] | None = None,
     model: Model | None = None,
     tolerance: float | None = None,
+    memory: float | None = None,
 ) -> Plan:
     """Find the reactions and lay out what is to be solved.
 
-    pins, cases: names; all by default. model, tolerance: instead of the study's.
+    pins, cases: names; all by default. model, tolerance: instead of the study's. memory: MB that a
+    solid may take, by default most of what is free now.
 
     Raises: InputError for bad input.
     """
@@ -81,7 +84,7 @@ def prepare(
         checked = next(choice, None)
         if checked is not None:
             checks.require_cantilever(study, checked, check.case)
-    asked = _asked(study, model, tolerance)
+    asked = _asked(study, model, tolerance, allowed_memory(memory))
     for task in todo:
         if asked.model in ("beam", "harmonic") and not task.pin.revolved:
             raise InputError(
@@ -91,7 +94,7 @@ def prepare(
     return Plan(study, asked, loads, todo, published, checked)
 
 
-def _asked(study: Study, model: Model | None, tolerance: float | None) -> Asked:
+def _asked(study: Study, model: Model | None, tolerance: float | None, memory: float) -> Asked:
     table = study.table.analysis
     return Asked(
         tolerance or table.tolerance,
@@ -99,4 +102,5 @@ def _asked(study: Study, model: Model | None, tolerance: float | None) -> Asked:
         table.goal,
         table.required_safety_factor,
         table.excluded_distance,
+        memory=memory,
     )

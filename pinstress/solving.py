@@ -6,7 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
-from fea.ladder import solve_pin
+from fea.ladder import MOST_UNKNOWNS, solve_pin
+from fea.memory import allowed_memory, solid_memory
 from fea.peak import Peak
 from fea.second_opinion import Opinion
 from pinstress import checks, gather
@@ -52,9 +53,17 @@ def solve_tasks(
         for task in (plan.tasks[i] for i in order)
     ]
     found: dict[int, Solved] = {}
-    for i, made in zip(order, side_by_side(work, jobs, progress), strict=True):
+    for i, made in zip(order, side_by_side(work, _together(plan, jobs), progress), strict=True):
         found[i] = _failed(plan, plan.tasks[i], made.reason) if isinstance(made, Died) else made
     return [found[i] for i in range(len(plan.tasks))]
+
+
+def _together(plan: Plan, jobs: int) -> int:
+    """So many of the jobs as there is memory for, if they are solids as large as they may get."""
+    if not any(_effort(plan, task)[0] for task in plan.tasks):
+        return jobs
+    room = allowed_memory(plan.asked.memory) / solid_memory(MOST_UNKNOWNS["solid"])
+    return max(1, min(jobs, int(room)))
 
 
 def _effort(plan: Plan, task: Task) -> tuple[bool, int, int]:

@@ -385,3 +385,18 @@ def test_a_crash_of_a_library_costs_its_pin_alone(
     assert "B (landing): its process was ended by signal 9" in capsys.readouterr().err
     pins = json.loads(Path("out/study/results.json").read_text())["pins"]
     assert [p["verdict"] for p in pins] == ["failed", "converged"]
+
+
+def test_a_solid_that_needs_more_memory_than_allowed_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Its first mesh, before it is solved; with room for that one alone, no finer one is made."""
+    monkeypatch.chdir(tmp_path)
+    Path("study.toml").write_text(ONE_PIN.replace("tolerance = 0.05", "tolerance = 0.001"))
+    command = ["run", "study.toml", "--no-pictures", "--model", "solid", "--memory-limit"]
+    assert run_command_line([*command, "50"]) == 3
+    assert "and 0.049 GB are allowed" in capsys.readouterr().err
+    assert run_command_line([*command, "300"]) == 1
+    (pin,) = json.loads(Path("out/study/results.json").read_text())["pins"]
+    assert pin["verdict"] == "unconverged"
+    assert 1 <= len(pin["history"]) < 3
