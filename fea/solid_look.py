@@ -12,6 +12,7 @@ from fea.answer import Picture
 from fea.envelope import envelope
 from fea.look import Inside, Look
 from fea.material import Material
+from fea.memory import require_memory
 from fea.pin_loads import Floats, PinLoads, UnitLoad
 from fea.rims import all_round, rim
 from fea.sharp_edges import sharp_edges
@@ -52,11 +53,12 @@ def solid_solution(
     size: MeshSize,
     distance: float,
     element: Element = "curved",
+    memory: float | None = None,
 ) -> SolidSolution:
     """All unit loads of the cases on a mesh, which is finer at edges of bands and clamps.
 
     places: of a body of revolution; those of any other are found on its mesh, `distance` (of the
-    diameter) wide. Raises: MeshError, SolveError.
+    diameter) wide. memory: as in fea.ladder.Asked. Raises: MeshError, SolveError.
     """
     names = tuple(dict.fromkeys(name for c in cases for name in c.surfaces))
     edges = tuple(z for name in names for z in (pin.band(name).z0, pin.band(name).z1))
@@ -67,6 +69,7 @@ def solid_solution(
     mesh = solid_mesh(pin, size, tuple(dict.fromkeys(edges)), element)
     units = acting(cases) or ((UnitLoad(names[0], "force", 1), 0),)  # of which there is nought
     model = SolidModel(pin, mesh, material, clamps)
+    require_memory(pin.name, model.unknowns, memory)
     if isinstance(pin, Pin):
         rims = [all_round(rim(pin, p, p.radius)) for p in places]
         fields = model.solve(units, np.concatenate([np.zeros((0, 3)), *rims]))

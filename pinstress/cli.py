@@ -15,6 +15,7 @@ from pinstress.cli_more import completion, init, schema, size, view
 from pinstress.command import example, names
 from pinstress.errors import InputError
 
+INTERRUPTS = signal.SIGINT, signal.SIGTERM, signal.SIGHUP
 REACHED, NOT_REACHED, BAD_INPUT, NUMERICS_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
 
 
@@ -22,7 +23,9 @@ def run_command_line(arguments: list[str]) -> int:
     """Exit status of a command: 0 done, 1 something asked for was not reached, 2 bad input, 3 the
     numerics failed, 130 interrupted.
     """
-    signal.signal(signal.SIGTERM, _interrupt)
+    for each in INTERRUPTS:
+        if signal.getsignal(each) != signal.SIG_IGN:  # nohup, or a job in the background
+            signal.signal(each, _interrupt)
     try:
         status = commands.main(arguments, prog_name="pinstress", standalone_mode=False)
         return int(status or REACHED)
@@ -48,6 +51,8 @@ def run_command_line(arguments: list[str]) -> int:
 
 
 def _interrupt(*_: object) -> None:
+    for each in INTERRUPTS:
+        signal.signal(each, signal.SIG_IGN)  # clearing up is not interrupted once more
     raise KeyboardInterrupt
 
 
@@ -94,6 +99,18 @@ def commands() -> None:
     "solid), skins only, also all of revolved pins (large), also along every motion (large), none.",
 )
 @click.option(
+    "--jobs",
+    type=click.IntRange(1),
+    metavar="N",
+    help="So many processes at a time [as many as there are cores]; the results are the same.",
+)
+@click.option(
+    "--memory-limit",
+    type=click.FloatRange(0.0, min_open=True),
+    metavar="MB",
+    help="What a solid model may take [80 % of what is free]; past it no finer mesh is solved.",
+)
+@click.option(
     "--second-opinion",
     type=click.Choice(["ccx"]),
     help="Have CalculiX solve every row once more on the solid model's mesh, and compare.",
@@ -110,6 +127,8 @@ def run(
     tolerance: float | None,
     no_pictures: bool,
     vtk: str,
+    jobs: int | None,
+    memory_limit: float | None,
     second_opinion: str | None,
     as_json: bool,
     quiet: bool,
@@ -117,14 +136,23 @@ def run(
 ) -> int:
     if second_opinion is not None:
         _require_calculix()
+    from pinstress.workers import hold_threads
+
+    hold_threads()
     from pinstress.study import load_study
 
     loaded = load_study(study)
     directory = out or Path("out") / loaded.name
     from pinstress.write import Wanted, run_and_write
 
-    wanted = Wanted(not no_pictures, second_opinion is not None, vtk, as_json, quiet, opens)
-    chosen: dict[str, Any] = {"pins": pins, "cases": cases, "model": model, "tolerance": tolerance}
+    wanted = Wanted(not no_pictures, second_opinion is not None, vtk, as_json, quiet, opens, jobs)
+    chosen: dict[str, Any] = {
+        "pins": pins,
+        "cases": cases,
+        "model": model,
+        "tolerance": tolerance,
+        "memory": memory_limit,
+    }
     return run_and_write(loaded, directory, wanted, **chosen)
 
 
@@ -153,7 +181,9 @@ def loads(
     study: Path, out: Path | None, cases: list[str] | None, no_pictures: bool, quiet: bool
 ) -> int:
     from pinstress.study import load_study
+    from pinstress.workers import hold_threads
 
+    hold_threads()
     loaded = load_study(study)
     from pinstress.write import loads_and_write
 

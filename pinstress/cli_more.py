@@ -32,6 +32,9 @@ def init(directory: Path, opens: bool) -> int:
     if not opens:
         click.echo(f"Next: pinstress run {target}  (its report: {out / 'report.html'})", err=True)
         return 0
+    from pinstress.workers import hold_threads
+
+    hold_threads()
     from pinstress.study import load_study
     from pinstress.write import Wanted, run_and_write
 
@@ -114,6 +117,7 @@ def completion(context: click.Context, shell: str) -> None:
     help="The new study [beside the study: <its name>_sized.toml].",
 )
 @click.option("--quiet", is_flag=True, help="No progress and no notes; what failed is still said.")
+@click.option("--jobs", type=click.IntRange(1), metavar="N", help="So many pins at a time.")
 def size(
     study: Path,
     fos: float | None,
@@ -121,7 +125,11 @@ def size(
     step: str | None,
     out: Path | None,
     quiet: bool,
+    jobs: int | None,
 ) -> int:
+    from pinstress.workers import hold_threads
+
+    hold_threads()
     from pinstress.study import load_study
     from pinstress.units import to_si
 
@@ -134,4 +142,4 @@ def size(
         raise InputError("--step: must be positive")
     from pinstress.write_size import size_and_write
 
-    return size_and_write(loaded, fos, out, pins, metres, quiet)
+    return size_and_write(loaded, fos, out, pins, metres, quiet, jobs)

@@ -7,7 +7,8 @@ from collections.abc import Mapping
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from pinstress.pipeline import prepare, solve
+from pinstress.pipeline import prepare, results_of
+from pinstress.solving import solve_tasks
 from pinstress.study import Study
 from reports.all_tables import load_tables, stress_tables
 from reports.html_table import safety_factors_html
@@ -121,13 +122,15 @@ def _library(name: str) -> Any:
         ) from None
 
 
-def run(study: Study, *, fields: bool = False, **chosen: Any) -> Found:
+def run(study: Study, *, fields: bool = False, jobs: int = 1, **chosen: Any) -> Found:
     """Analyse a study.
 
     fields: whether to keep every pin's field, for `mesh` and `picture` (some 10 MB each). chosen:
-    pins, cases (names; all by default), model, tolerance (instead of the study's).
+    pins, cases (names; all by default), model, tolerance (instead of the study's). jobs: pins at a
+    time, each in a process of its own; 1, in this process, where fields are kept. A pin whose
+    numerics fail has the verdict `failed`.
 
-    Raises: InputError for bad input, ArithmeticError when the numerics fail.
+    Raises: InputError for bad input.
     """
     kept: dict[tuple[str, str], Field] = {}
 
@@ -135,6 +138,7 @@ def run(study: Study, *, fields: bool = False, **chosen: Any) -> Found:
         if fields:
             kept[field.pin, field.case] = field
 
-    results = solve(prepare(study, **chosen), keep)
+    plan = prepare(study, **chosen)
+    results = results_of(plan, solve_tasks(plan, keep, jobs=1 if fields else jobs))
     plain = {f.name: getattr(results, f.name) for f in dataclasses.fields(Results)}
     return Found(**plain, fields=kept)

@@ -11,10 +11,9 @@ from dataclasses import dataclass, replace
 
 from fea.ladder import Asked, solve_pin
 from fea.peak import Peak, Verdict
-from geometry.solid_mesh import MeshError
 from pinstress.errors import InputError
 from pinstress.pins import material as material_of
-from pinstress.pipeline import Plan
+from pinstress.plan import Plan
 from pinstress.resize import resized
 from pinstress.size_search import NoSizeError, smallest
 from pinstress.study import Study, parse_study
@@ -44,7 +43,7 @@ def size_pin(
 ) -> Sized:
     """Size one pin for all cases of a plan. step: to which diameters are rounded up, m.
 
-    Raises: ArithmeticError (SolveError) when the numerics fail.
+    What fails is told in the answer.
     """
     study = plan.study
     problem = _problem(study, pin)
@@ -72,9 +71,9 @@ def size_pin(
             scale, factor = _stepped(factor_at, scale, step, least, required)
     except NoSizeError as error:
         return Sized(pin, None, before, None, None, str(error))
-    except (InputError, MeshError) as error:
-        largest = max(found, default=1.0)
-        why = f"from {largest:.3g} times its diameters on its shape does not go: {error}"
+    except (InputError, ArithmeticError) as error:
+        tried = ", ".join(f"{scale:.3g}" for scale in found) or "none"
+        why = f"a trial fails (those that went: {tried} times its diameters): {error}"
         return Sized(pin, None, before, None, None, why)
     return Sized(pin, scale, before, factor, found[scale].verdict)
 

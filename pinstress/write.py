@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -13,22 +14,34 @@ import click
 from rich.console import Console
 
 from pinstress.command import open_page
+from pinstress.file_names import field_name
 from pinstress.output import replacing, require_replaceable
-from pinstress.pipeline import Progress, loads_only, prepare, solve
+from pinstress.pipeline import loads_only, prepare, results_of
 from pinstress.second_opinion import Opinions
+from pinstress.solving import solve_tasks
 from pinstress.study import Study
-from reports.results import Field, Results, Units
+from pinstress.workers import Died, Job, Progress, Tell, cores, preload, side_by_side
+from reports.draw import Plot
+from reports.results import Field, PinResult, Results, Units
 from reports.terminal import print_safety_factors
 from reports.terminal_loads import print_loads
 from reports.vtk import render_pin, renderer_problem, surface, write_pin
 from reports.write import write_loads, write_reports
+
+SOLVERS = (
+    "gmsh",
+    "pymetis",
+    "cvxopt.cholmod",
+    "vtkmodules.vtkIOXML",
+)  # what fea and reports import on demand
+PAINTERS = ("pyvista.plotting", "matplotlib.pyplot", "matplotlib.backends.backend_agg")
 
 
 @dataclass(frozen=True)
 class Wanted:
     """What a run is to give besides its numbers: pictures; CalculiX's second opinion; fields (vtk,
     as --vtk names them); results.json on stdout instead of the table; no progress and no notes;
-    the report opened.
+    the report opened. jobs: processes at a time, by default as many as there are cores.
     """
 
     pictures: bool = True
@@ -37,41 +50,37 @@ class Wanted:
     as_json: bool = False
     quiet: bool = False
     opens: bool = False
+    jobs: int | None = None
 
 
 def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Any) -> int:
     """Run a study into a folder; returns the exit status.
 
-    chosen: what pinstress.pipeline.prepare takes. Raises: InputError, ArithmeticError.
+    chosen: what pinstress.plan.prepare takes. Raises: InputError.
     """
     require_replaceable(directory)
     also: Any = wanted.vtk if wanted.vtk in ("motion", "solid") else None
     plan = prepare(study, also=also, **chosen)
     problem = renderer_problem() if wanted.pictures else None
-    drawn: dict[tuple[str, str], Path] = {}
-    s = study.system
-    units = Units(s.length, s.force, s.stress, s.time)
+    most, paints = wanted.jobs or cores(), wanted.pictures and problem is None
     opinions = Opinions(plan) if wanted.second else None
     with replacing(directory) as staging:
-        if wanted.vtk != "none":
-            (staging / "vtk").mkdir()
-
-        def keep(field: Field) -> None:
-            if wanted.vtk != "none":
-                shown = surface(field) if wanted.vtk == "surface" else field
-                write_pin(shown, staging / "vtk", units)
-            if wanted.pictures and problem is None:
-                picture = staging / "plots" / f"pin_{field.pin}_{field.case}.png"
-                picture.parent.mkdir(exist_ok=True)
-                render_pin(field, picture, units, f"pin {field.pin}, {field.case}")
-                drawn[field.pin, field.case] = picture
-
-        with progress_bar(wanted.quiet) as progress:
+        keep = partial(_keep, staging, _units(study), wanted.vtk, paints)
+        with progress_bar(alone=most == 1, quiet=wanted.quiet) as progress:
+            if most > 1:
+                preload(*SOLVERS, *(PAINTERS if paints else ()))
             ask = {"ask": opinions.ask} if opinions else {}
-            results = solve(plan, keep, progress, **ask)
+            found = solve_tasks(plan, keep, progress, jobs=most, **ask)
+            results = results_of(plan, found)
+            drawn = {
+                (p.pin, p.case): path
+                for p in results.pins
+                if (path := _picture(staging, p.pin, p.case)).is_file()
+            }
             progress("report", 1.0)
-            write_reports(results, staging, drawn, plots=wanted.pictures)
+            write_reports(results, staging, drawn, wanted.pictures, partial(_draw, most))
             if opinions:
+                opinions.hear(o for made in found for o in made.opinions)
                 opinions.write(staging)
     if wanted.as_json:
         click.echo((directory / "results.json").read_text(encoding="utf-8"), nl=False)
@@ -90,14 +99,56 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Any) 
     return max(status, opinions.tell_disagreements()) if opinions else status
 
 
+def _units(study: Study) -> Units:
+    s = study.system
+    return Units(s.length, s.force, s.stress, s.time)
+
+
+def _picture(staging: Path, pin: str, case: str) -> Path:
+    return staging / "plots" / f"pin_{field_name(pin, case)}.png"
+
+
+def _keep(staging: Path, units: Units, vtk: str, paints: bool, field: Field) -> None:
+    """Write what is wanted of a field."""
+    if vtk != "none":
+        (staging / "vtk").mkdir(exist_ok=True)
+        shown = surface(field) if vtk == "surface" else field
+        write_pin(shown, field_name(field.pin, field.case), staging / "vtk", units)
+    if paints:
+        picture = _picture(staging, field.pin, field.case)
+        picture.parent.mkdir(exist_ok=True)
+        render_pin(field, picture, units, f"pin {field.pin}, {field.case}")
+
+
+def _files(plot: Plot, _: Tell) -> list[Path]:
+    return plot()
+
+
+def _draw(jobs: int, plots: Sequence[Plot]) -> list[Path]:
+    """Have plots drawn side by side; their files."""
+    work = [Job("plots", partial(_files, plot)) for plot in plots]
+    found = []
+    for files in side_by_side(work, jobs):
+        if isinstance(files, Died):
+            raise RuntimeError(f"a plot could not be drawn: {files.reason}")
+        found += files
+    return found
+
+
 def loads_and_write(
-    study: Study, directory: Path, *, plots: bool, cases: list[str] | None, quiet: bool = False
+    study: Study,
+    directory: Path,
+    *,
+    plots: bool,
+    cases: list[str] | None,
+    jobs: int | None = None,
+    quiet: bool = False,
 ) -> int:
     """The mechanics of a study into a folder; returns the exit status. Raises: InputError."""
     require_replaceable(directory)
     results = loads_only(study, cases)
     with replacing(directory) as staging:
-        write_loads(results, staging, plots=plots)
+        write_loads(results, staging, plots, partial(_draw, jobs or cores()))
     print_loads(results, console())
     if not quiet:
         click.echo(f"Written: {directory}", err=True)
@@ -124,24 +175,34 @@ def _tell_left_out(results: Results) -> None:
 
 
 def _tell_not_reached(results: Results, decide: bool) -> int:
+    """Say on stderr what was not reached and what failed; the exit status."""
+    failed = [p for p in results.pins if p.verdict == "failed"]
     missed = [
         p
         for p in results.pins
-        if p.verdict != "converged" and not (decide and p.meets_required is not None)
+        if p.verdict not in ("converged", "failed")
+        and not (decide and p.meets_required is not None)
     ]
-    if not missed:
-        return 0
+    for which, reason in _by_reason(missed):
+        click.echo(f"Not reached: {which}: {reason}.", err=True)
+    for which, reason in _by_reason(failed):
+        click.echo(f"Error: the numerics failed: {which}: {reason}", err=True)
+    return 3 if failed else int(bool(missed))
+
+
+def _by_reason(rows: list[PinResult]) -> list[tuple[str, str]]:
+    """Which rows have the same note, and that note."""
     reasons: dict[str, list[str]] = {}
-    for p in missed:
+    for p in rows:
         reasons.setdefault(p.note, []).append(f"{p.pin} ({p.case})")
-    for reason, which in reasons.items():
-        click.echo(f"Not reached: {', '.join(which)}: {reason}.", err=True)
-    return 1
+    return [(", ".join(which), reason) for reason, which in reasons.items()]
 
 
 @contextmanager
-def progress_bar(quiet: bool = False) -> Iterator[Progress]:
-    """A bar on stderr while it is a terminal; nothing otherwise."""
+def progress_bar(alone: bool = True, quiet: bool = False) -> Iterator[Progress]:
+    """A bar on stderr while it is a terminal; nothing otherwise. alone: whether this process does
+    the work itself, so that a thread must move the bar; else every call does.
+    """
     from rich import progress as rich
 
     columns = (
@@ -152,12 +213,17 @@ def progress_bar(quiet: bool = False) -> Iterator[Progress]:
         rich.TimeRemainingColumn(),
     )
     console = Console(stderr=True)
-    silent = quiet or not console.is_terminal
-    with rich.Progress(*columns, console=console, transient=True, disable=silent) as bar:
+    with rich.Progress(
+        *columns,
+        console=console,
+        transient=True,
+        disable=quiet or not console.is_terminal,
+        auto_refresh=alone,
+    ) as bar:
         task = bar.add_task("reactions", total=1.0)
 
         def tell(message: str, part: float) -> None:
-            bar.update(task, description=message, completed=part)
+            bar.update(task, description=message, completed=part, refresh=not alone)
 
         show: Callable[[str, float], None] = tell
         yield show

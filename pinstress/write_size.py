@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import click
 
 from pinstress.errors import InputError
-from pinstress.pipeline import Plan, Progress, prepare, run
+from pinstress.pipeline import run
+from pinstress.plan import Plan, prepare
 from pinstress.sizing import Sized, new_text, size_pin
 from pinstress.study import Study, parse_study
-from pinstress.write import console, progress_bar
+from pinstress.workers import Died, Job, Progress, cores, preload, side_by_side
+from pinstress.write import SOLVERS, console, progress_bar
 from reports.results import PinResult, Results
 from reports.terminal_size import SizeRow, print_sizes
 
@@ -22,11 +25,13 @@ def size_and_write(
     pins: list[str] | None,
     step: float | None,
     quiet: bool = False,
+    jobs: int | None = None,
 ) -> int:
     """Size pins and write the new study; returns the exit status: 1 when any pin does not reach
     the factor as a value. fos: the study's own by default. step: of diameters, m.
+    jobs: pins at a time, by default as many as there are cores.
 
-    Raises: InputError, ArithmeticError.
+    Raises: InputError.
     """
     required = fos or study.table.analysis.required_safety_factor
     if required is None:
@@ -36,12 +41,13 @@ def size_and_write(
         )
     target = _target(study, out)
     plan = prepare(study, pins=pins)
-    with progress_bar(quiet) as progress:
-        sized = _all(plan, required, step, progress)
+    most = jobs or cores()
+    with progress_bar(alone=most == 1, quiet=quiet) as progress:
+        sized = _all(plan, required, step, most, progress)
         text = new_text(study, sized, step, required)
         progress("a run of the new study", 0.9)
         new = parse_study(target, text)
-        results = run(new, pins=[s.pin for s in sized])
+        results = run(new, pins=[s.pin for s in sized], jobs=most)
     rows = [_row(study, new, s, results) for s in sized]
     print_sizes(rows, required, study.system.length, console())
     _write(target, text)
@@ -53,16 +59,18 @@ def size_and_write(
     return int(bool(missed))
 
 
-def _all(plan: Plan, required: float, step: float | None, progress: Progress) -> list[Sized]:
+def _all(
+    plan: Plan, required: float, step: float | None, jobs: int, progress: Progress
+) -> list[Sized]:
     names = list(dict.fromkeys(task.pin.name for task in plan.tasks))
-    out = []
-    for i, name in enumerate(names):
-
-        def tell(message: str, part: float = 0.9 * i / len(names)) -> None:
-            progress(message, part)
-
-        out.append(size_pin(plan, name, required, step, tell))
-    return out
+    if jobs > 1:
+        preload(*SOLVERS)
+    work = [Job(f"pin {name}", partial(size_pin, plan, name, required, step)) for name in names]
+    found = side_by_side(work, jobs, lambda told, part: progress(told, 0.9 * part))
+    return [
+        Sized(name, None, None, None, None, made.reason) if isinstance(made, Died) else made
+        for name, made in zip(names, found, strict=True)
+    ]
 
 
 def _target(study: Study, out: Path | None) -> Path:
@@ -88,7 +96,7 @@ def _row(study: Study, new: Study, sized: Sized, results: Results) -> SizeRow:
         after=tuple(dict.fromkeys(diameters[1])) if sized.scale is not None else None,
         factor_before=sized.before,
         factor=None if worst is None else worst.safety_factor,
-        verdict="rigid" if worst is None else worst.verdict,
+        verdict=next((p.verdict for p in (worst, *results.pins) if p and p.pin == sized.pin), ""),
         yields=None if worst is None else worst.yields,
         why=_why(sized, mine),
     )
@@ -99,6 +107,8 @@ def _why(sized: Sized, found: list[PinResult]) -> str:
     if sized.scale is None:
         return sized.why
     singular = [p.case for p in found if p.verdict == "singular"]
+    if not found:
+        return "the run of the new study gives it no factor"
     missing = [p.case for p in found if p.meets_required is False]
     loose = [p.case for p in found if p.verdict == "unconverged" and p.meets_required is None]
     if missing:

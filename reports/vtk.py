@@ -62,11 +62,10 @@ def block(field: Field, units: Units) -> Block:
     return Block(field.points, field.cells, field.cell_type, point_data(field, units), whole=time)
 
 
-def write_pin(field: Field, directory: Path, units: Units) -> None:
-    """Write PIN_CASE.vtu, and PIN_CASE.vtm, which adds loads, bands and volume (PIN_CASE/*.vtu);
-    with stills PIN_CASE.pvd, the same along the motion.
+def write_pin(field: Field, name: str, directory: Path, units: Units) -> None:
+    """Write NAME.vtu, and NAME.vtm, which adds loads, bands and volume (NAME/*.vtu); with stills
+    NAME.pvd, the same along the motion.
     """
-    name = f"{field.pin}_{field.case}"
     write_vtu(field, directory / f"{name}.vtu", units)
     if not field.loads:
         return

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from datetime import datetime
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -30,13 +31,20 @@ def write_workbook(results: Results, tables: Sequence[Table], path: Path) -> Non
     import xlsxwriter
 
     # Texts stay texts, whatever they begin with; a quote keeps them so when they are edited.
-    safe = {"strings_to_formulas": False, "strings_to_urls": False, "strings_to_numbers": False}
-    with xlsxwriter.Workbook(path, safe) as book:
+    safe = {
+        "in_memory": True,
+        "strings_to_formulas": False,
+        "strings_to_urls": False,
+        "strings_to_numbers": False,
+    }
+    content = BytesIO()
+    with xlsxwriter.Workbook(content, safe) as book:
         book.set_properties({"title": results.title, "created": LONG_AGO})
         bold = book.add_format({"bold": True, "text_wrap": True, "valign": "top", "bottom": 1})
         _about(book, results, tables, bold)
         for table in tables:
             _sheet(book, table, results, bold)
+    path.write_bytes(content.getvalue())
 
 
 def _about(book: xlsxwriter.Workbook, results: Results, tables: Sequence[Table], bold: Any) -> None:

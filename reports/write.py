@@ -7,6 +7,7 @@ from pathlib import Path
 
 from reports.all_tables import CSV_ONLY, load_tables, stress_tables
 from reports.animation import write_animations
+from reports.draw import Draw, in_turn
 from reports.hand_checks import write_hand_checks
 from reports.json_results import write_json
 from reports.landing import write_landing
@@ -21,14 +22,18 @@ from reports.workbook import write_workbook
 
 
 def write_reports(
-    results: Results, directory: Path, pictures: dict[tuple[str, str], Path], plots: bool = True
+    results: Results,
+    directory: Path,
+    pictures: dict[tuple[str, str], Path],
+    plots: bool = True,
+    draw: Draw = in_turn,
 ) -> Path:
     """Write results.json, the tables, the plots and report.html; returns the page's path.
 
-    pictures: of pins, by pin and case. plots: whether to draw them, which takes seconds.
+    pictures: of pins, by pin and case. plots: whether to draw them, which takes seconds,
+    and `draw` by whom.
     """
-    tables = stress_tables(results)
-    drawn = write_loads(results, directory, plots, tables)
+    drawn = write_loads(results, directory, plots, draw, stress_tables(results))
     write_safety_factors(results, directory)
     write_hand_checks(results, directory)
     write_landing(results, directory)
@@ -36,7 +41,11 @@ def write_reports(
 
 
 def write_loads(
-    results: Results, directory: Path, plots: bool = True, others: Sequence[Table] = ()
+    results: Results,
+    directory: Path,
+    plots: bool = True,
+    draw: Draw = in_turn,
+    others: Sequence[Table] = (),
 ) -> list[Path]:
     """Write results.json, the tables and all that needs no stresses; returns the plots.
 
@@ -59,4 +68,4 @@ def write_loads(
         return []
     from reports.plots import save_plots
 
-    return save_plots(results, directory / "plots")
+    return save_plots(results, directory / "plots", draw)

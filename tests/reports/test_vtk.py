@@ -145,7 +145,7 @@ def bands() -> tuple[BandLoad, ...]:
 
 
 def test_loads_and_bands_beside_the_pin(tmp_path: Path) -> None:
-    write_pin(replace(tube(), loads=bands(), verdict="converged"), tmp_path, UNITS)
+    write_pin(replace(tube(), loads=bands(), verdict="converged"), "A_sharp", tmp_path, UNITS)
     blocks: Any = pyvista.read(tmp_path / "A_sharp.vtm")
     assert blocks.keys() == ["pin", "loads", "bands"]
     alone: Any = pyvista.read(tmp_path / "A_sharp.vtu")
@@ -176,7 +176,7 @@ def test_a_motion_is_a_series(tmp_path: Path) -> None:
         )
         for i, k in enumerate(size)
     )
-    write_pin(replace(still, loads=bands(), stills=stills, time=0.25), tmp_path, UNITS)
+    write_pin(replace(still, loads=bands(), stills=stills, time=0.25), "A_sharp", tmp_path, UNITS)
     series: Any = pyvista.PVDReader(tmp_path / "A_sharp.pvd")
     assert series.time_values == [0.0, 0.25, 0.5]
     for time, k in zip(series.time_values, size, strict=True):
