@@ -65,6 +65,8 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Any) 
     most, paints = wanted.jobs or cores(), wanted.pictures and problem is None
     opinions = Opinions(plan) if wanted.second else None
     with replacing(directory) as staging:
+        if wanted.vtk != "none":
+            (staging / "vtk").mkdir()
         keep = partial(_keep, staging, _units(study), wanted.vtk, paints)
         with progress_bar(alone=most == 1, quiet=wanted.quiet) as progress:
             if most > 1:
@@ -111,7 +113,6 @@ def _picture(staging: Path, pin: str, case: str) -> Path:
 def _keep(staging: Path, units: Units, vtk: str, paints: bool, field: Field) -> None:
     """Write what is wanted of a field."""
     if vtk != "none":
-        (staging / "vtk").mkdir(exist_ok=True)
         shown = surface(field) if vtk == "surface" else field
         write_pin(shown, field_name(field.pin, field.case), staging / "vtk", units)
     if paints:

@@ -112,3 +112,16 @@ def test_the_same_results_give_the_same_bytes(
     for name in ("a", "b"):
         write_workbook(results, tables, tmp_path / f"{name}.xlsx")
     assert (tmp_path / "a.xlsx").read_bytes() == (tmp_path / "b.xlsx").read_bytes()
+
+
+def test_every_column_is_documented(tables: list[Table]) -> None:
+    """docs/output.md has a row for every table, with all its columns in their order."""
+    text = (Path(__file__).parents[2] / "docs" / "output.md").read_text(encoding="utf-8")
+    rows = {}
+    for line in text.splitlines():
+        if line.startswith("| `") and line.count("|") == 3:
+            names, columns = line.strip("| ").split(" | ")
+            for name in re.findall(r"`(\w+)`", names):
+                rows[name] = re.findall(r"`(\w+)`", columns)
+    for table in tables:
+        assert rows[table.name] == list(table.columns), table.name
