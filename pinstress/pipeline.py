@@ -12,6 +12,7 @@ from fea.peak import Peak
 from pinstress import checks, gather
 from pinstress.build import CaseLoads, case_loads
 from pinstress.errors import InputError
+from pinstress.gather_surface import surfaces
 from pinstress.measures import published_values
 from pinstress.mechanism import linkage
 from pinstress.pins import material as material_of
@@ -19,6 +20,7 @@ from pinstress.published import Published, read_published
 from pinstress.study import Study
 from pinstress.tasks import Task, tasks
 from reports.results import Field, LandingRange, Results
+from reports.surface import Surface
 
 Progress = Callable[[str, float], None]
 Keep = Callable[[Field], None]
@@ -127,6 +129,7 @@ def solve(
     study = plan.study
     solutions: list[tuple[Task, Solution]] = []
     landing: list[LandingRange] = []
+    shown: list[Surface] = []
     beam = None
     for i, task in enumerate(plan.tasks):
 
@@ -143,13 +146,14 @@ def solve(
             tell(f"pin {task.pin.name}, beam check")
             beam = checks.beam_check(study, task, material)
         landing += [r for s in found if (r := gather.landing_range(study, plan.loads, task, s))]
+        shown += surfaces(study, plan.loads, task, found)
         solutions += [(task, Solution(s.peak, None)) for s in found]  # fields are large
     pins, cases = list(study.table.pin), list(plan.loads)
     solutions.sort(key=lambda s: (pins.index(s[1].peak.pin), cases.index(s[1].peak.case)))
     results = gather.results(
         study, plan.loads, solutions, beam, plan.published, plan.asked.tolerance
     )
-    return replace(results, landing=tuple(landing))
+    return replace(results, landing=tuple(landing), surfaces=tuple(shown))
 
 
 def loads_only(study: Study, cases: Iterable[str] | None = None) -> Results:

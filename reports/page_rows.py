@@ -8,6 +8,7 @@ import numpy as np
 
 from reports.hand_checks import hand_check_table
 from reports.results import PinResult, PinShape, ReactionTable, Results, Units
+from reports.view3d import PinView, pin_views
 from reports.words import outcome
 from reports.zones import Zone, pin_zones, zone_table
 
@@ -39,7 +40,9 @@ class PinCase:
 
 @dataclass(frozen=True)
 class PinPart:
-    """All of one pin: its anchor on the page, profile and drawing, cases, cases with a motion."""
+    """All of one pin: its anchor on the page, profile and drawing, cases, cases with a motion, and
+    views that can be turned.
+    """
 
     pin: str
     anchor: str
@@ -47,6 +50,7 @@ class PinPart:
     drawing: str
     cases: tuple[PinCase, ...]
     moving: tuple[str, ...]
+    views: list[PinView]
 
     @property
     def zoned(self) -> bool:
@@ -83,6 +87,7 @@ def pin_parts(
             moving=tuple(
                 t.case for t in results.reactions if t.times is not None and name in t.pins
             ),
+            views=pin_views(results, name),
         )
         for number, name in enumerate(names, start=1)
     ]
