@@ -6,7 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from reports.grid import Grid
 from reports.hand_checks import hand_check_table
+from reports.numbers import ratio
+from reports.page_loads import loads_at
 from reports.results import PinResult, PinShape, ReactionTable, Results, Units
 from reports.view3d import PinView, pin_views
 from reports.words import outcome
@@ -16,18 +19,9 @@ ZONE_NUMBERS = ("zone", "exponent")
 
 
 @dataclass(frozen=True)
-class Grid:
-    """A table of texts; numeric: which columns hold numbers."""
-
-    head: list[str]
-    body: list[list[str]]
-    numeric: list[bool]
-
-
-@dataclass(frozen=True)
 class PinCase:
     """A pin's result in one case, one word for it, its picture's address, its position's unit, its
-    singular zones and its checks by hand.
+    singular zones, its checks by hand, what acts on it, and our maximum over the published one.
     """
 
     result: PinResult
@@ -36,6 +30,8 @@ class PinCase:
     position_unit: str
     zones: Grid | None
     checks: Grid | None
+    loads: Grid | None
+    ratio: float | None
 
 
 @dataclass(frozen=True)
@@ -80,6 +76,8 @@ def pin_parts(
                     positions.get(p.case) or results.units.length,
                     _zones(zones[name][p.case], results.units),
                     Grid(*hand_check_table(p, results.units)) if p.hand_checks else None,
+                    loads_at(p, results),
+                    ratio(p.max_von_mises, p.published_max_von_mises),
                 )
                 for p in results.pins
                 if p.pin == name

@@ -12,7 +12,8 @@ from reports.plot_linkage import linkage_plot
 from reports.plot_motion import motion_plots
 from reports.plot_reactions import bars, reaction_plots
 from reports.plot_refinement import pin_refinement_plot, refinement_plot
-from reports.results import PinResult, Results
+from reports.plot_surface import surface_plots
+from reports.results import PinResult, ReactionTable, Results
 
 
 def save_plots(results: Results, directory: Path) -> list[Path]:
@@ -22,7 +23,10 @@ def save_plots(results: Results, directory: Path) -> list[Path]:
     paths = []
     for table in results.reactions:
         moving = table.times is not None
-        paths += (reaction_plots if moving else bars)(table, units, directory)
+        if moving:
+            paths += reaction_plots(table, units, directory, governing(results, table))
+        else:
+            paths += bars(table, units, directory)
     for drive in results.drive:
         paths += drive_plot(drive, units, directory)
     for motion in results.motion:
@@ -46,7 +50,14 @@ def save_plots(results: Results, directory: Path) -> list[Path]:
         # A single mesh says nothing about others.
         if any(len(pin.history) > 1 for pin in refined):
             paths += pin_refinement_plot(name, refined, units, directory)
-    return paths
+    return paths + surface_plots(results, directory)
+
+
+def governing(results: Results, table: ReactionTable) -> dict[str, float]:
+    """Where on a motion's axis (reports.plot_reactions.along) each pin's stress is largest."""
+    rows = (p for p in results.pins if p.case == table.case)
+    at = {p.pin: p.time if table.position is None else p.position for p in rows}
+    return {pin: x for pin, x in at.items() if x is not None}
 
 
 def _can_be_drawn(pin: PinResult) -> bool:

@@ -402,3 +402,4 @@ class Results:
     published_source: str = ""
     assumptions: tuple[str, ...] = ()
     versions: dict[str, str] = field(default_factory=dict)
+    study_text: str = ""

@@ -54,7 +54,7 @@ def _data(surface: Surface, found: dict[str, PinResult], results: Results) -> di
     # In units of stress: a point's error is a part of the point's own stress, not of the pin's.
     stress, moved = surface.stress * largest, surface.displacement * largest
     each = np.abs(stress).max(axis=(1, 2), initial=0.0)
-    longest = float(np.abs(moved).max(initial=0.0))
+    longest = np.asarray(np.abs(moved).max(initial=0.0))
     box = _box(surface)
     place = found[surface.cases[0].case].location
     view = View.of(box, np.asarray(place))
@@ -70,8 +70,8 @@ def _data(surface: Surface, found: dict[str, PinResult], results: Results) -> di
         "even": [int(e) for e in surface.even],
         "stress": _packed(np.rint(_parts(stress, each[:, None, None])), "<i2"),
         "stress_scale": _packed(each / WHOLE, "<f4"),
-        "moved": _packed(np.rint(_parts(moved, np.float64(longest))), "<i2"),
-        "moved_scale": longest / WHOLE,
+        "moved": _packed(np.rint(_parts(moved, longest)), "<i2"),
+        "moved_scale": float(longest) / WHOLE,
         "cases": [_case(c, found[c.case], largest) for c in surface.cases],
         "box": box.tolist(),
         "centre": view.centre.tolist(),

@@ -40,5 +40,15 @@ const shaded = () => {
 shade.hidden = false;
 shade.addEventListener("click", () => { document.documentElement.style.colorScheme = dark() ? "light" : "dark"; shaded(); });
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", shaded);
-frames.forEach((frame) => frame.addEventListener("load", shaded));
 shaded();
+
+// As high as what is in them, whatever the width of the page.
+const fit = (frame) => { frame.style.height = `${frame.contentDocument.documentElement.offsetHeight + 4}px`; };
+const framed = (frame) => {
+  shaded();
+  new ResizeObserver(() => fit(frame)).observe(frame.contentDocument.documentElement);
+};
+for (const frame of frames) {
+  frame.addEventListener("load", () => framed(frame));
+  if (frame.contentDocument?.readyState === "complete") framed(frame);
+}

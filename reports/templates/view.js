@@ -14,6 +14,8 @@ const written = (value, digits = 4) => {
   return `${plain(rounded / 10 ** power, size - power)}×10${raised}`;
 };
 
+const short = (value) => written(value, 6).replace(/(\.\d*?)0+(?=×|$)/, "$1").replace(/\.(?=×|$)/, "");
+
 const product = (a, b) => a.map((row) => b[0].map((_, j) => row.reduce((sum, x, k) => sum + x * b[k][j], 0)));
 const applied = (a, x) => a.map((row) => row.reduce((sum, y, k) => sum + y * x[k], 0));
 const about = (axis, angle) => {
@@ -59,7 +61,7 @@ const startView = (root, paint) => {
 
   const tell = () => {
     const k = instant(), value = chosen.maxima[k], governs = k === chosen.instant, { units } = data;
-    const when = chosen.times ? `t = ${written(chosen.times[k])} ${units.time}${governs ? ", the governing instant" : ""}: ` : "";
+    const when = chosen.times ? `t = ${short(chosen.times[k])} ${units.time}${governs ? ", the governing instant" : ""}: ` : "";
     const error = governs ? ` ± ${written(chosen.error, 2)}` : "";
     const where = chosen.zoned ? " outside the excluded zones" : "";
     const factor = data.strength ? `; factor of safety ${written(data.strength / value)} (${chosen.verdict})` : "";
@@ -67,7 +69,7 @@ const startView = (root, paint) => {
     one("told").dataset.maximum = value;
     one("beneath").hidden = !(chosen.beneath && governs);
     one("zones").hidden = !chosen.zoned;
-    if (chosen.times) one("time").setAttribute("aria-valuetext", `${written(chosen.times[k])} ${units.time}`);
+    if (chosen.times) one("time").setAttribute("aria-valuetext", `${short(chosen.times[k])} ${units.time}`);
     scale();
     draw();
   };
