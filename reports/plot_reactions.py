@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -19,17 +18,16 @@ WITHOUT = "no-pin"  # connections that bear on no pin of the study
 
 
 def reaction_plots(
-    table: ReactionTable, units: Units, directory: Path, governing: Mapping[str, float]
+    table: ReactionTable, pin: str, units: Units, directory: Path, governs: float | None = None
 ) -> list[Path]:
-    """For each pin its connections' components and magnitudes along the motion.
+    """Of one pin its connections' components and magnitudes along the motion.
 
-    governing: where on that axis the stress of a pin is largest.
+    governs: where on that axis the pin's stress is largest.
     """
-    paths = []
-    for pin in dict.fromkeys(table.pins):
-        paths += _components(table, pin, units, directory, governing.get(pin))
-        paths += _magnitudes(table, pin, units, directory, governing.get(pin))
-    return paths
+    return [
+        *_components(table, pin, units, directory, governs),
+        *_magnitudes(table, pin, units, directory, governs),
+    ]
 
 
 def along(table: ReactionTable, units: Units) -> tuple[Floats, str]:
