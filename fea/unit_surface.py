@@ -90,17 +90,20 @@ def amounts(answer: Answer, loads: PinLoads) -> Floats:
 def excluded(answer: Answer) -> Mask:
     """Which points of the surface (P,) lie in a singular place, where the maximum is not read."""
     if isinstance(answer, SolidAnswer):
-        return ~answer.solution.outside
+        return ~answer.solution.outside[: len(answer.solution.fields.surface.nodes)]
     assert isinstance(answer, HarmonicAnswer)
     return ~outside(answer.places, *answer.fields.points[: answer.fields.skin].T)
 
 
-def round_the_axis(answer: Answer, loads: PinLoads, instant: int) -> Floats | None:
-    """Largest von Mises stress (P,) Pa round the axis at each point of a meridian at an instant;
-    None without one.
+def largest_there(answer: Answer, loads: PinLoads, instant: int) -> Floats:
+    """Von Mises stress (P,) Pa at the surface's points at an instant, of a meridian the largest
+    round the axis.
     """
-    if not isinstance(answer, HarmonicAnswer):
-        return None
+    if isinstance(answer, SolidAnswer):
+        fields = answer.solution.fields
+        c = amounts(answer, loads)[instant, :, 0]
+        return np.asarray(np.linalg.norm(METRIC @ fields.stress[fields.surface.nodes] @ c, axis=1))
+    assert isinstance(answer, HarmonicAnswer)
     skin = np.arange(answer.fields.skin)
     found, _ = Circumference(answer.fields, loads).round(skin, np.full(len(skin), instant))
     return found

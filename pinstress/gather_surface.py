@@ -10,7 +10,7 @@ import numpy as np
 from fea.answer import Answer
 from fea.ladder import Solution
 from fea.pin_loads import Floats, PinLoads
-from fea.unit_surface import UnitSurface, amounts, excluded, round_the_axis, unit_surface
+from fea.unit_surface import UnitSurface, amounts, excluded, largest_there, unit_surface
 from pinstress.build import CaseLoads
 from pinstress.pins import material as material_of
 from pinstress.study import Study
@@ -20,14 +20,14 @@ from reports.surface import Mask, Surface, SurfaceCase
 APART = 0.1  # of a zone's size: nearer points show nothing where nothing is to be read
 
 
-def surfaces(
+def surface_of(
     study: Study, loads: dict[str, CaseLoads], task: Task, solutions: Sequence[Solution]
-) -> list[Surface]:
-    """A pin's surface with all the cases that some model with fields solved; at most one."""
+) -> Surface | None:
+    """A pin's surface with all the cases that some model with fields solved; None without any."""
     found = [(s, s.answer) for s in solutions if s.answer is not None]
     with_fields = [(s, a) for s, a in found if unit_surface(a) is not None]
     if not with_fields:
-        return []
+        return None
     surface = unit_surface(with_fields[0][1])  # on one mesh, whichever the case
     assert surface is not None
     acting = {x.case: x for x in task.loads}
@@ -38,19 +38,17 @@ def surfaces(
         keep = np.ones(len(surface.points), dtype=bool)
     unit = study.system.factor
     strength = material_of(study, study.table.pin[task.pin.name].material).yield_strength
-    return [
-        Surface(
-            pin=task.pin.name,
-            points=surface.points[keep] / unit("length"),
-            triangles=surface.triangles,
-            n=surface.n,
-            even=surface.even,
-            stress=surface.stress[keep] / unit("stress"),
-            displacement=surface.displacement[keep] / unit("length"),
-            yield_strength=None if strength is None else strength / unit("stress"),
-            cases=tuple(_kept(c, keep) for c in cases),
-        )
-    ]
+    return Surface(
+        pin=task.pin.name,
+        points=surface.points[keep] / unit("length"),
+        triangles=surface.triangles,
+        n=surface.n,
+        even=surface.even,
+        stress=surface.stress[keep] / unit("stress"),
+        displacement=surface.displacement[keep] / unit("length"),
+        yield_strength=None if strength is None else strength / unit("stress"),
+        cases=tuple(_kept(c, keep) for c in cases),
+    )
 
 
 def _case(
@@ -61,7 +59,6 @@ def _case(
     answer: Answer,
 ) -> SurfaceCase:
     peak, stress = solution.peak, study.system.factor("stress")
-    around = round_the_axis(answer, acting, peak.instant)
     return SurfaceCase(
         case=peak.case,
         times=loads[peak.case].reactions.times,
@@ -69,7 +66,7 @@ def _case(
         amounts=amounts(answer, acting),
         maxima=answer.maxima(acting) / stress,
         excluded=excluded(answer),
-        around=None if around is None else around / stress,
+        largest=largest_there(answer, acting, peak.instant) / stress,
     )
 
 
@@ -94,5 +91,4 @@ def _length(points: Floats) -> Floats:
 
 
 def _kept(case: SurfaceCase, keep: Mask) -> SurfaceCase:
-    around = None if case.around is None else case.around[keep]
-    return replace(case, excluded=case.excluded[keep], around=around)
+    return replace(case, excluded=case.excluded[keep], largest=case.largest[keep])

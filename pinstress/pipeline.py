@@ -29,7 +29,7 @@ def results_of(plan: Plan, found: list[Solved]) -> Results:
     return replace(
         results,
         landing=tuple(r for made in found for r in made.landing),
-        surfaces=tuple(s for made in found for s in made.surfaces),
+        surfaces=tuple(made.surface for made in found if made.surface is not None),
     )
 
 

@@ -11,7 +11,7 @@ from fea.memory import allowed_memory, solid_memory
 from fea.peak import Peak
 from fea.second_opinion import Opinion
 from pinstress import checks, gather
-from pinstress.gather_surface import surfaces
+from pinstress.gather_surface import surface_of
 from pinstress.pins import material as material_of
 from pinstress.plan import Plan
 from pinstress.tasks import Task
@@ -30,8 +30,8 @@ class Solved:
     peaks: tuple[Peak, ...]
     landing: tuple[LandingRange, ...] = ()
     beam: BeamCheck | None = None
+    surface: Surface | None = None
     opinions: tuple[Opinion, ...] = ()
-    surfaces: tuple[Surface, ...] = ()
 
 
 def solve_tasks(
@@ -106,5 +106,4 @@ def _solve(plan: Plan, task: Task, keep: Keep, ask: Ask, tell: Tell) -> Solved:
     if task is plan.checked and study.table.beam_check is not None:
         tell(f"pin {task.pin.name}, beam check")
         beam = checks.beam_check(study, task, material)
-    shown = tuple(surfaces(study, plan.loads, task, found))
-    return Solved(peaks, landing, beam, opinions, shown)
+    return Solved(peaks, landing, beam, surface_of(study, plan.loads, task, found), opinions)

@@ -37,7 +37,7 @@ def _unknown(results: Results) -> str:
     """What is open, by the rows' verdicts."""
     rows = {
         verdict: [p for p in results.pins if p.verdict == verdict]
-        for verdict in ("singular", "unconverged", "rigid")
+        for verdict in ("singular", "unconverged", "rigid", "failed")
     }
     parts = []
     if rows["singular"]:
@@ -49,6 +49,8 @@ def _unknown(results: Results) -> str:
         parts.append(f"the maximum of {_count(rows['unconverged'], results)} to what was asked for")
     if rows["rigid"]:
         parts.append(f"anything of {_count(rows['rigid'], results)}, which nothing holds")
+    if rows["failed"]:
+        parts.append(f"anything of {_count(rows['failed'], results)}, whose numerics failed")
     if not parts:
         return f"Every maximum is known to {short(100.0 * results.tolerance)} %."
     return f"Not known: {'; '.join(parts)}."

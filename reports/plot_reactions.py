@@ -18,15 +18,15 @@ WITHOUT = "no-pin"  # connections that bear on no pin of the study
 
 
 def reaction_plots(
-    table: ReactionTable, pin: str, units: Units, directory: Path, governing: float | None
+    table: ReactionTable, pin: str, units: Units, directory: Path, governs: float | None = None
 ) -> list[Path]:
     """Of one pin its connections' components and magnitudes along the motion.
 
-    governing: where on that axis the stress of the pin is largest.
+    governs: where on that axis the pin's stress is largest.
     """
     return [
-        *_components(table, pin, units, directory, governing),
-        *_magnitudes(table, pin, units, directory, governing),
+        *_components(table, pin, units, directory, governs),
+        *_magnitudes(table, pin, units, directory, governs),
     ]
 
 

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 
 from reports.numbers import engineering
 from reports.plot_names import plot_name
-from reports.results import Floats, PinResult, PinShape, Results
+from reports.results import Floats, PinResult, PinShape, Units
 from reports.style import BAND, GREY, clipped, line_style, panels, plain_numbers, save
 from reports.surface import Mask, Surface, SurfaceCase
 
@@ -18,32 +18,19 @@ STRIP = 0.07  # height of the strip that shows the bands, of the panel
 HEADROOM = 1.25  # over the largest, for its label
 
 
-def surface_plots(results: Results, directory: Path) -> list[Path]:
-    """One for every pin and case with a meridian: outer surface and bore along z, at the governing
-    instant, without the excluded zones.
-    """
-    paths = []
-    found = {(p.pin, p.case): p for p in results.pins}
-    shapes = {s.pin: s for s in results.shapes}
-    for surface in results.surfaces:
-        for case in surface.cases:
-            if case.around is not None:
-                pin, shape = found[surface.pin, case.case], shapes.get(surface.pin)
-                paths += _plot(results, surface, case, case.around, pin, shape, directory)
-    return paths
-
-
-def _plot(
-    results: Results,
+def surface_plot(
     surface: Surface,
     case: SurfaceCase,
-    around: Floats,
     pin: PinResult,
     shape: PinShape | None,
+    units: Units,
     directory: Path,
 ) -> list[Path]:
-    z, units = surface.points[:, 2], results.units
-    read = np.where(case.excluded, np.nan, around)
+    """Of a pin with a meridian in one case: outer surface and bore along z, at the governing
+    instant, without the excluded zones. shape: for the strip with the bands.
+    """
+    z = surface.points[:, 2]
+    read = np.where(case.excluded, np.nan, case.largest)
     with panels(1, height=2.7) as (figure, (axes,)):
         for order, (name, rows) in enumerate(_sides(z).items()):
             axes.plot(z[rows], read[rows], label=name, **line_style(order))

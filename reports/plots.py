@@ -15,7 +15,7 @@ from reports.plot_linkage import linkage_plot
 from reports.plot_motion import motion_plots
 from reports.plot_reactions import bars, reaction_plots
 from reports.plot_refinement import pin_refinement_plot, refinement_plot
-from reports.plot_surface import surface_plots
+from reports.plot_surface import surface_plot
 from reports.results import PinResult, ReactionTable, Results
 
 
@@ -31,9 +31,9 @@ def _mechanics(results: Results, directory: Path) -> Iterator[Plot]:
         if table.times is None:
             yield partial(bars, table, units, directory)
         else:
-            where = governing(results, table)
+            at = governing(results, table)
             for pin in dict.fromkeys(table.pins):
-                yield partial(reaction_plots, table, pin, units, directory, where.get(pin))
+                yield partial(reaction_plots, table, pin, units, directory, at.get(pin))
     for drive in results.drive:
         yield partial(drive_plot, drive, units, directory)
     for motion in results.motion:
@@ -61,7 +61,12 @@ def _pins(results: Results, directory: Path) -> Iterator[Plot]:
         # A single mesh says nothing about others.
         if any(len(pin.history) > 1 for pin in refined):
             yield partial(pin_refinement_plot, name, refined, units, directory)
-    yield partial(surface_plots, results, directory)
+    found = {(p.pin, p.case): p for p in results.pins}
+    shapes = {s.pin: s for s in results.shapes}
+    for surface in results.surfaces:
+        for held in surface.cases if surface.revolved else ():
+            row, shape = found[surface.pin, held.case], shapes.get(surface.pin)
+            yield partial(surface_plot, surface, held, row, shape, units, directory)
 
 
 def governing(results: Results, table: ReactionTable) -> dict[str, float]:

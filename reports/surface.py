@@ -18,8 +18,8 @@ class SurfaceCase:
 
     amounts: (T, K, 2) of the unit loads, by phase. maxima: (T,) largest von Mises stress outside of
     what is excluded, as the analysis found it; `instant` governs. times: None without a motion.
-    excluded: (P,) whether no stress is read there. around: (P,) largest von Mises stress round the
-    axis at the governing instant, None for a surface that is no meridian.
+    excluded: (P,) whether no stress is read there. largest: (P,) von Mises stress at the governing
+    instant, of a meridian the largest round the axis.
     """
 
     case: str
@@ -28,7 +28,7 @@ class SurfaceCase:
     amounts: Floats
     maxima: Floats
     excluded: Mask
-    around: Floats | None
+    largest: Floats
 
 
 @dataclass(frozen=True)

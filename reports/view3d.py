@@ -72,7 +72,7 @@ def _data(surface: Surface, found: dict[str, PinResult], results: Results) -> di
         "stress_scale": _packed(each / WHOLE, "<f4"),
         "moved": _packed(np.rint(_parts(moved, longest)), "<i2"),
         "moved_scale": float(longest) / WHOLE,
-        "cases": [_case(c, found[c.case], largest) for c in surface.cases],
+        "cases": [_case(c, found[c.case], largest, surface.revolved) for c in surface.cases],
         "box": box.tolist(),
         "centre": view.centre.tolist(),
         "size": float(np.ptp(box, axis=0).max()),
@@ -80,9 +80,10 @@ def _data(surface: Surface, found: dict[str, PinResult], results: Results) -> di
     }
 
 
-def _case(case: SurfaceCase, pin: PinResult, largest: Floats) -> dict[str, Any]:
-    around = case.around
-    on_surface = None if around is None else around[~case.excluded].max(initial=0.0)
+def _case(case: SurfaceCase, pin: PinResult, largest: Floats, revolved: bool) -> dict[str, Any]:
+    on_surface = float(case.largest[~case.excluded].max(initial=0.0))
+    # The solid model's maximum is a mean over directions of the loads.
+    least = BENEATH * (pin.max_von_mises or 0.0) - (0.0 if revolved else pin.error_estimate or 0.0)
     return {
         "name": case.case,
         "times": None if case.times is None else case.times.tolist(),
@@ -91,7 +92,7 @@ def _case(case: SurfaceCase, pin: PinResult, largest: Floats) -> dict[str, Any]:
         "error": pin.error_estimate,
         "verdict": verdict_words(pin.verdict, pin.yields),
         "location": pin.location,
-        "beneath": bool(on_surface is not None and on_surface < BENEATH * (pin.max_von_mises or 0)),
+        "beneath": on_surface < least,
         "zoned": bool(case.excluded.any()),
         "amounts": _packed(case.amounts / largest[:, None], "<f4"),
         "excluded": _packed(case.excluded, "u1"),

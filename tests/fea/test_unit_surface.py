@@ -10,7 +10,7 @@ from fea.ladder import Asked, Model, solve_pin
 from fea.material import Material
 from fea.pin_loads import Floats, PinLoads
 from fea.tensor import von_mises
-from fea.unit_surface import UnitSurface, amounts, excluded, round_the_axis, unit_surface
+from fea.unit_surface import UnitSurface, amounts, excluded, largest_there, unit_surface
 from geometry import Pin
 
 INSTANT = 1
@@ -65,12 +65,11 @@ def test_meridian_superposes_to_the_picture(
         assert np.stack([x, y, z], axis=1) == pytest.approx(moved[:, sector], rel=1e-9, abs=1e-15)
 
 
-def test_largest_round_the_axis_is_the_maximum(cantilever_pin: Pin, steel: Material) -> None:
+def test_largest_largest_there_is_the_maximum(cantilever_pin: Pin, steel: Material) -> None:
     acting = loads("cosine")
     answer = solved(cantilever_pin, steel, "harmonic", acting)
     for instant in (0, 1):
-        around = round_the_axis(answer, acting, instant)
-        assert around is not None
+        around = largest_there(answer, acting, instant)
         largest = float(around[~excluded(answer)].max())
         assert largest == pytest.approx(float(answer.maxima(acting)[instant]), rel=1e-9)
         assert float(around[excluded(answer)].max()) > 0.0
@@ -83,8 +82,8 @@ def test_solid_superposes_to_the_picture(cantilever_pin: Pin, steel: Material) -
     assert surface is not None
     assert not surface.revolved
     assert picture is not None
-    assert round_the_axis(answer, acting, INSTANT) is None
     found, along = superposed(surface, amounts(answer, acting)[INSTANT], 0.0)
+    assert largest_there(answer, acting, INSTANT) == pytest.approx(found, rel=1e-9)
     on = np.flatnonzero(~np.isnan(picture.envelope))
     assert found == pytest.approx(von_mises(picture.stress[on]), rel=1e-9)
     assert along == pytest.approx(picture.displacement[on], rel=1e-9, abs=1e-15)
