@@ -28,6 +28,8 @@ html_css_files = ["wide.css"]
 html_theme_options = {
     "description": "Stresses and safety factors of the pins of a linkage",
     "fixed_sidebar": True,
+    "globaltoc_maxdepth": 2,
+    "sidebar_collapse": True,
     "page_width": "1120px",
     "sidebar_width": "230px",
     "font_family": "system-ui, sans-serif",

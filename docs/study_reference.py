@@ -90,7 +90,7 @@ def _which(table: Schema, among: list[Schema]) -> str:
 def takes(value: Schema) -> str:
     """What a key takes, in words: dimension and domain, choices, or the form."""
     if "dimension" in value:
-        return " ".join([value["dimension"], *filter(None, [value.get("domain")])])
+        return f"{value['dimension']} {value.get('domain', '')}".strip()
     if "const" in value or "enum" in value:
         return ", ".join(f"`{json.dumps(v)}`" for v in value.get("enum") or [value["const"]])
     if "$ref" in value:
