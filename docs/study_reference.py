@@ -84,7 +84,8 @@ def _which(table: Schema, among: list[Schema]) -> str:
     if kind:
         return f', kind = "{kind}"'
     others = {key for t in among if t is not table for key in t["properties"]}
-    return ", with " + next(key for key in table["required"] if key not in others)
+    only = next(key for key in table["required"] if key not in others)
+    return f", with {only}"
 
 
 def takes(value: Schema) -> str:
