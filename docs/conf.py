@@ -30,7 +30,7 @@ html_theme_options = {
     "fixed_sidebar": True,
     "globaltoc_maxdepth": 2,
     "sidebar_collapse": True,
-    "page_width": "1120px",
+    "page_width": "1200px",
     "sidebar_width": "230px",
     "font_family": "system-ui, sans-serif",
     "head_font_family": "system-ui, sans-serif",

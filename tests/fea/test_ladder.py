@@ -145,6 +145,7 @@ def test_the_picture_shows_the_answer(steel: Material) -> None:
         assert picture.envelope.max() == pytest.approx(maxima[1], rel=4e-3)
         ratio = abs(SIZES[instant]) / 3000.0
         np.testing.assert_allclose(shown, ratio * picture.envelope, rtol=1e-6, atol=1.0)
+    assert picture is not None
     x, y, z = picture.points.T
     lateral = (z > 1e-9) & (z < BAR.length - 1e-9)
     s = picture.stress[lateral]  # xx, yy, zz, yz, xz, xy
