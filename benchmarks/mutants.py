@@ -74,7 +74,7 @@ def mutants(source: str) -> Iterator[Mutant]:
         for name, value in ast.iter_fields(changed):
             setattr(target, name, value)
         target.__class__ = changed.__class__
-        words = f"{ast.unparse(node)}  →  {ast.unparse(changed)}"
+        words = f"{ast.unparse(node)} → {ast.unparse(changed)}"
         yield Mutant(getattr(node, "lineno", 0), " ".join(words.split()), other)
 
 
@@ -162,7 +162,7 @@ def main(arguments: list[str]) -> None:
     text = "\n\n".join(examined(path, most) for path in named or FILES)
     print(text)
     if "--record" in arguments:
-        record("mutants", text)
+        record("mutants", text, "python -m benchmarks.mutants")
 
 
 if __name__ == "__main__":
