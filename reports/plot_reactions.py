@@ -17,13 +17,12 @@ LOG_SPAN = 100.0
 WITHOUT = "no-pin"  # connections that bear on no pin of the study
 
 
-def reaction_plots(table: ReactionTable, units: Units, directory: Path) -> list[Path]:
-    """For each pin its connections' components and magnitudes along the motion."""
-    paths = []
-    for pin in dict.fromkeys(table.pins):
-        paths += _components(table, pin, units, directory)
-        paths += _magnitudes(table, pin, units, directory)
-    return paths
+def reaction_plots(table: ReactionTable, pin: str, units: Units, directory: Path) -> list[Path]:
+    """Of one pin its connections' components and magnitudes along the motion."""
+    return [
+        *_components(table, pin, units, directory),
+        *_magnitudes(table, pin, units, directory),
+    ]
 
 
 def along(table: ReactionTable, units: Units) -> tuple[Floats, str]:

@@ -70,7 +70,7 @@ class HandCheck:
 
 @dataclass(frozen=True)
 class PinResult:
-    """One pin in one case. Numbers are None for verdict `rigid`; time is None without a motion.
+    """One pin in one case. Numbers are None for `rigid` and `failed`, time without a motion.
 
     location: x, y, z in the pin's own axes. held: what holds the pin, in words. left_out: given
     forces that were not applied because their band is held. published_*: the publication's value.
