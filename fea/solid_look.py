@@ -14,9 +14,10 @@ from fea.look import Inside, Look
 from fea.material import Material
 from fea.memory import require_memory
 from fea.pin_loads import Floats, PinLoads, UnitLoad
+from fea.rims import all_round, rim
 from fea.sharp_edges import sharp_edges
 from fea.solid import SolidModel, UnitFields, acting
-from fea.zones import Place, clamp_rims
+from fea.zones import Place, clamp_rims, outside
 from geometry import CutPin, Pin, PinLike
 from geometry.elements import Element
 from geometry.meshing import solid_mesh
@@ -28,7 +29,7 @@ Mask = NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class SolidSolution:
-    """Unit fields on one mesh, and which nodes of the surface are in each singular place."""
+    """Unit fields on one mesh, and which of their points are in each singular place."""
 
     fields: UnitFields
     places: tuple[Place, ...]
@@ -36,8 +37,8 @@ class SolidSolution:
 
     @property
     def outside(self) -> Mask:
-        """Nodes of the surface that are in no singular place."""
-        out = np.ones(len(self.fields.surface.nodes), dtype=bool)
+        """Points that are in no singular place."""
+        out = np.ones(len(self.fields.points), dtype=bool)
         for mask in self.within:
             out &= ~mask
         return out
@@ -69,16 +70,14 @@ def solid_solution(
     units = acting(cases) or ((UnitLoad(names[0], "force", 1), 0),)  # of which there is nought
     model = SolidModel(pin, mesh, material, clamps)
     require_memory(pin.name, model.unknowns, memory)
-    fields = model.solve(units)
-    x = fields.space.nodes[fields.surface.nodes]
     if isinstance(pin, Pin):
-        powers = tuple(p for p in places if p.kind != "edge of a load")  # a mesh of a solid is no
-        r, z = np.hypot(x[:, 0], x[:, 1]), x[:, 2]  # finer than what a logarithm needs
-        return SolidSolution(
-            fields, powers, tuple(np.hypot(r - p.r, z - p.z) <= p.radius for p in powers)
-        )
+        rims = [all_round(rim(pin, p, p.radius)) for p in places]
+        fields = model.solve(units, np.concatenate([np.zeros((0, 3)), *rims]))
+        r, z = np.hypot(*fields.points[:, :2].T), fields.points[:, 2]
+        return SolidSolution(fields, places, tuple(~outside((p,), r, z) for p in places))
+    fields = model.solve(units)
     edge = sharp_edges(fields.space, fields.surface, clamps)
-    found = edge.places(x, distance)
+    found = edge.places(fields.points, distance)
     return SolidSolution(fields, tuple(p for p, _ in found), tuple(mask for _, mask in found))
 
 
