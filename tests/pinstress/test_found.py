@@ -125,7 +125,7 @@ def test_the_tutorial_runs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Its cells in their order, and what its text says of the fillets."""
-    book = json.loads((ROOT / "docs" / "tutorial.ipynb").read_text(encoding="utf-8"))
+    book = json.loads((ROOT / "docs" / "notebook.ipynb").read_text(encoding="utf-8"))
     monkeypatch.chdir(tmp_path)
     names: dict[str, Any] = {}
     for cell in book["cells"]:
