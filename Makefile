@@ -3,7 +3,7 @@ BIN := .venv/bin
 LOCKBIN := .venv-lock/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-peers check bench docs lock clean
+.PHONY: help setup demo test test-browser test-peers coverage mutants check bench docs lock clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | expand -t 12
@@ -21,9 +21,20 @@ demo: setup ## run studies/grenier2008.toml and tell where its report is
 test: setup ## run the tests; ARGS="..." goes to pytest
 	$(BIN)/python -m pytest $(ARGS)
 
+test-browser: setup ## run the tests of the report in Chromium, which root gets installed
+	@sh scripts/browser.sh
+	$(BIN)/python -m pytest -m browser $(ARGS)
+
 test-peers: setup ## run the tests beside CalculiX, which root gets installed
 	@sh scripts/peers.sh
 	$(BIN)/python -m pytest -m peers $(ARGS)
+
+coverage: setup ## branches of loads, geometry and fea that their own quick tests do not take
+	@for room in loads geometry fea; do $(BIN)/python -m pytest -q -m "not slow and not peers" --cov=$$room \
+	--cov-branch --cov-report=term-missing:skip-covered tests/$$room $(ARGS) || exit 1; done
+
+mutants: setup ## changes in files of formulas that no test notices (about an hour; ARGS="--most=10")
+	$(BIN)/python -m benchmarks.mutants --record $(ARGS)
 
 check: setup ## lint, format check, types, import contracts, strict docs build
 	$(BIN)/ruff check .

@@ -14,7 +14,7 @@ from loads.spatial_leg import t1, t2
 from pinstress import load_study, run
 from pinstress.leg import dynamics
 from pinstress.pipeline import loads_only
-from pinstress.schema import LegCase
+from pinstress.schema_cases import LegCase
 from reports import markdown
 from reports.numbers import engineering, ratio
 from reports.published import published_reactions

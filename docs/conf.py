@@ -1,12 +1,42 @@
 """Sphinx settings; "make docs" builds into build/docs."""
 
+import sys
 from importlib.metadata import version as installed
+from pathlib import Path
+
+# The documentation is of this checkout, wherever the installed packages come from.
+sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parent.parent)]
 
 project = "pinstress"
 version = release = installed("pinstress")
-extensions = ["myst_parser", "sphinx.ext.mathjax"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "study_reference"]
 myst_enable_extensions = ["amsmath", "dollarmath"]
 myst_heading_anchors = 3
 exclude_patterns = ["measured"]  # tables that pages include
+
+# "make docs" is nitpicky about our pages; types of other packages have no page here.
+nitpick_ignore_regex = [("py:.*", ".*")]
+autodoc_member_order = "bysource"
+autodoc_typehints_format = "short"
+autodoc_preserve_defaults = True
+toc_object_entries = False
+add_module_names = False
+
+html_title = "pinstress"
+html_static_path = ["static"]
+html_css_files = ["wide.css"]
+html_theme_options = {
+    "description": "Stresses and safety factors of the pins of a linkage",
+    "fixed_sidebar": True,
+    "globaltoc_maxdepth": 2,
+    "sidebar_collapse": True,
+    "page_width": "1000px",
+    "sidebar_width": "230px",
+    "body_max_width": "auto",
+    "font_family": "system-ui, sans-serif",
+    "head_font_family": "system-ui, sans-serif",
+    "show_powered_by": False,
+}
+html_sidebars = {"**": ["about.html", "searchfield.html", "navigation.html"]}
 html_copy_source = False
 html_show_copyright = False

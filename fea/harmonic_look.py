@@ -114,11 +114,11 @@ class HarmonicAnswer:
     """What a solution says of any loads made of its unit loads (fea.answer)."""
 
     def __init__(self, solution: HarmonicSolution, places: tuple[Place, ...]) -> None:
-        self.fields, self._places = solution.fields, places
+        self.fields, self.places = solution.fields, places
 
     def maxima(self, loads: PinLoads) -> Floats:
         """Largest von Mises stress (T,) Pa at every instant outside the places."""
-        among = outside(self._places, *self.fields.points.T)
+        among = outside(self.places, *self.fields.points.T)
         return Circumference(self.fields, loads).largest(among)[0]
 
     def picture(self, loads: PinLoads, instant: int) -> Picture:

@@ -29,7 +29,7 @@ from loads.linkage import Floats
 from pinstress.errors import InputError
 from pinstress.leg import AXES, dynamics, hinge_reactions
 from pinstress.mechanism import laws, span, state
-from pinstress.schema import (
+from pinstress.schema_cases import (
     ApplyTable,
     GivenCase,
     ImpulseTable,

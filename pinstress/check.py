@@ -11,7 +11,8 @@ from pinstress.mechanism import linkage, span
 from pinstress.pins import pin as pin_of
 from pinstress.pins import weight
 from pinstress.published import read_published
-from pinstress.schema import GivenCase, LegCase, MotionCase, PinTable
+from pinstress.schema_cases import GivenCase, LegCase, MotionCase
+from pinstress.schema_pins import PinTable
 from pinstress.study import Study
 
 

@@ -48,6 +48,7 @@ def results(
         published_source=table.published.source if table.published else "",
         assumptions=tuple(table.assumptions),
         versions={name: version(name) for name in PACKAGES},
+        study_text=study.text,
     )
 
 

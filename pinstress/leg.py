@@ -8,7 +8,7 @@ from loads import LegDynamics, LegMotion, Reactions, SpatialLeg, leg_dynamics
 from loads.linkage import Floats
 from pinstress.errors import InputError
 from pinstress.mechanism import LAWS
-from pinstress.schema import LegCase
+from pinstress.schema_cases import LegCase
 from pinstress.study import Study
 
 AXES = "x = z'' (up), y = x'' (right), z = y'' (ahead, along the hinge)"

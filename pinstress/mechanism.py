@@ -27,7 +27,7 @@ from loads.bar import flat_bar, round_bar
 from pinstress.errors import InputError
 from pinstress.layout import LayoutError, Point, places
 from pinstress.pins import pin
-from pinstress.schema import Coordinates, InstantCase, StaticCase
+from pinstress.schema_cases import Coordinates, InstantCase, StaticCase
 from pinstress.schema_mechanism import (
     BodyTable,
     MechanismTable,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fea.material import Material
 from geometry import CutPin, Flat, GeometryError, Hole, Pin, PinLike, Segment
 from pinstress.errors import InputError
-from pinstress.schema import PinTable
+from pinstress.schema_pins import PinTable
 from pinstress.study import Study
 
 METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}

@@ -26,7 +26,11 @@ def results_of(plan: Plan, found: list[Solved]) -> Results:
     rows.sort(key=lambda row: (pins.index(row[1].pin), cases.index(row[1].case)))
     beam = next((made.beam for made in found if made.beam is not None), None)
     results = gather.results(study, plan.loads, rows, beam, plan.published, plan.asked.tolerance)
-    return replace(results, landing=tuple(r for made in found for r in made.landing))
+    return replace(
+        results,
+        landing=tuple(r for made in found for r in made.landing),
+        surfaces=tuple(made.surface for made in found if made.surface is not None),
+    )
 
 
 def solve(plan: Plan, jobs: int = 1) -> Results:

@@ -1,11 +1,19 @@
-"""The study file's words: quantities with units, names, tables that know their keys."""
+"""The study file's words: quantities with units, names, tables that know their keys.
 
+For editors and for the reference in the documentation the JSON Schema says of every quantity its
+`dimension` and `domain`, and of every key what it is: the string under it in the code.
+"""
+
+import ast
 import difflib
+import inspect
 from dataclasses import dataclass
+from itertools import pairwise
+from textwrap import dedent
 from typing import Annotated, Any
 from urllib.parse import quote
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, GetJsonSchemaHandler, model_validator
 from pydantic_core import core_schema
 
 from pinstress.units import DIMENSIONS, SYSTEMS, to_si
@@ -28,7 +36,7 @@ class Quantity:
             {"type": "number"},
             {"type": "string", "examples": [DIMENSIONS[self.dimension][1]]},
         ]
-        return {"anyOf": [*plain, sourced(plain)], "description": self.dimension}
+        return {"anyOf": [*plain, sourced(plain)], "dimension": self.dimension}
 
     def _read(self, value: object, info: core_schema.ValidationInfo) -> float:
         system = (info.context or {}).get("system", SYSTEMS["m-N-s"])
@@ -41,8 +49,31 @@ PROVENANCE: dict[str, Any] = {
 }
 
 
-def _allow_provenance(schema: dict[str, Any]) -> None:
+def _complete(schema: dict[str, Any], table: type["Table"]) -> None:
+    """Descriptions and provenance for a table's JSON Schema."""
+    for key, words in described(table).items():
+        schema["properties"][key]["description"] = words
     schema["properties"].update(PROVENANCE)
+
+
+def described(table: type["Table"]) -> dict[str, str]:
+    """By key what it is: the strings under a table's fields, read when a schema is asked for so
+    that nothing else waits for it.
+    """
+    told: dict[str, str] = {}
+    for one in reversed(table.__mro__):
+        if not issubclass(one, Table) or one is Table:
+            continue
+        (made,) = ast.parse(dedent(inspect.getsource(one))).body
+        assert isinstance(made, ast.ClassDef)
+        for field, text in pairwise(made.body):
+            match (field, text):
+                case (
+                    ast.AnnAssign(target=ast.Name(id=key)),
+                    ast.Expr(value=ast.Constant(value=str(words))),
+                ):
+                    told[key] = " ".join(words.split())
+    return told
 
 
 def sourced(value: list[dict[str, Any]]) -> dict[str, Any]:
@@ -58,22 +89,39 @@ def sourced(value: list[dict[str, Any]]) -> dict[str, Any]:
     }
 
 
-def positive(value: float) -> float:
+@dataclass(frozen=True)
+class Within(AfterValidator):
+    """Restricts a quantity to a domain, which the JSON Schema states in words."""
+
+    domain: str
+
+    def __get_pydantic_json_schema__(
+        self, core: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        return handler(core) | {"domain": self.domain}
+
+
+def _positive(value: float) -> float:
     if not value > 0.0:
         raise ValueError("must be positive")
     return value
 
 
-def pin_sized(value: float) -> float:
+def _pin_sized(value: float) -> float:
     if not 1e-6 < value < 1e3:
         raise ValueError("must lie between 1e-6 m and 1000 m")
     return value
 
 
-def not_negative(value: float) -> float:
+def _not_negative(value: float) -> float:
     if value < 0.0:
         raise ValueError("must not be negative")
     return value
+
+
+POSITIVE = Within(_positive, "> 0")
+NOT_NEGATIVE = Within(_not_negative, "≥ 0")
+PIN_SIZED = Within(_pin_sized, "from 1 µm to 1 km")
 
 
 def usable_name(name: str) -> str:
@@ -88,14 +136,14 @@ def usable_name(name: str) -> str:
 
 Length = Annotated[float, Quantity("length")]
 Force = Annotated[float, Quantity("force")]
-PositiveLength = Annotated[Length, AfterValidator(positive), AfterValidator(pin_sized)]
-NotNegativeLength = Annotated[Length, AfterValidator(not_negative)]
-Stress = Annotated[Annotated[float, Quantity("stress")], AfterValidator(positive)]
-Density = Annotated[Annotated[float, Quantity("density")], AfterValidator(positive)]
-Weight = Annotated[Force, AfterValidator(not_negative)]
-Mass = Annotated[Annotated[float, Quantity("mass")], AfterValidator(not_negative)]
-Inertia = Annotated[Annotated[float, Quantity("inertia")], AfterValidator(not_negative)]
-Duration = Annotated[Annotated[float, Quantity("time")], AfterValidator(positive)]
+PositiveLength = Annotated[Length, POSITIVE, PIN_SIZED]
+NotNegativeLength = Annotated[Length, NOT_NEGATIVE]
+Stress = Annotated[Annotated[float, Quantity("stress")], POSITIVE]
+Density = Annotated[Annotated[float, Quantity("density")], POSITIVE]
+Weight = Annotated[Force, NOT_NEGATIVE]
+Mass = Annotated[Annotated[float, Quantity("mass")], NOT_NEGATIVE]
+Inertia = Annotated[Annotated[float, Quantity("inertia")], NOT_NEGATIVE]
+Duration = Annotated[Annotated[float, Quantity("time")], POSITIVE]
 Velocity = Annotated[float, Quantity("velocity")]
 Acceleration = Annotated[float, Quantity("acceleration")]
 SignedInertia = Annotated[float, Quantity("inertia")]
@@ -114,7 +162,7 @@ class Table(BaseModel):
     Any table may also have `provenance` and `note`; they are taken out before validation.
     """
 
-    model_config = ConfigDict(extra="forbid", frozen=True, json_schema_extra=_allow_provenance)
+    model_config = ConfigDict(extra="forbid", frozen=True, json_schema_extra=_complete)
 
     @model_validator(mode="before")
     @classmethod

@@ -3,9 +3,11 @@
 import math
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, Discriminator, Field, Tag, field_validator, model_validator
+from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
 from pinstress.quantities import (
+    NOT_NEGATIVE,
+    POSITIVE,
     Acceleration,
     Angle,
     Density,
@@ -18,8 +20,6 @@ from pinstress.quantities import (
     Table,
     Time,
     Weight,
-    not_negative,
-    positive,
 )
 
 
@@ -27,8 +27,11 @@ class Polar(Table):
     """A place at a distance from a joint, in a direction counter-clockwise from x."""
 
     origin: str
+    """A joint."""
     distance: PositiveLength
+    """From it."""
     angle: Angle
+    """Counter-clockwise from x."""
 
 
 class Dyad(Table):
@@ -37,8 +40,11 @@ class Dyad(Table):
     """
 
     origins: tuple[str, str]
+    """Two joints."""
     distances: tuple[PositiveLength, PositiveLength]
+    """From the one and from the other."""
     side: Literal["left", "right"]
+    """Of the line from the first to the second."""
 
 
 def _way_of_placing(value: object) -> str:
@@ -56,27 +62,31 @@ Place = Annotated[
 
 
 class JointTable(Table):
-    """A pin of the mechanism as drawn, and the body on each of its connections.
-
-    fixed_in: "ground" or a body; absent for a floating pin, whose weight is that of its profile
-    unless given here.
-    """
+    """A pin of the mechanism as drawn, and the body on each of its connections."""
 
     at: Place
+    """[x, y], { origin, distance, angle } or { origins, distances, side }."""
     connections: Annotated[dict[str, str], Field(min_length=1)]
+    """By the name of the connection the body that turns on the pin; names are unique in the
+    study."""
     fixed_in: str | None = None
+    """What carries the pin: "ground" or a body of which it is part; absent for a pin that
+    floats."""
     weight: Weight | None = None
+    """Of a pin that floats, as a particle; absent: that of its profile."""
 
 
 class BarTable(Table):
-    """A uniform straight bar between two joints: round (diameter) or rectangular (section = [depth
-    in the plane, width across it]). Its mass, centre and inertia follow.
-    """
+    """A uniform straight bar between two joints, round or rectangular."""
 
     joints: tuple[str, str]
+    """Its ends."""
     diameter: PositiveLength | None = None
+    """Of a round bar. Give either `diameter` or `section`."""
     section: tuple[PositiveLength, PositiveLength] | None = None
+    """[depth in the plane, width across it] of a rectangular one."""
     density: Density
+    """Of its material."""
 
     @model_validator(mode="after")
     def _one_section(self) -> "BarTable":
@@ -86,15 +96,19 @@ class BarTable(Table):
 
 
 class BodyTable(Table):
-    """A rigid body: weight, mass or a bar; its centre as drawn (midway between its joints when it
-    has two); inertia about the centre (none: a particle).
-    """
+    """A rigid body."""
 
     weight: Weight | None = None
+    """Give one of `weight`, `mass` or `bar`."""
     mass: Mass | None = None
+    """Mass."""
     bar: BarTable | None = None
+    """A uniform straight bar, from which mass, centre and inertia follow."""
     centre: Point | None = None
+    """Centre of mass as drawn; absent: midway between its joints when it has two."""
     inertia: Inertia | None = None
+    """About the centre of mass. Absent: of a bar its own; else the body is a particle, which hangs
+    on one connection or slides on the ground."""
 
     @model_validator(mode="after")
     def _one_mass(self) -> "BodyTable":
@@ -106,17 +120,21 @@ class BodyTable(Table):
 
 
 class SliderTable(Table):
-    """One body sliding on another (or on the ground), [base, moving], from a joint or point of the
-    base to one of the moving body: along the line between them, or along `direction`.
-
-    friction: Coulomb's coefficient. bearing: distance of the pads that carry its couple.
-    """
+    """One body sliding on another, or on the ground, without turning on it."""
 
     bodies: tuple[str, str]
+    """[base, moving]; the base may be "ground"."""
     joints: tuple[str | Point, str | Point]
+    """A joint or [x, y] of the base, and one of the moving body. The distance of the two along the
+    direction is its length."""
     direction: tuple[float, float] | None = None
+    """Of the axis, as drawn; it turns with the base. Absent: from the first point to the
+    second."""
     friction: Annotated[float, Field(ge=0.0, le=10.0)] = 0.0
-    bearing: Annotated[Length, AfterValidator(positive)] | None = None
+    """Coulomb's coefficient."""
+    bearing: Annotated[Length, POSITIVE] | None = None
+    """Distance of the two pads that carry its couple, centred on the second point; absent: the
+    couple is carried without friction."""
 
     @field_validator("direction")
     @classmethod
@@ -127,16 +145,22 @@ class SliderTable(Table):
 
 
 class LawTable(Table):
-    """What laws of motion share: from start to end in `duration`, beginning at `begin`, or a table
-    (CSV: time,position and, for exact rates, velocity,acceleration). Without a course the drive
-    only serves cases that state their instant.
+    """What laws of motion share: from start to end in `duration`, or a table. Without a course the
+    drive only serves cases that state their instant.
     """
 
     name: str | None = None
+    """What it is called; absent: its slider or its body."""
     law: Literal["cosine", "cycloidal", "constant", "table"] = "cosine"
+    """The course: "cosine", at rest at both ends; "cycloidal", there also without acceleration;
+    "constant" speed; or a "table"."""
     duration: Duration | None = None
-    begin: Annotated[Time, AfterValidator(not_negative)] = 0.0
+    """Time from start to end."""
+    begin: Annotated[Time, NOT_NEGATIVE] = 0.0
+    """When it starts to move."""
     table: str | None = None
+    """CSV beside the study for `law = "table"`: time,position (or
+    position_deg)[,velocity,acceleration]."""
 
     @model_validator(mode="after")
     def _course(self) -> "LawTable":
@@ -160,26 +184,35 @@ class SliderDrive(LawTable):
     """A drive of a slider's length (hydraulic piston, screw)."""
 
     slider: str
+    """The slider whose length it drives."""
     start: Length | None = None
+    """Length at the start."""
     end: Length | None = None
+    """Length at the end."""
     position_offset: Length = 0.0
+    """Plots show the length less this."""
 
 
 MOST_TURNS = 1000  # each is followed in steps of 0.25 rad
 
 
 class RotaryDrive(LawTable):
-    """A drive of a body's angle: the direction of the line from one of its joints to another,
-    counter-clockwise from x; or, for a drive between two bodies, from the line `against_line` of
-    the body `against`.
+    """A drive of a body's angle: the direction of a line between two of its joints,
+    counter-clockwise from x or, for a drive between two bodies, from a line of the other.
     """
 
     body: str
+    """The body that it turns."""
     line: tuple[str, str]
+    """Two joints of the body, from the first to the second, whose direction is the angle."""
     against: str = "ground"
+    """The body from which the angle is measured."""
     against_line: tuple[str, str] | None = None
+    """Two joints of that body; goes with `against`."""
     start: Angle | None = None
+    """Angle at the start."""
     end: Angle | None = None
+    """Angle at the end."""
 
     @model_validator(mode="after")
     def _both(self) -> "RotaryDrive":
@@ -201,10 +234,12 @@ AnyDrive = Annotated[
 
 
 class SharingTable(Table):
-    """How redundant connections share: as springs of these stiffnesses (only ratios matter)."""
+    """How redundant connections share: as springs."""
 
     connections: Annotated[list[str], Field(min_length=1)]
+    """Which give way."""
     stiffness: Annotated[list[Annotated[float, Field(gt=0.0)]], Field(min_length=1)]
+    """One for each; only ratios matter."""
 
     @model_validator(mode="after")
     def _same_length(self) -> "SharingTable":
@@ -216,12 +251,21 @@ class SharingTable(Table):
 class MechanismTable(Table):
     """A planar linkage in the position in which it is drawn, with one drive or several."""
 
-    gravity: tuple[Acceleration, Acceleration] = (0.0, -9.80665)
+    gravity: Annotated[
+        tuple[Acceleration, Acceleration],
+        Field(json_schema_extra={"default": ["0 m/s^2", "-9.80665 m/s^2"]}),
+    ] = (0.0, -9.80665)
+    """[gx, gy]; [0, 0] for none."""
     joint: Annotated[dict[str, JointTable], Field(min_length=1)]
+    """Joints by name."""
     body: Annotated[dict[str, BodyTable], Field(min_length=1)]
+    """Bodies by name, without the ground."""
     slider: dict[str, SliderTable] = {}
+    """Sliders by name."""
     drive: Annotated[list[AnyDrive], Field(min_length=1)]
+    """One table, or several `[[mechanism.drive]]`: as many as degrees of freedom."""
     sharing: list[SharingTable] = []
+    """Redundant connections, and how they share."""
 
     @field_validator("drive", mode="before")
     @classmethod

@@ -11,11 +11,13 @@ from fea.memory import allowed_memory, solid_memory
 from fea.peak import Peak
 from fea.second_opinion import Opinion
 from pinstress import checks, gather
+from pinstress.gather_surface import surface_of
 from pinstress.pins import material as material_of
 from pinstress.plan import Plan
 from pinstress.tasks import Task
 from pinstress.workers import Died, Job, Progress, Tell, side_by_side
 from reports.results import BeamCheck, Field, LandingRange
+from reports.surface import Surface
 
 Keep = Callable[[Field], None]
 Ask = Callable[[Task, tuple[Peak, ...], Tell], tuple[Opinion, ...]]
@@ -28,6 +30,7 @@ class Solved:
     peaks: tuple[Peak, ...]
     landing: tuple[LandingRange, ...] = ()
     beam: BeamCheck | None = None
+    surface: Surface | None = None
     opinions: tuple[Opinion, ...] = ()
 
 
@@ -103,4 +106,4 @@ def _solve(plan: Plan, task: Task, keep: Keep, ask: Ask, tell: Tell) -> Solved:
     if task is plan.checked and study.table.beam_check is not None:
         tell(f"pin {task.pin.name}, beam check")
         beam = checks.beam_check(study, task, material)
-    return Solved(peaks, landing, beam, opinions)
+    return Solved(peaks, landing, beam, surface_of(study, plan.loads, task, found), opinions)

@@ -15,7 +15,8 @@ from pydantic import ValidationError
 from pinstress.errors import InputError
 from pinstress.file_names import same_files
 from pinstress.quantities import KINDS
-from pinstress.schema import GivenCase, LegCase, MotionCase, StudyTable
+from pinstress.schema import StudyTable
+from pinstress.schema_cases import GivenCase, LegCase, MotionCase
 from pinstress.schema_mechanism import MechanismTable, RotaryDrive, SliderDrive
 from pinstress.units import SYSTEMS, UnitSystem
 

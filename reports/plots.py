@@ -15,7 +15,8 @@ from reports.plot_linkage import linkage_plot
 from reports.plot_motion import motion_plots
 from reports.plot_reactions import bars, reaction_plots
 from reports.plot_refinement import pin_refinement_plot, refinement_plot
-from reports.results import PinResult, Results
+from reports.plot_surface import surface_plot
+from reports.results import PinResult, ReactionTable, Results
 
 
 def save_plots(results: Results, directory: Path, draw: Draw = in_turn) -> list[Path]:
@@ -30,8 +31,9 @@ def _mechanics(results: Results, directory: Path) -> Iterator[Plot]:
         if table.times is None:
             yield partial(bars, table, units, directory)
         else:
+            at = governing(results, table)
             for pin in dict.fromkeys(table.pins):
-                yield partial(reaction_plots, table, pin, units, directory)
+                yield partial(reaction_plots, table, pin, units, directory, at.get(pin))
     for drive in results.drive:
         yield partial(drive_plot, drive, units, directory)
     for motion in results.motion:
@@ -59,6 +61,19 @@ def _pins(results: Results, directory: Path) -> Iterator[Plot]:
         # A single mesh says nothing about others.
         if any(len(pin.history) > 1 for pin in refined):
             yield partial(pin_refinement_plot, name, refined, units, directory)
+    found = {(p.pin, p.case): p for p in results.pins}
+    shapes = {s.pin: s for s in results.shapes}
+    for surface in results.surfaces:
+        for held in surface.cases if surface.revolved else ():
+            row, shape = found[surface.pin, held.case], shapes.get(surface.pin)
+            yield partial(surface_plot, surface, held, row, shape, units, directory)
+
+
+def governing(results: Results, table: ReactionTable) -> dict[str, float]:
+    """Where on a motion's axis (reports.plot_reactions.along) each pin's stress is largest."""
+    rows = (p for p in results.pins if p.case == table.case)
+    at = {p.pin: p.time if table.position is None else p.position for p in rows}
+    return {pin: x for pin, x in at.items() if x is not None}
 
 
 def _can_be_drawn(pin: PinResult) -> bool:

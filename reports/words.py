@@ -14,10 +14,10 @@ WORDS = {
 BEYOND = "beyond yield"
 
 READING = (
-    "Each row is one pin in one case: the largest von Mises stress on the pin's surface at any "
-    "instant, its estimated error (±) from successive meshes, and the yield stress over that "
-    "maximum. The solid model gives the mean over turning the loads about the axis; pictures and "
-    "VTU files show the pin as it is loaded, and their maximum may differ by as much as the ±."
+    "Each row is one pin in one case: the largest von Mises stress in the pin at any instant, its "
+    "estimated error (±) from successive meshes, and the yield stress over that maximum. The solid "
+    "model gives the mean over turning the loads about the axis; pictures and VTU files show the "
+    "pin as it is loaded, and their maximum may differ by as much as the ±."
 )
 # What each word beside a factor means, one sentence each.
 MEANING = {

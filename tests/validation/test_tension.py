@@ -1,4 +1,9 @@
-"""Shoulder fillets in tension: the harmonic model beside values that CalculiX found."""
+"""Shoulder fillets in tension: the harmonic model beside values that CalculiX found.
+
+Reference: CalculiX 2.20, axisymmetric elements, `python -m benchmarks tension`; W. D. Pilkey, D. F.
+Pilkey, Peterson's Stress Concentration Factors, for the chart. Tolerance 0.3 %: what the two meshes
+leave of error, each some 0.1 %.
+"""
 
 from __future__ import annotations
 

@@ -1,0 +1,64 @@
+"""The reference has every key, and the schema tells editors what each one is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from docs.study_reference import reference, sections, takes
+from pinstress.quantities import Table, described
+from pinstress.schema import StudyTable
+from pinstress.schema_cases import ImpulseTable, MotionCase
+from pinstress.schema_pins import SegmentTable
+
+SCHEMA = StudyTable.model_json_schema()
+
+
+def tables(table: type[Table] = Table) -> Iterator[type[Table]]:
+    for one in table.__subclasses__():
+        yield one
+        yield from tables(one)
+
+
+@pytest.mark.parametrize("table", list(tables()), ids=lambda t: t.__name__)
+def test_every_key_says_what_it_is(table: type[Table]) -> None:
+    told = described(table)
+    assert set(told) == set(table.model_fields)
+    assert all(words.endswith(".") for words in told.values())
+
+
+def test_every_table_has_its_place() -> None:
+    placed = {section.table["title"] for section in sections(SCHEMA)}
+    assert placed == {"StudyTable", *SCHEMA["$defs"]}
+    anchors = [section.anchor for section in sections(SCHEMA)]
+    assert len(anchors) == len(set(anchors))
+
+
+def test_the_reference_has_type_unit_domain_default_and_description() -> None:
+    text = reference(SCHEMA)
+    for row in (
+        "| `diameter` | length from 1 µm to 1 km | **required** | Outer diameter. |",
+        '| `gravity` | acceleration > 0 | `"9.80665 m/s^2"` | Turns the weight into a mass. |',
+        "| `samples` | integer ≥ 2, ≤ 100001 | `201` | Instants, evenly spaced. |",
+        "| `poisson_ratio` | number > -1, < 0.5 | **required** | Poisson's ratio. |",
+    ):
+        assert row in text
+    assert '## `case.NAME`, kind = "motion"' in text
+    assert "[table](#key-pin-NAME-profile)" in text
+
+
+@pytest.mark.parametrize(
+    ("table", "key", "words"),
+    [
+        (SegmentTable, "bore", "length ≥ 0"),
+        (ImpulseTable, "direction", "[number, number]"),
+        (MotionCase, "clamp", "by name: list of string"),
+        (MotionCase, "distribution", '`"uniform"`, `"cosine"`'),
+        (MotionCase, "kind", '`"motion"`'),
+    ],
+)
+def test_what_a_key_takes_in_words(table: type[Table], key: str, words: str) -> None:
+    properties: dict[str, Any] = table.model_json_schema()["properties"]
+    assert takes(properties[key]) == words

@@ -1,0 +1,163 @@
+"""The front door of the models: which one answers, and when it stops."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fea.ladder import Asked, solve_pin
+from fea.material import Material
+from fea.pin_loads import PinLoads
+from fea.tensor import von_mises
+from geometry import CutPin, Hole, Pin, Segment
+
+# Double shear of a plain bar of 20 mm: nothing holds it, and no place is without a bound.
+BAR = Pin(
+    "D",
+    (
+        Segment(0.01, 0.02, connection="D1"),
+        Segment(0.02, 0.02, connection="D2"),
+        Segment(0.01, 0.02, connection="D3"),
+    ),
+)
+SIZES = np.array([1000.0, -3000.0, 2000.0])
+BALANCED = PinLoads(
+    "push",
+    ("D1", "D2", "D3"),
+    SIZES[:, None, None] * np.array([[0.0, 0.5, 0.0], [0.0, -1.0, 0.0], [0.0, 0.5, 0.0]]),
+    distribution="cosine",
+)
+ONE_SIDED = PinLoads("pull", ("D1",), np.array([[[0.0, 1000.0, 0.0]]]))
+YIELD = 1.0e9  # of `steel`
+
+
+def test_a_beam_decides_where_its_error_leaves_no_doubt(steel: Material) -> None:
+    for required, meets in ((2.0, True), (1e4, False)):
+        asked = Asked(goal="decide", required=required)
+        (found,) = solve_pin(BAR, steel, (), (BALANCED,), asked)
+        peak = found.peak
+        assert (peak.model, peak.verdict) == ("beam", "unconverged")
+        assert peak.why.startswith("beam: the required factor lies outside")
+        assert peak.max_von_mises is not None
+        assert (YIELD / peak.max_von_mises > required) is meets
+
+
+def test_what_no_beam_decides_goes_to_the_harmonic_model(steel: Material) -> None:
+    (beam,) = solve_pin(BAR, steel, (), (BALANCED,), Asked(model="beam"))
+    assert beam.peak.why == "beam: asked for"
+    close = YIELD / (beam.peak.max_von_mises or 0.0)
+    (found,) = solve_pin(BAR, steel, (), (BALANCED,), Asked(goal="decide", required=close))
+    assert found.peak.model == "harmonic"
+    assert found.peak.why.startswith("harmonic: a beam's error leaves the required factor open")
+
+
+def test_a_wide_tolerance_is_a_beams_and_a_narrow_one_is_not(steel: Material) -> None:
+    (wide,) = solve_pin(BAR, steel, (), (BALANCED,), Asked(tolerance=0.9))
+    assert (wide.peak.model, wide.peak.verdict) == ("beam", "converged")
+    (narrow,) = solve_pin(BAR, steel, (), (BALANCED,), Asked(tolerance=0.06))
+    assert narrow.peak.model == "harmonic"
+    assert narrow.peak.why.startswith("harmonic: no beam knows this maximum to 6.0%")
+
+
+def test_a_strength_or_a_requirement_that_is_missing_decides_nothing(steel: Material) -> None:
+    weak = replace(steel, yield_strength=None)
+    for material, required in ((weak, 2.0), (steel, None)):
+        asked = Asked(goal="decide", required=required, tolerance=0.2)
+        (found,) = solve_pin(BAR, material, (), (BALANCED,), asked)
+        assert found.peak.model == "harmonic"
+
+
+def test_meshes_that_run_out_are_told(steel: Material) -> None:
+    asked = Asked(model="harmonic", tolerance=1e-6, meshes=3)
+    (found,) = solve_pin(BAR, steel, (), (BALANCED,), asked)
+    assert (found.peak.verdict, len(found.peak.history)) == ("unconverged", 3)
+    assert (
+        found.peak.why
+        == "harmonic: asked for; the largest mesh allowed does not reach the tolerance"
+    )
+
+
+def test_one_mesh_has_no_error_estimate(steel: Material) -> None:
+    asked = Asked(model="harmonic", meshes=1)
+    (found,) = solve_pin(BAR, steel, (), (BALANCED,), asked)
+    assert found.peak.verdict == "unconverged"
+    assert found.peak.error_estimate == found.peak.max_von_mises
+    assert found.peak.note.startswith("from one mesh only")
+
+
+def test_a_case_out_of_balance_is_rigid_and_the_others_are_solved(steel: Material) -> None:
+    first, second = solve_pin(BAR, steel, (), (ONE_SIDED, BALANCED), Asked(model="beam"))
+    assert (first.peak.case, first.peak.verdict, first.answer) == ("pull", "rigid", None)
+    assert first.peak.max_von_mises is None
+    assert "name what holds it in pin.D.clamp" in first.peak.note
+    assert (second.peak.case, second.peak.model) == ("push", "beam")
+
+
+def test_a_load_without_size_says_nothing_of_a_balance(steel: Material) -> None:
+    nothing = replace(BALANCED, forces=0.0 * BALANCED.forces)
+    (found,) = solve_pin(BAR, steel, (), (nothing,), Asked(model="beam"))
+    assert found.peak.max_von_mises == 0.0
+    assert "balance" not in found.peak.note
+
+
+def test_what_bands_take_up_is_told(steel: Material) -> None:
+    """A twentieth of the force is left over, the couple of it about the middle, 5 % of F times 5 mm
+    in 40.
+    """
+    some = replace(BALANCED, forces=BALANCED.forces * np.array([1.0, 1.0, 0.9])[:, None])
+    (found,) = solve_pin(BAR, steel, (), (some,), Asked(model="beam"))
+    assert "a force of 0.05 of the largest load" in found.peak.note
+    assert "a couple of 0.019 of that times the length" in found.peak.note
+
+
+def test_no_beam_where_a_corner_has_no_maximum(steel: Material) -> None:
+    sharp = Pin("S", (Segment(0.02, 0.03), Segment(0.04, 0.02, connection="D1")))
+    asked = Asked(goal="decide", required=1e4, meshes=3)
+    (found,) = solve_pin(sharp, steel, ("start",), (ONE_SIDED,), asked)
+    assert found.peak.model == "harmonic"
+
+
+@pytest.mark.parametrize("model", ["beam", "harmonic"])
+def test_only_the_solid_takes_what_is_no_body_of_revolution(model: str, steel: Material) -> None:
+    cut = CutPin(BAR, (Hole(0.02, 0.004),), ())
+    with pytest.raises(ValueError, match="no body of revolution: only the solid model"):
+        solve_pin(cut, steel, (), (BALANCED,), Asked(model=model))  # type: ignore[arg-type]
+
+
+def test_the_picture_shows_the_answer(steel: Material) -> None:
+    """60 sectors miss the maximum round the axis by at most 1 - cos(3 deg)^2 or so, 0.3 %. All
+    instants push the same way, so the largest is everywhere that of the envelope.
+    """
+    one_way = replace(BALANCED, forces=np.sign(SIZES)[:, None, None] * BALANCED.forces)
+    (found,) = solve_pin(BAR, steel, (), (one_way,), Asked(model="harmonic"))
+    peak, answer = found.peak, found.answer
+    assert answer is not None
+    maxima = answer.maxima(one_way)
+    assert maxima == pytest.approx(np.abs(SIZES) / 3000.0 * (peak.max_von_mises or 0.0), rel=1e-9)
+    assert peak.instant == 1
+    for instant in (0, 1):
+        picture = answer.picture(one_way, instant)
+        assert picture is not None
+        shown = von_mises(picture.stress)
+        assert shown.max() == pytest.approx(maxima[instant], rel=4e-3)
+        assert picture.envelope.max() == pytest.approx(maxima[1], rel=4e-3)
+        ratio = abs(SIZES[instant]) / 3000.0
+        np.testing.assert_allclose(shown, ratio * picture.envelope, rtol=1e-6, atol=1.0)
+    assert picture is not None
+    x, y, z = picture.points.T
+    lateral = (z > 1e-9) & (z < BAR.length - 1e-9)
+    s = picture.stress[lateral]  # xx, yy, zz, yz, xz, xy
+    n = np.stack([x, y], axis=1)[lateral] / 0.01
+    along = s[:, 4] * n[:, 0] + s[:, 3] * n[:, 1]
+    assert np.abs(along).max() < 1e-6 * shown.max()  # a pressure does not shear
+
+
+def test_the_beams_answer_is_its_peak(steel: Material) -> None:
+    (found,) = solve_pin(BAR, steel, (), (BALANCED,), Asked(model="beam"))
+    assert found.answer is not None
+    maxima = found.answer.maxima(BALANCED)
+    assert maxima.max() == pytest.approx(found.peak.max_von_mises, rel=1e-9)
+    assert maxima == pytest.approx(np.abs(SIZES) / 3000.0 * maxima.max(), rel=1e-9)
+    assert found.answer.picture(BALANCED, 0) is None
