@@ -63,3 +63,22 @@ def test_a_study_of_nothing_lists_all_that_is_missing(
     assert run_command_line(["check", str(tmp_path / "study.toml")]) == 2
     told = capsys.readouterr().err
     assert [f"{key}: is missing" in told for key in ("title", "units", "case")] == [True] * 3
+
+
+@pytest.mark.parametrize("length", [0, 1, 40, 200, 1000, 3000])
+@pytest.mark.parametrize("ending", [".msh", ".step"])
+def test_a_file_that_was_cut_off_is_one_message(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], length: int, ending: str
+) -> None:
+    """A mesh of ours; a STEP file that ends in the middle of its header or is none."""
+    whole = (ROOT / "studies" / "failures" / "turned_numbers.msh").read_text()
+    if ending == ".step":
+        whole = "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION(('a pin'),'2;1');\n" * 100
+    text = (ROOT / "studies" / "failures" / "turned_numbers.toml").read_text()
+    assert '"turned_numbers.msh"' in text
+    (tmp_path / "study.toml").write_text(text.replace("turned_numbers.msh", f"pin{ending}"))
+    (tmp_path / f"pin{ending}").write_text(whole[:length])
+    assert run_command_line(["check", str(tmp_path / "study.toml")]) == 2
+    told = capsys.readouterr().err
+    assert told.count("Error") == 1
+    assert f"pin{ending}" in told
