@@ -242,7 +242,9 @@ def chart(
     memory_limit: float,
 ) -> int:
     from pinstress.study import load_study
+    from pinstress.workers import hold_threads
 
+    hold_threads()
     loaded = load_study(study)
     from pinstress.own_process import Limits
     from pinstress.write_chart import chart_and_write
