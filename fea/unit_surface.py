@@ -18,6 +18,7 @@ from fea.zones import outside
 Ints = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
+MOST_NODES = 6000  # of a surface of quadratic triangles, to show their middle nodes, too
 _QUARTERS = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])  # of a quadratic triangle
 _MERIDIAN = (True,) * EVEN + (False,) * (5 - EVEN) + (True, False, True)
 
@@ -64,10 +65,10 @@ def unit_surface(answer: Answer) -> UnitSurface | None:
         )
     if isinstance(answer, SolidAnswer):
         solid = answer.solution.fields
-        nodes = solid.surface.nodes
+        nodes, triangles = _shown(solid.surface)
         return UnitSurface(
             points=solid.space.nodes[nodes],
-            triangles=np.searchsorted(nodes, _triangles(solid.surface)),
+            triangles=np.searchsorted(nodes, triangles),
             n=np.zeros(len(solid.loads), dtype=np.int64),
             even=(True,) * 8,
             stress=METRIC @ solid.stress[nodes],
@@ -90,7 +91,9 @@ def amounts(answer: Answer, loads: PinLoads) -> Floats:
 def excluded(answer: Answer) -> Mask:
     """Which points of the surface (P,) lie in a singular place, where the maximum is not read."""
     if isinstance(answer, SolidAnswer):
-        return ~answer.solution.outside[: len(answer.solution.fields.surface.nodes)]
+        surface = answer.solution.fields.surface
+        inside = ~answer.solution.outside[: len(surface.nodes)]
+        return np.asarray(inside[np.searchsorted(surface.nodes, _shown(surface)[0])])
     assert isinstance(answer, HarmonicAnswer)
     return ~outside(answer.places, *answer.fields.points[: answer.fields.skin].T)
 
@@ -101,17 +104,19 @@ def largest_there(answer: Answer, loads: PinLoads, instant: int) -> Floats:
     """
     if isinstance(answer, SolidAnswer):
         fields = answer.solution.fields
-        c = amounts(answer, loads)[instant, :, 0]
-        return np.asarray(np.linalg.norm(METRIC @ fields.stress[fields.surface.nodes] @ c, axis=1))
+        stress = METRIC @ fields.stress[_shown(fields.surface)[0]]
+        return np.asarray(np.linalg.norm(stress @ amounts(answer, loads)[instant, :, 0], axis=1))
     assert isinstance(answer, HarmonicAnswer)
     skin = np.arange(answer.fields.skin)
     found, _ = Circumference(answer.fields, loads).round(skin, np.full(len(skin), instant))
     return found
 
 
-def _triangles(surface: Surface) -> Ints:
-    """Facets in plane triangles (M, 3) of nodes."""
+def _shown(surface: Surface) -> tuple[Ints, Ints]:
+    """Nodes (P,), sorted, and plane triangles (M, 3) of them; of a fine mesh the corners alone."""
     corners = surface.corners
-    if corners.shape[1] == 6:
+    if len(surface.nodes) > MOST_NODES:
+        corners = corners[:, :3]
+    elif corners.shape[1] == 6:
         corners = corners[:, _QUARTERS].reshape(-1, 3)
-    return np.asarray(corners, dtype=np.int64)
+    return np.unique(corners), np.asarray(corners, dtype=np.int64)

@@ -56,10 +56,6 @@ def _data(surface: Surface, found: dict[str, PinResult], results: Results) -> di
     each = np.abs(stress).max(axis=(1, 2), initial=0.0)
     longest = np.asarray(np.abs(moved).max(initial=0.0))
     box = _box(surface)
-    place = found[surface.cases[0].case].location
-    view = View.of(box, np.asarray(place))
-    towards = view.eye - view.centre
-    towards /= np.linalg.norm(towards)
     return {
         "units": {"stress": results.units.stress, "time": results.units.time},
         "strength": surface.yield_strength,
@@ -72,15 +68,21 @@ def _data(surface: Surface, found: dict[str, PinResult], results: Results) -> di
         "stress_scale": _packed(each / WHOLE, "<f4"),
         "moved": _packed(np.rint(_parts(moved, longest)), "<i2"),
         "moved_scale": float(longest) / WHOLE,
-        "cases": [_case(c, found[c.case], largest, surface.revolved) for c in surface.cases],
+        "cases": [
+            {
+                **_case(c, found[c.case], surface.revolved),
+                "turn": _turn(box, found[c.case]),
+                "amounts": _packed(c.amounts / largest[:, None], "<f4"),
+            }
+            for c in surface.cases
+        ],
         "box": box.tolist(),
-        "centre": view.centre.tolist(),
+        "centre": (0.5 * (box[0] + box[-1])).tolist(),
         "size": float(np.ptp(box, axis=0).max()),
-        "turn": np.stack([np.cross(view.up, towards), view.up, towards]).tolist(),
     }
 
 
-def _case(case: SurfaceCase, pin: PinResult, largest: Floats, revolved: bool) -> dict[str, Any]:
+def _case(case: SurfaceCase, pin: PinResult, revolved: bool) -> dict[str, Any]:
     on_surface = float(case.largest[~case.excluded].max(initial=0.0))
     # The solid model's maximum is a mean over directions of the loads.
     least = BENEATH * (pin.max_von_mises or 0.0) - (0.0 if revolved else pin.error_estimate or 0.0)
@@ -94,9 +96,17 @@ def _case(case: SurfaceCase, pin: PinResult, largest: Floats, revolved: bool) ->
         "location": pin.location,
         "beneath": on_surface < least,
         "zoned": bool(case.excluded.any()),
-        "amounts": _packed(case.amounts / largest[:, None], "<f4"),
         "excluded": _packed(case.excluded, "u1"),
     }
+
+
+def _turn(box: Floats, pin: PinResult) -> list[list[float]]:
+    """Rows right, up and towards the viewer, who looks at the maximum."""
+    view = View.of(box, np.asarray(pin.location))
+    towards = view.eye - view.centre
+    towards /= np.linalg.norm(towards)
+    rows: list[list[float]] = np.stack([np.cross(view.up, towards), view.up, towards]).tolist()
+    return rows
 
 
 def _box(surface: Surface) -> Floats:

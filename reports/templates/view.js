@@ -34,7 +34,7 @@ const startView = (root, paint) => {
   const canvas = root.querySelector("canvas"), flat = canvas.getContext("2d");
   let turn, zoom, chosen, exaggeration, drawn = 0, largestMoved;
 
-  const reset = () => { turn = data.turn; zoom = 1; };
+  const reset = () => { turn = chosen.turn; zoom = 1; };
   const instant = () => (chosen.times ? Number(one("time").value) : chosen.instant);
   const factors = () => one("colour").value === "factor";
 
@@ -56,6 +56,7 @@ const startView = (root, paint) => {
     const { moved } = compute();
     largestMoved = 0;
     for (let v = 0; v < moved.length; v += 3) largestMoved = Math.max(largestMoved, Math.hypot(moved[v], moved[v + 1], moved[v + 2]));
+    reset();
     tell();
   };
 
@@ -65,7 +66,8 @@ const startView = (root, paint) => {
     const error = governs ? ` ± ${written(chosen.error, 2)}` : "";
     const where = chosen.zoned ? " outside the excluded zones" : "";
     const factor = data.strength ? `; factor of safety ${written(data.strength / value)} (${chosen.verdict})` : "";
-    one("told").textContent = `${when}largest von Mises stress ${written(value)} ${units.stress}${error}${where}${factor}.`;
+    const largest = when ? "largest" : "Largest";
+    one("told").textContent = `${when}${largest} von Mises stress ${written(value)} ${units.stress}${error}${where}${factor}.`;
     one("told").dataset.maximum = value;
     one("beneath").hidden = !(chosen.beneath && governs);
     one("zones").hidden = !chosen.zoned;
@@ -97,7 +99,7 @@ const startView = (root, paint) => {
     canvas.width = width;
     canvas.height = height;
     // The whole box fits as it lies at first.
-    const half = data.box.map((c) => applied(data.turn, c.map((x, i) => x - data.centre[i])));
+    const half = data.box.map((c) => applied(chosen.turn, c.map((x, i) => x - data.centre[i])));
     const reach = (i) => Math.max(...half.map((c) => Math.abs(c[i])));
     const fit = (0.9 * zoom) / Math.max(reach(0), (reach(1) * width) / height);
     const scale = [fit, (fit * width) / height, -0.3 / data.size];
@@ -146,7 +148,6 @@ const startView = (root, paint) => {
   one("further").addEventListener("click", () => nearer(1 / 1.3));
   one("reset").addEventListener("click", () => { reset(); draw(); });
   new ResizeObserver(draw).observe(canvas);
-  reset();
   choose();
 };
 
