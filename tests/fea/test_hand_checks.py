@@ -176,3 +176,12 @@ def test_single_shear_is_the_whole_force(steel: Material) -> None:
     forces = np.array([[[0.0, force, 0.0], [0.0, -force, 0.0]]])
     found = {c.name: c for c in hand_checks(pin, steel, PinLoads("case", ("A", "B"), forces))}
     assert found["single shear, mean"].stress == pytest.approx(force / (math.pi * d**2 / 4))
+
+
+def test_checks_are_proportional_to_the_load(steel: Material) -> None:
+    """Also below a newton: what is small is not nothing."""
+    whole, part = (hand_checks(LUGS, steel, lugs((f, 0.0))) for f in (F, 1e-5 * F))
+    assert [(x.name, x.at) for x in whole] == [(x.name, x.at) for x in part]
+    assert "double shear, mean" in {x.name for x in part}
+    for a, b in zip(whole, part, strict=True):
+        assert b.stress == pytest.approx(1e-5 * a.stress)
