@@ -108,7 +108,6 @@ def _moved(
 
 def _envelope(around: Circumference, rows: Ints, theta: Floats) -> Floats:
     """Largest von Mises stress over all instants at rows x angles, flat."""
-    out = np.zeros((len(rows), len(theta)))
-    for k, angle in enumerate(theta):
-        out[:, k] = around.squares(rows, float(angle)).max(axis=1)
-    return np.sqrt(np.maximum(out, 0.0)).ravel()
+    turn = len(theta) // 2 if around.odd else len(theta)  # odd harmonics: half a turn says it all
+    found = np.stack([around.squares(rows, float(a)).max(axis=1) for a in theta[:turn]], axis=1)
+    return np.tile(np.sqrt(np.maximum(found, 0.0)), len(theta) // turn).ravel()
