@@ -177,6 +177,8 @@ def _serve(job: Job[T], pipe: Connection, parent: int) -> None:
 
 
 def _leave(*_: object) -> None:
+    # In a finalizer Python prints what is raised and goes on; the parent kills us then.
+    sys.unraisablehook = lambda _: None
     sys.exit(128 + signal.SIGTERM)
 
 
