@@ -1,1 +1,8 @@
-"""Measurements of what we claim; `python -m benchmarks` runs them all."""
+"""Measurements of what we claim; `python -m benchmarks` runs them all.
+
+Numeric libraries have one thread, as in `pinstress run`, where nothing else is said.
+"""
+
+from pinstress.workers import hold_threads
+
+hold_threads()

@@ -8,6 +8,8 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+from pinstress.workers import THREADS as LIBRARIES
+
 THREADS = 2
 
 # Linux counts the largest memory of a child from before it starts its program, when it still has
@@ -48,7 +50,7 @@ def process(arguments: list[str], folder: Path) -> Process:
     done = subprocess.run(
         [sys.executable, "-I", "-c", PROBE, *arguments],
         cwd=folder,
-        env=os.environ | {"OMP_NUM_THREADS": str(THREADS)},
+        env=os.environ | dict.fromkeys(LIBRARIES, str(THREADS)),
         capture_output=True,
         text=True,
     )

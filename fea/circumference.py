@@ -77,6 +77,11 @@ class Circumference:
         """Whether nothing acts but torsion."""
         return not self._n.any() and not self._first.any()
 
+    @property
+    def odd(self) -> bool:
+        """Whether only odd harmonics act, so that half a turn changes the signs of stresses."""
+        return bool((self._n % 2 == 1).all())
+
     def bound(self, points: Ints) -> Floats:
         """At least the largest von Mises stress round the axis, (J, T) Pa, at points (J,); exactly
         it where only one harmonic acts.

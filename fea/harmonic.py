@@ -66,8 +66,14 @@ class HarmonicModel:
             displacement[:, :, here], stress[:, :, here] = section_stress(
                 self.space, self.outline, self.material, n, u, tractions, self.clamps, at_extra
             )
+        skin_points = len(AT) * len(self.outline.nodes)
+        row = np.zeros(len(self.space.nodes), dtype=np.int64)  # of every node that is a corner
+        row[inner] = skin_points + np.arange(len(inner))
+        first = len(AT) * np.arange(len(self.outline.nodes))
+        row[self.outline.nodes[:, 1]], row[self.outline.nodes[:, 0]] = first + len(AT) - 1, first
+        triangles = row[self.space.elements[:, :3]]
         return MeridianFields(
-            points, loads, stress, displacement, 5 * len(self.outline.nodes), self.space.unknowns
+            points, loads, stress, displacement, skin_points, self.space.unknowns, triangles
         )
 
     def _applied(self, n: int, loads: list[UnitLoad]) -> tuple[Floats, Floats]:

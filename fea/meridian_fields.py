@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
 
 from fea.pin_loads import Floats, UnitLoad
 
@@ -14,7 +17,8 @@ class MeridianFields:
     Components are rr, tt, zz, tz, rz, rt; under a load of harmonic n and phase p the first three
     and rz go as cos psi, the others as sin psi, psi = n theta - p pi / 2. displacement (S, 3, K)
     in m: r and z as cos psi, theta as sin psi. skin: how many of the points, the first ones, follow
-    the outline counter-clockwise. unknowns: of the system that was solved.
+    the outline counter-clockwise. unknowns: of the system that was solved. triangles: (M, 3) of
+    points, which fill the section, if the model has such.
     """
 
     points: Floats
@@ -23,3 +27,4 @@ class MeridianFields:
     displacement: Floats
     skin: int
     unknowns: int
+    triangles: NDArray[np.int64] = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int64))

@@ -1,4 +1,4 @@
-"""The outer skin of a section's fields, revolved into a surface in space."""
+"""A section's fields revolved into space: its outer skin as a surface, or all of it as a solid."""
 
 from __future__ import annotations
 
@@ -17,11 +17,48 @@ CLOSE = 1e-9  # of the length: points that are one
 def revolve(fields: MeridianFields, loads: PinLoads, instant: int) -> Picture:
     """Skin and loads as they are at an instant."""
     rows = _skin(fields)
-    theta = np.arange(SECTORS) * 2.0 * np.pi / SECTORS
-    r, z = fields.points[rows].T
     around = Circumference(fields, loads)
+    points, displacement, stress = _turned(fields, around, loads, rows, instant)
+    return Picture(
+        points=points,
+        cells=_quads(len(rows)),
+        cell_type="quad",
+        displacement=displacement,
+        stress=stress,
+        envelope=_envelope(around, rows, _angles()),
+    )
+
+
+def revolve_solid(fields: MeridianFields, loads: PinLoads, instant: int) -> Picture:
+    """The whole body as wedges, straight between the corners of the section's triangles; without an
+    envelope.
+    """
+    rows, numbers = np.unique(fields.triangles, return_inverse=True)
+    around = Circumference(fields, loads)
+    points, displacement, stress = _turned(fields, around, loads, rows, instant)
+    here = numbers.reshape(-1, 3)[:, None] * SECTORS + np.arange(SECTORS)[:, None]
+    there = numbers.reshape(-1, 3)[:, None] * SECTORS + (np.arange(SECTORS)[:, None] + 1) % SECTORS
+    return Picture(
+        points=points,
+        cells=np.concatenate([there, here], axis=2).reshape(-1, 6),
+        cell_type="wedge",
+        displacement=displacement,
+        stress=stress,
+        envelope=np.full(len(points), np.nan),
+    )
+
+
+def _angles() -> Floats:
+    return np.asarray(np.arange(SECTORS) * 2.0 * np.pi / SECTORS)
+
+
+def _turned(
+    fields: MeridianFields, around: Circumference, loads: PinLoads, rows: Ints, instant: int
+) -> tuple[Floats, Floats, Floats]:
+    """Of every point on all meridians: x, y, z (P, 3), displacement (P, 3), stress (P, 6)."""
+    r, z = fields.points[rows].T
     everywhere = np.repeat(np.arange(len(rows)), SECTORS)
-    angle = np.tile(theta, len(rows))
+    angle = np.tile(_angles(), len(rows))
     at = rows[everywhere]
     stress = around.stress(at, np.full(len(at), instant), angle)
     turn = np.zeros((len(angle), 3, 3))  # columns: unit vectors along r, theta, z
@@ -30,13 +67,10 @@ def revolve(fields: MeridianFields, loads: PinLoads, instant: int) -> Picture:
     turn[:, 2, 2] = 1.0
     tensor = turn @ stress[:, TENSOR] @ turn.transpose(0, 2, 1)
     x, y = r[everywhere] * np.cos(angle), r[everywhere] * np.sin(angle)
-    return Picture(
-        points=np.stack([x, y, z[everywhere]], axis=1),
-        cells=_quads(len(rows)),
-        cell_type="quad",
-        displacement=np.einsum("pab,pb->pa", turn, _moved(fields, loads, at, instant, angle)),
-        stress=np.stack([tensor[:, a, b] for a, b in ENTRIES], axis=1),
-        envelope=_envelope(around, rows, theta),
+    return (
+        np.stack([x, y, z[everywhere]], axis=1),
+        np.einsum("pab,pb->pa", turn, _moved(fields, loads, at, instant, angle)),
+        np.stack([tensor[:, a, b] for a, b in ENTRIES], axis=1),
     )
 
 
@@ -74,7 +108,6 @@ def _moved(
 
 def _envelope(around: Circumference, rows: Ints, theta: Floats) -> Floats:
     """Largest von Mises stress over all instants at rows x angles, flat."""
-    out = np.zeros((len(rows), len(theta)))
-    for k, angle in enumerate(theta):
-        out[:, k] = around.squares(rows, float(angle)).max(axis=1)
-    return np.sqrt(np.maximum(out, 0.0)).ravel()
+    turn = len(theta) // 2 if around.odd else len(theta)  # odd harmonics: half a turn says it all
+    found = np.stack([around.squares(rows, float(a)).max(axis=1) for a in theta[:turn]], axis=1)
+    return np.tile(np.sqrt(np.maximum(found, 0.0)), len(theta) // turn).ravel()

@@ -74,20 +74,22 @@ def closing_tractions(
     pin: PinLike, n: int, phase: int, pressure: bool = False
 ) -> tuple[tuple[Traction, ...], ...]:
     """The tractions that close the balance of a pin that nothing holds, each on all its bands: for
-    n = 1 a constant and one that grows with z; for n = 0 along the axis, or about it at phase 1.
+    n = 1 a constant and one that grows with z from each band's own middle, so that a couple is
+    taken up by couples and leaves the bands their forces; for n = 0 along the axis, or about it at
+    phase 1.
 
-    Of all tractions on the bands with a given resultant, these have the least mean square; of all
-    pressures, those for `pressure`, which have no shear that would jump at a band's edge.
+    Of all tractions with a given resultant that leave the bands the forces of their links but for
+    what is left over of these, the ones with the least mean square; of all pressures, those for
+    `pressure`, which have no shear that would jump at a band's edge.
     """
     bands = [pin.band(name) for name in pin.connections]
 
-    def everywhere(mean: Floats, slope: Floats, middle: float = 0.0) -> tuple[Traction, ...]:
-        return tuple(Traction(b.name, middle, mean, slope) for b in bands)
+    def everywhere(mean: Floats, slope: Floats) -> tuple[Traction, ...]:
+        return tuple(Traction(b.name, b.middle, mean, slope) for b in bands)
 
     if n == 1:
-        middle = sum(b.area * b.middle for b in bands) / sum(b.area for b in bands)
         across = PUSHING if pressure else ALONG_X
-        return everywhere(across, _NONE), everywhere(_NONE, across / pin.length, middle)
+        return everywhere(across, _NONE), everywhere(_NONE, across / pin.length)
     if phase == 0:
         return (everywhere(ALONG_Z, _NONE),)
     return (tuple(Traction(b.name, 0.0, ABOUT_Z * b.radius, _NONE) for b in bands),)

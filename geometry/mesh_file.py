@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import contextlib
 import io
 import warnings
+from contextlib import redirect_stderr, redirect_stdout
 
 import meshio
 import numpy as np
@@ -65,11 +65,13 @@ def mesh_from_file(file: BodyFile) -> SolidMesh:
 def _read(file: BodyFile) -> meshio.Mesh:
     try:
         # meshio prints its warnings, and guesses at formats by trying them
-        with contextlib.redirect_stdout(io.StringIO()), warnings.catch_warnings():
+        told = io.StringIO()
+        with redirect_stdout(told), redirect_stderr(told), warnings.catch_warnings():
             warnings.simplefilter("ignore")
             return meshio.read(file.path)
-    except SystemExit:  # how meshio ends when it knows no format
-        reason = "its ending names no format of meshes"
+    except SystemExit:  # how meshio ends when no format it knows is right
+        known = file.path.suffix.lower() in meshio.extension_to_filetypes
+        reason = "it is damaged" if known else "its ending names no format of meshes"
     except Exception as error:
         reason = str(error) or type(error).__name__
     raise GeometryError(

@@ -11,17 +11,18 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from pinstress.errors import InputError
-    from pinstress.pipeline import run
+    from pinstress.found import Found, run
     from pinstress.study import Study, load_study
 
 __version__ = "0.1.0"
-__all__ = ["InputError", "Study", "load_study", "run"]
+__all__ = ["Found", "InputError", "Study", "load_study", "run"]
 
 _HOME = {
+    "Found": "pinstress.found",
     "InputError": "pinstress.errors",
     "Study": "pinstress.study",
     "load_study": "pinstress.study",
-    "run": "pinstress.pipeline",
+    "run": "pinstress.found",
 }
 
 

@@ -11,6 +11,8 @@ from typing import Any
 
 import click
 
+from pinstress.cli_more import completion, init, schema, size, view
+from pinstress.command import example, names
 from pinstress.errors import InputError
 
 INTERRUPTS = signal.SIGINT, signal.SIGTERM, signal.SIGHUP
@@ -54,16 +56,6 @@ def _interrupt(*_: object) -> None:
     raise KeyboardInterrupt
 
 
-def _names(_: click.Context, __: click.Parameter, value: str | None) -> list[str] | None:
-    """A,B as a list."""
-    if value is None:
-        return None
-    names = [n.strip() for n in value.split(",") if n.strip()]
-    if not names:
-        raise click.BadParameter("names none; write for instance A,B")
-    return names
-
-
 @click.group(
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog="A first run: pinstress init trial && pinstress run trial/one_pin.toml",
@@ -71,11 +63,6 @@ def _names(_: click.Context, __: click.Parameter, value: str | None) -> list[str
 @click.version_option(package_name="pinstress")
 def commands() -> None:
     """Stresses and safety factors of the pins of a linkage."""
-
-
-def example(text: str) -> str:
-    """A help text that begins with an example, kept on its own line."""
-    return f"\b\nExample: {text}\n"
 
 
 @commands.command(
@@ -90,8 +77,8 @@ def example(text: str) -> str:
 @click.option(
     "--out", type=click.Path(path_type=Path), help="Folder to write [out/<study's name>]."
 )
-@click.option("--pins", callback=_names, metavar="A,B", help="These pins only.")
-@click.option("--cases", callback=_names, metavar="X,Y", help="These cases only.")
+@click.option("--pins", callback=names, metavar="A,B", help="These pins only.")
+@click.option("--cases", callback=names, metavar="X,Y", help="These cases only.")
 @click.option(
     "--model",
     type=click.Choice(["auto", "beam", "harmonic", "solid"]),
@@ -103,6 +90,14 @@ def example(text: str) -> str:
     help="On the maximum stress, instead of the study's.",
 )
 @click.option("--no-pictures", is_flag=True, help="Neither plots nor rendered pins: faster.")
+@click.option(
+    "--vtk",
+    type=click.Choice(["model", "surface", "solid", "motion", "none"]),
+    default="model",
+    show_default=True,
+    help="Fields for ParaView: as the model has them (the skin of a revolved pin, all of a meshed "
+    "solid), skins only, also all of revolved pins (large), also along every motion (large), none.",
+)
 @click.option(
     "--jobs",
     type=click.IntRange(1),
@@ -120,6 +115,9 @@ def example(text: str) -> str:
     type=click.Choice(["ccx"]),
     help="Have CalculiX solve every row once more on the solid model's mesh, and compare.",
 )
+@click.option("--json", "as_json", is_flag=True, help="Print results.json instead of the table.")
+@click.option("--quiet", is_flag=True, help="No progress and no notes; what failed is still said.")
+@click.option("--open", "opens", is_flag=True, help="Open the report in the browser at the end.")
 def run(
     study: Path,
     out: Path | None,
@@ -128,9 +126,13 @@ def run(
     model: str | None,
     tolerance: float | None,
     no_pictures: bool,
+    vtk: str,
     jobs: int | None,
     memory_limit: float | None,
     second_opinion: str | None,
+    as_json: bool,
+    quiet: bool,
+    opens: bool,
 ) -> int:
     if second_opinion is not None:
         _require_calculix()
@@ -141,8 +143,9 @@ def run(
 
     loaded = load_study(study)
     directory = out or Path("out") / loaded.name
-    from pinstress.write import run_and_write
+    from pinstress.write import Wanted, run_and_write
 
+    wanted = Wanted(not no_pictures, second_opinion is not None, vtk, as_json, quiet, opens, jobs)
     chosen: dict[str, Any] = {
         "pins": pins,
         "cases": cases,
@@ -150,10 +153,7 @@ def run(
         "tolerance": tolerance,
         "memory": memory_limit,
     }
-    second = second_opinion is not None
-    return run_and_write(
-        loaded, directory, pictures=not no_pictures, second=second, jobs=jobs, **chosen
-    )
+    return run_and_write(loaded, directory, wanted, **chosen)
 
 
 def _require_calculix() -> None:
@@ -174,9 +174,12 @@ def _require_calculix() -> None:
 @click.option(
     "--out", type=click.Path(path_type=Path), help="Folder to write [out/<study's name>-loads]."
 )
-@click.option("--cases", callback=_names, metavar="X,Y", help="These cases only.")
+@click.option("--cases", callback=names, metavar="X,Y", help="These cases only.")
 @click.option("--no-pictures", is_flag=True, help="No plots: faster.")
-def loads(study: Path, out: Path | None, cases: list[str] | None, no_pictures: bool) -> int:
+@click.option("--quiet", is_flag=True, help="No notes; what failed is still said.")
+def loads(
+    study: Path, out: Path | None, cases: list[str] | None, no_pictures: bool, quiet: bool
+) -> int:
     from pinstress.study import load_study
     from pinstress.workers import hold_threads
 
@@ -185,7 +188,7 @@ def loads(study: Path, out: Path | None, cases: list[str] | None, no_pictures: b
     from pinstress.write import loads_and_write
 
     directory = out or Path("out") / f"{loaded.name}-loads"
-    return loads_and_write(loaded, directory, plots=not no_pictures, cases=cases)
+    return loads_and_write(loaded, directory, plots=not no_pictures, cases=cases, quiet=quiet)
 
 
 @commands.command(
@@ -242,7 +245,9 @@ def chart(
     memory_limit: float,
 ) -> int:
     from pinstress.study import load_study
+    from pinstress.workers import hold_threads
 
+    hold_threads()
     loaded = load_study(study)
     from pinstress.own_process import Limits
     from pinstress.write_chart import chart_and_write
@@ -263,35 +268,5 @@ def check(study: Path) -> None:
     click.echo(describe(load_study(study)))
 
 
-@commands.command(
-    help=example("pinstress init trial")
-    + "\nWrite a small commented study, one_pin.toml, that runs as it is."
-)
-@click.argument("directory", type=click.Path(path_type=Path, file_okay=False), default=Path("."))
-def init(directory: Path) -> None:
-    from pinstress.studies import shipped
-
-    target = directory / "one_pin.toml"
-    if target.exists():
-        raise InputError(f"{target} exists already; name another folder")
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-        target.write_text(shipped("one_pin.toml").read_text(encoding="utf-8"), encoding="utf-8")
-    except OSError as error:
-        raise InputError(f"{target}: cannot be written ({error.strerror})") from None
-    click.echo(str(target))
-    click.echo(f"Next: pinstress run {target}", err=True)
-
-
-@commands.command(
-    help=example("pinstress schema > study.schema.json")
-    + "\nPrint the JSON Schema of the study file, for editors."
-)
-def schema() -> None:
-    import json
-
-    from pinstress.schema import StudyTable
-
-    made = StudyTable.model_json_schema()
-    made["$schema"] = "https://json-schema.org/draft/2020-12/schema"
-    click.echo(json.dumps(made, indent=2))
+for _command in (init, schema, size, view, completion):
+    commands.add_command(_command)

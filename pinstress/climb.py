@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from fea.ladder import MESHES, MOST_UNKNOWNS, STEP, Asked, enough
 from fea.linear import SolveError
@@ -40,6 +40,8 @@ class Climb:
         """Climb a rung; `keep` it as a point of the chart."""
         self.tell(f"{rung.model} model")
         below = self.looks(rung) if rung.model == "harmonic" and rung.level > 0 else ()
+        if not keep:  # refined everywhere: it is what the others are measured by
+            below = tuple(replace(look, high=()) for look in below)
         runs = self.runs if keep else 1
         found = self.measure(Job(self.problem, rung, below[-1:], runs, reference=not keep))
         if keep:

@@ -8,7 +8,6 @@ from fea.hand_checks import hand_checks
 from fea.ladder import Solution
 from fea.peak import Peak, SingularZone
 from fea.pin_loads import Floats
-from fea.tensor import von_mises
 from geometry import CutPin, Pin
 from pinstress.build import CaseLoads
 from pinstress.gather_loads import drive_position, mechanics
@@ -193,35 +192,3 @@ def landing_range(
         nominal=(over.nominal[0] / unit("time"), over.nominal[1] / unit("velocity")),
         verdict=solution.peak.verdict,
     )
-
-
-def field(study: Study, task: Task, solution: Solution) -> plain.Field | None:
-    """A pin's field at its governing instant; None if not solved, or if the model has none."""
-    peak, unit = solution.peak, study.system.factor
-    loads = next(x for x in task.loads if x.case == peak.case)
-    shown = solution.answer.picture(loads, peak.instant) if solution.answer else None
-    if shown is None:
-        return None
-    strength = material_of(study, study.table.pin[peak.pin].material).yield_strength
-    stress = shown.stress / unit("stress")
-    return plain.Field(
-        pin=peak.pin,
-        case=peak.case,
-        points=shown.points / unit("length"),
-        cells=shown.cells,
-        displacement=shown.displacement / unit("length"),
-        stress=stress,
-        von_mises=von_mises(stress),
-        envelope=shown.envelope / unit("stress"),
-        cell_type=shown.cell_type,
-        yield_strength=_scaled(strength, unit("stress")),
-        outside=_outside(study, peak),
-    )
-
-
-def _outside(study: Study, peak: Peak) -> tuple[float, tuple[float, float, float]] | None:
-    if peak.verdict != "singular" or peak.max_von_mises is None or peak.location is None:
-        return None
-    unit = study.system.factor
-    x, y, z = (a / unit("length") for a in peak.location)
-    return peak.max_von_mises / unit("stress"), (x, y, z)

@@ -26,12 +26,17 @@ WITHOUT_EXCHANGE = (errno.EINVAL, errno.ENOSYS, errno.EOPNOTSUPP)  # some networ
 
 def require_replaceable(directory: Path, mark: str = MARK) -> None:
     """Raises: InputError when writing to `directory` would destroy something that is not ours."""
-    if directory.is_dir() and any(directory.iterdir()) and not (directory / mark).is_file():
+    try:
+        others = directory.is_dir() and any(directory.iterdir())
+        ours, exists = (directory / mark).is_file(), directory.exists()
+    except OSError as error:  # it cannot be read, or its name is too long
+        raise InputError(f"--out: {directory}: {error.strerror}") from None
+    if others and not ours:
         raise InputError(
             f"--out: {directory} holds files that are not results of pinstress to replace (it has "
             f"no {mark}); name an empty or new folder"
         )
-    if directory.exists() and not directory.is_dir():
+    if exists and not directory.is_dir():
         raise InputError(f"--out: {directory} is a file; name a folder")
 
 

@@ -11,6 +11,7 @@ from fea.memory import allowed_memory
 from pinstress import checks
 from pinstress.build import CaseLoads, case_loads
 from pinstress.errors import InputError
+from pinstress.gather_fields import Also
 from pinstress.measures import published_values
 from pinstress.mechanism import linkage
 from pinstress.published import Published, read_published
@@ -46,7 +47,8 @@ def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
 class Plan:
     """All that is known before anything is solved: every input is read and found usable.
 
-    checked: the task whose pin the beam check compares, if any.
+    checked: the task whose pin the beam check compares, if any. also: which fields are wanted
+    beside those of the model at the governing instant.
     """
 
     study: Study
@@ -55,6 +57,7 @@ class Plan:
     tasks: list[Task]
     published: Published
     checked: Task | None
+    also: Also = None
 
 
 def prepare(
@@ -65,11 +68,13 @@ def prepare(
     model: Model | None = None,
     tolerance: float | None = None,
     memory: float | None = None,
+    also: Also = None,
 ) -> Plan:
     """Find the reactions and lay out what is to be solved.
 
     pins, cases: names; all by default. model, tolerance: instead of the study's. memory: MB that a
-    solid may take, by default most of what is free now.
+    solid may take, by default most of what is free now. also: fields along the whole motion, or of
+    all of a revolved pin.
 
     Raises: InputError for bad input.
     """
@@ -91,7 +96,7 @@ def prepare(
                 f"{study.path}: pin {task.pin.name} is no body of revolution, which the "
                 f"{asked.model} model needs: use auto or solid"
             )
-    return Plan(study, asked, loads, todo, published, checked)
+    return Plan(study, asked, loads, todo, published, checked, also)
 
 
 def _asked(study: Study, model: Model | None, tolerance: float | None, memory: float) -> Asked:

@@ -1,5 +1,6 @@
 """The study file's form: the mechanism."""
 
+import math
 from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
@@ -192,6 +193,9 @@ class SliderDrive(LawTable):
     """Plots show the length less this."""
 
 
+MOST_TURNS = 1000  # each is followed in steps of 0.25 rad
+
+
 class RotaryDrive(LawTable):
     """A drive of a body's angle: the direction of a line between two of its joints,
     counter-clockwise from x or, for a drive between two bodies, from a line of the other.
@@ -214,6 +218,8 @@ class RotaryDrive(LawTable):
     def _both(self) -> "RotaryDrive":
         if (self.against == "ground") != (self.against_line is None):
             raise ValueError("against (a body) and against_line (two of its joints) go together")
+        if abs((self.end or 0.0) - (self.start or 0.0)) > MOST_TURNS * 2.0 * math.pi:
+            raise ValueError(f"from start to end are more than {MOST_TURNS} turns")
         return self
 
 

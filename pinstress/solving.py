@@ -10,7 +10,7 @@ from fea.ladder import MOST_UNKNOWNS, solve_pin
 from fea.memory import allowed_memory, solid_memory
 from fea.peak import Peak
 from fea.second_opinion import Opinion
-from pinstress import checks, gather
+from pinstress import checks, gather, gather_fields
 from pinstress.gather_surface import surface_of
 from pinstress.pins import material as material_of
 from pinstress.plan import Plan
@@ -95,7 +95,9 @@ def _solve(plan: Plan, task: Task, keep: Keep, ask: Ask, tell: Tell) -> Solved:
     material = material_of(study, study.table.pin[task.pin.name].material)
     found = solve_pin(task.pin, material, task.clamps, task.loads, plan.asked, tell)
     for solution in found:
-        if (field := gather.field(study, task, solution)) is not None:
+        case = plan.loads[solution.peak.case]
+        field = gather_fields.field(study, task, solution, case, plan.also)
+        if field is not None:
             tell(f"pin {task.pin.name}, pictures")
             keep(field)
     peaks = tuple(s.peak for s in found)

@@ -55,7 +55,9 @@ class Study:
         return hashlib.sha256(self.text.encode()).hexdigest()
 
     def beside(self, name: str) -> Path:
-        """A file that the study names."""
+        """A file that the study names. Raises: InputError for what can be no file's name."""
+        if "\0" in name:
+            raise InputError(f"{self.path}: {name!r} is not the name of a file")
         return self.path.parent / name
 
     def clamps(self, pin: str, case: str) -> tuple[str, ...]:
@@ -74,16 +76,25 @@ def load_study(path: str | Path) -> Study:
     """
     path = Path(path)
     try:
-        text = path.read_text(encoding="utf-8")
-        raw = tomllib.loads(text)
+        text = path.read_text(encoding="utf-8-sig")
     except FileNotFoundError:
         raise InputError(f"{path}: no such file") from None
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"{path}: cannot be read ({error})") from None
+    return parse_study(path, text)
+
+
+def parse_study(path: Path, text: str) -> Study:
+    """Validate the text of a study file at `path`. Raises: InputError as load_study."""
+    try:
+        provenance: list[Sourced] = []
+        raw = _unwrap(tomllib.loads(text), "", provenance)
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"{path}: not valid TOML: {error}") from None
-    provenance: list[Sourced] = []
-    raw = _unwrap(raw, "", provenance)
+    except RecursionError:
+        raise InputError(f"{path}: not valid TOML: brackets or dots too deep") from None
+    except ValueError:  # of int(): no quantity has thousands of digits
+        raise InputError(f"{path}: not valid TOML: a whole number with too many digits") from None
     wrong = [
         f"{s.key}: provenance must be given, derived, fitted or assumed, not {s.kind!r}"
         for s in provenance

@@ -32,6 +32,7 @@ DIMENSIONS: dict[str, tuple[tuple[int, int, int], str]] = {
 UNIT_NEEDED = ("angle", "angular velocity", "angular acceleration")  # degrees or radians?
 
 
+ENDLESS = re.compile(r"(\^|\*\*)([^a-zA-Z]*(\^|\*\*)|[\s(+-]*\d{3})")  # 9^9^9, 9^999
 LARGEST = 1e18  # in SI: beyond any modulus, and its fourth power is still a number
 
 
@@ -136,7 +137,10 @@ def to_si(value: object, dimension: str, system: UnitSystem) -> float:
     if isinstance(value, str):
         si = _parse(value, dimension, system)
     else:
-        si = _plain(float(value), dimension, system)
+        try:
+            si = _plain(float(value), dimension, system)
+        except OverflowError:  # a whole number
+            raise ValueError("the number is too large to calculate with") from None
     if not math.isfinite(si):
         raise ValueError(f"{value!r} is not finite")
     if abs(si) > LARGEST:
@@ -174,6 +178,8 @@ def _by_pint(unit: str, dimension: str, text: str) -> float:
 
     _, example = DIMENSIONS[dimension]
     try:
+        if ENDLESS.search(unit):
+            raise ValueError("a power that would take for ever")
         parsed = _registry().Quantity(1.0, unit)
     except pint.UndefinedUnitError as error:
         names: Any = error.unit_names

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ from typing import Any
 import click
 from rich.console import Console
 
+from pinstress.command import open_page
 from pinstress.file_names import field_name
 from pinstress.output import replacing, require_replaceable
 from pinstress.pipeline import loads_only, prepare, results_of
@@ -23,73 +25,100 @@ from reports.draw import Plot
 from reports.results import Field, PinResult, Results, Units
 from reports.terminal import print_safety_factors
 from reports.terminal_loads import print_loads
-from reports.vtk import render_pin, renderer_problem, write_vtu
+from reports.vtk import render_pin, renderer_problem, surface, write_pin
 from reports.write import write_loads, write_reports
 
-SOLVERS = ("gmsh", "pymetis", "cvxopt.cholmod", "meshio")  # what fea and reports import on demand
+SOLVERS = (
+    "gmsh",
+    "pymetis",
+    "cvxopt.cholmod",
+    "vtkmodules.vtkIOXML",
+)  # what fea and reports import on demand
 PAINTERS = ("pyvista.plotting", "matplotlib.pyplot", "matplotlib.backends.backend_agg")
 
 
-def run_and_write(
-    study: Study,
-    directory: Path,
-    *,
-    pictures: bool,
-    second: bool = False,
-    jobs: int | None = None,
-    **chosen: Any,
-) -> int:
+@dataclass(frozen=True)
+class Wanted:
+    """What a run is to give besides its numbers: pictures; CalculiX's second opinion; fields (vtk,
+    as --vtk names them); results.json on stdout instead of the table; no progress and no notes;
+    the report opened. jobs: processes at a time, by default as many as there are cores.
+    """
+
+    pictures: bool = True
+    second: bool = False
+    vtk: str = "model"
+    as_json: bool = False
+    quiet: bool = False
+    opens: bool = False
+    jobs: int | None = None
+
+
+def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Any) -> int:
     """Run a study into a folder; returns the exit status.
 
-    second: whether CalculiX is asked for its opinion, too. jobs: processes at a time, by default as
-    many as there are cores. chosen: what pinstress.plan.prepare takes.
-
-    Raises: InputError.
+    chosen: what pinstress.plan.prepare takes. Raises: InputError.
     """
     require_replaceable(directory)
-    plan = prepare(study, **chosen)
-    problem = renderer_problem() if pictures else None
-    most = jobs or cores()
-    s = study.system
-    units = Units(s.length, s.force, s.stress, s.time)
-    opinions = Opinions(plan) if second else None
+    also: Any = wanted.vtk if wanted.vtk in ("motion", "solid") else None
+    plan = prepare(study, also=also, **chosen)
+    problem = renderer_problem() if wanted.pictures else None
+    most, paints = wanted.jobs or cores(), wanted.pictures and problem is None
+    opinions = Opinions(plan) if wanted.second else None
     with replacing(directory) as staging:
-        vtk = staging / "vtk"
-        vtk.mkdir()
-
-        def keep(field: Field) -> None:
-            name = field_name(field.pin, field.case)
-            write_vtu(field, vtk / f"{name}.vtu", units)
-            if pictures and problem is None:
-                picture = staging / "plots" / f"pin_{name}.png"
-                picture.parent.mkdir(exist_ok=True)
-                render_pin(field, picture, units, f"pin {field.pin}, {field.case}")
-
-        with progress_bar(alone=most == 1) as progress:
+        if wanted.vtk != "none":
+            (staging / "vtk").mkdir()
+        keep = partial(_keep, staging, _units(study), wanted.vtk, paints)
+        with progress_bar(alone=most == 1, quiet=wanted.quiet) as progress:
             if most > 1:
-                preload(*SOLVERS, *(PAINTERS if pictures and problem is None else ()))
+                preload(*SOLVERS, *(PAINTERS if paints else ()))
             ask = {"ask": opinions.ask} if opinions else {}
             found = solve_tasks(plan, keep, progress, jobs=most, **ask)
             results = results_of(plan, found)
             drawn = {
                 (p.pin, p.case): path
                 for p in results.pins
-                if (path := staging / "plots" / f"pin_{field_name(p.pin, p.case)}.png").is_file()
+                if (path := _picture(staging, p.pin, p.case)).is_file()
             }
             progress("report", 1.0)
-            write_reports(results, staging, drawn, pictures, partial(_draw, most))
+            write_reports(results, staging, drawn, wanted.pictures, partial(_draw, most))
             if opinions:
                 opinions.hear(o for made in found for o in made.opinions)
                 opinions.write(staging)
-    print_safety_factors(results, console())
-    if opinions:
-        opinions.show(console())
-    _tell_left_out(results)
-    if problem is not None:
-        click.echo(f"No pictures of the pins: {problem}", err=True)
-    click.echo(f"Report: {directory / 'report.html'}", err=True)
+    if wanted.as_json:
+        click.echo((directory / "results.json").read_text(encoding="utf-8"), nl=False)
+    else:
+        print_safety_factors(results, console())
+        if opinions:
+            opinions.show(console())
+    if not wanted.quiet:
+        _tell_left_out(results)
+        if problem is not None:
+            click.echo(f"No pictures of the pins: {problem}", err=True)
+        click.echo(f"Report: {directory / 'report.html'}", err=True)
+    if wanted.opens:
+        open_page(directory / "report.html")
     status = _tell_not_reached(results, study.table.analysis.goal == "decide")
     return max(status, opinions.tell_disagreements()) if opinions else status
+
+
+def _units(study: Study) -> Units:
+    s = study.system
+    return Units(s.length, s.force, s.stress, s.time)
+
+
+def _picture(staging: Path, pin: str, case: str) -> Path:
+    return staging / "plots" / f"pin_{field_name(pin, case)}.png"
+
+
+def _keep(staging: Path, units: Units, vtk: str, paints: bool, field: Field) -> None:
+    """Write what is wanted of a field."""
+    if vtk != "none":
+        shown = surface(field) if vtk == "surface" else field
+        write_pin(shown, field_name(field.pin, field.case), staging / "vtk", units)
+    if paints:
+        picture = _picture(staging, field.pin, field.case)
+        picture.parent.mkdir(exist_ok=True)
+        render_pin(field, picture, units, f"pin {field.pin}, {field.case}")
 
 
 def _files(plot: Plot, _: Tell) -> list[Path]:
@@ -108,7 +137,13 @@ def _draw(jobs: int, plots: Sequence[Plot]) -> list[Path]:
 
 
 def loads_and_write(
-    study: Study, directory: Path, *, plots: bool, cases: list[str] | None, jobs: int | None = None
+    study: Study,
+    directory: Path,
+    *,
+    plots: bool,
+    cases: list[str] | None,
+    jobs: int | None = None,
+    quiet: bool = False,
 ) -> int:
     """The mechanics of a study into a folder; returns the exit status. Raises: InputError."""
     require_replaceable(directory)
@@ -116,7 +151,8 @@ def loads_and_write(
     with replacing(directory) as staging:
         write_loads(results, staging, plots, partial(_draw, jobs or cores()))
     print_loads(results, console())
-    click.echo(f"Written: {directory}", err=True)
+    if not quiet:
+        click.echo(f"Written: {directory}", err=True)
     return 0
 
 
@@ -164,19 +200,25 @@ def _by_reason(rows: list[PinResult]) -> list[tuple[str, str]]:
 
 
 @contextmanager
-def progress_bar(alone: bool = True) -> Iterator[Progress]:
+def progress_bar(alone: bool = True, quiet: bool = False) -> Iterator[Progress]:
     """A bar on stderr while it is a terminal; nothing otherwise. alone: whether this process does
     the work itself, so that a thread must move the bar; else every call does.
     """
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich import progress as rich
 
-    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+    columns = (
+        rich.TextColumn("{task.description}"),
+        rich.BarColumn(),
+        rich.TimeElapsedColumn(),
+        rich.TextColumn("left"),
+        rich.TimeRemainingColumn(),
+    )
     console = Console(stderr=True)
-    with Progress(
+    with rich.Progress(
         *columns,
         console=console,
         transient=True,
-        disable=not console.is_terminal,
+        disable=quiet or not console.is_terminal,
         auto_refresh=alone,
     ) as bar:
         task = bar.add_task("reactions", total=1.0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -21,15 +22,15 @@ def write_csv(path: Path, columns: Sequence[str], rows: Iterable[Sequence[Cell]]
 
 def cell(value: Cell) -> str:
     """A value as the text of a cell."""
+    if isinstance(value, float):  # most are: first, and without numpy
+        return repr(float(value)) if math.isfinite(value) else ""
     if value is None:
         return ""
     if isinstance(value, (bool, np.bool_)):
         return "yes" if value else "no"
     if isinstance(value, str):
         return harmless(value)
-    if isinstance(value, (int, np.integer)):
-        return str(int(value))
-    return repr(float(value)) if np.isfinite(value) else ""
+    return str(int(value))
 
 
 def harmless(text: str) -> str:

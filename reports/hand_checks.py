@@ -1,4 +1,4 @@
-"""Checks by hand beside the model's factor of safety, as CSV and as Markdown."""
+"""Checks by hand beside the model's factor of safety, as a table and as Markdown."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from reports import markdown
-from reports.csv_files import Cell, write_csv
+from reports.csv_files import Cell
 from reports.numbers import DASH, engineering, short
 from reports.results import HandCheck, PinResult, Results, Units
+from reports.table import Table
 from reports.words import verdict_words
 
 CHECK = ("name", "at", "time", "stress", "strength", "factor", "formula", "source")
@@ -22,14 +23,21 @@ HAND_CHECKS = (
 )
 
 
+COLUMNS = ("pin", "case", "check", *CHECK[1:], *MODEL, "stress_unit", "time_unit")
+
+
+def hand_check_rows(results: Results) -> Table:
+    """Every check of every pin and case, with every digit."""
+    rows = _rows([pin for pin in results.pins if pin.hand_checks], results.units)
+    return Table.of("hand_checks", COLUMNS, rows)
+
+
 def write_hand_checks(results: Results, directory: Path) -> None:
-    """Write hand_checks.csv and hand_checks.md; nothing where nothing was checked."""
+    """Write hand_checks.md; nothing where nothing was checked."""
     checked = [pin for pin in results.pins if pin.hand_checks]
     if not checked:
         return
     units = results.units
-    columns = ("pin", "case", "check", *CHECK[1:], *MODEL, "stress_unit", "time_unit")
-    write_csv(directory / "hand_checks.csv", columns, _rows(checked, units))
     parts = [f"# Checks by hand: {markdown.escaped(results.title)}", HAND_CHECKS]
     for pin in checked:
         title, (head, body, numeric) = f"{pin.pin}, {pin.case}", hand_check_table(pin, units)

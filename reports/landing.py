@@ -6,9 +6,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from reports import markdown
-from reports.csv_files import Cell, write_csv
+from reports.csv_files import Cell
 from reports.numbers import engineering, short
 from reports.results import LandingRange, Results
+from reports.table import Table
 from reports.words import word
 
 COLUMNS = (
@@ -22,11 +23,15 @@ NOTE = (
 )
 
 
+def landing_table(results: Results) -> Table:
+    """Every pin at every pair of impulse time and velocity change."""
+    return Table.of("landing_range", COLUMNS, _rows(results))
+
+
 def write_landing(results: Results, directory: Path) -> None:
-    """Write landing_range.csv and .md; nothing where no impulse has a range."""
+    """Write landing_range.md; nothing where no impulse has a range."""
     if not results.landing:
         return
-    write_csv(directory / "landing_range.csv", COLUMNS, _rows(results))
     parts = [
         f"# Landing: safety factors over the impulse\n\n{markdown.escaped(results.title)}",
         landing_tables(results),

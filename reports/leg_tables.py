@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
-from reports.csv_files import Cell, write_csv
+from reports.csv_files import Cell
 from reports.results import LegTable
+from reports.table import Table
 
 
-def write_legs(tables: tuple[LegTable, ...], path: Path) -> None:
-    """Write all cases; the columns carry their units, vectors end in _x, _y, _z (primed axes)."""
+def leg_table(tables: tuple[LegTable, ...]) -> Table:
+    """All cases; the columns carry their units, vectors end in _x, _y, _z (primed axes)."""
     first = tables[0]
     columns = ["case", "time"]
     columns += [f"{name} [{unit}]" for name, (_, unit) in first.scalars.items()]
@@ -21,4 +20,4 @@ def write_legs(tables: tuple[LegTable, ...], path: Path) -> None:
             row += [float(values[t]) for values, _ in table.scalars.values()]
             row += [float(x) for values, _ in table.vectors.values() for x in values[t]]
             rows.append(row)
-    write_csv(path, columns, rows)
+    return Table.of("leg", columns, rows)

@@ -1,12 +1,12 @@
-"""CSV tables of how a linkage moves: bodies, joints, transmission angles, and the checks."""
+"""Tables of how a linkage moves: bodies, joints, transmission angles, and the checks."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
 
-from reports.csv_files import Cell, write_csv
+from reports.csv_files import Cell
 from reports.results import LinkageMotion, Results
+from reports.table import Table
 
 BODIES = ("x", "y", "angle_deg", "vx", "vy", "omega", "ax", "ay", "alpha")
 JOINTS = ("x", "y", "vx", "vy", "ax", "ay")
@@ -23,16 +23,18 @@ CHECKS = (
 )
 
 
-def write_linkage(results: Results, directory: Path) -> None:
-    """Write motion, joints, transmission, linkage and sliders (.csv) for all cases."""
-    for name, columns, rows in (
-        ("motion.csv", ("case", "time", "body", *BODIES), _bodies),
-        ("joints.csv", ("case", "time", "joint", *JOINTS), _joints),
-        ("transmission.csv", ("case", "time", "link", "degrees"), _transmission),
-        ("linkage.csv", ("case", "time", *CHECKS), _checks),
-        ("sliders.csv", ("case", "time", "slider", "normal", "couple", "friction"), _sliders),
-    ):
-        write_csv(directory / name, columns, (row for m in results.motion for row in rows(m)))
+def linkage_tables(results: Results) -> list[Table]:
+    """Motion, joints, transmission, linkage and sliders of all cases."""
+    return [
+        Table.of(name, columns, (row for m in results.motion for row in rows(m)))
+        for name, columns, rows in (
+            ("motion", ("case", "time", "body", *BODIES), _bodies),
+            ("joints", ("case", "time", "joint", *JOINTS), _joints),
+            ("transmission", ("case", "time", "link", "degrees"), _transmission),
+            ("linkage", ("case", "time", *CHECKS), _checks),
+            ("sliders", ("case", "time", "slider", "normal", "couple", "friction"), _sliders),
+        )
+    ]
 
 
 def _instants(motion: LinkageMotion) -> Iterator[tuple[int, list[Cell]]]:

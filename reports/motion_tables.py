@@ -1,15 +1,15 @@
-"""CSV tables of what happens along a motion and in the checks."""
+"""Tables of what happens along a motion and in the checks."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
-from reports.csv_files import Cell, write_csv
+from reports.csv_files import Cell
 from reports.results import BeamCheck, Floats, MotionCheck, ReactionTable, Results
+from reports.table import Table
 
 REACTIONS = ("case", "time", "connection", "body", "fx", "fy", "fz", "mx", "my", "mz")
 DRIVE = (
@@ -40,18 +40,20 @@ MOTION = (
 )
 
 
-def write_reactions(results: Results, path: Path) -> None:
-    """Write the forces and moments on the pins, world axes: a row per instant and connection."""
-    write_csv(path, REACTIONS, (row for table in results.reactions for row in _instants(table)))
+def reactions_table(results: Results) -> Table:
+    """The forces and moments on the pins, world axes: a row per instant and connection."""
+    rows = (row for table in results.reactions for row in _instants(table))
+    return Table.of("reactions", REACTIONS, rows)
 
 
-def write_reactions_pin_axes(results: Results, path: Path) -> None:
-    """Write the same in the axes of each pin, which turn with the body that carries it."""
+def reactions_pin_axes_table(results: Results) -> Table:
+    """The same in the axes of each pin, which turn with the body that carries it."""
     turned = (
         replace(t, forces=_in_pin_axes(t, t.forces), moments=_in_pin_axes(t, t.moments))
         for t in results.reactions
     )
-    write_csv(path, REACTIONS, (row for table in turned for row in _instants(table)))
+    rows = (row for table in turned for row in _instants(table))
+    return Table.of("reactions_pin_axes", REACTIONS, rows)
 
 
 def _in_pin_axes(table: ReactionTable, vectors: Floats) -> Floats:
@@ -68,8 +70,8 @@ def _instants(table: ReactionTable) -> Iterator[list[Cell]]:
             yield [table.case, time, connection, body, *table.forces[t, c], *table.moments[t, c]]
 
 
-def write_drive(results: Results, path: Path) -> None:
-    """Write the drive along every motion, with the case in the first column."""
+def drive_table(results: Results) -> Table:
+    """The drive along every motion, with the case in the first column."""
     rows: Iterator[list[Cell]] = (
         [
             table.case,
@@ -80,14 +82,18 @@ def write_drive(results: Results, path: Path) -> None:
         for table in results.drive
         for t in range(len(table.time))
     )
-    write_csv(path, ("case", *DRIVE, "drive", "kind"), rows)
+    turning = any(table.kind != "slider" for table in results.drive)
+    mixed = ("position", "velocity", "acceleration", "force") if turning else ()
+    return Table.of("drive", ("case", *DRIVE, "drive", "kind"), rows, mixed)
 
 
-def write_beam_check(check: BeamCheck, path: Path) -> None:
-    """Write shear, moment and axial stresses along the cantilever pin."""
-    write_csv(path, BEAM, zip(*(getattr(check, name) for name in BEAM), strict=True))
+def beam_check_table(check: BeamCheck) -> Table:
+    """Shear, moment and axial stresses along the cantilever pin."""
+    rows = zip(*(getattr(check, name) for name in BEAM), strict=True)
+    return Table.of("beam_check", BEAM, rows)
 
 
-def write_motion_check(check: MotionCheck, path: Path) -> None:
-    """Write a joint's speed and acceleration, from the linkage and in closed form."""
-    write_csv(path, MOTION, zip(*(getattr(check, name) for name in MOTION), strict=True))
+def motion_check_table(check: MotionCheck) -> Table:
+    """A joint's speed and acceleration, from the linkage and in closed form."""
+    rows = zip(*(getattr(check, name) for name in MOTION), strict=True)
+    return Table.of("motion_check", MOTION, rows)

@@ -10,6 +10,7 @@ import numpy as np
 from reports.numbers import engineering
 from reports.results import Field, Floats, Units
 from reports.view import VIEW_ANGLE, View
+from reports.vtk_file import TYPES
 
 if TYPE_CHECKING:
     import pyvista
@@ -24,6 +25,25 @@ def render_pin(field: Field, path_png: Path, units: Units, title: str) -> None:
     """Draw a pin's surface with its von Mises stress and mark the largest: a PNG of 1200x800."""
     import pyvista
 
+    plotter = pyvista.Plotter(off_screen=True, window_size=list(SIZE))
+    try:
+        _draw(plotter, field, units, title)
+        plotter.screenshot(path_png)
+    finally:
+        plotter.close()
+
+
+def show_pin(field: Field, units: Units, title: str) -> None:
+    """The same in a window, until it is closed; needs a display."""
+    import pyvista
+
+    plotter: Any = pyvista.Plotter(window_size=list(SIZE), title=title)
+    _draw(plotter, field, units, title)
+    plotter.add_axes()
+    plotter.show()
+
+
+def _draw(plotter: Any, field: Field, units: Units, title: str) -> None:
     peak = int(np.argmax(field.von_mises))
     largest, place, told = float(field.von_mises[peak]), field.points[peak], "max"
     if field.outside is not None:  # colours would only show how fine the mesh is at the zones
@@ -35,22 +55,17 @@ def render_pin(field: Field, path_png: Path, units: Units, title: str) -> None:
     name = f"von Mises [{unit}]"
     surface = _surface(field, name, 10.0**power)
     view = View.of(field.points, place)
-    plotter = pyvista.Plotter(off_screen=True, window_size=list(SIZE))
-    try:
-        plotter.background_color = pyvista.Color("white")
-        _add_surface(plotter, surface, name, largest / 10.0**power)
-        label = f"{told} {engineering(largest / 10.0**power)} {unit}"
-        _mark(plotter, place, view.beside(field.points, place), label)
-        plotter.add_text(_drawable(title), position=(24, SIZE[1] - 48), font_size=13, color=INK)
-        # Apart from the bar, whose own title lies on its labels.
-        plotter.add_text(name, position=(0.2 * SIZE[0], 0.1 * SIZE[1]), font_size=10, color=INK)
-        plotter.camera_position = view.camera
-        plotter.camera.view_angle = VIEW_ANGLE
-        plotter.reset_camera_clipping_range()
-        plotter.enable_anti_aliasing("ssaa")
-        plotter.screenshot(path_png)
-    finally:
-        plotter.close()
+    plotter.set_background("white")
+    _add_surface(plotter, surface, name, largest / 10.0**power)
+    label = f"{told} {engineering(largest / 10.0**power)} {unit}"
+    _mark(plotter, place, view.beside(field.points, place), label)
+    plotter.add_text(_drawable(title), position=(24, SIZE[1] - 48), font_size=13, color=INK)
+    # Apart from the bar, whose own title lies on its labels.
+    plotter.add_text(name, position=(0.2 * SIZE[0], 0.1 * SIZE[1]), font_size=10, color=INK)
+    plotter.camera_position = view.camera
+    plotter.camera.view_angle = VIEW_ANGLE
+    plotter.reset_camera_clipping_range()
+    plotter.enable_anti_aliasing("ssaa")
 
 
 def _power(largest: float) -> int:
@@ -67,8 +82,7 @@ def _surface(field: Field, name: str, scale: float) -> pyvista.PolyData:
     import pyvista
     from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter
 
-    shape = {"tetra10": pyvista.CellType.QUADRATIC_TETRA, "quad": pyvista.CellType.QUAD}
-    kind = np.full(len(field.cells), shape[field.cell_type], dtype=np.uint8)
+    kind = np.full(len(field.cells), TYPES[field.cell_type], dtype=np.uint8)
     counts = np.full((len(field.cells), 1), field.cells.shape[1])
     cells = np.hstack([counts, field.cells]).ravel()
     grid = pyvista.UnstructuredGrid(cells, kind, np.asarray(field.points, dtype=float))

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from reports import markdown
-from reports.csv_files import write_csv
 from reports.numbers import engineering, ratio
 from reports.results import ReactionTable, Results
+from reports.table import Table
 
 COLUMNS = ("case", "connection", "ours", "published", "ratio")
 
@@ -41,16 +41,17 @@ def _rows(table: ReactionTable) -> list[PublishedReaction]:
     return rows
 
 
+def published_reactions_table(results: Results) -> Table:
+    """The same as a table."""
+    rows = ([getattr(row, name) for name in COLUMNS] for row in published_reactions(results))
+    return Table.of("reactions_published", COLUMNS, rows)
+
+
 def write_published_reactions(results: Results, directory: Path) -> None:
-    """Write reactions_published.csv and .md; nothing where nothing was published."""
+    """Write reactions_published.md; nothing where nothing was published."""
     rows = published_reactions(results)
     if not rows:
         return
-    write_csv(
-        directory / "reactions_published.csv",
-        COLUMNS,
-        ([getattr(row, name) for name in COLUMNS] for row in rows),
-    )
     force = results.units.force
     body = markdown.table(
         ("case", "connection", f"ours [{force}]", f"published [{force}]", "ours / published"),

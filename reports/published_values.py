@@ -5,19 +5,22 @@ from __future__ import annotations
 from pathlib import Path
 
 from reports import markdown
-from reports.csv_files import write_csv
 from reports.numbers import engineering, ratio
 from reports.results import PublishedValue, Results
+from reports.table import Table
 
 COLUMNS = ("case", "time", "quantity", "name", "published", "ours", "ratio", "unit", "reason")
 
 
+def published_values_table(results: Results) -> Table:
+    """Every published value with ours."""
+    return Table.of("published", COLUMNS, (_cells(v) for v in results.published))
+
+
 def write_published_values(results: Results, directory: Path) -> None:
-    """Write published.csv and published.md; nothing where nothing was published."""
+    """Write published.md; nothing where nothing was published."""
     if not results.published:
         return
-    rows = (_cells(v) for v in results.published)
-    write_csv(directory / "published.csv", COLUMNS, rows)
     title = f"# Published values beside ours: {markdown.escaped(results.title)}"
     text = f"{title}\n\n{published_table(results.published)}\n"
     (directory / "published.md").write_text(text, encoding="utf-8")

@@ -1,33 +1,14 @@
-"""The safety factors, as rows, as CSV and as Markdown."""
+"""The safety factors, as rows, as a table and as Markdown."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 from reports import markdown
-from reports.csv_files import write_csv
-from reports.motion_tables import (
-    write_beam_check,
-    write_drive,
-    write_motion_check,
-    write_reactions,
-    write_reactions_pin_axes,
-)
 from reports.numbers import DASH, engineering, finite, ratio, short
-from reports.published import write_published_reactions
 from reports.results import PinResult, Results, Units
+from reports.table import Table
 from reports.words import MEANING, READING, verdict_words
-
-__all__ = [
-    "safety_factor_rows",
-    "write_beam_check",
-    "write_drive",
-    "write_motion_check",
-    "write_published_reactions",
-    "write_reactions",
-    "write_reactions_pin_axes",
-    "write_safety_factors",
-]
 
 Row = dict[str, str | float | None]
 COLUMNS = (
@@ -122,19 +103,22 @@ def _decides(row: Row) -> bool:
     return row["verdict"] != "singular" or row["meets_required"] == "no"
 
 
-def write_safety_factors(results: Results, directory: Path) -> None:
-    """Write safety_factors.csv, every digit, and safety_factors.md, four digits and the notes."""
+def safety_factors_table(results: Results) -> Table:
+    """A row per pin and case, with every digit."""
     units = results.units
-    rows = safety_factor_rows(results)
-    write_csv(
-        directory / "safety_factors.csv",
+    return Table.of(
+        "safety_factors",
         (*COLUMNS, "stress_unit", "time_unit", *LATER),
         (
             [*(row[n] for n in COLUMNS), units.stress, units.time, *(row[n] for n in LATER)]
-            for row in rows
+            for row in safety_factor_rows(results)
         ),
     )
-    text = _markdown(results, rows)
+
+
+def write_safety_factors(results: Results, directory: Path) -> None:
+    """Write safety_factors.md, four digits and the notes."""
+    text = _markdown(results, safety_factor_rows(results))
     (directory / "safety_factors.md").write_text(text, encoding="utf-8")
 
 

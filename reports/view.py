@@ -27,10 +27,10 @@ class View:
 
     @staticmethod
     def of(points: Floats, peak: Floats) -> View:
-        """From the side of the peak and a little from the nearer end; the axis lies across."""
+        """From the side of the peak and a little from an end; the axis lies across."""
         centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
         angle = np.arctan2(peak[1] - centre[1], peak[0] - centre[0]) + TURN
-        end = 1.0 if peak[2] >= centre[2] else -1.0
+        end = _seen_from(points, peak)
         towards = np.array([np.cos(angle), np.sin(angle), LEAN * end])
         towards /= np.linalg.norm(towards)
         up = np.cross(np.array([0.0, 0.0, 1.0]), towards)
@@ -50,6 +50,19 @@ class View:
         visible = 2.0 * np.linalg.norm(self.eye - self.centre) * np.tan(np.radians(VIEW_ANGLE / 2))
         clear = float(heights.max() + ABOVE * visible)
         return np.asarray(place + (clear - height) * self.up)
+
+
+def _seen_from(points: Floats, peak: Floats) -> float:
+    """The end (1 or -1 along z) from which the peak is not hidden by a head: that towards which the
+    pin is thinner; of two alike the nearer one.
+    """
+    r, z = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
+    little = 1e-6 * float(np.ptp(z))
+    beyond = r[z > peak[2] + little].max(initial=0.0)
+    before = r[z < peak[2] - little].max(initial=0.0)
+    if not np.isclose(beyond, before, rtol=1e-3):
+        return 1.0 if beyond < before else -1.0
+    return 1.0 if peak[2] >= 0.5 * (z.min() + z.max()) else -1.0
 
 
 def _distance(seen: Floats) -> float:

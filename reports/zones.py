@@ -1,15 +1,15 @@
-"""Singular zones: numbered along each pin, as CSV, and in words."""
+"""Singular zones: numbered along each pin, as a table, and in words."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from math import hypot
-from pathlib import Path
 
-from reports.csv_files import Cell, write_csv
+from reports.csv_files import Cell
 from reports.numbers import DASH, engineering
 from reports.results import Results, SingularZone
+from reports.table import Table
 
 COLUMNS = (
     *("pin", "case", "zone", "z", "radius", "x", "y", "between", "kind"),
@@ -97,10 +97,9 @@ def zone_table(zones: list[Zone], length: str, stress: str) -> tuple[list[str], 
     return head, rows
 
 
-def write_zones(results: Results, directory: Path) -> None:
-    """Write singular_zones.csv; nothing where there are none."""
-    if any(pin.singular_at for pin in results.pins):
-        write_csv(directory / "singular_zones.csv", COLUMNS, _rows(results))
+def zones_table(results: Results) -> Table:
+    """Every zone of every pin and case."""
+    return Table.of("singular_zones", COLUMNS, _rows(results))
 
 
 def _rows(results: Results) -> Iterator[list[Cell]]:

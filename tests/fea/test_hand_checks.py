@@ -149,7 +149,9 @@ def test_a_moment_between_samples_is_found_exactly(steel: Material) -> None:
     for axis in (0, 1):
         w = (forces[0, :, axis] / lengths)[band]
         couple = float((w * (mid - centre) * h).sum())
-        w = w - (w * h).sum() / length - 12 * couple / length**3 * (mid - centre)
+        own = 0.5 * (ends[1:] + ends[:-1])[band]
+        slope = 12 * couple / np.sum(np.asarray(lengths) ** 3)
+        w = w - (w * h).sum() / length - slope * (mid - own)
         V = -np.concatenate([[0.0], np.cumsum(w * h)])
         M = -np.concatenate([[0.0], np.cumsum(0.5 * (V[1:] + V[:-1]) * h)])
         M2 += M**2
@@ -165,3 +167,21 @@ def test_no_load_no_factor(steel: Material) -> None:
         "bending",
     }
     assert all(x.stress == 0.0 and x.factor is None for x in checks)
+
+
+def test_single_shear_is_the_whole_force(steel: Material) -> None:
+    """Two links side by side: what takes up their couple leaves them their forces."""
+    d, force = 0.02, 1000.0
+    pin = Pin("P", (Segment(0.02, d, connection="A"), Segment(0.02, d, connection="B")))
+    forces = np.array([[[0.0, force, 0.0], [0.0, -force, 0.0]]])
+    found = {c.name: c for c in hand_checks(pin, steel, PinLoads("case", ("A", "B"), forces))}
+    assert found["single shear, mean"].stress == pytest.approx(force / (math.pi * d**2 / 4))
+
+
+def test_checks_are_proportional_to_the_load(steel: Material) -> None:
+    """Also below a newton: what is small is not nothing."""
+    whole, part = (hand_checks(LUGS, steel, lugs((f, 0.0))) for f in (F, 1e-5 * F))
+    assert [(x.name, x.at) for x in whole] == [(x.name, x.at) for x in part]
+    assert "double shear, mean" in {x.name for x in part}
+    for a, b in zip(whole, part, strict=True):
+        assert b.stress == pytest.approx(1e-5 * a.stress)

@@ -154,6 +154,18 @@ def test_the_picture_shows_the_answer(steel: Material) -> None:
     assert np.abs(along).max() < 1e-6 * shown.max()  # a pressure does not shear
 
 
+def test_the_envelope_of_odd_harmonics_goes_all_round(steel: Material) -> None:
+    """Uniform tractions have no even ones: half a turn is computed, both halves are shown."""
+    uniform = replace(
+        BALANCED, distribution="uniform", forces=np.sign(SIZES)[:, None, None] * BALANCED.forces
+    )
+    (found,) = solve_pin(BAR, steel, (), (uniform,), Asked(model="harmonic"))
+    assert found.answer is not None
+    picture = found.answer.picture(uniform, 1)
+    assert picture is not None
+    np.testing.assert_allclose(von_mises(picture.stress), picture.envelope, rtol=1e-6, atol=1.0)
+
+
 def test_the_beams_answer_is_its_peak(steel: Material) -> None:
     (found,) = solve_pin(BAR, steel, (), (BALANCED,), Asked(model="beam"))
     assert found.answer is not None

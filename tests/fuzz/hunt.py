@@ -33,7 +33,7 @@ class Case:
 
 def hunt(seed: int, place: Path, run_too: bool) -> Iterator[Case]:
     """Break a study, or a table beside it, and give it to the commands. What ends well is removed
-    from `place` again.
+    from `place` again. run_too: whether what can be run is.
     """
     rng = random.Random(seed)
     study = rng.choice(STUDIES)
@@ -45,7 +45,8 @@ def hunt(seed: int, place: Path, run_too: bool) -> Iterator[Case]:
         elif path.name == study.stem:
             shutil.copytree(path, folder / path.name)
     shutil.copy(study, folder / "study.toml")
-    named = [p for p in folder.rglob("*.csv") if p.name in study.read_text()]
+    beside = [*folder.rglob("*.csv"), *folder.rglob("*.msh")]
+    named = sorted(p for p in beside if p.name in study.read_text())
     if named and rng.random() < 0.25:
         path, kinds = rng.choice(named), TABLE
     else:

@@ -17,6 +17,7 @@ import pytest
 
 from fea.look import Look
 from fea.rungs import Rung
+from fea.verdict import NOISE
 from pinstress import load_study
 from pinstress.chart import Plan, chart, prepare
 from pinstress.cli import run_command_line
@@ -97,11 +98,13 @@ def test_every_model_and_mesh_is_charted_coarse_to_fine(made_up: Chart) -> None:
 
 
 def test_the_reference_is_an_order_finer_and_its_error_is_stated(made_up: Chart) -> None:
-    """What Roache's index makes of made-up errors of second order is 1.25 times themselves."""
+    """Of made-up errors of second order Roache's index makes 1.25 times themselves, and the least
+    error of a section (fea.verdict) is a little more.
+    """
     charted = max(p.dofs or 0 for p in made_up.points if p.model == "harmonic")
     assert made_up.reference.dofs >= 10 * charted
     true = 0.02 * 1000 / made_up.reference.dofs
-    assert made_up.reference.error == pytest.approx(1.25 * true, rel=1e-2)
+    assert made_up.reference.error == pytest.approx(NOISE["harmonic"] / 0.02 * true, rel=1e-2)
     beam = made_up.points[0]
     assert beam.error == pytest.approx(0.3, abs=2 * true)
     assert "Reference: harmonic model" in reference_line(made_up)

@@ -285,7 +285,9 @@ def test_schema_is_json_and_knows_every_table() -> None:
     assert "mechanism" in made["properties"]
 
 
-@pytest.mark.parametrize("command", ["run", "loads", "chart", "check", "init", "schema"])
+@pytest.mark.parametrize(
+    "command", ["run", "loads", "chart", "check", "init", "schema", "size", "view", "completion"]
+)
 def test_help_begins_with_an_example(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert run_command_line([command, "--help"]) == 0
     body = capsys.readouterr().out.split("\n\n")[1]

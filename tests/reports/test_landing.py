@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reports.landing import landing_tables, write_landing
+from reports.landing import landing_table, landing_tables, write_landing
 from reports.page import write_page
 from reports.plot_landing import landing_plot
-from reports.published_values import write_published_values
+from reports.published_values import published_values_table, write_published_values
 from reports.results import LandingRange, PublishedValue, Results
 
 
@@ -34,7 +34,7 @@ def ranged(pin: str, verdict: str = "converged", factor: float = 4.0) -> Landing
 
 def test_every_pair_is_a_row(results: Results, tmp_path: Path) -> None:
     some = replace(results, landing=(ranged("A"), ranged("B", "unconverged")))
-    write_landing(some, tmp_path)
+    landing_table(some).write_csv(tmp_path)
     rows = list(csv.DictReader((tmp_path / "landing_range.csv").read_text().splitlines()))
     assert len(rows) == 8
     first = rows[0]
@@ -63,7 +63,7 @@ def test_nothing_is_written_without_ranges(results: Results, tmp_path: Path) -> 
 
 def test_a_material_without_strength_has_no_factors(results: Results, tmp_path: Path) -> None:
     weak = replace(ranged("A"), safety_factor=None)
-    write_landing(replace(results, landing=(weak,)), tmp_path)
+    landing_table(replace(results, landing=(weak,))).write_csv(tmp_path)
     rows = list(csv.DictReader((tmp_path / "landing_range.csv").read_text().splitlines()))
     assert {r["safety_factor"] for r in rows} == {""}
     assert landing_plot("landing", [weak], 1.5, results.units, tmp_path) == []
@@ -80,7 +80,9 @@ def test_the_plot_is_the_same_twice(results: Results, tmp_path: Path) -> None:
 
 def test_published_values_stand_beside_ours(results: Results, tmp_path: Path) -> None:
     value = PublishedValue("snap", None, "force_x", "=F|1", 2.0, 4.0, "lbf", "a slip")
-    write_published_values(replace(results, published=(value,)), tmp_path)
+    one = replace(results, published=(value,))
+    write_published_values(one, tmp_path)
+    published_values_table(one).write_csv(tmp_path)
     (row,) = csv.DictReader((tmp_path / "published.csv").read_text().splitlines())
     assert row["name"] == "'=F|1"
     assert float(row["ratio"]) == 0.5

@@ -37,6 +37,7 @@ def test_files_of_a_mechanism_alone(turning: Results, tmp_path: Path) -> None:
         "linkage.csv",
         "sliders.csv",
         "loads.md",
+        "tables.xlsx",
         "animation_turn.html",
     }
 

@@ -12,17 +12,17 @@ from rich.console import Console
 
 from reports.csv_files import cell, harmless
 from reports.json_results import to_json, write_json
+from reports.motion_tables import (
+    beam_check_table,
+    drive_table,
+    motion_check_table,
+    reactions_table,
+)
+from reports.published import published_reactions_table, write_published_reactions
 from reports.results import Results
 from reports.summary import summary
-from reports.tables import (
-    safety_factor_rows,
-    write_beam_check,
-    write_drive,
-    write_motion_check,
-    write_published_reactions,
-    write_reactions,
-    write_safety_factors,
-)
+from reports.table import Table
+from reports.tables import safety_factor_rows, safety_factors_table, write_safety_factors
 from reports.terminal import print_safety_factors
 
 SAFETY_FACTORS = [
@@ -46,6 +46,11 @@ SAFETY_FACTORS = [
 def read(path: Path) -> list[dict[str, str]]:
     with path.open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
+
+
+def written(table: Table, directory: Path) -> list[dict[str, str]]:
+    table.write_csv(directory)
+    return read(directory / f"{table.name}.csv")
 
 
 def refuse(constant: str) -> float:
@@ -105,8 +110,7 @@ def test_json_takes_numpy_truths(results: Results) -> None:
 
 
 def test_safety_factors_agree_with_json(results: Results, tmp_path: Path) -> None:
-    write_safety_factors(results, tmp_path)
-    rows = read(tmp_path / "safety_factors.csv")
+    rows = written(safety_factors_table(results), tmp_path)
     assert list(rows[0])[: len(SAFETY_FACTORS)] == SAFETY_FACTORS
     for row, pin in zip(rows, to_json(results)["pins"], strict=True):
         for name in ("time", "max_von_mises", "error_estimate", "safety_factor"):
@@ -116,7 +120,9 @@ def test_safety_factors_agree_with_json(results: Results, tmp_path: Path) -> Non
 
 
 def test_no_cell_says_nan(results: Results, tmp_path: Path) -> None:
-    write_safety_factors(with_first_pin(results, safety_factor=float("nan")), tmp_path)
+    odd = with_first_pin(results, safety_factor=float("nan"))
+    write_safety_factors(odd, tmp_path)
+    safety_factors_table(odd).write_csv(tmp_path)
     for path in tmp_path.iterdir():
         assert "nan" not in path.read_text(encoding="utf-8").lower()
 
@@ -155,15 +161,12 @@ def test_numbers_and_plain_names_stay() -> None:
 def test_names_that_are_formulas_in_the_files(results: Results, tmp_path: Path) -> None:
     table = replace(results.reactions[1], bodies=("=cmd()", *results.reactions[1].bodies[1:]))
     odd = replace(with_first_pin(results, pin="=HYPERLINK(1)"), reactions=(table,))
-    write_safety_factors(odd, tmp_path)
-    write_reactions(odd, tmp_path / "reactions.csv")
-    assert read(tmp_path / "safety_factors.csv")[0]["pin"] == "'=HYPERLINK(1)"
-    assert read(tmp_path / "reactions.csv")[0]["body"] == "'=cmd()"
+    assert written(safety_factors_table(odd), tmp_path)[0]["pin"] == "'=HYPERLINK(1)"
+    assert written(reactions_table(odd), tmp_path)[0]["body"] == "'=cmd()"
 
 
 def test_reactions(results: Results, tmp_path: Path) -> None:
-    write_reactions(results, tmp_path / "r.csv")
-    rows = read(tmp_path / "r.csv")
+    rows = written(reactions_table(results), tmp_path)
     assert list(rows[0]) == [
         "case",
         "time",
@@ -190,10 +193,9 @@ def test_reactions(results: Results, tmp_path: Path) -> None:
 def test_tables_of_motion_and_checks(results: Results, tmp_path: Path) -> None:
     assert results.beam_check is not None
     assert results.motion_check is not None
-    write_drive(results, tmp_path / "d.csv")
-    write_beam_check(results.beam_check, tmp_path / "b.csv")
-    write_motion_check(results.motion_check, tmp_path / "m.csv")
-    drive, beam, motion = (read(tmp_path / f"{name}.csv") for name in "dbm")
+    drive = written(drive_table(results), tmp_path)
+    beam = written(beam_check_table(results.beam_check), tmp_path)
+    motion = written(motion_check_table(results.motion_check), tmp_path)
     assert list(drive[0])[:3] == ["case", "time", "position"]
     assert float(drive[10]["kinetic_energy"]) == results.drive[0].kinetic_energy[10]
     assert list(beam[0]) == (
@@ -212,7 +214,7 @@ def test_tables_of_motion_and_checks(results: Results, tmp_path: Path) -> None:
 
 def test_published_reactions(results: Results, tmp_path: Path) -> None:
     write_published_reactions(results, tmp_path)
-    rows = read(tmp_path / "reactions_published.csv")
+    rows = written(published_reactions_table(results), tmp_path)
     assert list(rows[0]) == ["case", "connection", "ours", "published", "ratio"]
     largest = results.reactions[0].magnitudes[:, 1].max()
     assert (rows[0]["connection"], float(rows[0]["ours"])) == ("strut A", largest)

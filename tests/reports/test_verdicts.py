@@ -11,11 +11,11 @@ import pytest
 from rich.console import Console
 
 from reports.json_results import to_json
-from reports.landing import write_landing
+from reports.landing import landing_table, write_landing
 from reports.plot_landing import landing_plot
 from reports.results import Results
 from reports.summary import summary
-from reports.tables import write_safety_factors
+from reports.tables import safety_factors_table, write_safety_factors
 from reports.terminal import print_safety_factors
 from reports.words import MEANING, WORDS, outcome, verdict_words
 from tests.reports.judged import judged, row
@@ -82,6 +82,7 @@ def test_json_of_zones_and_checks(found: Results) -> None:
 
 def test_tables_say_the_verdict_and_yield(found: Results, tmp_path: Path) -> None:
     write_safety_factors(found, tmp_path)
+    safety_factors_table(found).write_csv(tmp_path)
     rows = list(csv.DictReader((tmp_path / "safety_factors.csv").read_text().splitlines()))
     assert [r["meets_required"] for r in rows] == ["yes", "", "no", "no", "no", ""]
     assert [r["verdict"] for r in rows] == [p.verdict for p in found.pins]
@@ -144,7 +145,9 @@ def test_summary_of_one_singular_row(found: Results) -> None:
 
 def test_singular_ranges_of_a_landing_can_only_miss(found: Results, tmp_path: Path) -> None:
     members = [ranged("A", "singular"), ranged("B"), ranged("C", "unconverged")]
-    write_landing(replace(found, landing=tuple(members)), tmp_path)
+    some = replace(found, landing=tuple(members))
+    write_landing(some, tmp_path)
+    landing_table(some).write_csv(tmp_path)
     rows = list(csv.DictReader((tmp_path / "landing_range.csv").read_text().splitlines()))
     for r in rows:
         expected = "yes" if float(r["safety_factor"]) >= 1.5 else "no"

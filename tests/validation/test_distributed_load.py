@@ -198,3 +198,11 @@ def test_solid_has_the_axis_loads_term() -> None:
     found = middle(fields, length, (-length, length))
     k = (axis_load_term(nu) - surface_load_term(nu)) * (1.0 - b**2) / (1.0 + b**2)
     assert found == pytest.approx(k, rel=0.06)
+
+
+def test_the_term_grows_with_the_load_and_falls_with_the_radius() -> None:
+    """Pa from N/m over m: 4.743 psi for 50.53 lbf/in on a bar of radius 1 in at nu = 0.3."""
+    k = surface_load_term(0.3)
+    psi, inch = 6894.757293168361, 0.0254
+    assert constant_stress(k, 50.53 * psi * inch, inch) / psi == pytest.approx(4.743, abs=1e-3)
+    assert constant_stress(k, 6.0, 0.2) == pytest.approx(10.0 * constant_stress(k, 3.0, 1.0))

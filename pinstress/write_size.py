@@ -1,0 +1,156 @@
+"""The `size` command: size every pin, run the new study, write it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+import click
+
+from pinstress.errors import InputError
+from pinstress.pipeline import run
+from pinstress.plan import Plan, prepare
+from pinstress.size_search import CLOSE
+from pinstress.sizing import Sized, new_text, size_pin
+from pinstress.study import Study, parse_study
+from pinstress.workers import Died, Job, Progress, cores, preload, side_by_side
+from pinstress.write import SOLVERS, console, progress_bar
+from reports.results import PinResult, Results
+from reports.terminal_size import SizeRow, print_sizes
+
+PASSES = 4
+
+
+def size_and_write(
+    study: Study,
+    fos: float | None,
+    out: Path | None,
+    pins: list[str] | None,
+    step: float | None,
+    quiet: bool = False,
+    jobs: int | None = None,
+) -> int:
+    """Size pins and write the new study; returns the exit status: 1 when any pin does not reach
+    the factor as a value. fos: the study's own by default. step: of diameters, m.
+    jobs: pins at a time, by default as many as there are cores.
+
+    Raises: InputError.
+    """
+    required = fos or study.table.analysis.required_safety_factor
+    if required is None:
+        raise InputError(
+            f"{study.path}: size needs a factor of safety to reach: --fos 10, or "
+            "required_safety_factor in [analysis]"
+        )
+    target = _target(study, out)
+    plan = prepare(study, pins=pins)
+    most = jobs or cores()
+    with progress_bar(alone=most == 1, quiet=quiet) as progress:
+        for _ in range(PASSES):
+            sized = _all(plan, required, step, most, progress)
+            text = new_text(study, sized, step, required)
+            progress("a run of the new study", 0.9)
+            new = parse_study(target, text)
+            results = run(new, pins=[s.pin for s in sized], jobs=most)
+            if _agree(sized, results, required):
+                break
+            # Pins weigh something in the linkage: once more, under the loads of the new ones.
+            plan = replace(plan, loads=prepare(new, pins=pins).loads)
+    rows = [_row(study, new, s, results) for s in sized]
+    print_sizes(rows, required, study.system.length, console())
+    _write(target, text)
+    if not quiet:
+        click.echo(f"Written: {target}", err=True)
+    missed = [row for row in rows if row.why]
+    for row in missed:
+        click.echo(f"Not reached: pin {row.pin}: {row.why}.", err=True)
+    return int(bool(missed))
+
+
+def _agree(sized: list[Sized], results: Results, required: float) -> bool:
+    """Whether the run, too, reaches the factor with every size, and not by much more."""
+    for pin in sized:
+        found = min(_factors(results, pin.pin), default=None)
+        if pin.factor is None or found is None:
+            continue
+        if found < required or found > pin.factor * (1.0 + CLOSE):
+            return False
+    return True
+
+
+def _factors(results: Results, pin: str) -> list[float]:
+    return [p.safety_factor for p in results.pins if p.pin == pin and p.safety_factor is not None]
+
+
+def _all(
+    plan: Plan, required: float, step: float | None, jobs: int, progress: Progress
+) -> list[Sized]:
+    names = list(dict.fromkeys(task.pin.name for task in plan.tasks))
+    if jobs > 1:
+        preload(*SOLVERS)
+    work = [Job(f"pin {name}", partial(size_pin, plan, name, required, step)) for name in names]
+    found = side_by_side(work, jobs, lambda told, part: progress(told, 0.9 * part))
+    return [
+        Sized(name, None, None, None, None, made.reason) if isinstance(made, Died) else made
+        for name, made in zip(names, found, strict=True)
+    ]
+
+
+def _target(study: Study, out: Path | None) -> Path:
+    target = out or study.path.with_name(f"{study.name}_sized.toml")
+    if target.exists():
+        raise InputError(f"{target} exists already; name another file with --out")
+    if not target.parent.is_dir():
+        raise InputError(f"--out: there is no folder {target.parent}")
+    return target
+
+
+def _row(study: Study, new: Study, sized: Sized, results: Results) -> SizeRow:
+    """What the run of the new study says of a pin: nothing is claimed that it does not confirm."""
+    mine = [p for p in results.pins if p.pin == sized.pin and p.safety_factor is not None]
+    worst = min(mine, key=lambda p: p.safety_factor or 0.0) if mine else None
+    unit = study.system.factor("length")
+    diameters = [
+        [s.diameter / unit for s in t.table.pin[sized.pin].profile or ()] for t in (study, new)
+    ]
+    return SizeRow(
+        pin=sized.pin,
+        before=tuple(dict.fromkeys(diameters[0])),
+        after=tuple(dict.fromkeys(diameters[1])) if sized.scale is not None else None,
+        factor_before=sized.before,
+        factor=None if worst is None else worst.safety_factor,
+        verdict=next((p.verdict for p in (worst, *results.pins) if p and p.pin == sized.pin), ""),
+        yields=None if worst is None else worst.yields,
+        why=_why(sized, mine),
+    )
+
+
+def _why(sized: Sized, found: list[PinResult]) -> str:
+    """Why the factor is not reached as a value; empty where it is."""
+    if sized.scale is None:
+        return sized.why
+    singular = [p.case for p in found if p.verdict == "singular"]
+    if not found:
+        return "the run of the new study gives it no factor"
+    missing = [p.case for p in found if p.meets_required is False]
+    loose = [p.case for p in found if p.verdict == "unconverged" and p.meets_required is None]
+    if missing:
+        return f"the run of the new study misses the factor in {', '.join(missing)}"
+    if singular:
+        return (
+            f"it is reached outside the excluded zones only; in {', '.join(singular)} no maximum "
+            "exists at a sharp corner or a clamp's edge, and no size makes one: see singular_zones "
+            "of a run for what does"
+        )
+    if loose:
+        return f"in {', '.join(loose)} the stress is not known to the tolerance"
+    return ""
+
+
+def _write(target: Path, text: str) -> None:
+    try:
+        with target.open("x", encoding="utf-8") as file:
+            file.write(text)
+    except OSError as error:
+        raise InputError(f"{target}: cannot be written ({error.strerror})") from None

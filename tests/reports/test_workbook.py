@@ -1,0 +1,127 @@
+"""The workbook, read back as the XML it is, by none of the code that writes it."""
+
+from __future__ import annotations
+
+import csv
+import re
+import zipfile
+from dataclasses import replace
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from reports.all_tables import load_tables, stress_tables
+from reports.results import Results
+from reports.table import Table
+from reports.workbook import write_workbook
+
+NAMES = {"": "http://schemas.openxmlformats.org/spreadsheetml/2006/main"}
+Sheet = list[dict[str, str | float]]  # by row: cells by their column's letters
+
+
+def read(path: Path) -> tuple[dict[str, Sheet], dict[str, ElementTree.Element]]:
+    """Cells and raw XML of every sheet by its name; any formula is a failure."""
+    with zipfile.ZipFile(path) as book:
+
+        def xml(name: str) -> ElementTree.Element:
+            return ElementTree.fromstring(book.read(name))
+
+        texts = [
+            "".join(t.text or "" for t in item.iter(f"{{{NAMES['']}}}t"))
+            for item in xml("xl/sharedStrings.xml")
+        ]
+        names = [s.attrib["name"] for s in xml("xl/workbook.xml").findall("sheets/sheet", NAMES)]
+        raw = {n: xml(f"xl/worksheets/sheet{i}.xml") for i, n in enumerate(names, start=1)}
+    sheets: dict[str, Sheet] = {}
+    for name, sheet in raw.items():
+        assert not list(sheet.iter(f"{{{NAMES['']}}}f")), f"{name} has a formula"
+        sheets[name] = [
+            {
+                re.sub(r"\d", "", cell.attrib["r"]): texts[int(value)]
+                if cell.get("t") == "s"
+                else float(value)
+                for cell in row
+                if (value := cell.findtext("v", None, NAMES)) is not None
+            }
+            for row in sheet.findall("sheetData/row", NAMES)
+        ]
+    return sheets, raw
+
+
+@pytest.fixture(scope="module")
+def tables(results: Results) -> list[Table]:
+    return [*stress_tables(results), *load_tables(results)]
+
+
+def test_every_table_is_a_sheet_with_its_numbers(
+    results: Results, tables: list[Table], tmp_path: Path
+) -> None:
+    write_workbook(results, tables, tmp_path / "t.xlsx")
+    sheets, raw = read(tmp_path / "t.xlsx")
+    assert list(sheets) == ["about", *(table.name for table in tables)]
+    assert list(sheets)[:2] == ["about", "safety_factors"]
+    for table in tables:
+        table.write_csv(tmp_path)
+        with (tmp_path / f"{table.name}.csv").open(encoding="utf-8", newline="") as file:
+            rows = list(csv.reader(file))
+        found = sheets[table.name]
+        assert len(found) == len(rows)
+        letters = list(found[0])
+        for row, line in zip(found[1:], rows[1:], strict=True):
+            for letter, text in zip(letters, line, strict=True):
+                value = row.get(letter, "")
+                if isinstance(value, float):
+                    assert value == pytest.approx(float(text), rel=1e-15)
+                else:
+                    assert value == text
+        pane = raw[table.name].find("sheetViews/sheetView/pane", NAMES)
+        assert pane is not None
+        assert (pane.get("ySplit"), pane.get("state")) == ("1", "frozen")
+
+
+def test_headings_have_units(results: Results, tables: list[Table], tmp_path: Path) -> None:
+    write_workbook(results, tables, tmp_path / "t.xlsx")
+    sheets, _ = read(tmp_path / "t.xlsx")
+    assert sheets["safety_factors"][0]["D"] == "max_von_mises [psi]"
+    heads = list(sheets["reactions"][0].values())
+    assert heads[:5] == ["case", "time [s]", "connection", "body", "fx [lbf]"]
+    assert heads[-1] == "mz [lbf in]"
+
+
+def test_texts_are_never_run(results: Results, tmp_path: Path) -> None:
+    """Not now, for they are no formulas, nor after a cell was edited, for a quote comes first."""
+    evil = "=HYPERLINK(1)"
+    first = replace(results.pins[0], pin=evil, note="https://example.org", case="12")
+    odd = replace(results, pins=(first, *results.pins[1:]))
+    write_workbook(odd, stress_tables(odd), tmp_path / "t.xlsx")
+    sheets, raw = read(tmp_path / "t.xlsx")
+    row = sheets["safety_factors"][1]
+    assert (row["A"], row["B"], row["N"]) == (evil, "12", "https://example.org")
+    assert raw["safety_factors"].find("hyperlinks", NAMES) is None
+    cell = raw["safety_factors"].findall("sheetData/row", NAMES)[1].findall("c", NAMES)[0]
+    with zipfile.ZipFile(tmp_path / "t.xlsx") as book:
+        styles = ElementTree.fromstring(book.read("xl/styles.xml"))
+    formats = styles.findall("cellXfs/xf", NAMES)
+    assert formats[int(cell.attrib["s"])].get("quotePrefix") == "1"
+
+
+def test_the_same_results_give_the_same_bytes(
+    results: Results, tables: list[Table], tmp_path: Path
+) -> None:
+    for name in ("a", "b"):
+        write_workbook(results, tables, tmp_path / f"{name}.xlsx")
+    assert (tmp_path / "a.xlsx").read_bytes() == (tmp_path / "b.xlsx").read_bytes()
+
+
+def test_every_column_is_documented(tables: list[Table]) -> None:
+    """docs/output.md has a row for every table, with all its columns in their order."""
+    text = (Path(__file__).parents[2] / "docs" / "output.md").read_text(encoding="utf-8")
+    rows = {}
+    for line in text.splitlines():
+        if line.startswith("| `") and line.count("|") == 3:
+            names, columns = line.strip("| ").split(" | ")
+            for name in re.findall(r"`(\w+)`", names):
+                rows[name] = re.findall(r"`(\w+)`", columns)
+    for table in tables:
+        assert rows[table.name] == list(table.columns), table.name
