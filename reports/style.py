@@ -148,6 +148,9 @@ def _end(axes: Axes, line: Line2D) -> tuple[float, float]:
 def save(figure: Figure, directory: Path, name: str) -> list[Path]:
     """Write a figure as SVG and PNG, without a date; returns both paths."""
     svg, png = directory / (name + SVG), directory / (name + PNG)
+    if (layout := figure.get_layout_engine()) is not None:
+        layout.execute(figure)
+        figure.set_layout_engine("none")  # once for both: it takes as long as drawing
     figure.savefig(svg, metadata={"Date": None})
     figure.savefig(png, dpi=150, metadata={"Software": None})
     return [svg, png]
