@@ -98,7 +98,7 @@ def parse_study(path: Path, text: str) -> Study:
         raw = _unwrap(tomllib.loads(text), "", provenance)
     except tomllib.TOMLDecodeError as error:
         place = re.search(r"at line (\d+)", str(error))
-        line = int(place[1]) if place else text.count("\n") + 1  # "at end of document"
+        line = int(place[1]) if place else text.rstrip().count("\n") + 1  # "at end of document"
         raise InputError(f"{path}:{line}: not valid TOML: {error}") from None
     except RecursionError:
         raise InputError(f"{path}: not valid TOML: brackets or dots too deep") from None
@@ -150,7 +150,7 @@ def _explain(error: ValidationError) -> list[str]:
         if item["type"] == "missing":
             message = "is missing"
         elif item["type"] == "union_tag_invalid":
-            kinds = item["ctx"]["expected_tags"]
+            key, kinds = f"{key}.kind", item["ctx"]["expected_tags"]
             message = f"{item['ctx']['tag']!r} is not a kind; there are {kinds}"
         elif item["type"] not in ("value_error", "union_tag_invalid", "union_tag_not_found"):
             message = f"{message[0].lower()}{message[1:]}"

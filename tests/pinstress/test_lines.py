@@ -194,6 +194,8 @@ ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()
         ("diameter = 4.0", "diametre = 4.0", "pin.B.profile[1]: unknown key 'diametre'; did you"),
         ("tolerance = ", "tolerancy = ", "analysis: unknown key 'tolerancy'; did you mean"),
         ('"AISI 4340"\nclamp', '"AISI"\nclamp', "pin.B.material: no material 'AISI'; did you"),
+        ('kind = "given"', 'kind = "gven"', "case.landing.kind: 'gven' is not a kind; there"),
+        ("tolerance = 0.05", "tolerance = [", "not valid TOML: "),
         ("poisson_ratio = 0.30", "poisson_ratio = ", "not valid TOML: "),
         ('["start"]', '["strat"]', "pin B has no surface 'strat'; it has start"),
         ("fillet = 0.4", "fillet = 1.1", "pin B: a fillet of 1.1 times the step does not fit"),
@@ -218,6 +220,7 @@ def test_a_mistake_is_told_with_its_line(tmp_path: Path, old: str, new: str, mes
 
 def test_all_mistakes_are_told_in_the_order_of_the_file(tmp_path: Path) -> None:
     text = ONE_PIN.replace("diameter = ", "diameter = -").replace("0.30", "0.7")
+    text = text.replace("required_safety_factor = 10", "fos = 10\nlimit = 9")
     (path := tmp_path / "study.toml").write_text(text)
     with pytest.raises(InputError) as caught:
         load_study(path)
@@ -225,5 +228,6 @@ def test_all_mistakes_are_told_in_the_order_of_the_file(tmp_path: Path) -> None:
     lines = [int(each.removeprefix(f"{path}:").partition(":")[0]) for each in told]
     assert first == f"{path}: {len(told)} errors"
     assert lines == sorted(lines)
-    wrong = [i for i, x in enumerate(text.splitlines(), 1) if "diameter = -" in x or "0.7" in x]
+    signs = ("diameter = -", "0.7", "fos =", "limit =")
+    wrong = [i for i, x in enumerate(text.splitlines(), 1) if any(sign in x for sign in signs)]
     assert lines == wrong
