@@ -11,6 +11,7 @@ from pinstress.plan import Plan, all_loads, prepare, select
 from pinstress.published import read_published
 from pinstress.solving import Solved, solve_tasks
 from pinstress.study import Study
+from pinstress.workers import processes
 from reports.results import Results
 
 __all__ = ["Plan", "all_loads", "loads_only", "prepare", "results_of", "run", "select", "solve"]
@@ -50,4 +51,5 @@ def run(study: Study, *, jobs: int = 1, **chosen: Any) -> Results:
 
     Raises: InputError for bad input.
     """
-    return solve(prepare(study, **chosen), jobs)
+    plan = prepare(study, **chosen)
+    return solve(plan, processes(jobs))

@@ -58,6 +58,14 @@ def cores() -> int:
     return len(os.sched_getaffinity(0))
 
 
+def processes(asked: int | None) -> int:
+    """How many jobs at a time: as many as are asked for, or as there are cores. One, in this
+    process, where other threads run: a forked process would wait for them for ever.
+    """
+    threads = len(os.listdir("/proc/self/task"))
+    return 1 if threads > 1 else asked or cores()
+
+
 def hold_threads() -> None:
     """One thread in every numeric library that is imported from now on, and in Mesa's renderer."""
     os.environ.update(dict.fromkeys(THREADS, "1"))
@@ -177,6 +185,8 @@ def _serve(job: Job[T], pipe: Connection, parent: int) -> None:
 
 
 def _leave(*_: object) -> None:
+    # In a finalizer Python prints what is raised and goes on; the parent kills us then.
+    sys.unraisablehook = lambda _: None
     sys.exit(128 + signal.SIGTERM)
 
 

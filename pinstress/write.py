@@ -20,7 +20,7 @@ from pinstress.pipeline import loads_only, prepare, results_of
 from pinstress.second_opinion import Opinions
 from pinstress.solving import solve_tasks
 from pinstress.study import Study
-from pinstress.workers import Died, Job, Progress, Tell, cores, preload, side_by_side
+from pinstress.workers import Died, Job, Progress, Tell, preload, processes, side_by_side
 from reports.draw import Plot
 from reports.results import Field, PinResult, Results, Units
 from reports.terminal import print_safety_factors
@@ -62,7 +62,7 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Any) 
     also: Any = wanted.vtk if wanted.vtk in ("motion", "solid") else None
     plan = prepare(study, also=also, **chosen)
     problem = renderer_problem() if wanted.pictures else None
-    most, paints = wanted.jobs or cores(), wanted.pictures and problem is None
+    most, paints = processes(wanted.jobs), wanted.pictures and problem is None
     opinions = Opinions(plan) if wanted.second else None
     with replacing(directory) as staging:
         if wanted.vtk != "none":
@@ -149,7 +149,7 @@ def loads_and_write(
     require_replaceable(directory)
     results = loads_only(study, cases)
     with replacing(directory) as staging:
-        write_loads(results, staging, plots, partial(_draw, jobs or cores()))
+        write_loads(results, staging, plots, partial(_draw, processes(jobs)))
     print_loads(results, console())
     if not quiet:
         click.echo(f"Written: {directory}", err=True)

@@ -14,7 +14,7 @@ from pinstress.plan import Plan, prepare
 from pinstress.size_search import CLOSE
 from pinstress.sizing import Sized, new_text, size_pin
 from pinstress.study import Study, parse_study
-from pinstress.workers import Died, Job, Progress, cores, preload, side_by_side
+from pinstress.workers import Died, Job, Progress, preload, processes, side_by_side
 from pinstress.write import SOLVERS, console, progress_bar
 from reports.results import PinResult, Results
 from reports.terminal_size import SizeRow, print_sizes
@@ -45,7 +45,7 @@ def size_and_write(
         )
     target = _target(study, out)
     plan = prepare(study, pins=pins)
-    most = jobs or cores()
+    most = processes(jobs)
     with progress_bar(alone=most == 1, quiet=quiet) as progress:
         for _ in range(PASSES):
             sized = _all(plan, required, step, most, progress)

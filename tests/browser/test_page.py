@@ -34,8 +34,9 @@ axe.run(document, { iframes: true }).then((found) => done(found.violations
 """
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def page(browser: Any, gear_run: Path) -> Any:
+    """Opened anew, since tests change it."""
     opened(browser, gear_run)
     return browser
 
@@ -114,13 +115,14 @@ def test_animations_are_inside(page: Any) -> None:
 
 
 @pytest.mark.parametrize("shade", ["light", "dark"])
-def test_axe_finds_nothing_serious(page: Any, gear_run: Path, shade: str) -> None:
-    opened(page, gear_run)
+def test_axe_finds_nothing_serious(page: Any, shade: str) -> None:
     features = [{"name": "prefers-color-scheme", "value": shade}]
     page.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
     page.execute_script(AXE.read_text(encoding="utf-8"))
     page.set_script_timeout(120)
-    assert page.execute_async_script(FAULTS) == []
+    found = page.execute_async_script(FAULTS)
+    page.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+    assert found == []
 
 
 def test_shade_can_be_changed(page: Any) -> None:

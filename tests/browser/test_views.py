@@ -43,7 +43,7 @@ return surface.cases.map((c) => {
 """
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def page(browser: Any, gear_run: Path) -> Any:
     opened(browser, gear_run)
     return browser

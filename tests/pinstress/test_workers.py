@@ -5,13 +5,16 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import subprocess
+import sys
+import threading
 import time
 from functools import partial
 
 import pytest
 
 from pinstress.errors import InputError
-from pinstress.workers import Died, Job, Tell, cores, side_by_side
+from pinstress.workers import Died, Job, Tell, cores, processes, side_by_side
 
 
 def child_processes() -> list[int]:
@@ -110,3 +113,21 @@ def test_an_interrupt_ends_processes_that_do_not_listen() -> None:
 
 def test_there_is_a_core() -> None:
     assert 1 <= cores() <= (os.cpu_count() or 1)
+
+
+def test_no_forks_beside_other_threads() -> None:
+    """They would leave locks held in the child: gmsh then waits for ever."""
+    stop = threading.Event()
+    thread = threading.Thread(target=stop.wait)
+    thread.start()
+    try:
+        assert processes(None) == processes(4) == 1
+    finally:
+        stop.set()
+        thread.join()
+
+
+def test_as_many_processes_as_asked_for_where_none_runs() -> None:
+    code = "from pinstress.workers import processes; print(processes(3), processes(None))"
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert said.stdout.split() == ["3", str(cores())]
