@@ -82,7 +82,7 @@ def linkage(study: Study) -> Linkage:
     except LayoutError as error:
         raise study.error(str(error)) from None
     except LinkageError as error:
-        part = re.match(r"(joint|body|slider) ([^:,]+)", str(error))
+        part = re.match(r"(joint|body|slider|drive) ([^:,]+)", str(error))
         key = f"mechanism.{part[1]}.{part[2]}" if part else ""
         raise study.error(f"mechanism: {error}", at=key) from None
 
