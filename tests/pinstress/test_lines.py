@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
@@ -120,7 +123,7 @@ title = "all forms"   # [a]
 "quoted.key" = 1
 dotted."x y".z = '''
 [a]
-b = 2'''
+b = 2''''
 list = [   # one
   1.5,
   { in = 07:30:00, "it" = [
@@ -143,7 +146,7 @@ z = """
 [[pin.B.profile.hole]]
 [pin.B.profile.hole.deep]
 x = 1
-[drive]
+[drive]   # it's
 law = 1
 [[load]]
 law = 1
@@ -231,3 +234,18 @@ def test_all_mistakes_are_told_in_the_order_of_the_file(tmp_path: Path) -> None:
     signs = ("diameter = -", "0.7", "fos =", "limit =")
     wrong = [i for i, x in enumerate(text.splitlines(), 1) if any(sign in x for sign in signs)]
     assert lines == wrong
+
+
+def test_a_mistake_is_told_without_any_heavy_library(tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(ONE_PIN.replace("0.30", "0.7"))
+    code = (
+        "import sys; from pinstress.cli import run_command_line as run; "
+        "status = run(['check', 'study.toml']); heavy = {'gmsh', 'pyvista', 'matplotlib', 'scipy', "
+        "'meshio', 'rich', 'tomlkit'} & set(sys.modules); print(status, sorted(heavy))"
+    )
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path, env=environment
+    )
+    assert done.stdout == "2 []\n"
+    assert done.stderr.startswith("Error: study.toml:10: material.AISI 4340.poisson_ratio: ")
