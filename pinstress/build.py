@@ -86,9 +86,9 @@ def case_loads(study: Study, name: str, mechanism: Linkage | None) -> CaseLoads:
     except TableError as error:
         raise InputError(str(error)) from None
     except Impasse as error:
-        raise InputError(f"{study.path}: case.{name}: {error.message(_shown(study))}") from None
+        raise study.error(f"case.{name}: {error.message(_shown(study))}") from None
     except LinkageError as error:
-        raise InputError(f"{study.path}: case.{name}: {error}") from None
+        raise study.error(f"case.{name}: {error}") from None
 
 
 def _shown(study: Study) -> Callable[[float, bool], str]:
@@ -200,7 +200,7 @@ def _range(
     if not ranged:
         return None
     if len(ranged) > 1:
-        raise InputError(f"{study.path}: case.{name}: only one impulse may have a range")
+        raise study.error(f"case.{name}: only one impulse may have a range")
     impulse = ranged[0].impulse
     assert impulse is not None
     assert impulse.range is not None

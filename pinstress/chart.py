@@ -21,7 +21,6 @@ from pinstress.climb import (
     harmonic_reference,
     solid_reference,
 )
-from pinstress.errors import InputError
 from pinstress.own_process import Measure, Measured
 from pinstress.pins import material as material_of
 from pinstress.plan import all_loads, select
@@ -74,7 +73,8 @@ def prepare(study: Study, pin: str, case: str, tolerance: float | None = None) -
     peak = first(replace(asked, meshes=1))
     if not peak.max_von_mises:
         why = peak.note if peak.verdict == "rigid" else "its loads make no stress"
-        raise InputError(f"{study.path}: pin {pin}, case {case}: there is nothing to chart: {why}")
+        told = f"pin {pin}, case {case}: there is nothing to chart: {why}"
+        raise study.error(told, at=f"pin.{pin}")
     beam_error = None
     if isinstance(task.pin, Pin):
         with suppress(ValueError, ArithmeticError):  # the chart will say why

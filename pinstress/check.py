@@ -6,7 +6,6 @@ from loads import Linkage, LinkageError
 from loads.four_bar import four_bar
 from loads.mobility import require_determined
 from pinstress.build import case_loads
-from pinstress.errors import InputError
 from pinstress.mechanism import linkage, span
 from pinstress.pins import pin as pin_of
 from pinstress.pins import weight
@@ -57,7 +56,7 @@ def _mechanism(study: Study, mechanism: Linkage) -> list[str]:
     try:
         found = require_determined(mechanism)
     except LinkageError as error:
-        raise InputError(f"{study.path}: mechanism: {error}") from None
+        raise study.error(f"mechanism: {error}") from None
     lines = [
         f"mechanism: {len(mechanism.bodies)} bodies, {len(mechanism.joints)} joints, "
         f"{len(mechanism.connections)} connections, driven by {', '.join(mechanism.driven)}"
@@ -70,8 +69,8 @@ def _mechanism(study: Study, mechanism: Linkage) -> list[str]:
     if not found.redundant:
         return [*lines, counted]
     if found.shared and not mechanism.sharing:
-        raise InputError(
-            f"{study.path}: mechanism: the forces at {', '.join(found.shared)} are not determined "
+        raise study.error(
+            f"mechanism: the forces at {', '.join(found.shared)} are not determined "
             "by rigid-body statics; say how they share in [[mechanism.sharing]]"
         )
     rule = ", ".join(f"{'/'.join(s.connections)}" for s in mechanism.sharing)

@@ -9,7 +9,6 @@ from fea.material import Material
 from geometry import Pin
 from loads import GROUND, Lever, Linkage, Slider
 from pinstress.build import CaseLoads
-from pinstress.errors import InputError
 from pinstress.published import Published
 from pinstress.schema import MotionCheckTable
 from pinstress.study import Study
@@ -22,8 +21,8 @@ def require_cantilever(study: Study, task: Task, case: str) -> None:
     loads = next(c for c in task.loads if c.case == case)
     turned = isinstance(task.pin, Pin)
     if not turned or task.clamps != ("start",) or len(loads.surfaces) != 1 or loads.moments.any():
-        raise InputError(
-            f"{study.path}: beam_check: pin {task.pin.name} must be a plain profile, clamped at "
+        raise study.error(
+            f"beam_check: pin {task.pin.name} must be a plain profile, clamped at "
             "its start face alone and loaded on one band, by forces alone, to be a cantilever"
         )
 
@@ -79,7 +78,7 @@ def motion_check(
     if check is None or case is None:
         return None
     if case.dynamics is None or case.reactions.times is None:
-        raise InputError(f"{study.path}: motion_check.case: {check.case!r} is not a motion")
+        raise study.error(f"motion_check.case: {check.case!r} is not a motion")
     motion, unit = case.dynamics.motion, study.system.factor
     lever, radius = _lever(study, check, motion.linkage)
     _, v, a = motion.joint(check.joint)
@@ -106,12 +105,10 @@ def motion_check(
 def _lever(study: Study, check: MotionCheckTable, linkage: Linkage) -> tuple[Lever, float]:
     pivot, joint = linkage.joint(check.pivot), linkage.joint(check.joint)
     if pivot.fixed_in != GROUND:
-        raise InputError(
-            f"{study.path}: motion_check.pivot: {check.pivot} is not fixed in the ground"
-        )
+        raise study.error(f"motion_check.pivot: {check.pivot} is not fixed in the ground")
     slider = linkage.drives[0]
     if len(linkage.drives) != 1 or not isinstance(slider, Slider):
-        raise InputError(f"{study.path}: motion_check: it needs one drive, of a slider")
+        raise study.error("motion_check: it needs one drive, of a slider")
 
     def distance(at: tuple[float, float]) -> float:
         return float(np.hypot(at[0] - pivot.at[0], at[1] - pivot.at[1]))

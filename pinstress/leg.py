@@ -6,7 +6,6 @@ import numpy as np
 
 from loads import LegDynamics, LegMotion, Reactions, SpatialLeg, leg_dynamics
 from loads.linkage import Floats
-from pinstress.errors import InputError
 from pinstress.mechanism import LAWS
 from pinstress.schema_cases import LegCase
 from pinstress.study import Study
@@ -19,9 +18,7 @@ def dynamics(study: Study, case: LegCase) -> tuple[Floats, LegDynamics]:
     table = study.table.spatial_leg
     assert table is not None
     if len(table.leg_inertia) not in (3, 6):
-        raise InputError(
-            f"{study.path}: spatial_leg.leg_inertia: give xx, yy, zz, and xy, xz, yz if there are"
-        )
+        raise study.error("spatial_leg.leg_inertia: give xx, yy, zz, and xy, xz, yz if there are")
     xx, yy, zz, xy, xz, yz = (*table.leg_inertia, 0.0, 0.0, 0.0)[:6]
     fold = LAWS[table.fold.law](table.fold.start, table.fold.end, table.fold.duration)
     times = np.linspace(0.0, fold.duration, case.samples)
@@ -44,7 +41,7 @@ def dynamics(study: Study, case: LegCase) -> tuple[Floats, LegDynamics]:
             gravity=table.gravity,
         )
     except ValueError as error:
-        raise InputError(f"{study.path}: spatial_leg: {error}") from None
+        raise study.error(f"spatial_leg: {error}") from None
     motion = LegMotion(
         v_v=table.speed.start + table.speed.rate * times,
         a_v=table.speed.rate * one,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+import re
 
 import numpy as np
 
@@ -79,14 +80,16 @@ def linkage(study: Study) -> Linkage:
             ),
         )
     except LayoutError as error:
-        raise InputError(f"{study.path}: {error}") from None
+        raise study.error(str(error)) from None
     except LinkageError as error:
-        raise InputError(f"{study.path}: mechanism: {error}") from None
+        part = re.match(r"(joint|body|slider|drive) ([^:,]+)", str(error))
+        key = f"mechanism.{part[1]}.{part[2]}" if part else ""
+        raise study.error(f"mechanism: {error}", at=key) from None
 
 
 def _mechanism(study: Study) -> MechanismTable:
     if study.table.mechanism is None:
-        raise InputError(f"{study.path}: there is no [mechanism]")
+        raise study.error("there is no [mechanism]")
     return study.table.mechanism
 
 
@@ -273,22 +276,22 @@ def _coordinate(
     drive: AnyDriveTable,
     default: float,
 ) -> float:
-    where = f"{study.path}: case.{case}.{key}"
+    where = f"case.{case}.{key}"
     names = [drive_name(d) for d in _mechanism(study).drive]
     if isinstance(value, dict):
         unknown = [n for n in value if n not in names]
         if unknown:
-            raise InputError(f"{where}: no drive {unknown[0]!r}; there are {', '.join(names)}")
+            raise study.error(f"{where}: no drive {unknown[0]!r}; there are {', '.join(names)}")
         value = value.get(drive_name(drive))
     elif value not in (None, 0.0) and len(names) > 1:
-        raise InputError(f"{where}: say for which drive: {{ {names[0]} = ..., {names[1]} = ... }}")
+        raise study.error(f"{where}: say for which drive: {{ {names[0]} = ..., {names[1]} = ... }}")
     if value is None or (value == 0.0 and key != "position"):
         return default
     slides = isinstance(drive, SliderDrive)
     try:
         found = to_si(value, DIMENSION[key][0 if slides else 1], study.system)
     except ValueError as error:
-        raise InputError(f"{where}: {error}") from None
+        raise study.error(f"{where}: {error}") from None
     if key == "position" and not slides:
         found += 2.0 * math.pi * round((default - found) / (2.0 * math.pi))
     return found

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
+
 from fea.material import Material
 from geometry import CutPin, Flat, GeometryError, Hole, Pin, PinLike, Segment
-from pinstress.errors import InputError
 from pinstress.schema_pins import PinTable
 from pinstress.study import Study
 
@@ -24,16 +26,36 @@ def pin(study: Study, name: str) -> PinLike:
     MeshError when a file's solid cannot be meshed.
     """
     p = study.table.pin[name]
+    key = ""
     try:
         made = _from_file(study, name, p) if p.geometry is not None else _turned(name, p)
-        for clamp in (
-            *p.clamp,
-            *(c for k in study.table.case.values() for c in k.clamp.get(name, ())),
-        ):
+        for key, clamp in _held(study, name):  # noqa: B007 (told by what is raised)
             made.surface(clamp)
     except GeometryError as error:
-        raise InputError(f"{study.path}: {error}") from None
+        raise study.error(str(error), at=_key(name, str(error), key)) from None
     return made
+
+
+def _held(study: Study, name: str) -> Iterator[tuple[str, str]]:
+    """Everything that holds a pin anywhere, after its key."""
+    clamps = {f"pin.{name}.clamp": study.table.pin[name].clamp}
+    for case, table in study.table.case.items():
+        clamps[f"case.{case}.clamp.{name}"] = table.clamp.get(name, [])
+    for key, surfaces in clamps.items():
+        for i, surface in enumerate(surfaces, 1):
+            yield f"{key}[{i}]", surface
+
+
+def _key(name: str, message: str, clamp: str) -> str:
+    """The key of what geometry calls "segment 2", "hole 1" or "band foot" of a pin."""
+    about = message.removeprefix(f"pin {name}")
+    if about.startswith(" has no surface"):
+        return clamp
+    if band := re.match(r": band ([^:]+)", about):
+        return f"pin.{name}.band.{band[1]}"
+    if part := re.search(r"\b(segment|hole|flat)s? (\d+)", about):
+        return f"pin.{name}.{part[1].replace('segment', 'profile')}[{part[2]}]"
+    return f"pin.{name}.geometry"
 
 
 def weight(pin: PinLike, density: float, gravity: float = 9.80665) -> float:

@@ -92,9 +92,10 @@ def prepare(
     asked = _asked(study, model, tolerance, allowed_memory(memory))
     for task in todo:
         if asked.model in ("beam", "harmonic") and not task.pin.revolved:
-            raise InputError(
-                f"{study.path}: pin {task.pin.name} is no body of revolution, which the "
-                f"{asked.model} model needs: use auto or solid"
+            raise study.error(
+                f"pin {task.pin.name} is no body of revolution, which the "
+                f"{asked.model} model needs: use auto or solid",
+                at=f"pin.{task.pin.name}",
             )
     return Plan(study, asked, loads, todo, published, checked, also)
 

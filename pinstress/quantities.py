@@ -13,8 +13,15 @@ from textwrap import dedent
 from typing import Annotated, Any
 from urllib.parse import quote
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, GetJsonSchemaHandler, model_validator
-from pydantic_core import core_schema
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    GetJsonSchemaHandler,
+    ValidationError,
+    model_validator,
+)
+from pydantic_core import InitErrorDetails, PydanticCustomError, core_schema
 
 from pinstress.units import DIMENSIONS, SYSTEMS, to_si
 
@@ -167,11 +174,15 @@ class Table(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _known_keys(cls, data: Any) -> Any:
-        if isinstance(data, dict):
-            for key in data:
-                if key not in cls.model_fields:
-                    near = difflib.get_close_matches(str(key), cls.model_fields, n=1, cutoff=0.5)
-                    known = ", ".join(cls.model_fields)
-                    hint = f"did you mean {near[0]!r}?" if near else f"known here: {known}"
-                    raise ValueError(f"unknown key {key!r}; {hint}")
+        unknown = data.keys() - cls.model_fields.keys() if isinstance(data, dict) else ()
+        if unknown:
+            wrong = [_unknown(key, list(cls.model_fields)) for key in data if key in unknown]
+            raise ValidationError.from_exception_data(cls.__name__, wrong)
         return data
+
+
+def _unknown(key: object, known: list[str]) -> InitErrorDetails:
+    near = difflib.get_close_matches(str(key), known, n=1, cutoff=0.5)
+    hint = f"did you mean {near[0]!r}?" if near else f"known here: {', '.join(known)}"
+    told = {"told": f"unknown key {key!r}; {hint}"}
+    return InitErrorDetails(type=PydanticCustomError("value_error", "{told}", told), input=None)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import hashlib
+import re
 import tomllib
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -12,7 +13,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from pinstress.errors import InputError
+from pinstress.errors import InputError, study_error
 from pinstress.file_names import same_files
 from pinstress.quantities import KINDS
 from pinstress.schema import StudyTable
@@ -57,8 +58,14 @@ class Study:
     def beside(self, name: str) -> Path:
         """A file that the study names. Raises: InputError for what can be no file's name."""
         if "\0" in name:
-            raise InputError(f"{self.path}: {name!r} is not the name of a file")
+            raise self.error(f"{name!r} is not the name of a file")
         return self.path.parent / name
+
+    def error(self, message: str, at: str = "") -> InputError:
+        """What is wrong with this study, with the line of the key that the message begins with,
+        or of the key `at`.
+        """
+        return study_error(self.path, self.text, [message], at)
 
     def clamps(self, pin: str, case: str) -> tuple[str, ...]:
         """What holds a pin in a case, in the study's words."""
@@ -90,7 +97,9 @@ def parse_study(path: Path, text: str) -> Study:
         provenance: list[Sourced] = []
         raw = _unwrap(tomllib.loads(text), "", provenance)
     except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{path}: not valid TOML: {error}") from None
+        place = re.search(r"at line (\d+)", str(error))
+        line = int(place[1]) if place else text.rstrip().count("\n") + 1  # "at end of document"
+        raise InputError(f"{path}:{line}: not valid TOML: {error}") from None
     except RecursionError:
         raise InputError(f"{path}: not valid TOML: brackets or dots too deep") from None
     except ValueError:  # of int(): no quantity has thousands of digits
@@ -104,11 +113,11 @@ def parse_study(path: Path, text: str) -> Study:
     try:
         table = StudyTable.model_validate(raw, context={"system": system})
     except ValidationError as error:
-        raise InputError(_listed(path, wrong + _explain(error))) from None
+        raise study_error(path, text, wrong + _explain(error)) from None
     wrong += _cross_references(table)
     wrong += same_files(table.pin, table.case)
     if wrong:
-        raise InputError(_listed(path, wrong))
+        raise study_error(path, text, wrong)
     return Study(path, text, table, tuple(provenance))
 
 
@@ -128,12 +137,6 @@ def _unwrap(node: Any, key: str, found: list[Sourced]) -> Any:
     return {k: _unwrap(v, f"{key}.{k}" if key else k, found) for k, v in node.items()}
 
 
-def _listed(path: Path, wrong: list[str]) -> str:
-    if len(wrong) == 1:
-        return f"{path}: {wrong[0]}"
-    return f"{path}: {len(wrong)} errors\n" + "\n".join(f"  {w}" for w in wrong)
-
-
 def _explain(error: ValidationError) -> list[str]:
     wrong = []
     for item in error.errors():
@@ -147,7 +150,7 @@ def _explain(error: ValidationError) -> list[str]:
         if item["type"] == "missing":
             message = "is missing"
         elif item["type"] == "union_tag_invalid":
-            kinds = item["ctx"]["expected_tags"]
+            key, kinds = f"{key}.kind", item["ctx"]["expected_tags"]
             message = f"{item['ctx']['tag']!r} is not a kind; there are {kinds}"
         elif item["type"] not in ("value_error", "union_tag_invalid", "union_tag_not_found"):
             message = f"{message[0].lower()}{message[1:]}"

@@ -10,7 +10,6 @@ from fea.pin_loads import Distribution, Floats, PinLoads
 from geometry import PinLike
 from loads import Reactions
 from pinstress.build import CaseLoads
-from pinstress.errors import InputError
 from pinstress.pins import material
 from pinstress.pins import pin as pin_of
 from pinstress.study import Study
@@ -45,13 +44,11 @@ def tasks(study: Study, pins: list[str], loads: dict[str, CaseLoads]) -> list[Ta
             if task.loads:
                 out.append(task)
     if not study.table.pin:
-        raise InputError(
-            f"{study.path}: the study has no pins; pinstress loads gives the reactions alone"
-        )
+        raise study.error("the study has no pins; pinstress loads gives the reactions alone")
     if not out:
         many = "s" if len(loads) > 1 else ""
-        raise InputError(
-            f"{study.path}: case{many} {', '.join(loads)} {'do' if many else 'does'} not load "
+        raise study.error(
+            f"case{many} {', '.join(loads)} {'do' if many else 'does'} not load "
             f"pin{'s' if len(pins) > 1 else ''} {', '.join(pins)}"
         )
     return out
@@ -68,8 +65,8 @@ def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, 
             continue
         applied = [c for c in here if c not in held]
         if not applied:
-            raise InputError(
-                f"{study.path}: case.{case}: every load on pin {pin.name} is at a clamped band "
+            raise study.error(
+                f"case.{case}: every load on pin {pin.name} is at a clamped band "
                 f"({', '.join(here)}), so nothing loads it; clamp something else"
             )
         left_out[case] = tuple(c for c in here if c in held)

@@ -39,8 +39,8 @@ def size_and_write(
     """
     required = fos or study.table.analysis.required_safety_factor
     if required is None:
-        raise InputError(
-            f"{study.path}: size needs a factor of safety to reach: --fos 10, or "
+        raise study.error(
+            "size needs a factor of safety to reach: --fos 10, or "
             "required_safety_factor in [analysis]"
         )
     target = _target(study, out)

@@ -136,7 +136,7 @@ def test_values_carry_their_provenance() -> None:
             "give forces = .*, moments = .* or both, or else",
         ),
         ('kind = "given"', 'kind = "motion"', "unknown key 'forces'"),
-        ('kind = "given"', 'kind = "gven"', "case.landing: .*'given', 'motion', 'static'"),
+        ('kind = "given"', 'kind = "gven"', "case.landing.kind: .*'given', 'motion', 'static'"),
         ("tolerance = 0.05", "tolerance = 2", "tolerance: input should be less than 1, not 2"),
         ("[pin.B]", '[pin."a/b"]', "'a/b' cannot be part of a file name"),
         ("title =", "title = = ", "not valid TOML"),
