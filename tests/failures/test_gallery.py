@@ -102,21 +102,22 @@ def test_the_command_ends_with_status_3(name: str, capsys: pytest.CaptureFixture
     ids=["slender", "fillets", "tubes"],
 )
 def test_extreme_shapes(family: object, naive: float) -> None:
-    """The naive value is as bad as that at one end; the truth is within pinstress's error, and only
-    the disc is not known to the tolerance.
+    """The naive value is as bad as that at one end; the truth is within pinstress's error, and all
+    are known to the tolerance.
     """
     found = family()  # type: ignore[operator]
     assert min(s.naive / s.truth for s in found) < naive
     assert all(s.held for s in found)
-    unknown = [s.ratio for s in found if s.found.verdict != "converged"]
-    assert unknown == ([found[0].ratio] if family is shapes.slender else [])
+    assert all(s.found.verdict == "converged" for s in found)
 
 
 def test_units_and_sizes() -> None:
-    """Units to round-off; sizes to 1e-5, to which gmsh places the nodes of an arc."""
+    """Units to round-off; sizes to 1e-3: of two nodes with all but the same stress round-off says
+    which is the higher, about which the next mesh is finer.
+    """
     s = shapes.units()
     assert s.apart < 1e-9
-    assert np.ptp(s.stress) < 1e-5 * s.stress.mean()
+    assert np.ptp(s.stress) < 1e-3 * s.stress.mean()
     assert s.taken[0] > 0.99 > 10.0 * s.right
     assert s.taken[2] == s.right
 

@@ -43,7 +43,7 @@ kind = "given"
 distribution = "cosine"
 forces = { A = [30.0, 40.0], C1 = [0.0, 100.0], C2 = [0.0, -100.0] }
 [analysis]
-tolerance = 0.5
+tolerance = 0.1
 """
 TABLE = "connection,fx,fy,time\nA,0,100,0\nA,50,90,1\nB,10,20,0\nB,30,10,1\n"
 
