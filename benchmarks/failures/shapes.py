@@ -214,7 +214,7 @@ def _sizes(s: Sizes) -> Entry:
         "The study's pin in m and N and in µm and GN: "
         f"{engineering(row('units', 'metres').max_von_mises)}"
         f" Pa both, the same to {_power(max(s.apart, 1e-15))}. Pins of 20 nm to 20 km: the same to "
-        f"{_power(spread)}, which is how exactly gmsh places nodes.",
+        f"{_power(spread)}, as round-off says about which of two nodes the next mesh is finer.",
         (command("units"),),
         "The stress is the same over twelve powers of ten of size, the share of nodes taken is not",
         lambda figure, axes: _draw_sizes(axes[0], axes[1], s),
