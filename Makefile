@@ -22,11 +22,12 @@ test: setup ## run the tests; ARGS="..." goes to pytest
 	$(BIN)/python -m pytest $(ARGS)
 
 test-browser: setup ## run the tests of the report in Chromium, which root gets installed
-	@sh scripts/browser.sh
+	@sh scripts/tools.sh test-browser "Chromium or its driver" "chromium chromium-driver" \
+		chromium chromedriver
 	$(BIN)/python -m pytest -m browser $(ARGS)
 
 test-peers: setup ## run the tests beside CalculiX, which root gets installed
-	@sh scripts/peers.sh
+	@sh scripts/tools.sh test-peers CalculiX calculix-ccx ccx
 	$(BIN)/python -m pytest -m peers $(ARGS)
 
 coverage: setup ## branches of loads, geometry and fea that their own quick tests do not take

@@ -33,6 +33,7 @@ SAMPLES_PER_WAVE = 5  # of von Mises squared
 FIRST = 8  # pairs of points and instants that are sampled to begin with
 CHUNK = 4096  # pairs sampled at once
 POINTS = 256  # points looked at together
+EVERY = slice(None)
 EVEN = 3  # so many of the five numbers go as cos psi, the others as sin psi
 METRIC = np.zeros((5, 6))  # METRIC^T METRIC is tensor.VON_MISES
 METRIC[0, :3] = np.array([1.0, -1.0, 0.0]) * np.sqrt(0.75)
@@ -82,13 +83,13 @@ class Circumference:
         """Whether only odd harmonics act, so that half a turn changes the signs of stresses."""
         return bool((self._n % 2 == 1).all())
 
-    def bound(self, points: Ints) -> Floats:
-        """At least the largest von Mises stress round the axis, (J, T) Pa, at points (J,); exactly
-        it where only one harmonic acts.
+    def bound(self, points: Ints, instants: slice = EVERY) -> Floats:
+        """At least the largest von Mises stress round the axis, (J, T) Pa, at points (J,) and
+        instants; exactly it where only one harmonic acts.
         """
-        out = np.zeros((len(points), self.count))
+        out = np.zeros((len(points), len(self._first[instants])))
         for wave in self._waves:
-            out += self._alone(points, wave)
+            out += self._alone(points, wave, instants)
         return out
 
     def last(self, points: Ints) -> tuple[int, Floats]:
@@ -98,8 +99,8 @@ class Circumference:
         wave = self._waves[-1]
         return int(self._n[wave.start]), self._alone(points, wave)
 
-    def _alone(self, points: Ints, wave: slice) -> Floats:
-        a, b = self._first[:, wave], self._second[:, wave]
+    def _alone(self, points: Ints, wave: slice, instants: slice = EVERY) -> Floats:
+        a, b = self._first[instants, wave], self._second[instants, wave]
         aa, ab, bb = (x[:, :, None] * y[:, None, :] for x, y in ((a, a), (a, b), (b, b)))
         five = self._five[points, :, wave]
         even, odd = (x.swapaxes(1, 2) @ x for x in (five[:, :EVEN], five[:, EVEN:]))

@@ -7,10 +7,9 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fea.answer import Picture
-from fea.circumference import Circumference, Top
+from fea.circumference import Circumference, Mask, Top
 from fea.exponent import growth_exponent
 from fea.harmonic import HarmonicModel
 from fea.look import FELT, Inside, Look, Point
@@ -23,8 +22,6 @@ from fea.zones import Place, outside
 from geometry import Pin
 from geometry.grading import Grade, SectionSize, Spot, size_at
 from geometry.meridian_mesh import meridian_mesh
-
-Mask = NDArray[np.bool_]
 
 SIZE = SectionSize()  # of the first mesh
 CLOSE = (1e-2, 1e-3, 1e-4)  # element at a corner or clamp's edge, of the diameter, mesh by mesh
@@ -160,7 +157,8 @@ def _high(
 ) -> tuple[tuple[float, float], ...]:
     """Points (r, z) where stress is nearly the maximum, the highest first, well apart."""
     rows = np.flatnonzero(among)
-    rows = rows[around.bound(rows)[:, top.instant] >= HIGH * top.value]
+    now = slice(top.instant, top.instant + 1)
+    rows = rows[around.bound(rows, now)[:, 0] >= HIGH * top.value]
     value, _ = around.round(rows, np.full(len(rows), top.instant))
     found: list[Floats] = []
     for k in np.argsort(-value, kind="stable"):

@@ -48,6 +48,8 @@ def interpolation(nodes: Floats, elements: NDArray[np.int64], points: Floats) ->
     """Matrix (P, N) from values at nodes (N, d) to those at points (P, d) inside the body, by the
     shape functions of the element (M, k) round each point, as if it had straight sides.
     """
+    if not len(points):
+        return sp.csr_matrix((0, len(nodes)))  # a tree of all elements takes a while
     d = nodes.shape[1]
     kind = _ELEMENTS[elements.shape[1]]
     corners = nodes[elements[:, : d + 1]]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -64,7 +65,7 @@ def largest(pin: Pin, size: SectionSize) -> float:
 def grades(pin: Pin, size: SectionSize, spots: Iterable[Spot]) -> list[Grade]:
     """About all fillets and spots."""
     out = []
-    for i, (left, right) in enumerate(zip(pin.segments, pin.segments[1:], strict=False)):
+    for i, (left, right) in enumerate(itertools.pairwise(pin.segments)):
         rho = pin.fillet_at(i)
         if rho > 0.0:
             corner = (min(left.diameter, right.diameter) / 2.0, pin.stations[i + 1])

@@ -114,9 +114,7 @@ def _cuts(edge: Edge, spots: tuple[Spot, ...]) -> list[RZ]:
     (r, z), (to_r, to_z) = edge.start, edge.end
     apart = [0.0]
     for x in sorted(parts):
-        if (
-            apart[-1] + 0.001 < x < 0.999
-        ):  # not two cuts in one place, which leave an edge of nought
+        if apart[-1] + 0.001 < x < 0.999:  # two cuts in one place leave an edge of nought
             apart.append(x)
     return [(r + x * (to_r - r), z + x * (to_z - z)) for x in apart[1:]]
 

@@ -21,7 +21,6 @@ from reports.numbers import engineering, ten_to
 from reports.results import PinResult
 
 SCALES = tuple(10.0**k for k in (-6, -3, 0, 3, 6))
-WITHIN = 0.01  # of the radius, beside np.isclose's own tolerance of 1e-8
 
 
 @dataclass(frozen=True)

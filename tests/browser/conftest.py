@@ -42,7 +42,7 @@ def browser() -> Iterator[Any]:
 
 def _program(name: str) -> str:
     path = shutil.which(name)
-    assert path is not None, f"{name} is missing: sh scripts/browser.sh installs it or says how"
+    assert path is not None, f"{name} is missing: make test-browser installs it or says how"
     return path
 
 
