@@ -13,11 +13,14 @@ from typing import Any
 import click
 from rich.console import Console
 
+from pinstress.cache import user_cache
 from pinstress.command import open_page
 from pinstress.file_names import field_name
 from pinstress.output import replacing, require_replaceable
 from pinstress.pipeline import loads_only, prepare, results_of
+from pinstress.plan import Plan
 from pinstress.second_opinion import Opinions
+from pinstress.solved import Solved
 from pinstress.solving import solve_tasks
 from pinstress.study import Study
 from pinstress.workers import Died, Job, Progress, Tell, preload, processes, side_by_side
@@ -41,7 +44,8 @@ PAINTERS = ("pyvista.plotting", "matplotlib.pyplot", "matplotlib.backends.backen
 class Wanted:
     """What a run is to give besides its numbers: pictures; CalculiX's second opinion; fields (vtk,
     as --vtk names them); results.json on stdout instead of the table; no progress and no notes;
-    the report opened. jobs: processes at a time, by default as many as there are cores.
+    the report opened. jobs: processes at a time, by default as many as there are cores. cached:
+    whether pins that were solved before may be taken from the user's cache.
     """
 
     pictures: bool = True
@@ -51,6 +55,7 @@ class Wanted:
     quiet: bool = False
     opens: bool = False
     jobs: int | None = None
+    cached: bool = True
 
 
 def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Any) -> int:
@@ -64,6 +69,7 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Any) 
     problem = renderer_problem() if wanted.pictures else None
     most, paints = processes(wanted.jobs), wanted.pictures and problem is None
     opinions = Opinions(plan) if wanted.second else None
+    cache = user_cache() if wanted.cached else None
     with replacing(directory) as staging:
         if wanted.vtk != "none":
             (staging / "vtk").mkdir()
@@ -72,7 +78,7 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Any) 
             if most > 1:
                 preload(*SOLVERS, *(PAINTERS if paints else ()))
             ask = {"ask": opinions.ask} if opinions else {}
-            found = solve_tasks(plan, keep, progress, jobs=most, **ask)
+            found = solve_tasks(plan, keep, progress, jobs=most, cache=cache, **ask)
             results = results_of(plan, found)
             drawn = {
                 (p.pin, p.case): path
@@ -92,6 +98,7 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Any) 
             opinions.show(console())
     if not wanted.quiet:
         _tell_left_out(results)
+        _tell_solved_before(plan, found)
         if problem is not None:
             click.echo(f"No pictures of the pins: {problem}", err=True)
         click.echo(f"Report: {directory / 'report.html'}", err=True)
@@ -171,6 +178,17 @@ def _tell_left_out(results: Results) -> None:
         click.echo(
             f"Pin {pin}, {', '.join(cases)}: the force at {', '.join(connections)} is left out, "
             "because the pin is held there.",
+            err=True,
+        )
+
+
+def _tell_solved_before(plan: Plan, found: list[Solved]) -> None:
+    pins = {task.pin.name for task in plan.tasks}
+    anew = {t.pin.name for t, made in zip(plan.tasks, found, strict=True) if not made.before}
+    if pins - anew:
+        click.echo(
+            f"{len(pins - anew)} of {len(pins)} pin{'s' * (len(pins) > 1)} as solved before "
+            "(--no-cache solves them again).",
             err=True,
         )
 
