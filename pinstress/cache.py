@@ -27,8 +27,9 @@ VARIABLE = "PINSTRESS_CACHE"  # the folder; empty or OFF: none
 OFF = "off"
 LIMIT = 10**9  # bytes of all files; the longest unused go first
 ROOMS = ("fea", "geometry", "pinstress", "reports")  # that have a hand in an answer
-NAME = re.compile(r"[0-9a-f]{64}")
-PARTIAL = ".partial"
+DRAWN_BY = ("matplotlib", "pyvista", "vtk")
+KEY, PARTIAL = re.compile(r"[0-9a-f]{64}"), ".partial"
+OURS = re.compile(rf"{KEY.pattern}(\w+{re.escape(PARTIAL)})?")
 
 log = logging.getLogger(__name__)
 
@@ -53,7 +54,8 @@ class Cache:
             if seal != _seal(key, content):
                 raise ValueError("damaged")
             value = unpack(kind, content)
-            os.utime(path)  # used now
+            with suppress(OSError):  # of a folder that can only be read
+                os.utime(path)  # used now
         except FileNotFoundError:
             return None
         except Exception as error:  # whatever is wrong with it, it is solved anew
@@ -77,31 +79,29 @@ class Cache:
             except BaseException:
                 os.unlink(partial)
                 raise
-            self._trim()
         except (OSError, MemoryError) as error:
             log.debug("%s is not written: %s", path, error)
 
+    def trim(self) -> None:
+        """Remove what was longest not used until all is within the limit; partial files too, which
+        killed runs leave, and nothing that has another name than ours.
+        """
+        found, room = [], self.limit
+        with suppress(OSError):  # it is not there, or not ours
+            for entry in os.scandir(self.folder):
+                if OURS.fullmatch(entry.name):
+                    with suppress(FileNotFoundError):  # another run was quicker
+                        seen = entry.stat(follow_symlinks=False)
+                        found.append((seen.st_mtime_ns, seen.st_size, entry.path))
+            for _, size, path in sorted(found, reverse=True):
+                room -= size
+                if room < 0:
+                    Path(path).unlink(missing_ok=True)
+
     def _path(self, key: str) -> Path:
-        if not NAME.fullmatch(key):
+        if not KEY.fullmatch(key):
             raise ValueError(f"{key!r:.100} is not the name of an entry")
         return self.folder / key
-
-    def _trim(self) -> None:
-        """Remove what was longest not used until all is within the limit; partial files too, which
-        killed runs leave.
-        """
-        found = []
-        for path in self.folder.iterdir():
-            name = path.name
-            if NAME.fullmatch(name) or (NAME.match(name) and name.endswith(PARTIAL)):
-                with suppress(FileNotFoundError):  # another run was quicker
-                    seen = path.stat()
-                    found.append((seen.st_mtime_ns, seen.st_size, path))
-        room = self.limit
-        for _, size, path in sorted(found, reverse=True):
-            room -= size
-            if room < 0:
-                path.unlink(missing_ok=True)
 
 
 def user_cache() -> Cache | None:
@@ -129,7 +129,8 @@ def program() -> str:
     """Hash of what answers depend on besides what is asked: versions, and the source itself, so
     that whoever changes a formula does not meet the answers of the old one.
     """
-    found = hashlib.sha256(repr([(name, version(name)) for name in PACKAGES]).encode())
+    versions = PACKAGES + DRAWN_BY
+    found = hashlib.sha256(repr([(name, version(name)) for name in versions]).encode())
     root = Path(__file__).parent.parent
     for room in ROOMS:
         for path in sorted((root / room).glob("*.py")):

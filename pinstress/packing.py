@@ -50,7 +50,7 @@ def _written(value: object, arrays: list[Array]) -> object:
         return value.item()
     if value is None or isinstance(value, bool | int | float | str):
         return value
-    if isinstance(value, np.ndarray) and value.dtype.kind in "biuf":  # objects would be pickled
+    if isinstance(value, np.ndarray) and value.dtype.kind in "biuf":  # savez pickles objects
         arrays.append(value)
         return len(arrays) - 1
     if is_dataclass(value) and not isinstance(value, type):

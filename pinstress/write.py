@@ -13,8 +13,9 @@ from typing import Any
 import click
 from rich.console import Console
 
-from pinstress.cache import user_cache
+from pinstress.cache import Cache, user_cache
 from pinstress.command import open_page
+from pinstress.drawn import draw_once, plot_once
 from pinstress.file_names import field_name
 from pinstress.output import replacing, require_replaceable
 from pinstress.pipeline import loads_only, prepare, results_of
@@ -73,7 +74,7 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Any) 
     with replacing(directory) as staging:
         if wanted.vtk != "none":
             (staging / "vtk").mkdir()
-        keep = partial(_keep, staging, _units(study), wanted.vtk, paints)
+        keep = partial(_keep, staging, _units(study), wanted.vtk, paints, cache)
         with progress_bar(alone=most == 1, quiet=wanted.quiet) as progress:
             if most > 1:
                 preload(*SOLVERS, *(PAINTERS if paints else ()))
@@ -86,10 +87,12 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Any) 
                 if (path := _picture(staging, p.pin, p.case)).is_file()
             }
             progress("report", 1.0)
-            write_reports(results, staging, drawn, wanted.pictures, partial(_draw, most))
+            write_reports(results, staging, drawn, wanted.pictures, partial(_draw, most, cache))
             if opinions:
                 opinions.hear(o for made in found for o in made.opinions)
                 opinions.write(staging)
+    if cache:
+        cache.trim()
     if wanted.as_json:
         click.echo((directory / "results.json").read_text(encoding="utf-8"), nl=False)
     else:
@@ -117,7 +120,9 @@ def _picture(staging: Path, pin: str, case: str) -> Path:
     return staging / "plots" / f"pin_{field_name(pin, case)}.png"
 
 
-def _keep(staging: Path, units: Units, vtk: str, paints: bool, field: Field) -> None:
+def _keep(
+    staging: Path, units: Units, vtk: str, paints: bool, cache: Cache | None, field: Field
+) -> None:
     """Write what is wanted of a field."""
     if vtk != "none":
         shown = surface(field) if vtk == "surface" else field
@@ -125,16 +130,22 @@ def _keep(staging: Path, units: Units, vtk: str, paints: bool, field: Field) -> 
     if paints:
         picture = _picture(staging, field.pin, field.case)
         picture.parent.mkdir(exist_ok=True)
-        render_pin(field, picture, units, f"pin {field.pin}, {field.case}")
+        title = f"pin {field.pin}, {field.case}"
+
+        def render() -> list[Path]:
+            render_pin(field, picture, units, title)
+            return [picture]
+
+        draw_once(render, ("render_pin", field, units, title), picture.parent, cache)
 
 
-def _files(plot: Plot, _: Tell) -> list[Path]:
-    return plot()
+def _files(plot: Plot, cache: Cache | None, _: Tell) -> list[Path]:
+    return plot_once(plot, cache)
 
 
-def _draw(jobs: int, plots: Sequence[Plot]) -> list[Path]:
+def _draw(jobs: int, cache: Cache | None, plots: Sequence[Plot]) -> list[Path]:
     """Have plots drawn side by side; their files."""
-    work = [Job("plots", partial(_files, plot)) for plot in plots]
+    work = [Job("plots", partial(_files, plot, cache)) for plot in plots]
     found = []
     for files in side_by_side(work, jobs):
         if isinstance(files, Died):
@@ -156,7 +167,7 @@ def loads_and_write(
     require_replaceable(directory)
     results = loads_only(study, cases)
     with replacing(directory) as staging:
-        write_loads(results, staging, plots, partial(_draw, processes(jobs)))
+        write_loads(results, staging, plots, partial(_draw, processes(jobs), None))
     print_loads(results, console())
     if not quiet:
         click.echo(f"Written: {directory}", err=True)
