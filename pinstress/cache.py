@@ -50,14 +50,14 @@ class Cache:
         """What was written, a `kind`; None when there is nothing that can be trusted."""
         path = self._path(key)
         try:
+            if not path.is_file():
+                return None
             seal, content = _split(path.read_bytes())
             if seal != _seal(key, content):
                 raise ValueError("damaged")
             value = unpack(kind, content)
             with suppress(OSError):  # of a folder that can only be read
                 os.utime(path)  # used now
-        except FileNotFoundError:
-            return None
         except Exception as error:  # whatever is wrong with it, it is solved anew
             log.debug("%s is not used: %s", path, error)
             return None
@@ -77,7 +77,7 @@ class Cache:
                     file.write(_seal(key, content) + content)
                 os.replace(partial, path)
             except BaseException:
-                os.unlink(partial)
+                Path(partial).unlink(missing_ok=True)
                 raise
         except (OSError, MemoryError) as error:
             log.debug("%s is not written: %s", path, error)
@@ -114,7 +114,7 @@ def user_cache() -> Cache | None:
     try:
         folder = Path(named).expanduser() if named else _usual()
         return Cache(folder.absolute(), program())
-    except (OSError, RuntimeError) as error:  # RuntimeError: no home
+    except (OSError, RuntimeError, ImportError) as error:  # no home, say
         log.debug("no cache: %s", error)
         return None
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -130,13 +130,13 @@ def _keep(
     if paints:
         picture = _picture(staging, field.pin, field.case)
         picture.parent.mkdir(exist_ok=True)
-        title = f"pin {field.pin}, {field.case}"
+        skin, title = replace(field, stills=(), volume=None), f"pin {field.pin}, {field.case}"
 
         def render() -> list[Path]:
-            render_pin(field, picture, units, title)
+            render_pin(skin, picture, units, title)
             return [picture]
 
-        draw_once(render, ("render_pin", field, units, title), picture.parent, cache)
+        draw_once(render, ("render_pin", skin, units, title), picture.parent, cache)
 
 
 def _files(plot: Plot, cache: Cache | None, _: Tell) -> list[Path]:

@@ -6,6 +6,7 @@ import errno
 import hashlib
 import io
 import os
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -64,9 +65,22 @@ RUN = ["run", "study.toml", "--no-pictures", "--jobs", "1"]
 Solve = Callable[..., list[str]]
 
 
+@pytest.fixture(scope="module")
+def earlier(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a run, `out`, and the cache that it filled."""
+    place = tmp_path_factory.mktemp("earlier")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(place)
+        patch.setenv("PINSTRESS_CACHE", str(place / "cache"))
+        Path("study.toml").write_text(STUDY)
+        assert run_command_line(RUN) == 0
+    return place
+
+
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """An empty cache."""
+def folder(earlier: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A cache of our own that has both pins."""
+    shutil.copytree(earlier / "cache", tmp_path / "cache")
     monkeypatch.setenv("PINSTRESS_CACHE", str(tmp_path / "cache"))
     monkeypatch.chdir(tmp_path)
     return tmp_path / "cache"
@@ -96,16 +110,10 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {str(p.relative_to(folder)): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
 
 
-def entries(folder: Path) -> dict[str, bytes]:
-    return contents(folder) if folder.exists() else {}
-
-
 def test_nothing_changed_nothing_solved_and_the_same_bytes(
-    solve: Solve, capsys: pytest.CaptureFixture[str]
+    solve: Solve, earlier: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert solve() == ["A", "B"]
-    assert "solved before" not in capsys.readouterr().err
-    first = contents(Path("out"))
+    first = contents(earlier / "out")
     assert {"study/results.json", "study/vtk/A_press.vtu", "study/report.html"} <= set(first)
     assert solve() == []
     assert "2 of 2 pins as solved before (--no-cache solves them again)." in capsys.readouterr().err
@@ -128,14 +136,12 @@ def test_nothing_changed_nothing_solved_and_the_same_bytes(
     ],
 )
 def test_what_changed_is_solved(solve: Solve, old: str, new: str, expected: list[str]) -> None:
-    solve()
     assert old in STUDY
     beam = '"beam"' in new  # which does not reach the tolerance
     assert solve(STUDY.replace(old, new, 1), status=int(beam)) == expected
 
 
 def test_options_are_part_of_the_question(solve: Solve) -> None:
-    solve()
     assert solve(STUDY, "--vtk", "solid") == ["A", "B"]  # more fields
     assert solve(STUDY, "--tolerance", "0.3") == ["A", "B"]
     assert solve(STUDY, "--pins", "B", "--memory-limit", "500") == []
@@ -143,13 +149,11 @@ def test_options_are_part_of_the_question(solve: Solve) -> None:
     assert not Path("out/study/vtk").exists()
 
 
-def test_without_the_cache(solve: Solve, folder: Path) -> None:
-    assert solve(STUDY, "--no-cache") == ["A", "B"]
-    assert not folder.exists()
-    solve()
-    kept = entries(folder)
-    assert solve(STUDY, "--no-cache") == ["A", "B"]
-    assert entries(folder) == kept
+def test_without_the_cache(solve: Solve, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    kept = contents(folder)
+    assert solve(STUDY.replace("fillet = 4", "fillet = 4.1"), "--no-cache") == ["A", "B"]
+    assert contents(folder) == kept
+    assert "solved before" not in capsys.readouterr().err
 
 
 def flipped(data: bytes) -> bytes:
@@ -160,24 +164,34 @@ def flipped(data: bytes) -> bytes:
 @pytest.mark.parametrize(
     "damage", [flipped, lambda d: d[:-1], lambda d: d[:40], lambda _: b"", lambda d: d + b"\0"]
 )
-def test_damaged_entries_are_solved_anew_and_replaced(
-    solve: Solve, folder: Path, damage: Callable[[bytes], bytes]
+def test_a_damaged_entry_is_none_and_is_replaced(
+    tmp_path: Path, damage: Callable[[bytes], bytes]
 ) -> None:
-    solve()
-    for name, content in entries(folder).items():
-        (folder / name).write_bytes(damage(content))
+    cache, value = Cache(tmp_path, ""), Solved((Peak("P", "c", "beam", "rigid", "why"),))
+    key = cache.key("question")
+    cache.write(key, value)
+    assert cache.read(key, Solved) == value
+    sound = (tmp_path / key).read_bytes()
+    (tmp_path / key).write_bytes(damage(sound))
+    assert cache.read(key, Solved) is None
+    cache.write(key, value)
+    assert contents(tmp_path) == {key: sound}
+
+
+def test_damaged_entries_are_solved_anew(solve: Solve, folder: Path) -> None:
+    for name, content in contents(folder).items():
+        (folder / name).write_bytes(flipped(content))
     assert solve() == ["A", "B"]
     assert solve() == []
 
 
 def test_sound_entries_of_something_else_are_not_trusted(solve: Solve, folder: Path) -> None:
-    solve()
-    study = load_study("study.toml")
-    plan = prepare(study)
+    assert solve() == []
+    plan = prepare(load_study("study.toml"))
     cache = user_cache()
     assert cache is not None
     a, b = (cache.key(question(plan, task)) for task in plan.tasks)
-    assert {a, b} == set(entries(folder))
+    assert {a, b} == set(contents(folder))
     (folder / a).write_bytes((folder / b).read_bytes())  # under another name
     assert solve() == ["A"]
     cache.write(a, Files(()))  # another type
@@ -192,7 +206,6 @@ def test_sound_entries_of_something_else_are_not_trusted(solve: Solve, folder: P
 def test_other_versions_and_other_source_ask_anew(
     solve: Solve, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    solve()
     with monkeypatch.context() as newer:
         newer.setattr(cache_module, "version", lambda n: "0" if n == "gmsh" else version(n))
         assert solve() == ["A", "B"]
@@ -220,17 +233,21 @@ def test_a_full_or_forbidden_folder_costs_nothing(
         raise OSError(code, os.strerror(code))
 
     monkeypatch.setattr("pinstress.cache.os.replace", fails)
+    shutil.rmtree(folder)
     assert solve() == ["A", "B"]
-    assert entries(folder) == {}  # no half of one either
+    assert contents(folder) == {}  # no half of one either
 
 
 def test_a_folder_that_cannot_be_made(solve: Solve, folder: Path) -> None:
+    shutil.rmtree(folder)
     folder.write_text("a file")
     assert solve() == ["A", "B"]
     assert folder.read_text() == "a file"
 
 
 def test_what_failed_is_not_kept(solve: Solve, monkeypatch: pytest.MonkeyPatch) -> None:
+    study = STUDY.replace("diameter = 24", "diameter = 23")
+
     def fails(pin: Any, *rest: Any) -> Any:
         if pin.name == "B":
             raise ArithmeticError("no mesh")
@@ -238,8 +255,8 @@ def test_what_failed_is_not_kept(solve: Solve, monkeypatch: pytest.MonkeyPatch) 
 
     with monkeypatch.context() as broken:
         broken.setattr(solving, "solve_pin", fails)
-        solve(status=3)
-    assert solve() == ["B"]
+        solve(study, status=3)
+    assert solve(study) == ["B"]
 
 
 @pytest.mark.slow
@@ -349,9 +366,8 @@ def test_no_name_leaves_a_folder(tmp_path: Path) -> None:
     assert len(drawings) == 5
 
 
-def test_plots_and_pictures_are_drawn_once(
-    solve: Solve, folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.mark.slow
+def test_plots_and_pictures_are_drawn_once(solve: Solve, monkeypatch: pytest.MonkeyPatch) -> None:
     from reports import style
 
     saved: list[str] = []
