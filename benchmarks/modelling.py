@@ -16,7 +16,6 @@ from fea.harmonic_look import harmonic_look, harmonic_solution
 from fea.ladder import STEP, Asked, places_of, solve_pin
 from fea.material import Material
 from fea.pin_loads import PinLoads
-from fea.zones import outside
 from geometry import Pin
 from pinstress import load_study
 from pinstress.build import CaseLoads
@@ -100,7 +99,7 @@ def instants() -> str:
         cases = [pin_loads(CASE, applied, r, asked.distribution, weightless) for r in sampled]
         places = places_of(pin, steel, (), (cases[-1],))
         solution = harmonic_solution(pin, steel, (), (cases[-1],), places, LEVEL, STEP)
-        among = outside(places, *solution.fields.points.T)
+        among = solution.fields.outside(places)
         *few, true = (Circumference(solution.fields, loads).top(among).value for loads in cases)
         rows.append((name, *(f"{100.0 * (value / true - 1.0):+.3f}" for value in few)))
     told = f"Error of the maximum over the retraction beside that of {TRUE_INSTANTS} instants, %:"

@@ -150,11 +150,15 @@ class Circumference:
                 break
             here = rows[k : k + POINTS]
             bound = self.bound(here)
+            if len(self._waves) < 2:  # the bound is the maximum
+                highest = bound.argmax(axis=0)
+                value = bound[highest, np.arange(self.count)]
+                more = value > best
+                best[more], point[more] = value[more], here[highest[more]]
+                continue
             for i, t in self._worth(bound, best, together):
-                value = bound[i, t]
-                if len(self._waves) > 1:
-                    beat = np.full(len(t), best.max()) if together else best[t]
-                    value = self.round(here[i], t, beat)[0]
+                beat = np.full(len(t), best.max()) if together else best[t]
+                value = self.round(here[i], t, beat)[0]
                 bound[i, t] = -1.0
                 order = np.argsort(value, kind="stable")
                 i, t, value = i[order], t[order], value[order]

@@ -64,7 +64,7 @@ class HarmonicModel:
         inner = inner_nodes(self.space, self.outline)
         also = beside(self.space, self.outline, self.material, extra, ends)
         points = np.concatenate([skin.reshape(-1, 2), self.space.nodes[inner], also.points])
-        displacement = np.zeros((len(points), 3, len(loads)))
+        displacement = np.zeros((len(points) - len(also.points), 3, len(loads)))
         stress = np.zeros((len(points), 6, len(loads)))
         for n in sorted({load.n for load in loads}):
             here = [k for k, load in enumerate(loads) if load.n == n]

@@ -19,11 +19,11 @@ class MeridianFields:
     """Amplitudes per unit of K loads at points (S, 2): r, z in m; stress (S, 6, K) in Pa.
 
     Components are rr, tt, zz, tz, rz, rt; under a load of harmonic n and phase p the first three
-    and rz go as cos psi, the others as sin psi, psi = n theta - p pi / 2. displacement (S, 3, K)
-    in m: r and z as cos psi, theta as sin psi. skin: how many of the points, the first ones, follow
-    the outline counter-clockwise. unknowns: of the system that was solved. triangles: (M, 3) of
-    points, which fill the section, if the model has such. unread: points whose stress is too rough
-    to look for a maximum among (fea.jumps).
+    and rz go as cos psi, the others as sin psi, psi = n theta - p pi / 2. displacement (D, 3, K)
+    in m, of the first D points: r and z as cos psi, theta as sin psi. skin: how many of the points,
+    the first ones, follow the outline counter-clockwise. unknowns: of the system that was solved.
+    triangles: (M, 3) of points, which fill the section, if the model has such. unread: points whose
+    stress is too rough to look for a maximum among (fea.jumps).
     """
 
     points: Floats

@@ -9,7 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
-from skfem import Element, ElementTetP1, ElementTetP2, ElementTriP2
+from skfem import Element, ElementTetP1, ElementTetP2
 
 from fea.zones import Place
 from geometry import Pin
@@ -20,7 +20,7 @@ RIM = 32  # points round a place in the section
 ROUND = 36  # points round the axis
 NEAREST = 12  # elements by their middles, among which the one round a point is looked for
 
-_ELEMENTS: dict[int, Element] = {6: ElementTriP2(), 4: ElementTetP1(), 10: ElementTetP2()}
+_ELEMENTS: dict[int, Element] = {4: ElementTetP1(), 10: ElementTetP2()}
 
 
 def rim(pin: Pin, place: Place, distance: float) -> Floats:

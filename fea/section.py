@@ -29,7 +29,6 @@ from skfem.refdom import RefTri
 from fea.material import Material
 from fea.pattern import Pattern
 from fea.recovery import continuation
-from fea.rims import interpolation
 from geometry.meridian_mesh import MeridianMesh
 
 Floats = NDArray[np.float64]
@@ -119,10 +118,6 @@ class Section:
         """Where those are, (3 M, 2): r, z in m, element by element."""
         x = np.asarray(self.basis.global_coordinates())[:, :, self._sampled]
         return np.ascontiguousarray(x.reshape(2, -1).T)
-
-    def values_at(self, points: Floats) -> sp.csr_matrix:
-        """Matrix (P, N) from values at nodes to those at points (P, 2) inside the section."""
-        return interpolation(self.nodes, self.elements, points)
 
     @cached_property
     def continued_to_nodes(self) -> sp.csr_matrix:

@@ -19,13 +19,12 @@ NOWHERE = np.zeros((0, 2))
 
 @dataclass(frozen=True)
 class Beside:
-    """Points (P, 2), r and z in m, where stress is read besides skin and inner nodes: some inside
-    the section, then those of the jumps. displaced (P, N): takes values at nodes there; continued
-    (I, 3 M): those at samples to the points inside.
+    """Points (P, 2), r and z in m, where stress alone is read besides skin and inner nodes: I
+    inside the section, then those of the jumps. continued (I, 3 M): takes values at samples to the
+    first.
     """
 
     points: Floats
-    displaced: sp.csr_matrix
     continued: sp.csr_matrix
     jumps: tuple[Jump, ...]
 
@@ -40,11 +39,7 @@ def beside(
     """inside: points (I, 2), m. ends: places on the outline where a pressure ends."""
     found = jumps(space, outline, material, ends)
     at = np.array([[j.r, j.z] for j in found]).reshape(-1, 2).repeat(DIRECTIONS, axis=0)
-    node = np.array([outline.nodes[j.before, 1] for j in found], dtype=np.int64).repeat(DIRECTIONS)
-    row = np.arange(len(node))
-    at_nodes = sp.csr_matrix((np.ones(len(node)), (row, node)), shape=(len(node), len(space.nodes)))
-    displaced = sp.vstack([space.values_at(inside), at_nodes], format="csr")
-    return Beside(np.concatenate([inside, at]), displaced, space.continued_to(inside), found)
+    return Beside(np.concatenate([inside, at]), space.continued_to(inside), found)
 
 
 def inner_nodes(space: Section, outline: Outline) -> Ints:
@@ -62,9 +57,9 @@ def section_stress(
     clamps: tuple[str, ...] = (),
     extra: Beside | None = None,
 ) -> tuple[Floats, Floats]:
-    """Displacement (S, 3, K) in m and stress (S, 6, K) in Pa, amplitudes, at the five points of
-    each edge of the outline, then at the inner nodes, then at `extra` points, of displacements u
-    (N, 3, K) of harmonic n.
+    """Displacement (D, 3, K) in m and stress (S, 6, K) in Pa, amplitudes, at the five points of
+    each edge of the outline, then at the inner nodes, then (stress alone) at `extra` points, of
+    displacements u (N, 3, K) of harmonic n.
 
     traction: (E, 3, 3, K) Pa at the nodes of the outline's edges. Inside, and where the traction is
     unknown because the surface is held, stress is fitted to samples in the elements
@@ -82,7 +77,6 @@ def section_stress(
     displacements = [found.displacement.reshape(-1, 3, K), u[inner]]
     stresses = [on_skin.reshape(-1, 6, K), fitted[inner]]
     if extra is not None:
-        displacements.append(_apply(extra.displaced, u))
         stresses.append(_apply(extra.continued, sampled))
         stresses.extend(jump.stress(sampled, traction) for jump in extra.jumps)
     return np.concatenate(displacements), np.concatenate(stresses)
