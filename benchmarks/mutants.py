@@ -37,7 +37,7 @@ FILES = {
     "fea/elasticity.py": ("tests/fea/test_elasticity.py",),
     "fea/corner.py": ("tests/fea/test_corner.py", "tests/fea/test_corner_determinant.py"),
     "fea/tractions.py": ("tests/fea/test_bearing_pressure.py", "tests/fea/test_harmonic.py"),
-    "fea/distributed_load.py": ("tests/validation/test_distributed_load.py",),
+    "fea/distributed_load.py": ("tests/fea/test_distributed_load.py",),
     "loads/forces.py": ("tests/loads/test_four_bar.py", "tests/loads/test_slider_crank.py",
                         "tests/loads/test_reactions.py"),
     "loads/energy.py": ("tests/loads/test_four_bar.py", "tests/loads/test_slider_crank.py"),
