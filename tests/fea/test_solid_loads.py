@@ -12,7 +12,7 @@ from fea import solid, solid_loads
 from fea.balance import out_of_balance
 from fea.envelope import envelope
 from fea.ladder import Asked, solve_pin
-from fea.linear import SolveError
+from fea.linear import SolveError, factorize
 from fea.material import Material
 from fea.pin_loads import BODY, PinLoads, UnitLoad
 from fea.solid import SolidModel, acting
@@ -239,10 +239,8 @@ def test_clamps_that_do_not_answer_the_loads_are_noticed(
     steel: Material, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """As from a solver that is a thousandth off."""
-    true = solid.factorize
-
     def off(*system: object) -> object:
-        solve = true(*system)  # type: ignore[arg-type]
+        solve = factorize(*system)  # type: ignore[arg-type]
         return lambda b: 1.001 * solve(b)
 
     monkeypatch.setattr(solid, "factorize", off)

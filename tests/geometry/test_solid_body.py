@@ -224,7 +224,7 @@ def test_a_mesh_of_other_elements_stands_on_the_files_vertices(tmp_path: Path) -
     found = body(write_mesh(solid, tmp_path / "pin.vtu"))
     volumes = {}
     for element in ("curved", "straight", "linear"):
-        mesh = any_mesh(found, MeshSize(), element=element).mesh  # type: ignore[arg-type]
+        mesh = any_mesh(found, MeshSize(), element=element).mesh
         assert mesh.nvertices == solid.mesh.nvertices
         assert "B" in mesh.boundaries
         volumes[element] = Discretisation(mesh).weights.sum()
