@@ -239,6 +239,7 @@ def test_clamps_that_do_not_answer_the_loads_are_noticed(
     steel: Material, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """As from a solver that is a thousandth off."""
+
     def off(*system: object) -> object:
         solve = factorize(*system)  # type: ignore[arg-type]
         return lambda b: 1.001 * solve(b)
