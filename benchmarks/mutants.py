@@ -57,6 +57,8 @@ SAME = {
         "equal stresses at two places: either is the largest",
     ("return (tuple(Traction(b.name, 0.0, ABOUT_Z * b.radius, _NONE) for b in bands),)",
      "0.0 → 1.0"): "the middle from which a slope of nought is counted",
+    ("inertia = np.array([item.inertia or 0.0 for item in items])", "0.0 → 1.0"):
+        "pins and particles, which have no inertia, do not turn (`loads.loops._frames`)",
 }  # fmt: skip
 OFF = 1.1  # times a number
 MOST = 40  # mutants of a file, drawn at random
