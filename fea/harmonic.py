@@ -6,22 +6,23 @@ directions, share it.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 import scipy.sparse as sp
 
+from fea.jumps import unread
 from fea.linear import Analysis, SolveError
 from fea.material import Material
 from fea.meridian_fields import MeridianFields
 from fea.outline import Outline, shapes
 from fea.pin_loads import Floats, UnitLoad
 from fea.section import Ints, Section, around
-from fea.section_stress import inner_nodes, section_stress
+from fea.section_stress import NOWHERE, beside, inner_nodes, section_stress
 from fea.skin import AT
 from fea.tractions import ALONG_X, ALONG_Z, Traction, closing_tractions, traction
 from geometry import Pin
 from geometry.meridian_mesh import MeridianMesh
-
-_NOWHERE = np.zeros((0, 2))
 
 
 class HarmonicModel:
@@ -48,15 +49,21 @@ class HarmonicModel:
         self.outline = Outline(self.space)
         self._analysis: Analysis | None = None  # one for all harmonics: held unknowns stay in it
 
-    def solve(self, loads: tuple[UnitLoad, ...], extra: Floats = _NOWHERE) -> MeridianFields:
-        """Unit fields, at `extra` points (P, 2) inside the section too.
+    def solve(
+        self,
+        loads: tuple[UnitLoad, ...],
+        extra: Floats = NOWHERE,
+        ends: Iterable[tuple[float, float]] = (),
+    ) -> MeridianFields:
+        """Unit fields, at `extra` points (P, 2) inside the section too, and close to the `ends` of
+        pressures on its outline, (r, z) in m.
 
         Raises: SolveError when the pin is not held or a check fails.
         """
         skin = np.einsum("qi,eia->eqa", shapes(AT), self.space.nodes[self.outline.nodes])
         inner = inner_nodes(self.space, self.outline)
-        points = np.concatenate([skin.reshape(-1, 2), self.space.nodes[inner], extra])
-        at_extra = self.space.values_at(extra)
+        also = beside(self.space, self.outline, self.material, extra, ends)
+        points = np.concatenate([skin.reshape(-1, 2), self.space.nodes[inner], also.points])
         displacement = np.zeros((len(points), 3, len(loads)))
         stress = np.zeros((len(points), 6, len(loads)))
         for n in sorted({load.n for load in loads}):
@@ -64,7 +71,7 @@ class HarmonicModel:
             forces, tractions = self._applied(n, [loads[k] for k in here])
             u = _polar(self._displace(n, forces))
             displacement[:, :, here], stress[:, :, here] = section_stress(
-                self.space, self.outline, self.material, n, u, tractions, self.clamps, at_extra
+                self.space, self.outline, self.material, n, u, tractions, self.clamps, also
             )
         skin_points = len(AT) * len(self.outline.nodes)
         row = np.zeros(len(self.space.nodes), dtype=np.int64)  # of every node that is a corner
@@ -73,7 +80,14 @@ class HarmonicModel:
         row[self.outline.nodes[:, 1]], row[self.outline.nodes[:, 0]] = first + len(AT) - 1, first
         triangles = row[self.space.elements[:, :3]]
         return MeridianFields(
-            points, loads, stress, displacement, skin_points, self.space.unknowns, triangles
+            points,
+            loads,
+            stress,
+            displacement,
+            skin_points,
+            self.space.unknowns,
+            triangles,
+            unread(also.jumps, points, skin_points),
         )
 
     def _applied(self, n: int, loads: list[UnitLoad]) -> tuple[Floats, Floats]:

@@ -26,7 +26,7 @@ from skfem.refdom import RefTri
 
 from fea.material import Material
 from fea.pattern import Pattern
-from fea.recovery import extension
+from fea.recovery import continuation
 from fea.rims import interpolation
 from geometry.meridian_mesh import MeridianMesh
 
@@ -118,13 +118,23 @@ class Section:
         return np.asarray(found.reshape(*strain.shape[:3], -1))
 
     @cached_property
-    def extend(self) -> sp.csr_matrix:
-        """Matrix (N, 3 M) from values at those points to values at nodes."""
-        return extension(self.elements, self._samples, ElementTriP2.doflocs.T)
+    def samples(self) -> Floats:
+        """Where those are, (3 M, 2): r, z in m, element by element."""
+        x = np.asarray(self.basis.global_coordinates())[:, :, self._sampled]
+        return np.ascontiguousarray(x.reshape(2, -1).T)
 
     def values_at(self, points: Floats) -> sp.csr_matrix:
         """Matrix (P, N) from values at nodes to those at points (P, 2) inside the section."""
         return interpolation(self.nodes, self.elements, points)
+
+    @cached_property
+    def continued_to_nodes(self) -> sp.csr_matrix:
+        """The same to those at nodes (N, 3 M)."""
+        return self.continued_to(self.nodes)
+
+    def continued_to(self, points: Floats) -> sp.csr_matrix:
+        """Matrix (P, 3 M) from values at the samples to those at points (P, 2)."""
+        return continuation(self.samples, points)
 
 
 def around(n: int) -> float:
