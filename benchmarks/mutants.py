@@ -59,6 +59,12 @@ SAME = {
      "0.0 → 1.0"): "the middle from which a slope of nought is counted",
     ("inertia = np.array([item.inertia or 0.0 for item in items])", "0.0 → 1.0"):
         "pins and particles, which have no inertia, do not turn (`loads.loops._frames`)",
+    ("return root if root.real < 1.0 else 1.0 + 0.0j", "root.real < 1.0 → root.real <= 1.0"):
+        "an eigenvalue of exactly 1 is what the other branch returns",
+    ("return _root(lambda x: math.sin(x) - q * x, math.pi / 2.0, math.pi + 1e-9)", "2.0 → 2.2"):
+        "a wider bracket about the only root",
+    ("return float(brentq(function, low, high, xtol=1e-15, rtol=1e-15))",
+     "1e-15 → 1.1000000000000001e-15"): "both tolerances are round-off",
 }  # fmt: skip
 OFF = 1.1  # times a number
 MOST = 40  # mutants of a file, drawn at random

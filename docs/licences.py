@@ -42,7 +42,7 @@ part of pinstress. `tests/browser/axe/` has a copy of axe-core with its licence 
 
 def locked() -> dict[str, str]:
     """Versions of all packages of the lock files, by name."""
-    found = {}
+    found: dict[str, str] = {}
     for lock in LOCKS:
         text = (ROOT / lock).read_text(encoding="utf-8")
         found |= dict(re.findall(r"^([a-z0-9][\w.-]*)==([^\s;]+)", text, re.MULTILINE))
@@ -65,10 +65,11 @@ def licence(name: str) -> str | None:
         found = metadata.metadata(name)
     except metadata.PackageNotFoundError:
         return ELSEWHERE.get(name)
-    if expression := found.get("License-Expression"):
-        return expression
+    if "License-Expression" in found:
+        return str(found["License-Expression"])
     classifiers = [c.split(" :: ")[-1] for c in found.get_all("Classifier") or () if "License" in c]
-    return " or ".join(classifiers) or (found.get("License") or "").strip().split("\n")[0] or None
+    word = str(found["License"]).strip().split("\n")[0] if "License" in found else ""
+    return " or ".join(classifiers) or word or None
 
 
 def needed(lines: Iterable[str], done: set[str]) -> set[str]:
