@@ -32,8 +32,8 @@ HEAD = """# Licences of dependencies
 
 pinstress is GPL-3.0-or-later. `make setup` installs the packages of `requirements.lock`, benchmarks
 those of `requirements-bench.lock`, each under its own licence, as its metadata name it; none is
-part of pinstress. `tests/browser/axe/` has a copy of axe-core with its licence (MPL-2.0). Written by
-`python -m docs.licences`.
+part of pinstress. `tests/browser/axe/` has a copy of axe-core with its licence (MPL-2.0).
+`python -m docs.licences` writes this page.
 
 | package | version | licence | needed |
 | --- | --- | --- | --- |

@@ -75,8 +75,8 @@ def test_files_are_tried_one_by_one_and_rows_kept(
         "| `fea/notch.py` | 9 | 9 | 8 | 1 | |\n| … line 3: `a → b` | | | | | so |\n"
     )
     changes = [m.change for m in mutants((ROOT / "loads/impulse.py").read_text("utf-8"))]
-    monkeypatch.setattr(module, "survives", lambda path, tree, *_: ast.unparse(tree) in passing)
     passing = {ast.unparse(ast.parse((ROOT / "loads/impulse.py").read_text("utf-8")))}
+    monkeypatch.setattr(module, "survives", lambda path, tree, *_: ast.unparse(tree) in passing)
     assert module.main(["--record", "loads/impulse.py"]) == 0
     text = (tmp_path / "mutants.md").read_text("utf-8")
     n = len(changes)
