@@ -205,7 +205,8 @@ def main(arguments: list[str]) -> int:
         explained = explained and all_of_it
         print("\n".join(rows[path]), flush=True)
         if "--record" in arguments:
-            record("mutants", table(recorded() | rows), "python -m benchmarks.mutants")
+            command = f"python -m benchmarks.mutants --most={most}"
+            record("mutants", table(recorded() | rows), command)
     return 0 if explained else 1
 
 
