@@ -47,7 +47,7 @@ class HarmonicModel:
         self.clamps = tuple(pin.surface(name) for name in clamps)
         self.space = Section(section)
         self.outline = Outline(self.space)
-        self._analysis: Analysis | None = None  # one for all harmonics: held unknowns stay in it
+        self._system: _System | None = None  # one for all harmonics: held unknowns stay in it
 
     def solve(
         self,
@@ -131,12 +131,9 @@ class HarmonicModel:
             self._require_equilibrium(K, n)
         free = np.ones(K.shape[0])
         free[fixed] = 0.0
-        row = np.repeat(np.arange(len(free)), np.diff(K.indptr))
-        K.data *= free[row] * free[K.indices]
-        K.data[(K.indices == row) & (free[row] == 0.0)] = K.data.max()  # of no effect
-        if self._analysis is None:
-            self._analysis = Analysis(K)
-        return self._analysis.factorize(K)(forces * free[:, None])
+        if self._system is None:
+            self._system = _System(K)
+        return self._system.solve(K, free, forces)
 
     def _require_equilibrium(self, K: sp.csr_matrix, n: int) -> None:
         """A section that moves as a whole takes no force, so that whatever its displacements are,
@@ -171,6 +168,24 @@ class HarmonicModel:
         near = int(innermost[place[innermost].argmin()])
         far = int(innermost[np.abs(z[innermost] - z[near]).argmax()])
         return np.array([3 * near + 1, 3 * far + 1])
+
+
+class _System:
+    """Linear systems whose matrices have their entries in the same places."""
+
+    def __init__(self, K: sp.csr_matrix) -> None:
+        self._row = np.repeat(np.arange(K.shape[0]), np.diff(K.indptr))
+        self._diagonal = np.flatnonzero(K.indices == self._row)
+        self._analysis = Analysis(K)
+
+    def solve(self, K: sp.csr_matrix, free: Floats, forces: Floats) -> Floats:
+        """Unknowns (n, K) under forces, nought where `free` (n,) is 0 and not 1; K is changed."""
+        held = self._diagonal[free == 0.0]
+        largest = K.data.max()
+        K.data *= free[self._row]
+        K.data *= free[K.indices]
+        K.data[held] = largest  # of no effect
+        return self._analysis.factorize(K)(forces * free[:, None])
 
 
 def _generalised(forces: Floats) -> Floats:

@@ -168,7 +168,8 @@ def _high(
     """Points (r, z) where stress is nearly the maximum, the highest first, well apart."""
     rows = np.flatnonzero(among)
     now = slice(top.instant, top.instant + 1)
-    rows = rows[around.bound(rows, now)[:, 0] >= HIGH * top.value]
+    for bound in (around.reach, around.bound):
+        rows = rows[bound(rows, now)[:, 0] >= HIGH * top.value]
     value, _ = around.round(rows, np.full(len(rows), top.instant))
     found: list[Floats] = []
     for k in np.argsort(-value, kind="stable"):

@@ -62,7 +62,7 @@ def hunt(seed: int, place: Path, run_too: bool) -> Iterator[Case]:
         if arguments[0] == "check" and case.end.status == 0:
             commands.append(["loads", "study.toml", "--no-pictures"])
         elif arguments[0] == "loads" and case.end.status == 0 and run_too:
-            commands.append(["run", "study.toml", *QUICK])
+            commands.append(["run", "study.toml", "--no-cache", *QUICK])
     if not bad:
         shutil.rmtree(folder)
         for end in (".out", ".err"):
