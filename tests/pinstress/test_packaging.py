@@ -31,7 +31,7 @@ def done(folder: Path, *command: str | Path, status: int = 0) -> str:
     found = subprocess.run(
         [str(word) for word in command],
         cwd=folder,
-        env=os.environ | {"PYTHONPATH": LIBRARIES},
+        env=os.environ | {"PYTHONPATH": LIBRARIES, "PINSTRESS_CACHE": str(folder / "cache")},
         capture_output=True,
         text=True,
     )
@@ -53,7 +53,9 @@ def files(*folders: str) -> set[str]:
 def dist(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with both distributions."""
     folder = tmp_path_factory.mktemp("dist")
-    done(ROOT, sys.executable, "-m", "hatchling", "build", "-d", folder)
+    build = (sys.executable, "-m", "hatchling", "build", "-d", folder)
+    found = subprocess.run(build, cwd=ROOT, capture_output=True, text=True)
+    assert found.returncode == 0, found.stderr
     return folder
 
 
@@ -116,3 +118,6 @@ def test_an_install_initialises_checks_and_runs(ending: str, dist: Path, tmp_pat
     assert pin["verdict"] == "converged"
     assert pin["meets_required"] is True
     assert "<title>" in (out / "report.html").read_text(encoding="utf-8")
+    again = done(tmp_path, program, "run", "trial/one_pin.toml", "--no-pictures")
+    assert again == printed
+    assert any((tmp_path / "cache").iterdir())
