@@ -30,9 +30,9 @@ test-peers: setup ## run the tests beside CalculiX, which root gets installed
 	@sh scripts/tools.sh test-peers CalculiX calculix-ccx ccx
 	$(BIN)/python -m pytest -m peers $(ARGS)
 
-coverage: setup ## branches of loads, geometry and fea that their own quick tests do not take
+coverage: setup ## branches of loads, geometry, fea that their own quick tests do not take; fails below 95 %
 	@for room in loads geometry fea; do $(BIN)/python -m pytest -q -m "not slow and not peers" --cov=$$room \
-	--cov-branch --cov-report=term-missing:skip-covered tests/$$room $(ARGS) || exit 1; done
+	--cov-branch --cov-fail-under=95 --cov-report=term-missing:skip-covered tests/$$room $(ARGS) || exit 1; done
 
 mutants: setup ## changes in files of formulas that no test notices (about an hour; ARGS="--most=10")
 	$(BIN)/python -m benchmarks.mutants --record $(ARGS)

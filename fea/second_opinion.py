@@ -120,15 +120,14 @@ def second_opinions(
         answer = Opinion(pin.name, case.case, peak.max_von_mises, peak.error_estimate)
         c = solution.fields.coefficients(case)[peak.instant]
         try:
-            # the models of the section also look inside, where a singular place ends
-            out.append(_compared(answer, material, solution, c, peak.model != "solid"))
+            out.append(_compared(answer, material, solution, c))
         except calculix.CalculixError as error:
             out.append(replace(answer, failure=str(error)))
     return tuple(out)
 
 
 def _compared(
-    answer: Opinion, material: Material, solution: SolidSolution, loads: Floats, everywhere: bool
+    answer: Opinion, material: Material, solution: SolidSolution, loads: Floats
 ) -> Opinion:
     """Both programs under one combination (L,) of the unit loads. Raises: CalculixError."""
     fields, space = solution.fields, solution.fields.space
@@ -143,7 +142,7 @@ def _compared(
         raise calculix.CalculixError(f"{calculix.COMMAND} did not write all {len(u)} nodes")
     ours = von_mises(nodal_stress(space, material, u[..., None])[..., 0])
     theirs = von_mises(found.stress)
-    outside = _outside(solution, everywhere)
+    outside = _outside(solution)
     return replace(
         answer,
         unknowns=space.unknowns,
@@ -154,10 +153,12 @@ def _compared(
     )
 
 
-def _outside(solution: SolidSolution, everywhere: bool) -> Ints:
-    """Nodes outside of the singular places of a body of revolution; or on the surface only."""
+def _outside(solution: SolidSolution) -> Ints:
+    """Nodes outside of the singular places of a body of revolution, in which all models also look
+    inside, where such a place ends; of any other body those of its surface.
+    """
     fields = solution.fields
-    if not everywhere:
+    if not fields.revolved:
         return fields.surface.nodes[solution.outside]
     x = fields.space.nodes
     r, z = np.hypot(x[:, 0], x[:, 1]), x[:, 2]

@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 
 from fea.material import Material
 from geometry import Pin, Segment
@@ -20,6 +21,10 @@ ROOT = Path(__file__).parent.parent
 INCH = 0.0254
 LBF = 0.45359237 * 9.80665
 PSI = LBF / INCH**2
+
+# Else an example that takes longer than 0.2 s, as any may on a busy machine, fails its test.
+settings.register_profile("no clock", deadline=None)
+settings.load_profile("no clock")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

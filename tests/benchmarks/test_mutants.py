@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import ast
+from pathlib import Path
 
 import pytest
 
-from benchmarks.mutants import FILES, mutants
+from benchmarks import mutants as module
+from benchmarks import record as record_module
+from benchmarks.mutants import FILES, SAME, mutants
 from tests.conftest import ROOT
 
 SOURCE = '''
@@ -53,3 +56,36 @@ def test_files_and_their_tests_are_there() -> None:
     for path, tests in FILES.items():
         assert (ROOT / path).is_file()
         assert all((ROOT / test).exists() for test in tests)
+
+
+def test_reasons_are_of_lines_that_are_there() -> None:
+    lines = {
+        line.strip() for path in FILES for line in (ROOT / path).read_text("utf-8").splitlines()
+    }
+    assert all(line in lines for line, _ in SAME)
+
+
+def test_files_are_tried_one_by_one_and_rows_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One change that is explained, and one that is not; other files keep what they have."""
+    monkeypatch.setattr(module, "FOLDER", tmp_path)
+    monkeypatch.setattr(record_module, "FOLDER", tmp_path)
+    (tmp_path / "mutants.md").write_text(
+        "| `fea/notch.py` | 9 | 9 | 8 | 1 | |\n| … line 3: `a → b` | | | | | so |\n"
+    )
+    changes = [m.change for m in mutants((ROOT / "loads/impulse.py").read_text("utf-8"))]
+    passing = {ast.unparse(ast.parse((ROOT / "loads/impulse.py").read_text("utf-8")))}
+    monkeypatch.setattr(module, "survives", lambda path, tree, *_: ast.unparse(tree) in passing)
+    assert module.main(["--record", "loads/impulse.py"]) == 0
+    text = (tmp_path / "mutants.md").read_text("utf-8")
+    n = len(changes)
+    assert f"| `loads/impulse.py` | {n} | {n} | {n} | 0 | |" in text
+    assert "| `fea/notch.py` | 9 | 9 | 8 | 1 | |\n| … line 3: `a → b` | | | | | so |\n" in text
+    passing |= {
+        ast.unparse(m.tree) for m in mutants((ROOT / "loads/impulse.py").read_text("utf-8"))
+    }
+    assert module.main(["--record", "--most=1", "loads/impulse.py"]) == 1
+    text = (tmp_path / "mutants.md").read_text("utf-8")
+    assert f"| `loads/impulse.py` | {n} | 1 | 0 | 1 | |" in text
+    assert text.count("**not explained**") == 1

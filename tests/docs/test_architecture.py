@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import ast
 import re
+import sys
+from pathlib import Path
+from types import FrameType
 
 import numpy as np
 import pytest
 
+from pinstress.cli import run_command_line
 from pinstress.pipeline import solve
 from pinstress.plan import prepare
 from pinstress.study import Study
@@ -42,7 +46,7 @@ def test_much_is_named() -> None:
     }
 
 
-@pytest.mark.parametrize(("path", "name"), NAMED, ids=": ".join)
+@pytest.mark.parametrize(("path", "name"), NAMED, ids=str)
 def test_what_is_named_exists(path: str, name: str) -> None:
     text = (ROOT / path).read_text(encoding="utf-8")
     assert not name or name in defined(ast.parse(text))
@@ -66,5 +70,35 @@ def test_the_number_is_what_the_page_says(gear: Study) -> None:
     assert meshes is not None
     maxima = [float(x) for x in meshes[1].split(", ")]
     assert [h.max_von_mises for h in found.history] == pytest.approx(maxima, rel=2e-3)
+    error = re.search(r"the error of the last is ([\d.]+) psi", PAGE)
+    assert error is not None
+    assert found.error_estimate == pytest.approx(float(error[1]), abs=0.06)
     assert (found.time, found.verdict, found.left_out) == (4.0, "singular", ("E1",))
     assert f"{maxima[-1]} psi, t = 4 s, `singular`" in PAGE
+
+
+@pytest.mark.slow
+def test_the_path_is_walked_as_told(tmp_path: Path) -> None:
+    """Every function of the path is called on the way of its number, by the command itself."""
+    path = PAGE.split("## The path of one number")[1].split("\n## ")[0]
+    told = {
+        (file, name)
+        for file, name in re.findall(r"`([\w/]+\.py): ([\w.]+)`", path)
+        if not name.split(".")[-1][0].isupper()
+    }
+    assert len(told) > 20
+    called = set()
+
+    def note(frame: FrameType, event: str, _: object) -> None:
+        if event == "call":
+            called.add((frame.f_code.co_filename, frame.f_code.co_qualname))
+
+    command = ["run", str(ROOT / "studies" / "grenier2008.toml"), "--pins", "E"]
+    command += ["--cases", "retract", "--no-pictures", "--out", str(tmp_path / "out")]
+    sys.setprofile(note)
+    try:
+        assert run_command_line(command) == 1  # singular
+    finally:
+        sys.setprofile(None)
+    missing = {(file, name) for file, name in told if (str(ROOT / file), name) not in called}
+    assert not missing

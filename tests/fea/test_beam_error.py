@@ -111,3 +111,21 @@ def test_the_error_holds_the_solids_maximum(steel: Material, gap: float, across:
     assert found.error < 0.5 * found.maximum
     off = abs(solid.peak.max_von_mises - found.maximum)
     assert off < found.error + solid.peak.error_estimate
+
+
+def test_between_two_clamps_the_error_is_of_how_stiff_they_are(steel: Material) -> None:
+    """docs/method.md: 5 % anywhere, 15 % within a diameter of a clamp, and between two of them half
+    the diameter over the length; and 0.8 of the nominal pressure. So at the roots, where a band
+    over all of the span has its largest moment.
+    """
+    for length in (0.2, 0.4):
+        pin = Pin("P", (Segment(length, d, connection="B"),))
+        loads = case((0.0, 1000.0, 0.0))
+        found = beam_estimate(
+            beam_stress(pin, steel, acting(loads), ("start", "end")), loads, ("start", "end")
+        )
+        assert found.maximum == pytest.approx(1000.0 * length / 12.0 * d / 2.0 / I, rel=0.01)
+        relative = 0.05 + 0.15 + 0.5 * d / length
+        error = relative * found.maximum + 0.8 * 1000.0 / (d * length)
+        assert found.error == pytest.approx(error, rel=1e-9)
+        assert "edges of clamps no maximum exists" in found.leaves_out

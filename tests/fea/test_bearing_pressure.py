@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from typing import Literal
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fea.pin_loads import Floats, PinLoads
+from fea.pin_loads import Floats, PinLoads, UnitLoad
 from fea.tractions import traction
 from geometry import Pin, Segment
 
@@ -55,3 +56,21 @@ def test_the_force_is_exact(x: float, y: float, terms: int) -> None:
     p = pressure(pushed(x, y, terms), theta) * band.area / 128
     assert -np.sum(p * np.cos(theta)) == pytest.approx(x, abs=1e-9)
     assert -np.sum(p * np.sin(theta)) == pytest.approx(y, abs=1e-9)
+
+
+def test_unit_tractions_on_paper() -> None:
+    """Radial, round and along, at the middle and at the end: one newton along x is cos - sin over
+    the area, one along z is along only; one newton metre about z goes round only, about y it is
+    along x with a slope whose second moment is 1.
+    """
+    band = PIN.band("B")
+    z = np.array([band.middle, band.z1])
+
+    def at(kind: Literal["force", "moment"], n: int) -> Floats:
+        return traction(PIN, UnitLoad("B", kind, n)).at(z) * band.area
+
+    assert at("force", 1) == pytest.approx(np.array([[1.0, -1.0, 0.0]] * 2))
+    assert at("force", 0) == pytest.approx(np.array([[0.0, 0.0, 1.0]] * 2))
+    assert at("moment", 0) == pytest.approx(np.array([[0.0, -1.0 / band.radius, 0.0]] * 2))
+    end = 12.0 / band.length**2 * band.length / 2.0
+    assert at("moment", 1) == pytest.approx(np.array([[0.0] * 3, [end, -end, 0.0]]))

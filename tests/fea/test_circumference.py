@@ -197,3 +197,11 @@ def test_stress_is_the_superposition() -> None:
         found = Circumference(fields, loads).stress(np.arange(6), nought, angle)
         expected = superposed(fields, loads, 0, angle)[np.arange(6), np.arange(6)]
         assert found == pytest.approx(expected, abs=1e-12 * np.abs(expected).max())
+
+
+def test_no_load_has_no_harmonic_and_no_stress() -> None:
+    loads = PinLoads("case", ("B",), np.zeros((2, 1, 3)))
+    around = Circumference(unit_fields(loads, 4, 0), loads)
+    order, largest = around.last(np.arange(3))
+    assert order == 0
+    assert largest.tolist() == [[0.0, 0.0]] * 3

@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -62,8 +62,9 @@ def characteristic(L: Complex, omega: float, nu: float, sides: tuple[Side, Side]
     return 4.0 * k * sine**2 - (k + 1.0) ** 2 + 4.0 * product**2
 
 
-def zeros_left_of(bound: float, omega: float, nu: float, sides: tuple[Side, Side]) -> int:
-    """Zeros of the determinant in 0.1 < Re L < bound, |Im L| < 8 / omega: turns of its phase.
+def zeros_left_of(bound: float, omega: float, nu: float, sides: tuple[Side, Side]) -> int | None:
+    """Zeros of the determinant in 0.1 < Re L < bound, |Im L| < 8 / omega: turns of its phase. None
+    where the path round them comes too near to one to count.
 
     Further up there are none: |sin Lw| > sinh 8 outgrows all else.
     """
@@ -72,8 +73,7 @@ def zeros_left_of(bound: float, omega: float, nu: float, sides: tuple[Side, Side
     path = np.concatenate([np.linspace(a, b, 4000) for a, b in pairwise(frame)])
     values = determinant(path, omega, nu, sides)
     turns = np.angle(values[1:] / values[:-1])
-    assert np.abs(turns).max() < 1.0  # the path is sampled finely enough to count
-    return round(float(turns.sum()) / (2.0 * math.pi))
+    return None if np.abs(turns).max() > 1.0 else round(float(turns.sum()) / (2.0 * math.pi))
 
 
 @pytest.mark.parametrize("sides", PAIRS)
@@ -104,11 +104,13 @@ def test_the_eigenvalue_satisfies_the_boundary_conditions(
 
 @settings(max_examples=40, deadline=None)
 @given(*corners)
+@example(3.359375, -0.75, ("clamped", "clamped"))  # a second zero 0.02 to the right
 def test_none_is_stronger(omega: float, nu: float, sides: tuple[Side, Side]) -> None:
     """Nor is one at angles that are called finite. 0.02 keeps the path clear of the zero, and of
-    L = 1, a rotation.
+    L = 1, a rotation; to the right of the strongest there may be a second one as near.
     """
     L = plane_eigenvalue(omega, nu, *sides)
     assert zeros_left_of(L.real - 0.02, omega, nu, sides) == 0
     if L != 1.0:
-        assert zeros_left_of(L.real + 0.02, omega, nu, sides) > 0
+        counted = (zeros_left_of(L.real + step, omega, nu, sides) for step in (0.02, 0.03, 0.04))
+        assert next(zeros for zeros in counted if zeros is not None) > 0

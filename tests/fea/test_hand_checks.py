@@ -185,3 +185,30 @@ def test_checks_are_proportional_to_the_load(steel: Material) -> None:
     assert "double shear, mean" in {x.name for x in part}
     for a, b in zip(whole, part, strict=True):
         assert b.stress == pytest.approx(1e-5 * a.stress)
+
+
+def test_lugs_side_by_side_at_the_ends_of_a_pin(steel: Material) -> None:
+    """No gaps: beside the middle lug there is but the outer ones."""
+    pin = Pin("P", tuple(s for s in LUGS.segments if s.connection))
+    found = {(x.name, x.at): x for x in hand_checks(pin, steel, lugs((F, 0.0)))}
+    assert found["double shear, mean", "B"].stress == pytest.approx(F / (2 * A))
+
+
+def test_the_largest_moment_is_sought_within_the_pin(steel: Material) -> None:
+    """F along 10 mm, half of it taken back along 10 mm and the rest along 1 mm: from there on no
+    shear is left, and M is the forces times the distances of their middles. Were the second band
+    longer, M would grow beyond that.
+    """
+    pin = Pin(
+        "P",
+        (
+            Segment(0.010, d, connection="A"),
+            Segment(0.010, d, connection="B"),
+            Segment(0.001, d, connection="C"),
+            Segment(0.010, d),
+        ),
+    )
+    forces = F * np.array([[[1.0, 0.0, 0.0], [-0.5, 0.0, 0.0], [-0.5, 0.0, 0.0]]])
+    loads = PinLoads("case", ("A", "B", "C"), forces)
+    bending = next(x for x in hand_checks(pin, steel, loads, ("end",)) if x.name == "bending")
+    assert bending.stress == pytest.approx(F * (0.016 - 0.5 * 0.006 - 0.5 * 0.0005) / W)

@@ -7,8 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fea import ladder
 from fea.ladder import Asked, solve_pin
 from fea.material import Material
+from fea.memory import solid_memory
 from fea.pin_loads import PinLoads
 from fea.tensor import von_mises
 from geometry import CutPin, Hole, Pin, Segment
@@ -173,3 +175,55 @@ def test_the_beams_answer_is_its_peak(steel: Material) -> None:
     assert maxima.max() == pytest.approx(found.peak.max_von_mises, rel=1e-9)
     assert maxima == pytest.approx(np.abs(SIZES) / 3000.0 * maxima.max(), rel=1e-9)
     assert found.answer.picture(BALANCED, 0) is None
+
+
+def test_a_harmonic_mesh_decides_before_it_is_exact(steel: Material) -> None:
+    """A tenth from the limit: more than its error, and less than a beam's."""
+    exact = solve_pin(BAR, steel, (), (BALANCED,), Asked(model="harmonic"))[0].peak.max_von_mises
+    assert exact is not None
+    asked = Asked(goal="decide", required=1.1 * YIELD / exact, tolerance=1e-6)
+    (found,) = solve_pin(BAR, steel, (), (BALANCED,), asked)
+    assert (found.peak.model, found.peak.verdict) == ("harmonic", "unconverged")
+    assert found.peak.why.endswith(
+        "; its error leaves no doubt on which side of the required factor it is"
+    )
+    assert len(found.peak.history) < ladder.MESHES["harmonic"]
+
+
+def test_no_beam_where_a_fillet_has_no_factor(steel: Material) -> None:
+    """The fits end at a bore of d/4. Who asks for a beam gets one, with all of its value as error
+    and the place by name.
+    """
+    tube = Pin(
+        "T",
+        (
+            Segment(0.02, 0.03, bore=0.01, connection="D1"),
+            Segment(0.04, 0.02, bore=0.01, connection="D2"),
+        ),
+        fillet=0.003,
+    )
+    couples = np.array([[[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]]])
+    bent = PinLoads("bent", ("D1", "D2"), 0.0 * couples, couples)
+    (auto,) = solve_pin(tube, steel, (), (bent,), Asked(tolerance=0.9, meshes=3))
+    assert auto.peak.model == "harmonic"
+    (beam,) = solve_pin(tube, steel, (), (bent,), Asked(model="beam", tolerance=0.9))
+    assert beam.peak.verdict == "unconverged"
+    assert beam.peak.error_estimate == beam.peak.max_von_mises
+    assert beam.peak.note.startswith("no notch factor for ")
+    assert "not the maximum there" in beam.peak.note
+
+
+def test_unknowns_and_memory_have_a_limit(steel: Material, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The mesh that would pass it is not made, and that is told."""
+    loose = Asked(model="solid", tolerance=1e-6, meshes=1)
+    (first,) = solve_pin(BAR, steel, (), (BALANCED,), loose)
+    enough = 1.5 * solid_memory(first.peak.dofs)  # the next mesh has 2^1.5 times as many
+    tight = replace(loose, meshes=3, memory=enough)
+    (stopped,) = solve_pin(BAR, steel, (), (BALANCED,), tight)
+    assert [h.dofs for h in stopped.peak.history] == [first.peak.dofs]
+    assert stopped.peak.why.endswith("the largest mesh allowed does not reach the tolerance")
+    fine = Asked(model="harmonic", tolerance=1e-6)
+    monkeypatch.setitem(ladder.MOST_UNKNOWNS, "harmonic", 6000)
+    (found,) = solve_pin(BAR, steel, (), (BALANCED,), fine)
+    assert 1 < len(found.peak.history) < ladder.MESHES["harmonic"]
+    assert found.peak.dofs <= 6000 < 2.0 * found.peak.dofs

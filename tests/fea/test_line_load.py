@@ -88,3 +88,9 @@ def test_harmonics_that_no_section_feels(steel: Material) -> None:
     assert shares((UnitLoad("B", "pressure", 1),), loads)[0, :, 0] == pytest.approx([3.0, -4.0])
     with pytest.raises(ValueError, match="no unit fields"):
         shares((B,), loads)
+
+
+def test_a_balance_needs_a_band(steel: Material) -> None:
+    """Of a pin that no link touches and nothing holds, under its own weight."""
+    with pytest.raises(ValueError, match="pin P: nothing holds it and no band can balance"):
+        stepped_beam(Pin("P", (Segment(L, d),)), steel, (UnitLoad(BODY, "body", 1),))

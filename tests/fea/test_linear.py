@@ -61,3 +61,15 @@ def test_a_wrong_solution_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(linear._Cholmod, "factor", lambda self, K: lambda b: 1.001 * b)
     with pytest.raises(SolveError, match=r"relative residual of 1\.0e-03"):
         factorize(sp.csr_matrix(sp.eye_array(3)), np.arange(3))(np.ones(3))
+
+
+def test_superlu_tells_a_singular_matrix(monkeypatch: pytest.MonkeyPatch) -> None:
+    def absent(*_: object) -> None:
+        raise ImportError
+
+    monkeypatch.setattr(linear, "_Cholmod", absent)
+    K = sp.csr_matrix(np.array([[1.0, -1.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 1.0]]))
+    with pytest.raises(
+        SolveError, match=r"stiffness matrix is singular \(.*\): the pin is not held"
+    ):
+        factorize(K, np.arange(3))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from fea.linear import SolveError
@@ -26,3 +28,15 @@ def test_too_large_a_solid_is_refused() -> None:
     require_memory("P", 1000, 10.0)
     with pytest.raises(SolveError, match=r"pin P: 4,000,000 unknowns would take about 98 GB"):
         require_memory("P", 4_000_000, 1000.0)
+
+
+def test_where_the_kernel_says_nothing_all_is_allowed(monkeypatch: pytest.MonkeyPatch) -> None:
+    def absent(self: Path) -> str:
+        raise FileNotFoundError(self)
+
+    monkeypatch.setattr(Path, "read_text", absent)
+    assert free_memory() == float("inf")
+    require_memory("P", 10**9, None)
+    monkeypatch.setattr(Path, "read_text", lambda self: "MemTotal: 9 kB\nMemAvailable:  2048 kB\n")
+    assert free_memory() == 2.0
+    assert allowed_memory(None) == pytest.approx(1.6)

@@ -122,6 +122,14 @@ def test_outside_their_range_there_is_no_factor() -> None:
     assert shoulder_factor(BENDING, 1.0, 1.0, 0.1) is None
 
 
+def test_a_range_has_its_ends() -> None:
+    """h / r of 0.1 and of 20 to round-off: 0.1 comes out as 0.09999999999999998."""
+    assert shoulder_factor(BENDING, 1.2, 1.0, 1.0) is not None
+    assert shoulder_factor(BENDING, 3.0, 1.0, 0.05) is not None
+    assert shoulder_factor(BENDING, 1.2 - 1e-6, 1.0, 1.0) is None
+    assert shoulder_factor(BENDING, 3.0 + 1e-6, 1.0, 0.05) is None
+
+
 def test_notches_of_a_pin() -> None:
     """A fillet on both sides of a collar, a sharp corner, a step of the bore, a tube's fillet."""
     pin = Pin(

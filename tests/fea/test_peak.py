@@ -70,3 +70,11 @@ def test_factor_of_safety() -> None:
     assert peak.safety_factor(100.0) == 2.0
     assert peak.safety_factor(None) is None
     assert Peak("B", "case", "solid", "rigid", "").safety_factor(100.0) is None
+
+
+def test_unknowns_are_those_of_the_finest_mesh_and_times_add_up() -> None:
+    peak = Peak("B", "case", "solid", "converged", "", history=sequence(1.0, 2.0, 3.0))
+    assert peak.dofs == 9000
+    assert peak.seconds == pytest.approx(0.3)
+    none = Peak("B", "case", "solid", "rigid", "")
+    assert (none.dofs, none.seconds) == (0, 0)

@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 
 from fea.ladder import Asked, solve_pin
+from fea.linear import SolveError
+from fea.look import Look
 from fea.material import Material
 from fea.pin_loads import PinLoads
 from fea.rungs import Problem, Rung, look_at
+from fea.verdict import Seen, judge
 from geometry import CutPin, Hole, Pin, Segment
 from geometry.elements import Element
 
@@ -83,3 +86,9 @@ def test_a_pin_that_is_no_body_of_revolution_finds_its_edges_on_any_element(
     for rung in (Rung("beam"), Rung("harmonic")):
         with pytest.raises(ValueError, match="no body of revolution"):
             look_at(problem, rung)
+
+
+def test_stress_that_is_not_finite_has_no_verdict() -> None:
+    look = Look(900, float("nan"), 0, (0.0, 0.0, 0.0))
+    with pytest.raises(SolveError, match="pin P, case up: the stress is not finite"):
+        judge(Seen("P", "up", "solid", (look,), (0.1,), 2.0), (), 0.02)

@@ -8,10 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fea import solid, solid_loads
 from fea.balance import out_of_balance
 from fea.envelope import envelope
 from fea.ladder import Asked, solve_pin
-from fea.linear import SolveError
+from fea.linear import SolveError, factorize
 from fea.material import Material
 from fea.pin_loads import BODY, PinLoads, UnitLoad
 from fea.solid import SolidModel, acting
@@ -202,3 +203,56 @@ def test_one_band_alone_holds_nothing(steel: Material) -> None:
     assert "only one connection bears on it" in found.peak.note
     still = PinLoads("still", ("A", "B"), np.zeros((1, 2, 3)))
     assert out_of_balance(FREE, still).refusal is None
+
+
+def test_a_force_on_a_face_that_is_no_band_is_uniform(model: SolidModel, steel: Material) -> None:
+    units = forces("end", along=(0, 1, 2))
+    boundary = surface(model.space)
+    loads = nodal_loads(FREE, steel, model.space, boundary, units)
+    assert resultants(model.space.nodes, loads.forces)[:3] == pytest.approx(np.eye(3), abs=1e-12)
+    on = np.isin(boundary.facets, model.space.mesh.boundaries["end"])
+    area = math.pi * 0.01**2  # to what the mesh's sides cut off the circle
+    assert loads.traction[on] == pytest.approx(
+        np.broadcast_to(np.eye(3) / area, (on.sum(), *loads.traction.shape[1:])), rel=0.01
+    )
+    assert not loads.traction[~on].any()
+
+
+def test_a_mesh_that_cuts_too_much_off_a_band_is_refused(
+    model: SolidModel, steel: Material, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(solid_loads, "CURVED_AREA", 1e-7)
+    with pytest.raises(SolveError, match=r"surface A has (0\.99\d|1\.000) of its true area"):
+        nodal_loads(FREE, steel, model.space, surface(model.space), forces("A"))
+
+
+def test_loads_that_do_not_sum_to_their_resultant_are_refused(
+    model: SolidModel, steel: Material, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    true = Patch.exactly
+    monkeypatch.setattr(Patch, "exactly", lambda *given: (1.0 + 1e-6) * true(*given))
+    with pytest.raises(SolveError, match="pin P: the load on A does not sum to its resultant"):
+        nodal_loads(FREE, steel, model.space, surface(model.space), forces("A"))
+
+
+def test_clamps_that_do_not_answer_the_loads_are_noticed(
+    steel: Material, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As from a solver that is a thousandth off."""
+
+    def off(*system: object) -> object:
+        solve = factorize(*system)  # type: ignore[arg-type]
+        return lambda b: 1.001 * solve(b)
+
+    monkeypatch.setattr(solid, "factorize", off)
+    pin = Pin("P", (Segment(0.02, 0.02, connection="B"),))
+    held = SolidModel(pin, solid_mesh(pin, MeshSize(across=2.0)), steel, ("start",))
+    with pytest.raises(SolveError, match=r"clamps and loads differ by .* not in equilibrium"):
+        held.solve(forces("B"))
+
+
+def test_no_band_can_close_the_balance_of_a_pin_without_any(steel: Material) -> None:
+    pin = Pin("P", (Segment(0.02, 0.02),))
+    lone = SolidModel(pin, solid_mesh(pin, MeshSize(across=2.0)), steel, ())
+    with pytest.raises(SolveError, match="nothing holds it, and no connection bears on it"):
+        lone.solve(BODIES)

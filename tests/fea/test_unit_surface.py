@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from fea import unit_surface as shown_by
 from fea.answer import Answer
 from fea.ladder import Asked, Model, solve_pin
 from fea.material import Material
 from fea.pin_loads import Floats, PinLoads
 from fea.tensor import von_mises
-from fea.unit_surface import UnitSurface, amounts, excluded, largest_there, unit_surface
+from fea.unit_surface import Mask, UnitSurface, amounts, excluded, largest_there, unit_surface
 from geometry import Pin
 
 INSTANT = 1
@@ -37,6 +38,16 @@ def superposed(surface: UnitSurface, amount: Floats, theta: float) -> tuple[Floa
     even, odd = eight @ (a * c + b * s), eight @ (a * s - b * c)
     found = np.where(surface.even, even, odd)
     return np.linalg.norm(found[:, :5], axis=1), found[:, 5:]
+
+
+def near_places(points: Floats) -> Mask:
+    """Points (P, 3) less than a tenth of the diameter from the clamp's rim, or a hundredth from
+    where the load begins on the shaft.
+    """
+    r, z = np.hypot(*points[:, :2].T), points[:, 2]
+    rim = np.hypot(r - 0.015, z) < 0.1 * 0.03 * (1.0 - 1e-6)
+    load = np.hypot(r - 0.01, z - 0.04) < 0.01 * 0.02 * (1.0 - 1e-6)
+    return np.asarray(rim | load)
 
 
 @pytest.mark.parametrize("distribution", ["uniform", "cosine"])
@@ -84,6 +95,10 @@ def test_solid_superposes_to_the_picture(cantilever_pin: Pin, steel: Material) -
     assert picture is not None
     found, along = superposed(surface, amounts(answer, acting)[INSTANT], 0.0)
     assert largest_there(answer, acting, INSTANT) == pytest.approx(found, rel=1e-9)
+    assert np.array_equal(excluded(answer), near_places(surface.points))
+    read = found[~excluded(answer)]
+    # the maximum is also looked for inside, on the rims of what is excluded
+    assert 0.9 < read.max() / answer.maxima(acting)[INSTANT] <= 1.0 + 1e-9
     on = np.flatnonzero(~np.isnan(picture.envelope))
     assert found == pytest.approx(von_mises(picture.stress[on]), rel=1e-9)
     assert along == pytest.approx(picture.displacement[on], rel=1e-9, abs=1e-15)
@@ -96,6 +111,25 @@ def test_solid_superposes_to_the_picture(cantilever_pin: Pin, steel: Material) -
     round_ = sum(np.pi * s.diameter * s.length for s in profile)
     faces = 2.0 * np.pi * max(s.diameter for s in profile) ** 2 / 4.0
     assert 0.5 * area.sum() == pytest.approx(round_ + faces, rel=0.05)  # but for the fillet
+
+
+def test_a_fine_mesh_is_shown_by_its_corners(
+    cantilever_pin: Pin, steel: Material, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A quarter of the triangles, between vertices alone, with the numbers they had."""
+    answer = solved(cantilever_pin, steel, "solid", loads("uniform"))
+    every = unit_surface(answer)
+    monkeypatch.setattr(shown_by, "MOST_NODES", 100)
+    corners = unit_surface(answer)
+    assert every is not None
+    assert corners is not None
+    assert 4 * len(corners.triangles) == len(every.triangles)
+    assert corners.triangles.max() == len(corners.points) - 1
+    row = {tuple(p): k for k, p in enumerate(every.points.tolist())}
+    same = [row[tuple(p)] for p in corners.points.tolist()]
+    assert len(same) < 0.3 * len(every.points)
+    assert np.array_equal(corners.stress, every.stress[same])
+    assert np.array_equal(excluded(answer), near_places(corners.points))
 
 
 def test_a_beam_has_no_surface(cantilever_pin: Pin, steel: Material) -> None:

@@ -190,3 +190,15 @@ def test_a_case_has_its_own_places(steel: Material) -> None:
     assert alone.answer is not None
     assert other.answer is not None
     assert other.answer.maxima(presses)[0] == pytest.approx(values[1], rel=1e-12)
+
+
+def test_in_torsion_eigenvalues_are_multiples_of_the_first() -> None:
+    """A free corner of 270 deg has 2/3 and 4/3; a smooth surface held on one side 1/2 and 3/2."""
+    (corner,) = singular_places(shouldered(), (), (), NU)
+    assert corner.torsion_theory == pytest.approx(1.0 - 2.0 / 3.0)
+    assert corner.following_torsion == pytest.approx(4.0 / 3.0 - 1.0)
+    pin = Pin("P", (Segment(0.02, 0.02, name="held"), Segment(0.02, 0.02, connection="P1")))
+    places = singular_places(pin, ("held",), (), NU)
+    (smooth,) = (p for p in places if p.z == 0.02)
+    assert smooth.torsion_theory == pytest.approx(1.0 - 1.0 / 2.0)
+    assert smooth.following_torsion == pytest.approx(3.0 / 2.0 - 1.0)

@@ -141,3 +141,19 @@ def test_normals_point_out_of_the_wall_of_a_hole() -> None:
     to_axis[..., 0] = 0.0
     cosine = np.sum(boundary.normals[on] * to_axis, axis=2) / 0.003
     assert cosine.min() > 0.9
+
+
+def test_surfaces_of_a_cut_pin_have_names() -> None:
+    pin = CutPin(BAR, (Hole(0.03, 0.006),))
+    names = ["hole 1", "B", "start"]
+    assert [pin.surface(name) for name in names] == names
+    with pytest.raises(GeometryError, match=r"no surface 'hole 2'; it has .*hole 1"):
+        pin.surface("hole 2")
+
+
+def test_a_pin_that_is_parted_is_refused() -> None:
+    """Four flats, none of which reaches the axis, and holes through what they leave."""
+    flats = tuple(Flat(0.02, 0.04, 0.002, k * math.pi / 2) for k in range(4))
+    pin = CutPin(BAR, (Hole(0.03, 0.006),), flats)
+    with pytest.raises(GeometryError, match="pin bar: its holes and flats leave 2 pieces"):
+        solid_mesh(pin, MeshSize())

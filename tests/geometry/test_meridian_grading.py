@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from geometry import Pin, Segment, vertices
+from geometry.grading import size_at
 from geometry.meridian_mesh import MeridianMesh, SectionSize, Spot, meridian_mesh
 from tests.geometry.sections import PINS, Floats, nodes
 
@@ -57,3 +58,25 @@ def test_nodes_at_the_reach_of_a_spot() -> None:
     x = nodes(meridian_mesh(pin, SectionSize(), [Spot(*corner, 1e-4, reach)]))
     for there in ((0.01, 0.02 + reach), (0.01 + reach, 0.02)):
         assert np.linalg.norm(x - there, axis=1).min() < 1e-12
+
+
+def test_the_size_that_is_told_is_the_least_of_all() -> None:
+    """Half a shaft over `across` far away; at a fillet its arc over `arc`; at a spot its own."""
+    pin = Pin("P", (Segment(0.2, 0.03), Segment(0.2, 0.02)), fillet=0.004)
+    size = SectionSize(across=4.0, arc=8.0, growth=0.25)
+    spot = Spot(0.015, 0.0, 1e-5, 0.002)
+
+    def at(r: float, z: float) -> float:
+        return size_at(pin, size, [spot], (r, z))
+
+    assert at(0.0, 0.4) == pytest.approx(0.02 / 4.0)
+    fillet = 0.004 * np.pi / 2.0 / 8.0
+    assert at(0.01, 0.2) == pytest.approx(fillet)
+    assert at(0.01, 0.2 + 1.3 * 0.004 + 0.008) == pytest.approx(fillet + 0.25 * 0.008)
+    assert at(0.015, 0.0) == pytest.approx(1e-5)
+    reach = at(0.015, 0.002 + 0.004)  # beyond its reach as after an element of growth x reach there
+    assert reach == pytest.approx(0.25 * 0.002 + 0.25 * 0.004)
+    found = meridian_mesh(pin, size, [spot])
+    middle, length = sizes(found)
+    told = np.array([at(*m) for m in middle])
+    assert np.median(length / told) == pytest.approx(1.0, abs=0.25)

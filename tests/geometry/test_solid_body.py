@@ -12,11 +12,13 @@ import pytest
 from fea.elasticity import Discretisation
 from fea.surface import Patch, surface
 from geometry import CutPin, GeometryError, Hole, Pin, Segment
+from geometry import cad_mesh as cad
 from geometry.body_file import BodyFile, Place
 from geometry.gmsh_session import gmsh_model
+from geometry.meshing import solid_mesh as any_mesh
 from geometry.quadratic import refined
 from geometry.solid_body import SolidBody
-from geometry.solid_mesh import MeshSize, solid_mesh
+from geometry.solid_mesh import MeshError, MeshSize, SolidMesh, solid_mesh
 from tests.geometry.files import MM, write_mesh, write_step
 
 SHAFT = (Segment(20.0, 30.0), Segment(40.0, 20.0))
@@ -188,3 +190,81 @@ def test_bad_files(tmp_path: Path, step: Path) -> None:
         found.surface("Q")
     with pytest.raises(GeometryError, match="no surface 'Q'; it has"):
         found.band("Q")
+
+
+CUBE = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], dtype=float)
+TETRAHEDRON = ("tetra", [[0, 1, 2, 4]])
+
+
+@pytest.mark.parametrize(
+    ("cells", "error", "message"),
+    [
+        ([TETRAHEDRON, ("hexahedron", [[0, 1, 3, 2, 4, 5, 7, 6]])], GeometryError,
+         "only tetrahedra can be used, and it also has hexahedron"),
+        ([TETRAHEDRON, ("tetra10", [[0, 1, 2, 4, 3, 5, 6, 7, 1, 2]])], GeometryError,
+         "it mixes linear and quadratic tetrahedra"),
+        ([("tetra10", [[0, 3, 5, 6, 7, 4, 2, 1, 0, 3]])], MeshError,
+         "it has inverted elements, 1 bent inside out"),
+        ([("tetra", [[0, 1, 2, 4], [0, 1, 2, 7]])], MeshError,
+         "it has inverted elements: at 1 facets one lies over its neighbour"),
+    ],
+)  # fmt: skip
+def test_bad_meshes(
+    cells: list[tuple[str, list[list[int]]]], error: type[Exception], message: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "bad.vtk"
+    meshio.write(path, meshio.Mesh(CUBE, cells))
+    with pytest.raises(error, match=f"pin P: bad.vtk: {message}"):
+        body(path, Place("B", (0.0, 1e-3)))
+
+
+def test_a_mesh_of_other_elements_stands_on_the_files_vertices(tmp_path: Path) -> None:
+    """From curved sides of the file to straight and to linear ones; 2 % of a cylinder is lost."""
+    solid = solid_mesh(IN_METRES, MeshSize(across=3.0), (0.04, 0.06))
+    found = body(write_mesh(solid, tmp_path / "pin.vtu"))
+    volumes = {}
+    for element in ("curved", "straight", "linear"):
+        mesh = any_mesh(found, MeshSize(), element=element).mesh
+        assert mesh.nvertices == solid.mesh.nvertices
+        assert "B" in mesh.boundaries
+        volumes[element] = Discretisation(mesh).weights.sum()
+    assert volumes["curved"] == pytest.approx(IN_METRES.volume, rel=2e-3)
+    assert volumes["straight"] == pytest.approx(volumes["linear"], rel=1e-9)
+    assert volumes["linear"] < 0.99 * volumes["curved"]
+
+
+def test_a_file_that_gives_slivers_is_tried_thrice(
+    step: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Finer each time, until its elements are good; or told, with how bad they were."""
+    file = BodyFile("P", step, MM, (BAND,))
+    tried: list[float] = []
+    found = iter([0.05, 0.5])
+
+    def meshed(_: BodyFile, size: MeshSize) -> SolidMesh:
+        tried.append(size.across / MeshSize().across)
+        return SolidMesh(solid_mesh(IN_METRES, MeshSize(across=2.0)).mesh, next(found), 0)
+
+    monkeypatch.setattr(cad, "_mesh", meshed)
+    assert cad.cad_mesh(file, MeshSize()).jacobian == 0.5
+    found = iter([-0.3, 0.02, 0.05])
+    with pytest.raises(MeshError, match=r"at three sizes \(min/max Jacobian -0\.3, 0\.02, 0\.05\)"):
+        cad.cad_mesh(file, MeshSize())
+    assert tried == pytest.approx([1.0, 1.15, 1.0, 1.15, 1.35])
+
+
+def test_what_gmsh_cannot_mesh_is_told(step: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """gmsh's bare exceptions become ours; a mistake of our own stays what it is."""
+    file = BodyFile("P", step, MM, (BAND,))
+
+    def fails(error: Exception) -> None:
+        def repair(_: object) -> None:
+            raise error
+
+        monkeypatch.setattr(cad, "repair", repair)
+        cad.cad_mesh(file, MeshSize(across=2.0))
+
+    with pytest.raises(MeshError, match=r"gmsh could not mesh pin\.step \(no luck\)"):
+        fails(Exception("no luck"))
+    with pytest.raises(KeyError):
+        fails(KeyError("ours"))

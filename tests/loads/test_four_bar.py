@@ -217,10 +217,10 @@ def test_a_parallelogram_stops_at_its_change_point() -> None:
     assert caught.value.reached[0] == pytest.approx(0.0, abs=1e-6)
 
 
-def test_a_second_crank_takes_a_parallelogram_through() -> None:
-    """As the coupled wheels of a locomotive; the third crank is redundant and needs a rule."""
+def coupled_wheels(*stiffness: float) -> Linkage:
+    """A parallelogram with a third crank, which is redundant and needs a rule."""
     linkage = four_bar(1.0, 0.5, 1.0, 0.5, angle=1.0)
-    triangle = replace(
+    return replace(
         linkage,
         bodies=(*linkage.bodies, Body("third", 1.0, (0.5, 0.3), 0.05)),
         joints=(
@@ -233,14 +233,39 @@ def test_a_second_crank_takes_a_parallelogram_through() -> None:
                 "coupler",
             ),
         ),
-        sharing=(Sharing(("F12", "F14", "F15"), (1.0, 1.0, 1.0)),),
+        sharing=(Sharing(("F12", "F14", "F15"), stiffness),),
     )
+
+
+def test_a_second_crank_takes_a_parallelogram_through() -> None:
+    """As the coupled wheels of a locomotive."""
+    triangle = coupled_wheels(1.0, 1.0, 1.0)
     found = mobility(triangle)
     assert (found.kutzbach, found.degrees, found.redundant) == (0, 1, 1)
     motion = move(triangle, [ConstantDrive(1.0, -1.0, 1.0)], np.linspace(0.0, 1.0, 8))
     assert motion.angle("rocker") == pytest.approx(motion.drives[:, 0] - 1.0, abs=1e-12)
     assert np.abs(motion.angle("coupler")).max() < 1e-12
     assert ledger(motion_reactions("through", motion)).violation < 1e-9
+
+
+def test_sharing_connections_are_springs() -> None:
+    """Of force^2 / stiffness the sum is least: it does not change along the one way in which forces
+    may differ without any load, which is the difference of what two rules give.
+    """
+    names, drive = ("F12", "F14", "F15"), ConstantDrive(1.0, 0.7, 1.0)
+
+    def forces(*stiffness: float) -> np.ndarray:
+        motion = move(coupled_wheels(*stiffness), [drive], np.linspace(0.0, 1.0, 5))
+        found = motion_reactions("shared", motion).reactions
+        return np.stack([found.force(name)[:, :2] for name in names])
+
+    soft, hard = (1.0, 2.0, 4.0), (9.0, 3.0, 1.0)
+    f, g = forces(*soft), forces(*hard)
+    loose = f - g
+    assert np.abs(loose).max(axis=(0, 2)).min() > 1e-3 * np.abs(f).max()
+    for found, stiffness in ((f, soft), (g, hard)):
+        parts = np.sum(found * loose, axis=2) / np.array(stiffness)[:, None]
+        assert np.abs(parts.sum(axis=0) / np.abs(parts).sum(axis=0)).max() < 1e-9
 
 
 def test_redundant_links_that_do_not_fit_are_told() -> None:

@@ -1,8 +1,17 @@
 """J. Bowman, Kinematic and dynamic analysis of an airplane's landing gear, Ohio University (2019).
 
-Angles and rates must agree to the printed digits, the coupler's mirrored. The printed forces are
-the solution of a wrong system: it must give them back to their digits, and once its errors are put
-right one after the other, ours (to 5e-4: its entries have four digits).
+| quantity | tolerance | because |
+| --- | --- | --- |
+| weights of the bars | last digit | |
+| angles, deg | 0.02 of -26.92, 0.05 of 301.9 | the print rounds between its steps (ours: -26.932) |
+| angular rates | 1e-4 to 5e-4, 0.5 to 2 of the last digit | they follow from these angles |
+| the drive's rates | 5e-4 of 0.824 and -0.2303 | half a digit of the first; -0.2299 goes with it |
+| printed forces from the printed system | 6e-5 | half a unit of their last digit |
+| ours from it with its errors put right | 5e-4 | its entries have four digits |
+| balance of powers | 1e-9 | round-off |
+
+The coupler's angle and rates are mirrored in print. The printed forces solve a wrong system, whose
+errors are put right one after the other.
 """
 
 from __future__ import annotations

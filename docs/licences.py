@@ -1,0 +1,103 @@
+"""Licences of everything in the lock files, for the page licences.md: `python -m docs.licences`.
+
+They are what each package's own metadata say. What is not installed here, because it is for another
+system or an extra, keeps the line it has on the page, or is in ELSEWHERE.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterable
+from importlib import metadata
+from pathlib import Path
+
+from packaging.requirements import Requirement
+
+ROOT = Path(__file__).parent.parent
+PAGE = ROOT / "docs" / "licences.md"
+LOCKS = ("requirements.lock", "requirements-bench.lock")
+RUN, BESIDES = "to run", "to develop"
+OLDEST = {"extra": "", "python_version": "3.11", "python_full_version": "3.11.0"}
+# Only for other systems than Linux; as the metadata of their wheels say.
+ELSEWHERE = {
+    "cffi": "MIT-0",
+    "colorama": "BSD License",
+    "pycparser": "BSD-3-Clause",
+    "pyobjc-core": "MIT",
+    "pyobjc-framework-cocoa": "MIT",
+}
+IN_FILES = {"cvxopt": "GPL-3.0-or-later"}  # whose metadata refer to the file that comes with it
+HEAD = """# Licences of dependencies
+
+pinstress is GPL-3.0-or-later. `make setup` installs the packages of `requirements.lock`, benchmarks
+those of `requirements-bench.lock`, each under its own licence, as its metadata name it; none is
+part of pinstress. `tests/browser/axe/` has a copy of axe-core with its licence (MPL-2.0).
+`python -m docs.licences` writes this page.
+
+| package | version | licence | needed |
+| --- | --- | --- | --- |
+"""
+
+
+def locked() -> dict[str, str]:
+    """Versions of all packages of the lock files, by name."""
+    found: dict[str, str] = {}
+    for lock in LOCKS:
+        text = (ROOT / lock).read_text(encoding="utf-8")
+        found |= dict(re.findall(r"^([a-z0-9][\w.-]*)==([^\s;]+)", text, re.MULTILINE))
+    return dict(sorted(found.items()))
+
+
+def told() -> dict[str, tuple[str, str, str]]:
+    """Version, licence and need of every package on the page."""
+    if not PAGE.is_file():
+        return {}
+    rows = re.findall(r"^\| ([^|]+) \| ([^|]+) \| ([^|]+) \| ([^|]+) \|$", PAGE.read_text(), re.M)
+    return {name: (version, licence, need) for name, version, licence, need in rows[2:]}
+
+
+def licence(name: str) -> str | None:
+    """What an installed package's metadata say: an SPDX expression, classifiers, or a word."""
+    if name in IN_FILES:
+        return IN_FILES[name]
+    try:
+        found = metadata.metadata(name)
+    except metadata.PackageNotFoundError:
+        return ELSEWHERE.get(name)
+    if "License-Expression" in found:
+        return str(found["License-Expression"])
+    classifiers = [c.split(" :: ")[-1] for c in found.get_all("Classifier") or () if "License" in c]
+    word = str(found["License"]).strip().split("\n")[0] if "License" in found else ""
+    return " or ".join(classifiers) or word or None
+
+
+def needed(lines: Iterable[str], done: set[str]) -> set[str]:
+    """Names of the packages that requirements ask for on Linux, and of what these ask for."""
+    for requirement in map(Requirement, lines):
+        name = re.sub(r"[-_.]+", "-", requirement.name).lower()
+        if name in done or not (requirement.marker is None or requirement.marker.evaluate(OLDEST)):
+            continue
+        done.add(name)
+        try:
+            needed(metadata.requires(name) or (), done)
+        except metadata.PackageNotFoundError:
+            continue  # only older Pythons than this one need it
+    return done
+
+
+def page() -> str:
+    """The whole page."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    before, run = told(), needed(project["dependencies"], set())
+    rows = []
+    for name, version in locked().items():
+        known = licence(name) or before.get(name, ("", "", ""))[1]
+        if not known:
+            raise SystemExit(f"{name}: its licence is not known; install it, or name it here")
+        rows.append(f"| {name} | {version} | {known} | {RUN if name in run else BESIDES} |")
+    return HEAD + "\n".join(rows) + "\n"
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page(), encoding="utf-8")

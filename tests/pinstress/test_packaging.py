@@ -1,0 +1,123 @@
+"""What a user installs: wheel and source distribution, each in an empty environment.
+
+The environment is real, and so is the install. Dependencies alone, which are not what is tested,
+are those of the interpreter that runs the tests, named in PYTHONPATH: an editable install's .pth is
+not read there, so that the checkout cannot be imported. Nothing is fetched.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import sysconfig
+import tarfile
+import venv
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import ROOT
+
+PACKAGES = ("pinstress", "loads", "geometry", "fea", "reports")
+LIBRARIES = os.pathsep.join(dict.fromkeys(sysconfig.get_paths()[k] for k in ("purelib", "platlib")))
+OFFLINE = ("--no-index", "--no-deps", "--no-build-isolation", "--ignore-installed", "--quiet")
+
+
+def done(folder: Path, *command: str | Path, status: int = 0) -> str:
+    """What a command prints, run in a folder without anything of the checkout in its path."""
+    found = subprocess.run(
+        [str(word) for word in command],
+        cwd=folder,
+        env=os.environ | {"PYTHONPATH": LIBRARIES, "PINSTRESS_CACHE": str(folder / "cache")},
+        capture_output=True,
+        text=True,
+    )
+    assert found.returncode == status, found.stdout + found.stderr
+    return found.stdout
+
+
+def files(*folders: str) -> set[str]:
+    """Files of the checkout in these folders, relative to it."""
+    return {
+        path.relative_to(ROOT).as_posix()
+        for folder in folders
+        for path in (ROOT / folder).rglob("*")
+        if path.is_file() and not {"__pycache__", "out"} & set(path.parts)
+    }
+
+
+@pytest.fixture(scope="module")
+def dist(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with both distributions."""
+    folder = tmp_path_factory.mktemp("dist")
+    build = (sys.executable, "-m", "hatchling", "build", "-d", folder)
+    found = subprocess.run(build, cwd=ROOT, capture_output=True, text=True)
+    assert found.returncode == 0, found.stderr
+    return folder
+
+
+def only(folder: Path, ending: str) -> Path:
+    (found,) = folder.glob(f"*{ending}")
+    return found
+
+
+@pytest.mark.slow
+def test_the_wheel_has_all_files_and_no_others(dist: Path) -> None:
+    """Templates and styles of the report too, the studies under pinstress/, and the licence."""
+    with zipfile.ZipFile(only(dist, ".whl")) as wheel:
+        names = set(wheel.namelist())
+    (info,) = {name.split("/")[0] for name in names if ".dist-info/" in name}
+    wanted = files(*PACKAGES) | {f"pinstress/{name}" for name in files("studies")}
+    assert {name for name in names if not name.startswith(info)} == wanted
+    assert f"{info}/licenses/LICENSE" in names
+    assert any(name.endswith(".j2") for name in names)
+
+
+@pytest.mark.slow
+def test_the_source_has_what_the_wheel_is_made_of_and_the_tests(dist: Path) -> None:
+    with tarfile.open(only(dist, ".tar.gz")) as source:
+        names = {name.partition("/")[2] for name in source.getnames()}
+    assert files(*PACKAGES, "studies", "tests", "scripts") <= names
+    assert {"LICENSE", "README.md", "pyproject.toml", "requirements.lock", "Makefile"} <= names
+    assert not any(name.startswith((".venv", ".git/", "out/")) for name in names)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("ending", [".whl", ".tar.gz"])
+def test_an_install_initialises_checks_and_runs(ending: str, dist: Path, tmp_path: Path) -> None:
+    venv.create(tmp_path / "env", symlinks=True)
+    bin_ = tmp_path / "env" / "bin"
+    installer = (sys.executable, "-m", "pip", "--python", bin_ / "python", "install")
+    done(tmp_path, *installer, *OFFLINE, only(dist, ending))
+
+    here = done(
+        tmp_path,
+        bin_ / "python",
+        "-c",
+        f"import {', '.join(PACKAGES)}; from pinstress.studies import shipped\n"
+        f"print(*(m.__file__ for m in ({', '.join(PACKAGES)})))\n"
+        "print(shipped('grenier2008.toml'))",
+    ).split()
+    assert len(here) == len(PACKAGES) + 1
+    inside = (tmp_path / "env").resolve()
+    assert all(inside in Path(path).resolve().parents for path in here)
+    assert Path(here[-1]).is_file()
+
+    program = bin_ / "pinstress"
+    assert "pinstress" in done(tmp_path, program, "--version")
+    done(tmp_path, program, "init", "trial")
+    assert "B" in done(tmp_path, program, "check", "trial/one_pin.toml")
+    done(tmp_path, program, "check", here[-1])
+    printed = done(tmp_path, program, "run", "trial/one_pin.toml", "--no-pictures")
+    assert "meets" in printed
+    out = tmp_path / "out" / "one_pin"
+    (pin,) = json.loads((out / "results.json").read_text(encoding="utf-8"))["pins"]
+    assert pin["verdict"] == "converged"
+    assert pin["meets_required"] is True
+    assert "<title>" in (out / "report.html").read_text(encoding="utf-8")
+    again = done(tmp_path, program, "run", "trial/one_pin.toml", "--no-pictures")
+    assert again == printed
+    assert any((tmp_path / "cache").iterdir())
