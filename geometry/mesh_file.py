@@ -40,6 +40,8 @@ def mesh_from_file(file: BodyFile) -> SolidMesh:
     if {"tetra", "tetra10"} <= kinds:
         raise GeometryError(f"{where}: it mixes linear and quadratic tetrahedra; use one kind")
     points = np.asarray(mesh.points, dtype=float) * file.unit
+    if not np.isfinite(points).all():
+        raise GeometryError(f"{where}: it has nodes whose coordinates are no finite numbers")
     cells = np.concatenate([b.data for b in mesh.cells if b.type.startswith("tetra")])
     made = quadratic(points, cells.astype(np.int64))
     shape = distortion(made)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import re
 
@@ -22,7 +21,9 @@ from loads import (
     Sharing,
     Slider,
     TableDrive,
+    TableError,
     Turn,
+    read_table,
 )
 from loads.bar import flat_bar, round_bar
 from pinstress.errors import InputError
@@ -209,38 +210,21 @@ def _table(study: Study, drive: AnyDriveTable) -> TableDrive:
     slides = isinstance(drive, SliderDrive)
     length, time = study.system.factor("length"), study.system.factor("time")
     value = "position" if slides else "position_deg"
-    unit = length if slides else math.pi / 180.0
+    unit, rates = (length, length) if slides else (math.pi / 180.0, 1.0)
+    units = {
+        "time": time,
+        value: unit,
+        "velocity": rates / time,
+        "acceleration": rates / time**2,
+    }
     try:
-        reader = csv.DictReader(path.read_text(encoding="utf-8-sig").splitlines())
-        columns = [c.strip() for c in reader.fieldnames or []]
-        reader.fieldnames = columns
-        for c in ("time", value):
-            if c not in columns:
-                raise InputError(f"{path}: column {c!r} is missing; needed are time,{value}")
-        exact = [c for c in columns if c in ("velocity", "acceleration")]
-        if len(exact) == 1:
-            raise InputError(f"{path}: give both velocity and acceleration, or neither")
-        rates = length if slides else 1.0
-        rows = [
-            [
-                float(row["time"]) * time,
-                float(row[value]) * unit,
-                *(
-                    float(row[c]) * rates / time ** (i + 1)
-                    for i, c in enumerate(sorted(exact)[::-1])
-                ),
-            ]
-            for row in reader
-        ]
-        data = np.array(rows, dtype=float)
-        if not np.isfinite(data).all():
-            raise ValueError("not finite")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: cannot be read ({error})") from None
-    except (TypeError, ValueError) as error:
-        raise InputError(f"{path}: every cell must be a finite number ({error})") from None
-    try:
-        return TableDrive(*(tuple(column) for column in data.T.tolist()))
+        rows = list(read_table(path, ("time", value), ("velocity", "acceleration")))
+        columns = [c for c in units if c in rows[0].cells]
+        if len(columns) == 3:
+            raise TableError(f"{path}: give both velocity and acceleration, or neither")
+        return TableDrive(*(tuple(row.number(c) * units[c] for row in rows) for c in columns))
+    except TableError as error:
+        raise InputError(str(error)) from None
     except LinkageError as error:
         raise InputError(f"{path}: {error}") from None
 

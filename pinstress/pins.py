@@ -101,9 +101,9 @@ def _turned(name: str, p: PinTable) -> Pin | CutPin:
 
 def _from_file(study: Study, name: str, p: PinTable) -> PinLike:
     from geometry.body_file import BodyFile, Place
-    from geometry.solid_body import SolidBody  # which needs meshio and scikit-fem
+    from pinstress.read_body import read_body  # which needs meshio and scikit-fem
 
     assert p.geometry is not None
     places = tuple(Place(n, b.z, b.surface, b.connection) for n, b in p.band.items())
     file = BodyFile(name, study.beside(p.geometry), METRES[p.geometry_unit], places)
-    return SolidBody(file)
+    return read_body(file)
