@@ -19,6 +19,7 @@ from geometry.solid_mesh import MeshError, SolidMesh
 Ints = NDArray[np.int64]
 
 SURFACES = ("triangle", "triangle6")
+FARTHEST = 1000.0  # m; as pins with a profile
 HARMLESS = ("vertex", "line", "line3", *SURFACES)
 
 
@@ -40,8 +41,10 @@ def mesh_from_file(file: BodyFile) -> SolidMesh:
     if {"tetra", "tetra10"} <= kinds:
         raise GeometryError(f"{where}: it mixes linear and quadratic tetrahedra; use one kind")
     points = np.asarray(mesh.points, dtype=float) * file.unit
-    if not np.isfinite(points).all():
-        raise GeometryError(f"{where}: it has nodes whose coordinates are no finite numbers")
+    if not (np.abs(points) < FARTHEST).all():
+        raise GeometryError(
+            f"{where}: it has nodes that are no finite numbers or further than {FARTHEST:g} m away"
+        )
     cells = np.concatenate([b.data for b in mesh.cells if b.type.startswith("tetra")])
     made = quadratic(points, cells.astype(np.int64))
     shape = distortion(made)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable, Iterable
+from typing import TypeVar
 
 import numpy as np
 
@@ -40,6 +42,8 @@ from pinstress.schema_mechanism import (
 from pinstress.study import Study
 from pinstress.units import to_si
 
+A = TypeVar("A")
+B = TypeVar("B")
 STANDARD_GRAVITY = 9.80665
 LAWS: dict[str, type[CosineDrive | CycloidalDrive | ConstantDrive]] = {
     "cosine": CosineDrive,
@@ -50,42 +54,58 @@ AnyDriveTable = SliderDrive | RotaryDrive
 
 
 def linkage(study: Study) -> Linkage:
-    """The study's mechanism. Raises: InputError when it contradicts itself."""
+    """The study's mechanism. Raises: InputError when it contradicts itself, told at once."""
     mechanism = _mechanism(study)
     g = float(np.hypot(*mechanism.gravity)) or STANDARD_GRAVITY
     try:
         unit, factor = study.system.length, study.system.factor("length")
         at = places(mechanism, lambda length: f"{length / factor:.6g} {unit}")
-        return Linkage(
-            bodies=tuple(_body(mechanism, name, b, at, g) for name, b in mechanism.body.items()),
-            joints=tuple(
-                Joint(
-                    name,
-                    at[name],
-                    tuple(Connection(c, body) for c, body in j.connections.items()),
-                    j.fixed_in,
-                    _pin_mass(study, name, j.weight, g) if j.fixed_in is None else 0.0,
-                )
-                for name, j in mechanism.joint.items()
-            ),
-            sliders=tuple(_slider(mechanism, name, s, at) for name, s in mechanism.slider.items()),
-            turns=tuple(
-                _turn(study, mechanism, d, at)
-                for d in mechanism.drive
-                if isinstance(d, RotaryDrive)
-            ),
-            driven=tuple(drive_name(d) for d in mechanism.drive),
-            gravity=mechanism.gravity,
-            sharing=tuple(
-                Sharing(tuple(s.connections), tuple(s.stiffness)) for s in mechanism.sharing
-            ),
-        )
+        return _assembled(study, mechanism, at, g)
     except LayoutError as error:
         raise study.error(str(error)) from None
     except LinkageError as error:
-        part = re.match(r"(joint|body|slider|drive) ([^:,]+)", str(error))
-        key = f"mechanism.{part[1]}.{part[2]}" if part else ""
-        raise study.error(f"mechanism: {error}", at=key) from None
+        messages = [str(each) for each in error.args]
+        parts = [re.match(r"(joint|body|slider|drive) ([^:,]+)", m) for m in messages]
+        keys = [f"mechanism.{p[1]}.{p[2]}" if p else "mechanism" for p in parts]
+        raise study.errors([f"mechanism: {m}" for m in messages], keys) from None
+
+
+def _assembled(study: Study, mechanism: MechanismTable, at: dict[str, Point], g: float) -> Linkage:
+    wrong: list[str] = []
+
+    def each(make: Callable[[A], B], of: Iterable[A]) -> tuple[B, ...]:
+        made = []
+        for one in of:
+            try:
+                made.append(make(one))
+            except LinkageError as error:
+                wrong.extend(error.args)
+        return tuple(made)
+
+    bodies = each(lambda b: _body(mechanism, *b, at, g), mechanism.body.items())
+    sliders = each(lambda s: _slider(mechanism, *s, at), mechanism.slider.items())
+    turning = [d for d in mechanism.drive if isinstance(d, RotaryDrive)]
+    turns = each(lambda d: _turn(study, mechanism, d, at), turning)
+    if wrong:
+        raise LinkageError(*wrong)
+    return Linkage(
+        bodies=bodies,
+        joints=tuple(
+            Joint(
+                name,
+                at[name],
+                tuple(Connection(c, body) for c, body in j.connections.items()),
+                j.fixed_in,
+                _pin_mass(study, name, j.weight, g) if j.fixed_in is None else 0.0,
+            )
+            for name, j in mechanism.joint.items()
+        ),
+        sliders=sliders,
+        turns=turns,
+        driven=tuple(drive_name(d) for d in mechanism.drive),
+        gravity=mechanism.gravity,
+        sharing=tuple(Sharing(tuple(s.connections), tuple(s.stiffness)) for s in mechanism.sharing),
+    )
 
 
 def _mechanism(study: Study) -> MechanismTable:

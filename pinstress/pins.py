@@ -26,13 +26,18 @@ def pin(study: Study, name: str) -> PinLike:
     MeshError when a file's solid cannot be meshed.
     """
     p = study.table.pin[name]
-    key = ""
     try:
         made = _from_file(study, name, p) if p.geometry is not None else _turned(name, p)
-        for key, clamp in _held(study, name):  # noqa: B007 (told by what is raised)
-            made.surface(clamp)
     except GeometryError as error:
-        raise study.error(str(error), at=_key(name, str(error), key)) from None
+        raise study.error(str(error), at=_key(name, str(error))) from None
+    unknown: dict[str, str] = {}
+    for key, clamp in _held(study, name):
+        try:
+            made.surface(clamp)
+        except GeometryError as error:
+            unknown[key] = str(error)
+    if unknown:
+        raise study.errors(list(unknown.values()), list(unknown))
     return made
 
 
@@ -46,11 +51,9 @@ def _held(study: Study, name: str) -> Iterator[tuple[str, str]]:
             yield f"{key}[{i}]", surface
 
 
-def _key(name: str, message: str, clamp: str) -> str:
+def _key(name: str, message: str) -> str:
     """The key of what geometry calls "segment 2", "hole 1" or "band foot" of a pin."""
     about = message.removeprefix(f"pin {name}")
-    if about.startswith(" has no surface"):
-        return clamp
     if band := re.match(r": band ([^:]+)", about):
         return f"pin.{name}.band.{band[1]}"
     if part := re.search(r"\b(segment|hole|flat)s? (\d+)", about):
