@@ -40,13 +40,13 @@ def mesh_from_file(file: BodyFile) -> SolidMesh:
                             f"{', '.join(sorted(other))}")  # fmt: skip
     if {"tetra", "tetra10"} <= kinds:
         raise GeometryError(f"{where}: it mixes linear and quadratic tetrahedra; use one kind")
-    points = np.asarray(mesh.points, dtype=float) * file.unit
-    if not (np.abs(points) < FARTHEST).all():
+    points = np.asarray(mesh.points, dtype=float)
+    if not (np.isfinite(points).all() and np.abs(points).max() < FARTHEST / file.unit):
         raise GeometryError(
             f"{where}: it has nodes that are no finite numbers or further than {FARTHEST:g} m away"
         )
     cells = np.concatenate([b.data for b in mesh.cells if b.type.startswith("tetra")])
-    made = quadratic(points, cells.astype(np.int64))
+    made = quadratic(points * file.unit, cells.astype(np.int64))
     shape = distortion(made)
     if wrong := int(np.sum(~(shape > 0.0))):
         raise MeshError(

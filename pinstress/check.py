@@ -10,8 +10,8 @@ from loads.mobility import require_determined
 from pinstress.build import case_loads
 from pinstress.errors import Errors
 from pinstress.mechanism import linkage, span
+from pinstress.pins import lost_shape, weight
 from pinstress.pins import pin as pin_of
-from pinstress.pins import weight
 from pinstress.published import read_published
 from pinstress.schema_cases import GivenCase, LegCase, MotionCase
 from pinstress.schema_pins import PinTable
@@ -51,6 +51,7 @@ def _pin(study: Study, name: str) -> str:
     return (
         f"pin {name}: {p.material}, {_form(p)}{heavy}; "
         f"loaded at {', '.join(pin.connections) or 'nothing'}; held by {held}"
+        + (f"; {lost}" if (lost := lost_shape(pin)) else "")
     )
 
 

@@ -10,6 +10,7 @@ from geometry import CutPin, Flat, GeometryError, Hole, Pin, PinLike, Segment
 from pinstress.schema_pins import PinTable
 from pinstress.study import Study
 
+TELL = 1e-3  # of the volume
 METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
 
 
@@ -59,6 +60,24 @@ def _key(name: str, message: str) -> str:
     if part := re.search(r"\b(segment|hole|flat)s? (\d+)", about):
         return f"pin.{name}.{part[1].replace('segment', 'profile')}[{part[2]}]"
     return f"pin.{name}.geometry"
+
+
+def lost_shape(pin: PinLike) -> str:
+    """What no error estimate knows of a mesh from a file, in words; empty where there is nothing
+    of it.
+    """
+    if not pin.meshed:
+        return ""
+    from geometry.solid_body import SolidBody
+
+    assert isinstance(pin, SolidBody)
+    if pin.cut_off < TELL:
+        return ""
+    return (
+        f"the sides of its elements are straight where its surface is round, which changes its "
+        f"volume by about {pin.cut_off:.1%}, and no error estimate knows of it: give curved "
+        "quadratic elements, finer ones, or a STEP file"
+    )
 
 
 def weight(pin: PinLike, density: float, gravity: float = 9.80665) -> float:

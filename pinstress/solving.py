@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 from fea.ladder import MOST_UNKNOWNS, solve_pin
@@ -12,6 +12,7 @@ from fea.peak import Peak
 from fea.second_opinion import Opinion
 from pinstress import checks, gather, gather_fields
 from pinstress.gather_surface import surface_of
+from pinstress.pins import lost_shape
 from pinstress.pins import material as material_of
 from pinstress.plan import Plan
 from pinstress.tasks import Task
@@ -100,7 +101,8 @@ def _solve(plan: Plan, task: Task, keep: Keep, ask: Ask, tell: Tell) -> Solved:
         if field is not None:
             tell(f"pin {task.pin.name}, pictures")
             keep(field)
-    peaks = tuple(s.peak for s in found)
+    lost = lost_shape(task.pin)
+    peaks = tuple(replace(s.peak, note="; ".join(filter(None, (s.peak.note, lost)))) for s in found)
     ranges = (gather.landing_range(study, plan.loads, task, s) for s in found)
     landing = tuple(r for r in ranges if r is not None)
     opinions = ask(task, peaks, tell)

@@ -17,7 +17,7 @@ from tests.fuzz.mutate_file import damaged
 STUDIES = sorted(
     [*(ROOT / "studies").glob("*.toml"), *(ROOT / "studies" / "failures").glob("*.toml")]
 )
-QUICK = ("--no-pictures", "--tolerance", "0.5", "--jobs", "1", "--memory-limit", "300")
+QUICK = ("--no-pictures", "--tolerance", "0.5", "--memory-limit", "300")
 
 
 Break = Callable[[Path, random.Random], str]
@@ -84,7 +84,9 @@ def hunt(seed: int, place: Path, run_too: bool, broken: Break = break_study) -> 
         if arguments[0] == "check" and case.end.status == 0:
             commands.append(["loads", "study.toml", "--no-pictures"])
         elif arguments[0] == "loads" and case.end.status == 0 and run_too:
-            commands.append(["run", "study.toml", *QUICK])
+            commands.append(
+                ["run", "study.toml", *QUICK, "--jobs", "1" if broken is break_study else "2"]
+            )
     if not bad:
         shutil.rmtree(folder)
         for end in (".out", ".err"):

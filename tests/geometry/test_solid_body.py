@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import meshio
@@ -13,6 +14,7 @@ from fea.elasticity import Discretisation
 from fea.surface import Patch, surface
 from geometry import CutPin, GeometryError, Hole, Pin, Segment
 from geometry.body_file import BodyFile, Place
+from geometry.elements import with_element
 from geometry.gmsh_session import gmsh_model
 from geometry.quadratic import refined
 from geometry.solid_body import SolidBody
@@ -101,6 +103,35 @@ def test_a_mesh_is_taken_as_it_is(ending: str, linear: bool, tmp_path: Path) -> 
     assert len(two.mesh.boundaries["B"]) == 4 * len(one.mesh.boundaries["B"])
     volumes = [Discretisation(m.mesh).weights.sum() for m in (one, two)]
     assert volumes[1] == pytest.approx(volumes[0], rel=1e-5)
+
+
+@pytest.mark.parametrize("pin", [IN_METRES, Pin("P", (Segment(0.06, 0.02, connection="B"),))])
+def test_what_straight_sides_cut_off_is_told(pin: Pin, tmp_path: Path) -> None:
+    """Within a quarter of it, beside the volume of the same mesh with curved sides."""
+    curved = solid_mesh(pin, MeshSize())
+    straight = replace(curved, mesh=with_element(curved.mesh, "straight"))
+    whole, less = (
+        body(write_mesh(m, tmp_path / f"{i}.msh")) for i, m in enumerate((curved, straight))
+    )
+    assert whole.cut_off == 0.0
+    lost = 1.0 - less.volume / whole.volume
+    assert lost > 0.01
+    assert less.cut_off == pytest.approx(lost, rel=0.25)
+    assert body(write_mesh(curved, tmp_path / "2.vtk", linear=True)).cut_off == pytest.approx(
+        less.cut_off
+    )
+
+
+def test_a_box_has_no_round_surface(tmp_path: Path) -> None:
+    with gmsh_model("box") as gmsh:
+        gmsh.model.occ.addBox(-5, -5, 0, 10, 10, 30)
+        gmsh.model.occ.synchronize()
+        gmsh.option.setNumber("Mesh.MeshSizeMax", 3.0)
+        gmsh.model.addPhysicalGroup(2, [6], name="top")
+        gmsh.model.addPhysicalGroup(3, [1], name="box")
+        gmsh.model.mesh.generate(3)
+        gmsh.write(str(tmp_path / "box.msh"))
+    assert body(tmp_path / "box.msh", Place("B", surface="top")).cut_off == 0.0
 
 
 def test_refining_keeps_the_curved_shape() -> None:
