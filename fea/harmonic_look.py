@@ -15,7 +15,7 @@ from fea.harmonic import HarmonicModel
 from fea.look import FELT, Inside, Look, Point
 from fea.material import Material
 from fea.meridian_fields import MeridianFields
-from fea.pin_loads import Floats, PinLoads
+from fea.pin_loads import Floats, PinLoads, UnitLoad
 from fea.revolved import revolve
 from fea.rims import rim
 from fea.zones import Place, outside
@@ -72,6 +72,7 @@ def harmonic_solution(
     factor = ratio ** (level * ELSEWHERE if high else level)
     section = meridian_mesh(pin, SIZE.finer(factor), spots(factor), finer)
     loads = tuple(dict.fromkeys(load for case in cases for load in case.coefficients()))
+    loads = loads or (UnitLoad(cases[0].surfaces[0], "force", 1),)  # of which there is nought
     read = [rim(pin, p, part * p.radius) for p in places for part in (1.0, FELT)]
     rims = np.concatenate([np.zeros((0, 2)), *read])
     return HarmonicSolution(HarmonicModel(pin, section, material, clamps).solve(loads, rims), close)

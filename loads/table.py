@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 MOST_ROWS = 1_000_000  # of which a motion takes a gigabyte
-LARGEST = 1e100  # squares of what is read must stay numbers
+LARGEST = 1e18  # the fourth power is still a number; as for quantities of a study
 
 
 class TableError(ValueError):

@@ -13,7 +13,7 @@ from geometry.body_file import BodyFile
 from geometry.solid_body import SolidBody
 from pinstress.workers import Died, Job, Tell, processes, side_by_side
 
-LONGEST = 50  # s of processor time; a sound pin takes about one
+LONGEST = 30  # s of processor time; a sound pin takes about one
 
 
 def read_body(file: BodyFile) -> SolidBody:

@@ -39,8 +39,9 @@ FILE = 'geometry = "{name}"\nband.B = {{ z = [40.0, 60.0] }}'
 SHAFT = Pin("P", (Segment(20.0, 30.0), Segment(40.0, 20.0)), fillet=4.0)
 IN_METRES = Pin("P", (Segment(0.02, 0.03), Segment(0.04, 0.02, connection="B")), fillet=0.004)
 SHAPES = ("pin.step", "pin.brep", "pin.igs")
-TABLES = ("forces.csv", "forces.csv")  # twice as often
 MESHES = ("pin.msh", "old.msh", "named.msh", "pin.inp", "pin.vtk", "pin.vtu", "pin.mesh")
+
+KINDS = (("forces.csv",), (SHAPES[0],) * 4 + SHAPES[1:], MESHES)  # each as often as the others
 
 
 def write_files(folder: Path) -> None:

@@ -59,7 +59,7 @@ def test_a_table_with_moments(tmp_path: Path) -> None:
         ("connection,fx,fy\nB,1,2,3\n", "line 2: has 4 cells, and the header 3"),
         ("connection,fx,fy,fx\nB,1,2,3\n", "column 'fx' is there twice; keep one"),
         ("connection,fx,fy,MZ\nB,1,2,3\n", "unknown column 'MZ'; needed are connection,fx,fy and"),
-        ("connection,fx,fy\nB,1,1e300\n", "line 2: fy = 1e300 is too large to calculate with"),
+        ("connection,fx,fy\nB,1,1e99\n", "line 2: fy = 1e99 is too large to calculate with"),
         ("connection,fx,fy\nB,1," + "9" * 200_000, "no table of comma-separated values"),
         ("connection;fx;fy\nB;1;2\n", "column 'connection' is missing"),
         ("connection,fx,fy\nB,1,2\nB,1,2\n", "line 3: connection B is given twice"),
