@@ -180,6 +180,29 @@ def test_the_outermost_surface_is_without_holes(tmp_path: Path) -> None:
     assert found.band("B").area == pytest.approx(Patch(space, surface(space), "B").area, rel=1e-9)
 
 
+def test_meshes_that_are_no_pin(tmp_path: Path) -> None:
+    """Two bodies, nodes that are not there or nowhere, and junk of every ending."""
+    whole = meshio.read(write_mesh(solid_mesh(IN_METRES, MeshSize(across=2.0)), tmp_path / "a.vtk"))
+    points, cells, path = whole.points, whole.cells[0].data, tmp_path / "bad.vtk"
+
+    def refuse(message: str, x: np.ndarray, t: np.ndarray) -> None:
+        meshio.write(path, meshio.Mesh(x, [("tetra10", t)]))
+        with pytest.raises(GeometryError, match=message):
+            body(path)
+
+    two = np.concatenate([points, points + np.array([0.0, 0.0, 60.0])])
+    refuse("in 2 pieces that share no facet", two, np.concatenate([cells, cells + len(points)]))
+    refuse("names nodes that it does not have", points, np.where(cells == 5, 10**6, cells))
+    refuse("names nodes that it does not have", points, np.where(cells == 5, -3, cells))
+    for wrong in (np.nan, np.inf, 1e308):
+        refuse("no finite numbers or further than", np.where(points > 59.0, wrong, points), cells)
+    for ending in ("msh", "inp", "vtk", "vtu", "med", "bdf", "mesh", "xdmf", "doc"):
+        for junk in (b"", b"\0" * 1000, bytes(range(256)) * 20, "Stöße\n".encode("latin-1") * 50):
+            (tmp_path / f"junk.{ending}").write_bytes(junk)
+            with pytest.raises(GeometryError, match=r"is no geometry that can be read|no volume"):
+                body(tmp_path / f"junk.{ending}")
+
+
 def test_bad_files(tmp_path: Path, step: Path) -> None:
     def refuse(path: Path, message: str, *places: Place) -> None:
         with pytest.raises(GeometryError, match=message):
