@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-MOST_ROWS = 1_000_000  # of which a motion takes a gigabyte
+MOST_ROWS = 100_000  # ten seconds at 10 kHz; a million instants take minutes and gigabytes
 LARGEST = 1e18  # the fourth power is still a number; as for quantities of a study
 
 
