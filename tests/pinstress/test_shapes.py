@@ -151,20 +151,12 @@ def step(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return write_step(pin, tmp_path_factory.mktemp("step") / "pin.step")
 
 
-@pytest.mark.parametrize(
-    ("old", "new"),
-    [
-        ("= DIRECTION('',(0.,1.))", "= DARECTION('',(0.,1.))"),
-        ("= CARTESIAN_POINT('',(0.,0.))", "= CARTMSIAN_POINT('',(0.,0.))"),
-    ],
-)
-def test_a_file_over_which_opencascade_crashes_is_one_message(
-    tmp_path: Path, step: Path, old: str, new: str
-) -> None:
+def test_a_file_over_which_opencascade_crashes_is_one_message(tmp_path: Path, step: Path) -> None:
     """In a process of its own, as here other threads may run, beside which there is none."""
     text = step.read_text()
-    assert old in text
-    (tmp_path / "pin.step").write_text(text.replace(old, new, 1))
+    known = "= DIRECTION('',(0.,1.))"
+    assert known in text
+    (tmp_path / "pin.step").write_text(text.replace(known, known.replace("DIR", "DAR"), 1))
     done = subprocess.run(
         [sys.executable, "-m", "pinstress", "check", str(write(tmp_path, FILE))],
         env=os.environ | {"PYTHONPATH": str(ROOT)},
