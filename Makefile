@@ -15,7 +15,7 @@ setup: .venv/.ready ## make .venv with everything pinstress needs (run by the ta
 
 # Status 1 means: done, but a requested accuracy was not reached (printed last).
 demo: setup ## run studies/grenier2008.toml and tell where its report is
-	@status=0; $(BIN)/pinstress run studies/grenier2008.toml || status=$$?; \
+	@status=0; PINSTRESS_CACHE=build/cache $(BIN)/pinstress run studies/grenier2008.toml || status=$$?; \
 	if [ $$status -gt 1 ]; then exit $$status; fi
 
 test: setup ## run the tests; ARGS="..." goes to pytest

@@ -11,6 +11,7 @@ does the same and writes into the page what is printed now.
 
 from __future__ import annotations
 
+import os
 import re
 import shlex
 import subprocess
@@ -60,7 +61,8 @@ def play(page: str, folder: Path) -> Iterator[Played]:
             elif words[0] not in OTHERS:
                 raise ValueError(f"a page may not run {words[0]}")
             words = [str(last) if word == "$?" else word for word in words]
-            done = subprocess.run(words, cwd=folder, capture_output=True, text=True)
+            anew = os.environ | {"PINSTRESS_CACHE": ""}
+            done = subprocess.run(words, cwd=folder, env=anew, capture_output=True, text=True)
             last = done.returncode
             lines = (done.stdout + done.stderr).splitlines()
             yield Played(step, "".join(f"{line.rstrip()}\n" for line in lines), last)

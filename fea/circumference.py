@@ -35,6 +35,7 @@ CHUNK = 4096  # pairs sampled at once
 POINTS = 256  # points looked at together
 EVERY = slice(None)
 EVEN = 3  # so many of the five numbers go as cos psi, the others as sin psi
+_EVEN, _ODD = slice(0, EVEN), slice(EVEN, None)
 METRIC = np.zeros((5, 6))  # METRIC^T METRIC is tensor.VON_MISES
 METRIC[0, :3] = np.array([1.0, -1.0, 0.0]) * np.sqrt(0.75)
 METRIC[1, :3] = [-0.5, -0.5, 1.0]
@@ -71,6 +72,8 @@ class Circumference:
         self._five = METRIC @ self._stress  # (S, 5, K)
         self._n = np.array([load.n for load in units], dtype=np.int64)
         starts = np.flatnonzero(np.diff(self._n, prepend=-1))
+        self._each: Floats | None = None
+        self._kept: dict[int, tuple[Floats, Floats, Floats]] = {}
         self._waves = [slice(*ends) for ends in itertools.pairwise([*starts, len(units)])]
 
     @property
@@ -100,17 +103,26 @@ class Circumference:
         return int(self._n[wave.start]), self._alone(points, wave)
 
     def _alone(self, points: Ints, wave: slice, instants: slice = EVERY) -> Floats:
-        a, b = self._first[instants, wave], self._second[instants, wave]
-        aa, ab, bb = (x[:, :, None] * y[:, None, :] for x, y in ((a, a), (a, b), (b, b)))
+        first, second, mixed = (x[instants] for x in self._products(wave))
         five = self._five[points, :, wave]
-        even, odd = (x.swapaxes(1, 2) @ x for x in (five[:, :EVEN], five[:, EVEN:]))
+        even, odd = (x.swapaxes(1, 2) @ x for x in (five[:, _EVEN], five[:, _ODD]))
         if self._n[wave.start] == 0:
-            square = _forms(even, aa) + _forms(odd, bb)
+            square = _forms(even, first) + _forms(odd, second)
         else:
             apart = even - odd
-            total = _forms(even + odd, aa + bb)
-            square = _closed(total, _forms(apart, aa - bb), _forms(apart, ab))
+            total = _forms(even + odd, first + second)
+            square = _closed(total, _forms(apart, first - second), _forms(apart, mixed))
         return np.sqrt(np.maximum(square, 0.0, out=square), out=square)
+
+    def _products(self, wave: slice) -> tuple[Floats, Floats, Floats]:
+        """Of two loads' amounts at an instant: of the first phases, the second ones, one of each;
+        (T, K, K).
+        """
+        if wave.start not in self._kept:
+            a, b = self._first[:, wave], self._second[:, wave]
+            aa, bb, ab = (x[:, :, None] * y[:, None, :] for x, y in ((a, a), (b, b), (a, b)))
+            self._kept[wave.start] = aa, bb, ab
+        return self._kept[wave.start]
 
     def largest(self, among: Mask) -> tuple[Floats, Ints, Floats]:
         """Over the points of a mask (S,), at every instant: maximum (T,) Pa, point, angle."""
@@ -151,19 +163,20 @@ class Circumference:
         return best, point
 
     def _in_order(self, rows: Ints) -> tuple[Ints, Floats]:
-        """Points, those first that can reach most, and how much (Pa): the sum over unit loads of
-        what each of them can do by itself.
-        """
-        five = self._five[rows]
-        even, odd = (np.square(x).sum(axis=1) for x in (five[:, :EVEN], five[:, EVEN:]))
-        each = np.sqrt(np.maximum(even, odd))  # (J, K)
-        most = np.hypot(self._first, self._second).T
+        """Points, those first that can reach most, and how much, Pa."""
         reach = np.zeros(len(rows))
         for k in range(0, len(rows), CHUNK):
-            reach[k : k + CHUNK] = (each[k : k + CHUNK] @ most).max(axis=1, initial=0.0)
-        reach *= 1.0 + 1e-12
+            reach[k : k + CHUNK] = self.reach(rows[k : k + CHUNK]).max(axis=1, initial=0.0)
         order = np.argsort(-reach, kind="stable")
         return rows[order], reach[order]
+
+    def reach(self, points: Ints, instants: slice = EVERY) -> Floats:
+        """A bound that is sooner found: the sum over unit loads of what each can do by itself."""
+        if self._each is None:
+            even, odd = (np.square(self._five[:, part]).sum(axis=1) for part in (_EVEN, _ODD))
+            self._each = np.sqrt(np.maximum(even, odd))  # (S, K)
+        most = np.hypot(self._first[instants], self._second[instants]).T
+        return np.asarray((self._each[points] @ most) * (1.0 + 1e-12))
 
     def _worth(self, bound: Floats, best: Floats, together: bool) -> Iterator[tuple[Ints, Ints]]:
         """Pairs of points and instants whose bound (J, T) exceeds the best so far, both of which

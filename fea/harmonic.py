@@ -6,22 +6,23 @@ directions, share it.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 import scipy.sparse as sp
 
+from fea.jumps import unread
 from fea.linear import Analysis, SolveError
 from fea.material import Material
 from fea.meridian_fields import MeridianFields
 from fea.outline import Outline, shapes
 from fea.pin_loads import Floats, UnitLoad
 from fea.section import Ints, Section, around
-from fea.section_stress import inner_nodes, section_stress
+from fea.section_stress import NOWHERE, beside, inner_nodes, section_stress
 from fea.skin import AT
 from fea.tractions import ALONG_X, ALONG_Z, Traction, closing_tractions, traction
 from geometry import Pin
 from geometry.meridian_mesh import MeridianMesh
-
-_NOWHERE = np.zeros((0, 2))
 
 
 class HarmonicModel:
@@ -46,17 +47,23 @@ class HarmonicModel:
         self.clamps = tuple(pin.surface(name) for name in clamps)
         self.space = Section(section)
         self.outline = Outline(self.space)
-        self._analysis: Analysis | None = None  # one for all harmonics: held unknowns stay in it
+        self._system: _System | None = None  # one for all harmonics: held unknowns stay in it
 
-    def solve(self, loads: tuple[UnitLoad, ...], extra: Floats = _NOWHERE) -> MeridianFields:
-        """Unit fields, at `extra` points (P, 2) inside the section too.
+    def solve(
+        self,
+        loads: tuple[UnitLoad, ...],
+        extra: Floats = NOWHERE,
+        ends: Iterable[tuple[float, float]] = (),
+    ) -> MeridianFields:
+        """Unit fields, at `extra` points (P, 2) inside the section too, and close to the `ends` of
+        pressures on its outline, (r, z) in m.
 
         Raises: SolveError when the pin is not held or a check fails.
         """
         skin = np.einsum("qi,eia->eqa", shapes(AT), self.space.nodes[self.outline.nodes])
         inner = inner_nodes(self.space, self.outline)
-        points = np.concatenate([skin.reshape(-1, 2), self.space.nodes[inner], extra])
-        at_extra = self.space.values_at(extra)
+        also = beside(self.space, self.outline, self.material, extra, ends)
+        points = np.concatenate([skin.reshape(-1, 2), self.space.nodes[inner], also.points])
         displacement = np.zeros((len(points), 3, len(loads)))
         stress = np.zeros((len(points), 6, len(loads)))
         for n in sorted({load.n for load in loads}):
@@ -64,7 +71,7 @@ class HarmonicModel:
             forces, tractions = self._applied(n, [loads[k] for k in here])
             u = _polar(self._displace(n, forces))
             displacement[:, :, here], stress[:, :, here] = section_stress(
-                self.space, self.outline, self.material, n, u, tractions, self.clamps, at_extra
+                self.space, self.outline, self.material, n, u, tractions, self.clamps, also
             )
         skin_points = len(AT) * len(self.outline.nodes)
         row = np.zeros(len(self.space.nodes), dtype=np.int64)  # of every node that is a corner
@@ -73,7 +80,14 @@ class HarmonicModel:
         row[self.outline.nodes[:, 1]], row[self.outline.nodes[:, 0]] = first + len(AT) - 1, first
         triangles = row[self.space.elements[:, :3]]
         return MeridianFields(
-            points, loads, stress, displacement, skin_points, self.space.unknowns, triangles
+            points,
+            loads,
+            stress,
+            displacement,
+            skin_points,
+            self.space.unknowns,
+            triangles,
+            unread(also.jumps, points, skin_points),
         )
 
     def _applied(self, n: int, loads: list[UnitLoad]) -> tuple[Floats, Floats]:
@@ -117,12 +131,9 @@ class HarmonicModel:
             self._require_equilibrium(K, n)
         free = np.ones(K.shape[0])
         free[fixed] = 0.0
-        row = np.repeat(np.arange(len(free)), np.diff(K.indptr))
-        K.data *= free[row] * free[K.indices]
-        K.data[(K.indices == row) & (free[row] == 0.0)] = K.data.max()  # of no effect
-        if self._analysis is None:
-            self._analysis = Analysis(K)
-        return self._analysis.factorize(K)(forces * free[:, None])
+        if self._system is None:
+            self._system = _System(K)
+        return self._system.solve(K, free, forces)
 
     def _require_equilibrium(self, K: sp.csr_matrix, n: int) -> None:
         """A section that moves as a whole takes no force, so that whatever its displacements are,
@@ -157,6 +168,24 @@ class HarmonicModel:
         near = int(innermost[place[innermost].argmin()])
         far = int(innermost[np.abs(z[innermost] - z[near]).argmax()])
         return np.array([3 * near + 1, 3 * far + 1])
+
+
+class _System:
+    """Linear systems whose matrices have their entries in the same places."""
+
+    def __init__(self, K: sp.csr_matrix) -> None:
+        self._row = np.repeat(np.arange(K.shape[0]), np.diff(K.indptr))
+        self._diagonal = np.flatnonzero(K.indices == self._row)
+        self._analysis = Analysis(K)
+
+    def solve(self, K: sp.csr_matrix, free: Floats, forces: Floats) -> Floats:
+        """Unknowns (n, K) under forces, nought where `free` (n,) is 0 and not 1; K is changed."""
+        held = self._diagonal[free == 0.0]
+        largest = K.data.max()
+        K.data *= free[self._row]
+        K.data *= free[K.indices]
+        K.data[held] = largest  # of no effect
+        return self._analysis.factorize(K)(forces * free[:, None])
 
 
 def _generalised(forces: Floats) -> Floats:

@@ -18,7 +18,7 @@ from fea.meridian_fields import MeridianFields
 from fea.pin_loads import Floats, PinLoads, UnitLoad
 from fea.revolved import revolve
 from fea.rims import rim
-from fea.zones import Place, outside
+from fea.zones import Place, smooth_edges
 from geometry import Pin
 from geometry.grading import Grade, SectionSize, Spot, size_at
 from geometry.meridian_mesh import meridian_mesh
@@ -75,7 +75,18 @@ def harmonic_solution(
     loads = loads or (UnitLoad(cases[0].surfaces[0], "force", 1),)  # of which there is nought
     read = [rim(pin, p, part * p.radius) for p in places for part in (1.0, FELT)]
     rims = np.concatenate([np.zeros((0, 2)), *read])
-    return HarmonicSolution(HarmonicModel(pin, section, material, clamps).solve(loads, rims), close)
+    model = HarmonicModel(pin, section, material, clamps)
+    return HarmonicSolution(model.solve(loads, rims, _ends(pin, clamps, loads)), close)
+
+
+def _ends(
+    pin: Pin, clamps: tuple[str, ...], loads: tuple[UnitLoad, ...]
+) -> tuple[tuple[float, float], ...]:
+    """Where a pressure ends on a smooth surface, (r, z) in m."""
+    pushed = {load.surface for load in loads if load.kind == "pressure"}
+    if not clamps and any(load.n <= 1 and not load.shears for load in loads):
+        pushed |= set(pin.connections)  # which close the balance
+    return smooth_edges(pin, pushed, clamps)
 
 
 def _spots(
@@ -116,8 +127,7 @@ class HarmonicAnswer:
 
     def maxima(self, loads: PinLoads) -> Floats:
         """Largest von Mises stress (T,) Pa at every instant outside the places."""
-        among = outside(self.places, *self.fields.points.T)
-        return Circumference(self.fields, loads).largest(among)[0]
+        return Circumference(self.fields, loads).largest(self.fields.outside(self.places))[0]
 
     def picture(self, loads: PinLoads, instant: int) -> Picture:
         """The surface at one instant, with its envelope over all."""
@@ -137,7 +147,7 @@ def harmonic_look(
     around = Circumference(fields, loads)
     mine = places if own is None else own
     r, z = fields.points.T
-    among = outside(mine, r, z)
+    among = fields.outside(mine)
     top = around.top(among)
     return Look(
         unknowns=fields.unknowns,
@@ -159,7 +169,8 @@ def _high(
     """Points (r, z) where stress is nearly the maximum, the highest first, well apart."""
     rows = np.flatnonzero(among)
     now = slice(top.instant, top.instant + 1)
-    rows = rows[around.bound(rows, now)[:, 0] >= HIGH * top.value]
+    for bound in (around.reach, around.bound):
+        rows = rows[bound(rows, now)[:, 0] >= HIGH * top.value]
     value, _ = around.round(rows, np.full(len(rows), top.instant))
     found: list[Floats] = []
     for k in np.argsort(-value, kind="stable"):

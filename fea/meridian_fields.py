@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fea.pin_loads import Floats, UnitLoad
+from fea.zones import Place, outside
+
+Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -18,7 +22,8 @@ class MeridianFields:
     and rz go as cos psi, the others as sin psi, psi = n theta - p pi / 2. displacement (S, 3, K)
     in m: r and z as cos psi, theta as sin psi. skin: how many of the points, the first ones, follow
     the outline counter-clockwise. unknowns: of the system that was solved. triangles: (M, 3) of
-    points, which fill the section, if the model has such.
+    points, which fill the section, if the model has such. unread: points whose stress is too rough
+    to look for a maximum among (fea.jumps).
     """
 
     points: Floats
@@ -27,4 +32,11 @@ class MeridianFields:
     displacement: Floats
     skin: int
     unknowns: int
-    triangles: NDArray[np.int64] = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int64))
+    triangles: Ints = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int64))
+    unread: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+
+    def outside(self, places: Iterable[Place]) -> NDArray[np.bool_]:
+        """Which of the points may have the maximum: read, and in none of the places."""
+        out = outside(places, *self.points.T)
+        out[self.unread] = False
+        return out

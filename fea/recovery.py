@@ -5,8 +5,12 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 Floats = NDArray[np.float64]
+
+NEIGHBOURS = 16  # samples whose stress a quadratic polynomial is fitted to; it has six terms
+_LITTLE = 1e-10  # added where samples leave slope or curvature open, of their number
 
 
 def extension(elements: NDArray[np.int64], samples: Floats, places: Floats) -> sp.csr_matrix:
@@ -27,3 +31,36 @@ def extension(elements: NDArray[np.int64], samples: Floats, places: Floats) -> s
     count = np.bincount(elements.ravel())
     value = np.tile(extend.ravel(), m) / count[row]
     return sp.csr_matrix((value, (row, column)), shape=(len(count), q * m))
+
+
+def continuation(samples: Floats, points: Floats) -> sp.csr_matrix:
+    """Matrix (P, S) from values at samples (S, 2) to those at points (P, 2): of the quadratic
+    polynomial that fits those at the nearest samples best, the nearer the better.
+
+    Source: Zienkiewicz & Zhu, Int. J. Numer. Meth. Engng 33 (1992) 1331, whose patches are the
+    elements round a node instead.
+    """
+    if not len(points):
+        return sp.csr_matrix((0, len(samples)))
+    count = min(NEIGHBOURS, len(samples))
+    distance, near = (np.asarray(x) for x in cKDTree(samples).query(points, count))
+    confidence = 1.0 / (0.3 + distance / distance[:, -1:])
+    weights = at_one_place(samples[near] - points[:, None], confidence)
+    row = np.arange(len(points)).repeat(count)
+    shape = (len(points), len(samples))
+    return sp.csr_matrix((weights.ravel(), (row, near.ravel())), shape=shape)
+
+
+def at_one_place(offsets: Floats, confidence: Floats) -> Floats:
+    """Weights (..., S) of samples at `offsets` (..., S, 2) from a place in the value there of the
+    quadratic polynomial that fits them best; where several do (long thin elements have their
+    nearest samples in a row), of that with the least slope and curvature.
+    """
+    x, y = np.moveaxis(offsets / np.abs(offsets).max(axis=(-2, -1), keepdims=True), -1, 0)
+    terms = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=-1)
+    terms *= confidence[..., None]
+    form = terms.swapaxes(-2, -1) @ terms
+    inverse = np.linalg.inv(form + _LITTLE * form[..., :1, :1] * np.diag([0.0, 1, 1, 1, 1, 1]))
+    value = inverse[..., :1]
+    value = value + inverse @ (np.eye(6)[:, :1] - form @ value)  # as if nothing had been added
+    return np.asarray((terms @ value)[..., 0] * confidence)

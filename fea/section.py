@@ -6,8 +6,10 @@ Displacements of harmonic n are u_r = U cos psi, u_theta = V sin psi, u_z = W co
     2 e_rt = V,r - (n U + V) / r          2 e_tz = V,z - n W / r
 
 the first four times cos psi, the last two times sin psi. The unknowns are p = (U + V) / 2,
-m = (U - V) / 2 and w = W, in which all conditions on the axis are that some of them vanish. As the
-strains are linear in n, the stiffness is quadratic: those of n = 0, 1, 2 give that of any other.
+m = (U - V) / 2 and w = W, in which all conditions on the axis are that some of them vanish. With
+a, b, c = N,r N,z N / r of the shape functions N, strains are linear in these with coefficients that
+depend on n alone. So the integrals of all their products, (3, 3) for each pair of nodes, are taken
+once and give the stiffness of any n.
 
 Source: Zienkiewicz & Taylor, The Finite Element Method, ch. on semi-analytical processes.
 """
@@ -26,7 +28,7 @@ from skfem.refdom import RefTri
 
 from fea.material import Material
 from fea.pattern import Pattern
-from fea.recovery import extension
+from fea.recovery import continuation
 from fea.rims import interpolation
 from geometry.meridian_mesh import MeridianMesh
 
@@ -44,7 +46,6 @@ class Section:
         points = np.hstack([X, self._samples]), np.append(W, np.zeros(self._samples.shape[1]))
         self.basis = Basis(section.mesh, ElementTriP2(), quadrature=points)
         self._quadrature, self._sampled = slice(0, len(W)), slice(len(W), None)
-        self._stiffnesses: dict[int, Floats] = {}
 
     @property
     def unknowns(self) -> int:
@@ -62,8 +63,9 @@ class Section:
         return np.ascontiguousarray(self.basis.element_dofs.T).astype(np.int64)
 
     @cached_property
-    def _strains(self) -> tuple[Floats, Floats]:
-        return strains_of(self.basis)
+    def _gradients(self) -> Floats:
+        """N,r N,z and N / r at all points of the basis, (M, Q, 3, 6), 1/m."""
+        return gradients(self.basis)
 
     @cached_property
     def _weights(self) -> Floats:
@@ -78,25 +80,20 @@ class Section:
         """Stiffness matrix of harmonic n, for displacements as above and round the whole axis. All
         have the same pattern.
         """
-        if n < 3:
-            blocks = self._stiffness(material, n)
-        else:
-            zero, one, two = (self._stiffness(material, k) for k in range(3))
-            blocks = (n - 1) * (n - 2) / 2.0 * zero - n * (n - 2) * one + n * (n - 1) / 2.0 * two
-        return self._pattern.matrix(around(n) * blocks)
+        E = strain_map(n)
+        by = np.einsum("sca,st,tdb->abcd", E, around(n) * elasticity(material), E)
+        return self._pattern.matrix((self._products @ by.reshape(9, 9)).reshape(-1, 3, 3))
 
-    def _stiffness(self, material: Material, n: int) -> Floats:
-        """Blocks (P, 3, 3) for the pairs of nodes, per radian."""
-        if n not in self._stiffnesses:
-            first, second = (x[:, self._quadrature] for x in self._strains)
-            strain = first + n * second if n else first
-            half = np.linalg.cholesky(elasticity(material)).T
-            weighted = strain * np.sqrt(self._weights[:, self._quadrature])[:, :, None, None]
-            x = np.tensordot(weighted, half, axes=(2, 1))  # (M, Q, 18, 6)
-            x = x.transpose(0, 2, 1, 3).reshape(len(x), 18, -1)
-            parts = (x @ x.swapaxes(1, 2)).reshape(-1, 6, 3, 6, 3).swapaxes(2, 3)
-            self._stiffnesses[n] = self._pattern.sums(parts)
-        return self._stiffnesses[n]
+    @cached_property
+    def _products(self) -> Floats:
+        """Integrals (P, 9) of the products of a, b, c of one node with those of the other, for the
+        pairs of nodes, per radian.
+        """
+        root = np.sqrt(self._weights[:, self._quadrature])
+        parts = self._gradients[:, self._quadrature] * root[..., None, None]
+        x = parts.reshape(len(parts), -1, 3, 6).transpose(0, 3, 2, 1).reshape(len(parts), 18, -1)
+        products = (x @ x.swapaxes(1, 2)).reshape(-1, 6, 3, 6, 3).swapaxes(2, 3)
+        return self._pattern.sums(products).reshape(-1, 9)
 
     @cached_property
     def integrals(self) -> Floats:
@@ -110,21 +107,31 @@ class Section:
         """Strains (M, 3, 6, K), shears doubled, of displacements (N, 3, K) at three points of each
         element, where they are most exact.
         """
-        first, second = (x[:, self._sampled] for x in self._strains)
-        strain = first + n * second if n else first
         U, V, W = (u[self.elements, a] for a in range(3))
-        unknowns = np.stack([(U + V) / 2.0, (U - V) / 2.0, W], axis=2).reshape(len(strain), 18, -1)
-        found = strain.reshape(len(strain), -1, 18) @ unknowns
-        return np.asarray(found.reshape(*strain.shape[:3], -1))
+        unknowns = np.stack([(U + V) / 2.0, (U - V) / 2.0, W], axis=2)  # (M, 6, 3, K)
+        m, _, _, k = unknowns.shape
+        there = self._gradients[:, self._sampled].reshape(m, -1, 6) @ unknowns.reshape(m, 6, -1)
+        by = strain_map(n).transpose(0, 2, 1).reshape(6, 9)
+        return np.asarray(by @ there.reshape(m, -1, 9, k))
 
     @cached_property
-    def extend(self) -> sp.csr_matrix:
-        """Matrix (N, 3 M) from values at those points to values at nodes."""
-        return extension(self.elements, self._samples, ElementTriP2.doflocs.T)
+    def samples(self) -> Floats:
+        """Where those are, (3 M, 2): r, z in m, element by element."""
+        x = np.asarray(self.basis.global_coordinates())[:, :, self._sampled]
+        return np.ascontiguousarray(x.reshape(2, -1).T)
 
     def values_at(self, points: Floats) -> sp.csr_matrix:
         """Matrix (P, N) from values at nodes to those at points (P, 2) inside the section."""
         return interpolation(self.nodes, self.elements, points)
+
+    @cached_property
+    def continued_to_nodes(self) -> sp.csr_matrix:
+        """The same to those at nodes (N, 3 M)."""
+        return self.continued_to(self.nodes)
+
+    def continued_to(self, points: Floats) -> sp.csr_matrix:
+        """Matrix (P, 3 M) from values at the samples to those at points (P, 2)."""
+        return continuation(self.samples, points)
 
 
 def around(n: int) -> float:
@@ -140,27 +147,27 @@ def elasticity(material: Material) -> Floats:
     return D
 
 
-def strains_of(basis: Basis) -> tuple[Floats, Floats]:
-    """Strains (rr, tt, zz, 2 tz, 2 rz, 2 rt) of the unknowns at a basis' points: the part without n
-    and the part to be multiplied by it, (M, Q, 6, 18) each.
+def gradients(basis: Basis) -> Floats:
+    """N,r N,z and N / r of the shape functions at a basis' points, (M, Q, 3, 6), 1/m."""
+    r = basis.global_coordinates()[0]
+    parts = [
+        (*basis.basis[i][0].grad, np.asarray(basis.basis[i][0]) / r) for i in range(basis.Nbfun)
+    ]
+    return np.stack([np.stack(part, axis=-1) for part in parts], axis=-1)
+
+
+def strain_map(n: int) -> Floats:
+    """What the part a, b or c of an unknown p, m or w adds to each strain (rr, tt, zz, 2 tz, 2 rz,
+    2 rt) of harmonic n, (6, 3, 3).
     """
-    grad = np.stack([basis.basis[i][0].grad for i in range(6)], axis=-1)  # (2, M, Q, 6)
-    value = np.stack(
-        [np.broadcast_to(np.asarray(basis.basis[i][0]), grad.shape[1:3]) for i in range(6)],
-        axis=-1,
-    )
-    by_r, by_z = grad
-    over_r = value / basis.global_coordinates()[0][..., None]
-    first, second = (np.zeros((*by_r.shape[:2], 6, 6, 3)) for _ in range(2))
+    out = np.zeros((6, 3, 3))
     p, m, w = range(3)
-    first[..., 0, :, p] = first[..., 0, :, m] = by_r
-    first[..., 1, :, p] = first[..., 1, :, m] = over_r
-    first[..., 2, :, w] = by_z
-    first[..., 3, :, p], first[..., 3, :, m] = by_z, -by_z
-    first[..., 4, :, p] = first[..., 4, :, m] = by_z
-    first[..., 4, :, w] = by_r
-    first[..., 5, :, p], first[..., 5, :, m] = by_r - over_r, over_r - by_r
-    second[..., 1, :, p], second[..., 1, :, m] = over_r, -over_r
-    second[..., 3, :, w] = -over_r
-    second[..., 5, :, p] = second[..., 5, :, m] = -over_r
-    return first.reshape(*first.shape[:3], 18), second.reshape(*second.shape[:3], 18)
+    a, b, c = range(3)
+    out[0, [p, m], a] = 1.0
+    out[1, p, c], out[1, m, c] = 1.0 + n, 1.0 - n
+    out[2, w, b] = 1.0
+    out[3, p, b], out[3, m, b], out[3, w, c] = 1.0, -1.0, -n
+    out[4, [p, m], b] = out[4, w, a] = 1.0
+    out[5, p, a], out[5, m, a] = 1.0, -1.0
+    out[5, p, c], out[5, m, c] = -1.0 - n, 1.0 - n
+    return out

@@ -48,10 +48,10 @@ class Seen:
         if len(self.looks) == 1:
             return last.maximum
         least = LEAST_ORDER.get(self.model, 0.5)
-        estimate = discretisation_error(self.history, self.ratio, last.scatter, least)
         finer = self.ratio ** (self.first + len(self.looks) - 1)
         noise = NOISE.get(self.model, 0.0) * last.maximum / finer**2
-        return max(estimate, noise) + last.left_out
+        scatter = max(last.scatter, noise)
+        return discretisation_error(self.history, self.ratio, scatter, least) + last.left_out
 
     @property
     def relative(self) -> float:

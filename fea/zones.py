@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -87,6 +87,18 @@ def outside(places: Iterable[Place], r: Floats, z: Floats) -> NDArray[np.bool_]:
     for p in places:
         out &= np.hypot(r - p.r, z - p.z) >= p.radius * (1.0 - 1e-9)
     return out
+
+
+def smooth_edges(
+    pin: Pin, surfaces: Collection[str], clamps: Collection[str]
+) -> tuple[tuple[float, float], ...]:
+    """Rims (r, z), m, of surfaces (by the pin's names) that go on smoothly, neither side held."""
+    names, held = ({pin.surface(name) for name in found} for found in (surfaces, clamps))
+    return tuple(
+        (v.r, v.z)
+        for v in vertices(pin)
+        if names & set(v.between) and not held & set(v.between) and abs(v.angle - math.pi) <= FLAT
+    )
 
 
 def clamp_rims(pin: Pin, clamps: tuple[str, ...]) -> tuple[tuple[float, float], ...]:

@@ -115,6 +115,9 @@ def commands() -> None:
     type=click.Choice(["ccx"]),
     help="Have CalculiX solve every row once more on the solid model's mesh, and compare.",
 )
+@click.option(
+    "--no-cache", is_flag=True, help="Solve every pin anew, also those that were solved before."
+)
 @click.option("--json", "as_json", is_flag=True, help="Print results.json instead of the table.")
 @click.option("--quiet", is_flag=True, help="No progress and no notes; what failed is still said.")
 @click.option("--open", "opens", is_flag=True, help="Open the report in the browser at the end.")
@@ -130,6 +133,7 @@ def run(
     jobs: int | None,
     memory_limit: float | None,
     second_opinion: str | None,
+    no_cache: bool,
     as_json: bool,
     quiet: bool,
     opens: bool,
@@ -145,7 +149,8 @@ def run(
     directory = out or Path("out") / loaded.name
     from pinstress.write import Wanted, run_and_write
 
-    wanted = Wanted(not no_pictures, second_opinion is not None, vtk, as_json, quiet, opens, jobs)
+    second, cached = second_opinion is not None, not no_cache
+    wanted = Wanted(not no_pictures, second, vtk, as_json, quiet, opens, jobs, cached)
     chosen: dict[str, Any] = {
         "pins": pins,
         "cases": cases,

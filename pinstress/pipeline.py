@@ -9,7 +9,8 @@ from typing import Any
 from pinstress import gather
 from pinstress.plan import Plan, all_loads, prepare, select
 from pinstress.published import read_published
-from pinstress.solving import Solved, solve_tasks
+from pinstress.solved import Solved
+from pinstress.solving import solve_tasks
 from pinstress.study import Study
 from pinstress.workers import processes
 from reports.results import Results

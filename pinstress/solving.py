@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 from fea.ladder import MOST_UNKNOWNS, solve_pin
@@ -11,28 +11,18 @@ from fea.memory import allowed_memory, solid_memory
 from fea.peak import Peak
 from fea.second_opinion import Opinion
 from pinstress import checks, gather, gather_fields
+from pinstress.cache import Cache
 from pinstress.gather_surface import surface_of
 from pinstress.pins import lost_shape
 from pinstress.pins import material as material_of
 from pinstress.plan import Plan
+from pinstress.solved import Entry, Solved, lasting, question
 from pinstress.tasks import Task
 from pinstress.workers import Died, Job, Progress, Tell, side_by_side
-from reports.results import BeamCheck, Field, LandingRange
-from reports.surface import Surface
+from reports.results import Field
 
 Keep = Callable[[Field], None]
 Ask = Callable[[Task, tuple[Peak, ...], Tell], tuple[Opinion, ...]]
-
-
-@dataclass(frozen=True)
-class Solved:
-    """A task's peaks in the order of its cases, and what else reports and CalculiX have to say."""
-
-    peaks: tuple[Peak, ...]
-    landing: tuple[LandingRange, ...] = ()
-    beam: BeamCheck | None = None
-    surface: Surface | None = None
-    opinions: tuple[Opinion, ...] = ()
 
 
 def solve_tasks(
@@ -41,19 +31,21 @@ def solve_tasks(
     progress: Progress = lambda _, __: None,
     ask: Ask = lambda _, __, ___: (),
     jobs: int = 1,
+    cache: Cache | None = None,
 ) -> list[Solved]:
     """What is found of every task of a plan, in their order, `jobs` of them at a time, each in its
     own process (pinstress.workers); with 1, in this one. The answers are the same to the last bit.
 
     keep: called with every field as soon as it is there. ask: for a second opinion on a task's
     peaks, told whom to tell what is being done. Both are called in the task's process. progress:
-    called with what is being done and the part of the work that is behind.
+    called with what is being done and the part of the work that is behind. cache: where tasks that
+    were solved before are found, and the others kept.
 
     A task whose numerics fail has the verdict `failed`; the others go on.
     """
     order = sorted(range(len(plan.tasks)), key=lambda i: _effort(plan, plan.tasks[i]), reverse=True)
     work = [
-        Job(f"pin {task.pin.name}", partial(_attempt, plan, task, keep, ask))
+        Job(f"pin {task.pin.name}", partial(_attempt, plan, task, keep, ask, cache))
         for task in (plan.tasks[i] for i in order)
     ]
     found: dict[int, Solved] = {}
@@ -76,13 +68,40 @@ def _effort(plan: Plan, task: Task) -> tuple[bool, int, int]:
     return solid, len(task.loads), sum(map(len, task.loads))
 
 
-def _attempt(plan: Plan, task: Task, keep: Keep, ask: Ask, tell: Tell) -> Solved:
+def _attempt(
+    plan: Plan, task: Task, keep: Keep, ask: Ask, cache: Cache | None, tell: Tell
+) -> Solved:
     try:
-        return _solve(plan, task, keep, ask, tell)
+        if cache is None:
+            solved = _solve(plan, task, keep, tell)
+        else:
+            solved = _solve_once(plan, task, keep, cache, tell)
+        return replace(solved, opinions=ask(task, solved.peaks, tell))
     except MemoryError:
         return _failed(plan, task, "out of memory; a larger tolerance needs less")
     except ArithmeticError as error:  # MeshError, SolveError and what numpy raises
         return _failed(plan, task, str(error))
+
+
+def _solve_once(plan: Plan, task: Task, keep: Keep, cache: Cache, tell: Tell) -> Solved:
+    """From the cache; else solved, and kept there."""
+    key = cache.key(question(plan, task))
+    entry = cache.read(key, Entry)
+    if entry is not None and entry.answers(task):
+        tell(f"pin {task.pin.name}, as solved before")
+        for field in entry.fields:
+            keep(field)
+        return replace(entry.solved, before=True)
+    fields: list[Field] = []
+
+    def keep_both(field: Field) -> None:
+        keep(field)
+        fields.append(field)
+
+    solved = _solve(plan, task, keep_both, tell)
+    if lasting(plan, task, solved.peaks):
+        cache.write(key, Entry(solved, tuple(fields)))
+    return solved
 
 
 def _failed(plan: Plan, task: Task, reason: str) -> Solved:
@@ -91,7 +110,7 @@ def _failed(plan: Plan, task: Task, reason: str) -> Solved:
     )
 
 
-def _solve(plan: Plan, task: Task, keep: Keep, ask: Ask, tell: Tell) -> Solved:
+def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
     study = plan.study
     material = material_of(study, study.table.pin[task.pin.name].material)
     found = solve_pin(task.pin, material, task.clamps, task.loads, plan.asked, tell)
@@ -105,9 +124,8 @@ def _solve(plan: Plan, task: Task, keep: Keep, ask: Ask, tell: Tell) -> Solved:
     peaks = tuple(replace(s.peak, note="; ".join(filter(None, (s.peak.note, lost)))) for s in found)
     ranges = (gather.landing_range(study, plan.loads, task, s) for s in found)
     landing = tuple(r for r in ranges if r is not None)
-    opinions = ask(task, peaks, tell)
     beam = None
     if task is plan.checked and study.table.beam_check is not None:
         tell(f"pin {task.pin.name}, beam check")
         beam = checks.beam_check(study, task, material)
-    return Solved(peaks, landing, beam, surface_of(study, plan.loads, task, found), opinions)
+    return Solved(peaks, landing, beam, surface_of(study, plan.loads, task, found))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -13,11 +13,15 @@ from typing import Any
 import click
 from rich.console import Console
 
+from pinstress.cache import Cache, user_cache
 from pinstress.command import open_page
+from pinstress.drawn import draw_once, plot_once
 from pinstress.file_names import field_name
 from pinstress.output import replacing, require_replaceable
 from pinstress.pipeline import loads_only, prepare, results_of
+from pinstress.plan import Plan
 from pinstress.second_opinion import Opinions
+from pinstress.solved import Solved
 from pinstress.solving import solve_tasks
 from pinstress.study import Study
 from pinstress.workers import Died, Job, Progress, Tell, preload, processes, side_by_side
@@ -41,7 +45,8 @@ PAINTERS = ("pyvista.plotting", "matplotlib.pyplot", "matplotlib.backends.backen
 class Wanted:
     """What a run is to give besides its numbers: pictures; CalculiX's second opinion; fields (vtk,
     as --vtk names them); results.json on stdout instead of the table; no progress and no notes;
-    the report opened. jobs: processes at a time, by default as many as there are cores.
+    the report opened. jobs: processes at a time, by default as many as there are cores. cached:
+    whether pins that were solved before may be taken from the user's cache.
     """
 
     pictures: bool = True
@@ -51,6 +56,7 @@ class Wanted:
     quiet: bool = False
     opens: bool = False
     jobs: int | None = None
+    cached: bool = True
 
 
 def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Any) -> int:
@@ -64,15 +70,16 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Any) 
     problem = renderer_problem() if wanted.pictures else None
     most, paints = processes(wanted.jobs), wanted.pictures and problem is None
     opinions = Opinions(plan) if wanted.second else None
+    cache = user_cache() if wanted.cached else None
     with replacing(directory) as staging:
         if wanted.vtk != "none":
             (staging / "vtk").mkdir()
-        keep = partial(_keep, staging, _units(study), wanted.vtk, paints)
+        keep = partial(_keep, staging, _units(study), wanted.vtk, paints, cache)
         with progress_bar(alone=most == 1, quiet=wanted.quiet) as progress:
             if most > 1:
                 preload(*SOLVERS, *(PAINTERS if paints else ()))
             ask = {"ask": opinions.ask} if opinions else {}
-            found = solve_tasks(plan, keep, progress, jobs=most, **ask)
+            found = solve_tasks(plan, keep, progress, jobs=most, cache=cache, **ask)
             results = results_of(plan, found)
             drawn = {
                 (p.pin, p.case): path
@@ -80,10 +87,12 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Any) 
                 if (path := _picture(staging, p.pin, p.case)).is_file()
             }
             progress("report", 1.0)
-            write_reports(results, staging, drawn, wanted.pictures, partial(_draw, most))
+            write_reports(results, staging, drawn, wanted.pictures, partial(_draw, most, cache))
             if opinions:
                 opinions.hear(o for made in found for o in made.opinions)
                 opinions.write(staging)
+    if cache:
+        cache.trim()
     if wanted.as_json:
         click.echo((directory / "results.json").read_text(encoding="utf-8"), nl=False)
     else:
@@ -92,6 +101,7 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Any) 
             opinions.show(console())
     if not wanted.quiet:
         _tell_left_out(results)
+        _tell_solved_before(plan, found)
         if problem is not None:
             click.echo(f"No pictures of the pins: {problem}", err=True)
         click.echo(f"Report: {directory / 'report.html'}", err=True)
@@ -110,7 +120,9 @@ def _picture(staging: Path, pin: str, case: str) -> Path:
     return staging / "plots" / f"pin_{field_name(pin, case)}.png"
 
 
-def _keep(staging: Path, units: Units, vtk: str, paints: bool, field: Field) -> None:
+def _keep(
+    staging: Path, units: Units, vtk: str, paints: bool, cache: Cache | None, field: Field
+) -> None:
     """Write what is wanted of a field."""
     if vtk != "none":
         shown = surface(field) if vtk == "surface" else field
@@ -118,16 +130,22 @@ def _keep(staging: Path, units: Units, vtk: str, paints: bool, field: Field) -> 
     if paints:
         picture = _picture(staging, field.pin, field.case)
         picture.parent.mkdir(exist_ok=True)
-        render_pin(field, picture, units, f"pin {field.pin}, {field.case}")
+        skin, title = replace(field, stills=(), volume=None), f"pin {field.pin}, {field.case}"
+
+        def render() -> list[Path]:
+            render_pin(skin, picture, units, title)
+            return [picture]
+
+        draw_once(render, ("render_pin", skin, units, title), picture.parent, cache)
 
 
-def _files(plot: Plot, _: Tell) -> list[Path]:
-    return plot()
+def _files(plot: Plot, cache: Cache | None, _: Tell) -> list[Path]:
+    return plot_once(plot, cache)
 
 
-def _draw(jobs: int, plots: Sequence[Plot]) -> list[Path]:
+def _draw(jobs: int, cache: Cache | None, plots: Sequence[Plot]) -> list[Path]:
     """Have plots drawn side by side; their files."""
-    work = [Job("plots", partial(_files, plot)) for plot in plots]
+    work = [Job("plots", partial(_files, plot, cache)) for plot in plots]
     found = []
     for files in side_by_side(work, jobs):
         if isinstance(files, Died):
@@ -149,7 +167,7 @@ def loads_and_write(
     require_replaceable(directory)
     results = loads_only(study, cases)
     with replacing(directory) as staging:
-        write_loads(results, staging, plots, partial(_draw, processes(jobs)))
+        write_loads(results, staging, plots, partial(_draw, processes(jobs), None))
     print_loads(results, console())
     if not quiet:
         click.echo(f"Written: {directory}", err=True)
@@ -171,6 +189,17 @@ def _tell_left_out(results: Results) -> None:
         click.echo(
             f"Pin {pin}, {', '.join(cases)}: the force at {', '.join(connections)} is left out, "
             "because the pin is held there.",
+            err=True,
+        )
+
+
+def _tell_solved_before(plan: Plan, found: list[Solved]) -> None:
+    pins = {task.pin.name for task in plan.tasks}
+    anew = {t.pin.name for t, made in zip(plan.tasks, found, strict=True) if not made.before}
+    if pins - anew:
+        click.echo(
+            f"{len(pins - anew)} of {len(pins)} pin{'s' * (len(pins) > 1)} as solved before "
+            "(--no-cache solves them again).",
             err=True,
         )
 

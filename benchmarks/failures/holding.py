@@ -66,8 +66,7 @@ def _unheld(across: float) -> tuple[float, float]:
     unknowns[free] = splu(K, permc_spec="MMD_AT_PLUS_A").solve(forces[free])
     p, m, w = unknowns.reshape(-1, 3).T
     u = np.stack([p + m, p - m, w], axis=1)[..., None]
-    nowhere = space.values_at(np.zeros((0, 2)))
-    moved, found = section_stress(space, outline, steel, 1, u, parts[..., None], (), nowhere)
+    moved, found = section_stress(space, outline, steel, 1, u, parts[..., None])
     skin = np.einsum("qi,eia->eqa", shapes(AT), space.nodes[outline.nodes]).reshape(-1, 2)
     points = np.concatenate([skin, space.nodes[inner_nodes(space, outline)]])
     unit = (UnitLoad("left", "force", 1),)

@@ -13,7 +13,7 @@ from fea.linear import factorize
 from fea.material import Material
 from fea.outline import Outline, shapes, slopes
 from fea.pin_loads import Floats
-from fea.section import Ints, Section, around, elasticity, strains_of
+from fea.section import Ints, Section, around, elasticity, gradients, strain_map
 
 Field = Callable[[Floats, Floats], Floats]  # of r and z (...), with components last
 
@@ -120,9 +120,8 @@ def errors(space: Section, material: Material, exact: Exact, u: Floats) -> tuple
     """Relative L2 errors, in space, of displacements u (N, 3, 1) and of the elements' stresses."""
     basis, r, z, weight, values = _fine(space)
     moved = np.einsum("imq,mia->mqa", values, u[space.elements][..., 0])
-    first, second = strains_of(basis)
-    local = unknowns_of(u[..., 0]).reshape(-1, 3)[space.elements].reshape(-1, 18)
-    strain = np.einsum("mqci,mi->mqc", first + exact.n * second, local)
+    local = unknowns_of(u[..., 0]).reshape(-1, 3)[space.elements]
+    strain = np.einsum("sca,mqai,mic->mqs", strain_map(exact.n), gradients(basis), local)
     stress = strain @ elasticity(material).T
 
     def off(found: Floats, true: Floats) -> float:

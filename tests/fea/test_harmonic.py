@@ -83,7 +83,6 @@ def test_superposition_is_solving_at_once(section: MeridianMesh, steel: Material
         displacements_of(at_once),
         (tractions @ amount)[..., None],
         model.clamps,
-        model.space.values_at(NONE),
     )
     together = model.solve(units).stress @ amount
     assert together == pytest.approx(expected[..., 0], abs=1e-10 * np.abs(together).max())

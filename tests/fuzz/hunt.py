@@ -84,9 +84,8 @@ def hunt(seed: int, place: Path, run_too: bool, broken: Break = break_study) -> 
         if arguments[0] == "check" and case.end.status == 0:
             commands.append(["loads", "study.toml", "--no-pictures"])
         elif arguments[0] == "loads" and case.end.status == 0 and run_too:
-            commands.append(
-                ["run", "study.toml", *QUICK, "--jobs", "1" if broken is break_study else "2"]
-            )
+            jobs = "1" if broken is break_study else "2"
+            commands.append(["run", "study.toml", "--no-cache", *QUICK, "--jobs", jobs])
     if not bad:
         shutil.rmtree(folder)
         for end in (".out", ".err"):
