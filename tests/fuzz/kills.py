@@ -58,11 +58,14 @@ class Killed:
 def whole_run(folder: Path, jobs: int) -> float:
     """Run the two pins to the end into `folder`/whole; how long it took, s."""
     (folder / "study.toml").write_text(TWO_PINS)
-    start = time.monotonic()
-    with _run(folder, "whole", jobs) as process:
-        if process.wait():
-            raise RuntimeError("the run to be ended does not work by itself")
-    return time.monotonic() - start
+    spent = []
+    for _ in range(2):  # the second with all files read before; the shorter, lest many end first
+        start = time.monotonic()
+        with _run(folder, "whole", jobs) as process:
+            if process.wait():
+                raise RuntimeError("the run to be ended does not work by itself")
+        spent.append(time.monotonic() - start)
+    return min(spent)
 
 
 def kill(seed: int, folder: Path, jobs: int, longest: float) -> Killed:
