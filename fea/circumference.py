@@ -245,8 +245,9 @@ class Circumference:
         """Von Mises squared (J, T) at points (J,) at an angle (rad) and every instant, Pa^2."""
         back, forth = self._amounts(angle)
         five = self._five[points]
-        even = five[:, :EVEN].reshape(-1, len(self._n)) @ back.T
-        odd = five[:, EVEN:].reshape(-1, len(self._n)) @ forth.T
+        rows, waves = len(points), len(self._n)  # no -1 for rows: there are no waves of no load
+        even = five[:, :EVEN].reshape(rows * EVEN, waves) @ back.T
+        odd = five[:, EVEN:].reshape(rows * (5 - EVEN), waves) @ forth.T
         shape = (len(points), -1, self.count)
         return np.asarray(
             np.square(even).reshape(shape).sum(axis=1) + np.square(odd).reshape(shape).sum(axis=1)

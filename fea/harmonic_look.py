@@ -72,6 +72,7 @@ def harmonic_solution(
     factor = ratio ** (level * ELSEWHERE if high else level)
     section = meridian_mesh(pin, SIZE.finer(factor), spots(factor), finer)
     loads = tuple(dict.fromkeys(load for case in cases for load in case.coefficients()))
+    loads = loads or (UnitLoad(cases[0].surfaces[0], "force", 1),)  # of which there is nought
     read = [rim(pin, p, part * p.radius) for p in places for part in (1.0, FELT)]
     rims = np.concatenate([np.zeros((0, 2)), *read])
     model = HarmonicModel(pin, section, material, clamps)

@@ -20,7 +20,7 @@ from fea.beam_error import PLAIN
 from fea.harmonic_look import HarmonicAnswer, HarmonicSolution, harmonic_look, harmonic_solution
 from fea.look import Look
 from fea.material import Material
-from fea.memory import allowed_memory, solid_memory
+from fea.memory import too_much
 from fea.peak import Peak
 from fea.pin_loads import PinLoads
 from fea.solid_look import SolidAnswer, solid_look, solid_solution
@@ -189,7 +189,9 @@ def _refined(
         finer = largest * ratio ** GROWTH[model]
         if level and finer > MOST_UNKNOWNS[model]:
             break
-        if level and model == "solid" and solid_memory(finer) > allowed_memory(asked.memory):
+        if level and model == "solid" and (told := too_much(finer, asked.memory)):
+            told = f"; on the next mesh {told}: allow more, or ask for a larger --tolerance"
+            notes = {case: notes.get(case, "") + told for case in own}
             break
         job.progress(f"pin {pin.name}, {model} model, mesh {level + 1}")
         start = time.perf_counter()

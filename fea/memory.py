@@ -33,12 +33,21 @@ def allowed_memory(limit: float | None) -> float:
     return SHARE * free_memory() if limit is None else limit
 
 
+def too_much(unknowns: float, limit: float | None) -> str:
+    """What a solid would take and what is allowed, in words; empty where there is enough."""
+    allowed, need = allowed_memory(limit), solid_memory(unknowns)
+    if need <= allowed:
+        return ""
+    return (
+        f"{unknowns:,.0f} unknowns would take about {need / 1024.0:.2g} GB of memory, "
+        f"and {allowed / 1024.0:.2g} GB are allowed (--memory-limit)"
+    )
+
+
 def require_memory(name: str, unknowns: int, limit: float | None) -> None:
     """Raises: SolveError when a solid would take more memory than is allowed."""
-    allowed, need = allowed_memory(limit), solid_memory(unknowns)
-    if need > allowed:
+    if told := too_much(unknowns, limit):
         raise SolveError(
-            f"pin {name}: {unknowns:,} unknowns would take about {need / 1024.0:.2g} GB of memory, "
-            f"and {allowed / 1024.0:.2g} GB are allowed: close other programs, set --memory-limit, "
-            "or model the part that matters by itself"
+            f"pin {name}: {told}: close other programs, allow more, ask for a larger --tolerance, "
+            "give a coarser mesh if it comes from a file, or model the part that matters by itself"
         )

@@ -98,8 +98,9 @@ def judge(seen: Seen, places: Sequence[Place], tolerance: float, note: str = "")
     told = f"known to {seen.relative:.1%}" + (
         "" if known else f" only, {tolerance:.1%} was asked for"
     )
-    if len(seen.looks) == 1 and not known:
-        told = "from one mesh only, so the error is not known"
+    if len(seen.looks) < FEWEST and not known:
+        meshes = "one mesh" if len(seen.looks) == 1 else f"{len(seen.looks)} meshes"
+        told = f"from {meshes} only, so the error is not known"
     if governing:
         verdict = "singular"
         worst = max(governing, key=lambda zone: zone.max_von_mises)

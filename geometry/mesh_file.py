@@ -8,7 +8,10 @@ from contextlib import redirect_stderr, redirect_stdout
 
 import meshio
 import numpy as np
+import scipy.sparse as sp
 from numpy.typing import NDArray
+from scipy.sparse.csgraph import connected_components
+from skfem import MeshTet2
 
 from geometry.body_file import BodyFile
 from geometry.inverted import distortion, folded
@@ -19,6 +22,7 @@ from geometry.solid_mesh import MeshError, SolidMesh
 Ints = NDArray[np.int64]
 
 SURFACES = ("triangle", "triangle6")
+FARTHEST = 1000.0  # m; as pins with a profile
 HARMLESS = ("vertex", "line", "line3", *SURFACES)
 
 
@@ -39,9 +43,17 @@ def mesh_from_file(file: BodyFile) -> SolidMesh:
                             f"{', '.join(sorted(other))}")  # fmt: skip
     if {"tetra", "tetra10"} <= kinds:
         raise GeometryError(f"{where}: it mixes linear and quadratic tetrahedra; use one kind")
-    points = np.asarray(mesh.points, dtype=float) * file.unit
+    points = np.asarray(mesh.points, dtype=float)
+    if not (np.isfinite(points).all() and np.abs(points).max() < FARTHEST / file.unit):
+        raise GeometryError(
+            f"{where}: it has nodes that are no finite numbers or further than {FARTHEST:g} m away"
+        )
     cells = np.concatenate([b.data for b in mesh.cells if b.type.startswith("tetra")])
-    made = quadratic(points, cells.astype(np.int64))
+    named, sets = _triangles(mesh), _point_sets(mesh)
+    for told in (cells, *named.values(), *sets.values()):
+        if not ((told >= 0) & (told < len(points))).all():
+            raise GeometryError(f"{where}: it is damaged: it names nodes that it does not have")
+    made = quadratic(points * file.unit, cells.astype(np.int64))
     shape = distortion(made)
     if wrong := int(np.sum(~(shape > 0.0))):
         raise MeshError(
@@ -53,13 +65,18 @@ def mesh_from_file(file: BodyFile) -> SolidMesh:
             f"{where}: it has inverted elements: at {wrong} facets one lies over its neighbour; "
             "repair them where it was made"
         )
-    named = {name: find_facets(made, t) for name, t in _triangles(mesh).items() if len(t)}
-    for name, nodes in mesh.point_sets.items():
+    if (pieces := _pieces(made.mesh)) > 1:
+        raise GeometryError(
+            f"{where}: it is in {pieces} pieces that share no facet; a pin is one: unite the nodes "
+            "that lie on each other, or give the pin by itself"
+        )
+    found = {name: find_facets(made, t) for name, t in named.items() if len(t)}
+    for name, nodes in sets.items():
         facets = made.mesh.facets[:, made.mesh.boundary_facets()].T
-        on = np.isin(facets, made.vertex[np.asarray(nodes, dtype=np.int64)]).all(axis=1)
+        on = np.isin(facets, made.vertex[nodes]).all(axis=1)
         if on.any():
-            named.setdefault(str(name), made.mesh.boundary_facets()[on])
-    return SolidMesh(made.mesh.with_boundaries(named), float(shape.min()), 0)
+            found.setdefault(name, made.mesh.boundary_facets()[on])
+    return SolidMesh(made.mesh.with_boundaries(found), float(shape.min()), 0)
 
 
 def _read(file: BodyFile) -> meshio.Mesh:
@@ -95,3 +112,16 @@ def _triangles(mesh: meshio.Mesh) -> dict[str, Ints]:
             if dimension == 2 and block.type in SURFACES and name not in mesh.cell_sets:
                 out.setdefault(name, []).append(block.data[np.asarray(tags) == tag, :3])
     return {name: np.concatenate(parts).astype(np.int64) for name, parts in out.items()}
+
+
+def _point_sets(mesh: meshio.Mesh) -> dict[str, Ints]:
+    """Nodes of every named set."""
+    return {str(name): np.asarray(n, dtype=np.int64) for name, n in mesh.point_sets.items()}
+
+
+def _pieces(mesh: MeshTet2) -> int:
+    """How many bodies there are that are joined by no facet."""
+    first, second = mesh.f2t[:, mesh.f2t[1] >= 0]
+    n = mesh.nelements
+    joined = sp.coo_matrix((np.ones(len(first)), (first, second)), shape=(n, n))
+    return int(connected_components(joined, directed=False)[0])

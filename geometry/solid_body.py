@@ -14,6 +14,7 @@ from geometry.pin import Band, GeometryError
 from geometry.places import measure, with_places
 from geometry.quadratic import refined
 from geometry.solid_mesh import MeshSize, SolidMesh
+from geometry.straight import cut_off
 
 MEASURE = MeshSize(across=3.0, corner=1.0)  # the mesh on which a CAD file is measured
 
@@ -89,6 +90,13 @@ class SolidBody:
         from skfem import Basis, ElementTetP2
 
         return float(Basis(self._coarse.mesh, ElementTetP2(), intorder=3).dx.sum())
+
+    @cached_property
+    def cut_off(self) -> float:
+        """Part of the volume that a file's mesh lacks, or has in excess, because its elements'
+        sides are straight where the surface is round, roughly.
+        """
+        return cut_off(self._coarse.mesh) / self.volume if self.meshed else 0.0
 
     @property
     def connections(self) -> tuple[str, ...]:

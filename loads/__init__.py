@@ -30,8 +30,9 @@ from loads.linkage import (
 )
 from loads.mobility import Mobility, mobility
 from loads.motion import Motion, at_rest, move
-from loads.reactions import Reactions, TableError, given_reactions, read_reactions
+from loads.reactions import Reactions, given_reactions, read_reactions
 from loads.spatial_leg import Contact, LegDynamics, LegMotion, SpatialLeg, leg_dynamics
+from loads.table import TableError, read_table
 
 __all__ = [
     "GROUND",
@@ -74,5 +75,6 @@ __all__ = [
     "motion_reactions",
     "move",
     "read_reactions",
+    "read_table",
     "static_reactions",
 ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -15,7 +16,10 @@ GROUND = "ground"
 
 
 class LinkageError(ValueError):
-    """The linkage as described cannot be analysed; the message says why and what would be right."""
+    """The linkage as described cannot be analysed; each of `args` says why and what is right."""
+
+    def __str__(self) -> str:
+        return "; ".join(map(str, self.args))
 
 
 @dataclass(frozen=True)
@@ -123,7 +127,8 @@ class Linkage:
     sharing: tuple[Sharing, ...] = ()
 
     def __post_init__(self) -> None:
-        _check(self)
+        if wrong := list(_contradictions(self)):
+            raise LinkageError(*wrong)
 
     @cached_property
     def connections(self) -> tuple[tuple[Joint, Connection], ...]:
@@ -177,9 +182,9 @@ def _pin_item(joint: Joint) -> str:
     return f"pin {joint.name}"
 
 
-def _check(linkage: Linkage) -> None:
+def _contradictions(linkage: Linkage) -> Iterator[str]:
     if not linkage.joints:
-        raise LinkageError("the linkage has no joints")
+        yield "the linkage has no joints"
     bodies = {b.name: b for b in linkage.bodies}
     names = [c.name for j in linkage.joints for c in j.connections]
     coordinates = [s.name for s in linkage.sliders] + [t.name for t in linkage.turns]
@@ -190,61 +195,58 @@ def _check(linkage: Linkage) -> None:
         ("slider or turn", coordinates),
         ("drive", list(linkage.driven)),
     ):
-        twice = sorted({n for n in seen if seen.count(n) > 1})
-        if twice:
-            raise LinkageError(f"{what} {twice[0]!r} is named twice; names must be unique")
+        for name in sorted({n for n in seen if seen.count(n) > 1}):
+            yield f"{what} {name!r} is named twice; names must be unique"
     if GROUND in bodies:
-        raise LinkageError(f"no body may be called {GROUND!r}: that is what stands still")
-    _check_joints(linkage, bodies)
-    _check_sliders(linkage, bodies)
+        yield f"no body may be called {GROUND!r}: that is what stands still"
+    yield from _of_joints(linkage, bodies)
+    yield from _of_sliders(linkage, bodies)
     for name in linkage.driven:
         if name not in coordinates:
-            raise LinkageError(f"the drive moves {name!r}, which does not exist")
+            yield f"the drive moves {name!r}, which does not exist"
     for share in linkage.sharing:
         for name in share.connections:
             if name not in names:
-                raise LinkageError(f"sharing names connection {name!r}, which does not exist")
+                yield f"sharing names connection {name!r}, which does not exist"
     for body in linkage.bodies:
         if body.inertia is None:
-            _check_particle(linkage, body)
+            yield from _of_particle(linkage, body)
 
 
-def _check_joints(linkage: Linkage, bodies: dict[str, Body]) -> None:
+def _of_joints(linkage: Linkage, bodies: dict[str, Body]) -> Iterator[str]:
     for joint in linkage.joints:
         for c in joint.connections:
             if c.body not in (GROUND, *bodies):
-                raise LinkageError(f"connection {c.name}: there is no body {c.body!r}")
+                yield f"connection {c.name}: there is no body {c.body!r}"
             if c.body == joint.fixed_in:
-                raise LinkageError(
+                yield (
                     f"connection {c.name}: pin {joint.name} is fixed in {c.body}, so that body "
                     "cannot also turn on it"
                 )
         if joint.fixed_in not in (None, GROUND, *bodies):
-            raise LinkageError(f"joint {joint.name}: there is no body {joint.fixed_in!r}")
+            yield f"joint {joint.name}: there is no body {joint.fixed_in!r}"
         if joint.fixed_in is None and len(joint.connections) < 2:
-            raise LinkageError(f"joint {joint.name}: a floating pin needs at least two connections")
+            yield f"joint {joint.name}: a floating pin needs at least two connections"
 
 
-def _check_sliders(linkage: Linkage, bodies: dict[str, Body]) -> None:
+def _of_sliders(linkage: Linkage, bodies: dict[str, Body]) -> Iterator[str]:
     for slider in linkage.sliders:
         for body in (slider.base, slider.moving):
             if body not in (GROUND, *bodies):
-                raise LinkageError(f"slider {slider.name}: there is no body {body!r}")
+                yield f"slider {slider.name}: there is no body {body!r}"
         if slider.base == slider.moving:
-            raise LinkageError(f"slider {slider.name}: {slider.base} cannot slide on itself")
+            yield f"slider {slider.name}: {slider.base} cannot slide on itself"
         if slider.axis == (0.0, 0.0):
-            raise LinkageError(
-                f"slider {slider.name}: its two points coincide, it has no direction; give one"
-            )
+            yield (f"slider {slider.name}: its two points coincide, it has no direction; give one")
     for turn in linkage.turns:
         for body in (turn.base, turn.body):
             if body not in (GROUND, *bodies):
-                raise LinkageError(f"drive {turn.name}: there is no body {body!r}")
+                yield f"drive {turn.name}: there is no body {body!r}"
         if turn.base == turn.body:
-            raise LinkageError(f"drive {turn.name}: {turn.base} cannot turn against itself")
+            yield f"drive {turn.name}: {turn.base} cannot turn against itself"
 
 
-def _check_particle(linkage: Linkage, body: Body) -> None:
+def _of_particle(linkage: Linkage, body: Body) -> Iterator[str]:
     slides = [s for s in linkage.sliders if body.name in (s.base, s.moving)]
     if any(GROUND in (s.base, s.moving) for s in slides):
         return
@@ -252,7 +254,7 @@ def _check_particle(linkage: Linkage, body: Body) -> None:
     carries = any(j.fixed_in == body.name for j in linkage.joints)
     alone = len(held) == 1 and not slides and not carries
     if not alone or not np.allclose(held[0].at, body.centre, atol=1e-9):
-        raise LinkageError(
+        yield (
             f"body {body.name}: without inertia it is a particle, held by one connection at its "
             "centre; give it an inertia, or put its centre at that joint"
         )

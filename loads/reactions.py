@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-import csv
-import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from loads.linkage import Floats
+from loads.table import TableError, read_table
 
 Components = dict[str, tuple[float, ...]]
-
-
-class TableError(ValueError):
-    """A table of reactions cannot be used; the message names the file, the line and the remedy."""
 
 
 @dataclass(frozen=True)
@@ -103,41 +98,24 @@ def read_reactions(
 
     Raises: TableError.
     """
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except FileNotFoundError:
-        raise TableError(f"{path}: no such file; tables are looked up beside the study") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise TableError(f"{path}: cannot be read as UTF-8 text ({error})") from None
-    rows = csv.DictReader(text.splitlines(), skipinitialspace=True)
-    columns = [name.strip() for name in rows.fieldnames or []]
-    missing = [c for c in ("connection", "fx", "fy") if c not in columns]
-    if missing:
-        raise TableError(
-            f"{path}: column {missing[0]!r} is missing; needed are connection,fx,fy "
-            "and, if there are any, fz, mx, my, mz and time"
-        )
-    rows.fieldnames = columns
     units = dict.fromkeys(("fx", "fy", "fz"), force_unit)
     units |= dict.fromkeys(("mx", "my", "mz"), moment_unit)
+    optional = ("fz", "mx", "my", "mz", "time")
     data: dict[float | None, dict[str, list[float]]] = {}
-    for row in rows:
-        where = f"{path}, line {rows.line_num}"
-        name = (row["connection"] or "").strip()
+    for row in read_table(path, ("connection", "fx", "fy"), optional):
+        name = row.cells["connection"]
         if name not in known:
             raise TableError(
-                f"{where}: unknown connection {name!r}; the study's pins have "
+                f"{row.where}: unknown connection {name[:40]!r}; the study's pins have "
                 f"{', '.join(sorted(known))}"
             )
-        time = _number(row, "time", where) * time_unit if "time" in columns else None
+        time = row.number("time") * time_unit if "time" in row.cells else None
         instant = data.setdefault(time, {})
         if name in instant:
-            raise TableError(f"{where}: connection {name} is given twice at the same instant")
+            raise TableError(f"{row.where}: connection {name} is given twice at the same instant")
         instant[name] = [
-            _number(row, c, where) * unit if c in columns else 0.0 for c, unit in units.items()
+            row.number(c) * unit if c in row.cells else 0.0 for c, unit in units.items()
         ]
-    if not data:
-        raise TableError(f"{path}: the table has no rows")
     names = list(next(iter(data.values())))
     for time, instant in data.items():
         gap = set(names).symmetric_difference(instant)
@@ -151,19 +129,8 @@ def read_reactions(
     forces, moments = np.split(np.array([[data[t][n] for n in names] for t in order]), 2, axis=2)
     return replace(
         first,
-        times=np.array(order, dtype=float) if "time" in columns else None,
+        times=None if order == [None] else np.array(order, dtype=float),
         forces=forces,
         moments=moments,
         turn=np.zeros(forces.shape[:2]),
     )
-
-
-def _number(row: dict[str, str], column: str, where: str) -> float:
-    text = row[column]
-    try:
-        value = float(text)
-    except (TypeError, ValueError):
-        raise TableError(f"{where}: {column} = {text!r} is not a number") from None
-    if not math.isfinite(value):
-        raise TableError(f"{where}: {column} = {text} is not finite")
-    return value

@@ -23,6 +23,7 @@ from pinstress.climb import (
 )
 from pinstress.own_process import Measure, Measured
 from pinstress.pins import material as material_of
+from pinstress.pins import pin as pin_of
 from pinstress.plan import all_loads, select
 from pinstress.study import Study
 from pinstress.tasks import tasks
@@ -55,7 +56,7 @@ def prepare(study: Study, pin: str, case: str, tolerance: float | None = None) -
     """Raises: InputError for bad input, a pin that nothing holds, or one without any stress."""
     select(study.table.pin, [pin], "pin", "--pin")
     loads = all_loads(study, select(study.table.case, [case], "case", "--case"))
-    (task,) = tasks(study, [pin], loads)
+    (task,) = tasks(study, [pin_of(study, pin)], loads)
     table = study.table.analysis
     asked = Asked(
         tolerance or table.tolerance,

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from loads import Linkage, LinkageError
 from loads.four_bar import four_bar
 from loads.mobility import require_determined
 from pinstress.build import case_loads
+from pinstress.errors import Errors
 from pinstress.mechanism import linkage, span
+from pinstress.pins import lost_shape, weight
 from pinstress.pins import pin as pin_of
-from pinstress.pins import weight
 from pinstress.published import read_published
 from pinstress.schema_cases import GivenCase, LegCase, MotionCase
 from pinstress.schema_pins import PinTable
@@ -17,32 +20,39 @@ from pinstress.study import Study
 
 def describe(study: Study) -> str:
     """A summary of a valid study. Raises: InputError for what only its pieces together show."""
-    table, system = study.table, study.system
-    read_published(study)
-    lines = [f"{study.path}: {table.title}", f"units {system.name}"]
-    mechanism = linkage(study) if table.mechanism else None
+    table = study.table
+    lines = [f"{study.path}: {table.title}", f"units {study.system.name}"]
+    wrong = Errors(study.path)
+    wrong.attempt(lambda: read_published(study))
+    mechanism = wrong.attempt(lambda: linkage(study)) if table.mechanism else None
     if mechanism is not None:
-        lines += _mechanism(study, mechanism)
-    for name in table.case:
-        lines.append(f"case {name}: {_case(study, name, mechanism)}")
-    for name, p in table.pin.items():
-        pin = pin_of(study, name)
-        ways = dict.fromkeys(study.clamps(name, case) for case in table.case)
-        held = " or ".join(", ".join(w) or "nothing: loads must be in balance" for w in ways)
-        density = table.material[p.material].density
-        heavy = ""
-        if density:
-            heavy = f", {weight(pin, density) / system.factor('force'):.4g} {system.force}"
-        lines.append(
-            f"pin {name}: {p.material}, {_form(p)}{heavy}; "
-            f"loaded at {', '.join(pin.connections) or 'nothing'}; held by {held}"
-        )
+        lines += wrong.attempt(partial(_mechanism, study, mechanism)) or []
+    for name, case in table.case.items():
+        if mechanism is not None or isinstance(case, GivenCase | LegCase):
+            lines.append(wrong.attempt(partial(_case, study, name, mechanism)) or "")
+    lines += [wrong.attempt(partial(_pin, study, name)) or "" for name in table.pin]
+    wrong.tell()
     a = table.analysis
     goal = (
         f", required safety factor {a.required_safety_factor:g}" if a.required_safety_factor else ""
     )
     lines.append(f"model {a.model}, tolerance {a.tolerance:g}{goal}")
     return "\n".join(lines)
+
+
+def _pin(study: Study, name: str) -> str:
+    pin, p, system = pin_of(study, name), study.table.pin[name], study.system
+    ways = dict.fromkeys(study.clamps(name, case) for case in study.table.case)
+    held = " or ".join(", ".join(w) or "nothing: loads must be in balance" for w in ways)
+    density = study.table.material[p.material].density
+    heavy = ""
+    if density:
+        heavy = f", {weight(pin, density) / system.factor('force'):.4g} {system.force}"
+    return (
+        f"pin {name}: {p.material}, {_form(p)}{heavy}; "
+        f"loaded at {', '.join(pin.connections) or 'nothing'}; held by {held}"
+        + (f"; {lost}" if (lost := lost_shape(pin)) else "")
+    )
 
 
 def _form(pin: PinTable) -> str:
@@ -82,6 +92,10 @@ def _mechanism(study: Study, mechanism: Linkage) -> list[str]:
 
 
 def _case(study: Study, name: str, mechanism: Linkage | None) -> str:
+    return f"case {name}: {_words(study, name, mechanism)}"
+
+
+def _words(study: Study, name: str, mechanism: Linkage | None) -> str:
     case, table = study.table.case[name], study.table.spatial_leg
     reactions = case_loads(study, name, mechanism).reactions  # the mechanism can follow
     if isinstance(case, GivenCase):

@@ -267,6 +267,9 @@ def chart(
 )
 @click.argument("study", type=click.Path(path_type=Path))
 def check(study: Path) -> None:
+    from pinstress.workers import hold_threads
+
+    hold_threads()
     from pinstress.check import describe
     from pinstress.study import load_study
 

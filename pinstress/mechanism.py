@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import re
+from collections.abc import Callable, Iterable
+from typing import TypeVar
 
 import numpy as np
 
@@ -22,7 +23,9 @@ from loads import (
     Sharing,
     Slider,
     TableDrive,
+    TableError,
     Turn,
+    read_table,
 )
 from loads.bar import flat_bar, round_bar
 from pinstress.errors import InputError
@@ -39,6 +42,8 @@ from pinstress.schema_mechanism import (
 from pinstress.study import Study
 from pinstress.units import to_si
 
+A = TypeVar("A")
+B = TypeVar("B")
 STANDARD_GRAVITY = 9.80665
 LAWS: dict[str, type[CosineDrive | CycloidalDrive | ConstantDrive]] = {
     "cosine": CosineDrive,
@@ -49,42 +54,58 @@ AnyDriveTable = SliderDrive | RotaryDrive
 
 
 def linkage(study: Study) -> Linkage:
-    """The study's mechanism. Raises: InputError when it contradicts itself."""
+    """The study's mechanism. Raises: InputError when it contradicts itself, told at once."""
     mechanism = _mechanism(study)
     g = float(np.hypot(*mechanism.gravity)) or STANDARD_GRAVITY
     try:
         unit, factor = study.system.length, study.system.factor("length")
         at = places(mechanism, lambda length: f"{length / factor:.6g} {unit}")
-        return Linkage(
-            bodies=tuple(_body(mechanism, name, b, at, g) for name, b in mechanism.body.items()),
-            joints=tuple(
-                Joint(
-                    name,
-                    at[name],
-                    tuple(Connection(c, body) for c, body in j.connections.items()),
-                    j.fixed_in,
-                    _pin_mass(study, name, j.weight, g) if j.fixed_in is None else 0.0,
-                )
-                for name, j in mechanism.joint.items()
-            ),
-            sliders=tuple(_slider(mechanism, name, s, at) for name, s in mechanism.slider.items()),
-            turns=tuple(
-                _turn(study, mechanism, d, at)
-                for d in mechanism.drive
-                if isinstance(d, RotaryDrive)
-            ),
-            driven=tuple(drive_name(d) for d in mechanism.drive),
-            gravity=mechanism.gravity,
-            sharing=tuple(
-                Sharing(tuple(s.connections), tuple(s.stiffness)) for s in mechanism.sharing
-            ),
-        )
+        return _assembled(study, mechanism, at, g)
     except LayoutError as error:
         raise study.error(str(error)) from None
     except LinkageError as error:
-        part = re.match(r"(joint|body|slider|drive) ([^:,]+)", str(error))
-        key = f"mechanism.{part[1]}.{part[2]}" if part else ""
-        raise study.error(f"mechanism: {error}", at=key) from None
+        messages = [str(each) for each in error.args]
+        parts = [re.match(r"(joint|body|slider|drive) ([^:,]+)", m) for m in messages]
+        keys = [f"mechanism.{p[1]}.{p[2]}" if p else "mechanism" for p in parts]
+        raise study.errors([f"mechanism: {m}" for m in messages], keys) from None
+
+
+def _assembled(study: Study, mechanism: MechanismTable, at: dict[str, Point], g: float) -> Linkage:
+    wrong: list[str] = []
+
+    def each(make: Callable[[A], B], of: Iterable[A]) -> tuple[B, ...]:
+        made = []
+        for one in of:
+            try:
+                made.append(make(one))
+            except LinkageError as error:
+                wrong.extend(error.args)
+        return tuple(made)
+
+    bodies = each(lambda b: _body(mechanism, *b, at, g), mechanism.body.items())
+    sliders = each(lambda s: _slider(mechanism, *s, at), mechanism.slider.items())
+    turning = [d for d in mechanism.drive if isinstance(d, RotaryDrive)]
+    turns = each(lambda d: _turn(study, mechanism, d, at), turning)
+    if wrong:
+        raise LinkageError(*wrong)
+    return Linkage(
+        bodies=bodies,
+        joints=tuple(
+            Joint(
+                name,
+                at[name],
+                tuple(Connection(c, body) for c, body in j.connections.items()),
+                j.fixed_in,
+                _pin_mass(study, name, j.weight, g) if j.fixed_in is None else 0.0,
+            )
+            for name, j in mechanism.joint.items()
+        ),
+        sliders=sliders,
+        turns=turns,
+        driven=tuple(drive_name(d) for d in mechanism.drive),
+        gravity=mechanism.gravity,
+        sharing=tuple(Sharing(tuple(s.connections), tuple(s.stiffness)) for s in mechanism.sharing),
+    )
 
 
 def _mechanism(study: Study) -> MechanismTable:
@@ -209,38 +230,21 @@ def _table(study: Study, drive: AnyDriveTable) -> TableDrive:
     slides = isinstance(drive, SliderDrive)
     length, time = study.system.factor("length"), study.system.factor("time")
     value = "position" if slides else "position_deg"
-    unit = length if slides else math.pi / 180.0
+    unit, rates = (length, length) if slides else (math.pi / 180.0, 1.0)
+    units = {
+        "time": time,
+        value: unit,
+        "velocity": rates / time,
+        "acceleration": rates / time**2,
+    }
     try:
-        reader = csv.DictReader(path.read_text(encoding="utf-8-sig").splitlines())
-        columns = [c.strip() for c in reader.fieldnames or []]
-        reader.fieldnames = columns
-        for c in ("time", value):
-            if c not in columns:
-                raise InputError(f"{path}: column {c!r} is missing; needed are time,{value}")
-        exact = [c for c in columns if c in ("velocity", "acceleration")]
-        if len(exact) == 1:
-            raise InputError(f"{path}: give both velocity and acceleration, or neither")
-        rates = length if slides else 1.0
-        rows = [
-            [
-                float(row["time"]) * time,
-                float(row[value]) * unit,
-                *(
-                    float(row[c]) * rates / time ** (i + 1)
-                    for i, c in enumerate(sorted(exact)[::-1])
-                ),
-            ]
-            for row in reader
-        ]
-        data = np.array(rows, dtype=float)
-        if not np.isfinite(data).all():
-            raise ValueError("not finite")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: cannot be read ({error})") from None
-    except (TypeError, ValueError) as error:
-        raise InputError(f"{path}: every cell must be a finite number ({error})") from None
-    try:
-        return TableDrive(*(tuple(column) for column in data.T.tolist()))
+        rows = list(read_table(path, ("time", value), ("velocity", "acceleration")))
+        columns = [c for c in units if c in rows[0].cells]
+        if len(columns) == 3:
+            raise TableError(f"{path}: give both velocity and acceleration, or neither")
+        return TableDrive(*(tuple(row.number(c) * units[c] for row in rows) for c in columns))
+    except TableError as error:
+        raise InputError(str(error)) from None
     except LinkageError as error:
         raise InputError(f"{path}: {error}") from None
 

@@ -10,6 +10,7 @@ from geometry import CutPin, Flat, GeometryError, Hole, Pin, PinLike, Segment
 from pinstress.schema_pins import PinTable
 from pinstress.study import Study
 
+TELL = 1e-3  # of the volume
 METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
 
 
@@ -26,13 +27,18 @@ def pin(study: Study, name: str) -> PinLike:
     MeshError when a file's solid cannot be meshed.
     """
     p = study.table.pin[name]
-    key = ""
     try:
         made = _from_file(study, name, p) if p.geometry is not None else _turned(name, p)
-        for key, clamp in _held(study, name):  # noqa: B007 (told by what is raised)
-            made.surface(clamp)
     except GeometryError as error:
-        raise study.error(str(error), at=_key(name, str(error), key)) from None
+        raise study.error(str(error), at=_key(name, str(error))) from None
+    unknown: dict[str, str] = {}
+    for key, clamp in _held(study, name):
+        try:
+            made.surface(clamp)
+        except GeometryError as error:
+            unknown[key] = str(error)
+    if unknown:
+        raise study.errors(list(unknown.values()), list(unknown))
     return made
 
 
@@ -46,16 +52,32 @@ def _held(study: Study, name: str) -> Iterator[tuple[str, str]]:
             yield f"{key}[{i}]", surface
 
 
-def _key(name: str, message: str, clamp: str) -> str:
+def _key(name: str, message: str) -> str:
     """The key of what geometry calls "segment 2", "hole 1" or "band foot" of a pin."""
     about = message.removeprefix(f"pin {name}")
-    if about.startswith(" has no surface"):
-        return clamp
     if band := re.match(r": band ([^:]+)", about):
         return f"pin.{name}.band.{band[1]}"
     if part := re.search(r"\b(segment|hole|flat)s? (\d+)", about):
         return f"pin.{name}.{part[1].replace('segment', 'profile')}[{part[2]}]"
     return f"pin.{name}.geometry"
+
+
+def lost_shape(pin: PinLike) -> str:
+    """What no error estimate knows of a mesh from a file, in words; empty where there is nothing
+    of it.
+    """
+    if not pin.meshed:
+        return ""
+    from geometry.solid_body import SolidBody
+
+    assert isinstance(pin, SolidBody)
+    if pin.cut_off < TELL:
+        return ""
+    return (
+        f"the sides of its elements are straight where its surface is round, which changes its "
+        f"volume by about {pin.cut_off:.1%}, and no error estimate knows of it: give curved "
+        "quadratic elements, finer ones, or a STEP file"
+    )
 
 
 def weight(pin: PinLike, density: float, gravity: float = 9.80665) -> float:
@@ -101,9 +123,9 @@ def _turned(name: str, p: PinTable) -> Pin | CutPin:
 
 def _from_file(study: Study, name: str, p: PinTable) -> PinLike:
     from geometry.body_file import BodyFile, Place
-    from geometry.solid_body import SolidBody  # which needs meshio and scikit-fem
+    from pinstress.read_body import read_body  # which needs meshio and scikit-fem
 
     assert p.geometry is not None
     places = tuple(Place(n, b.z, b.surface, b.connection) for n, b in p.band.items())
     file = BodyFile(name, study.beside(p.geometry), METRES[p.geometry_unit], places)
-    return SolidBody(file)
+    return read_body(file)

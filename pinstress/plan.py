@@ -5,15 +5,17 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import partial
 
 from fea.ladder import Asked, Model
 from fea.memory import allowed_memory
 from pinstress import checks
 from pinstress.build import CaseLoads, case_loads
-from pinstress.errors import InputError
+from pinstress.errors import Errors, InputError
 from pinstress.gather_fields import Also
 from pinstress.measures import published_values
 from pinstress.mechanism import linkage
+from pinstress.pins import pin as pin_of
 from pinstress.published import Published, read_published
 from pinstress.study import Study
 from pinstress.tasks import Task, tasks
@@ -38,9 +40,12 @@ def select(
 
 
 def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
-    """The reactions of every case, by name."""
+    """The reactions of every case, by name. Raises: InputError with what is wrong in any."""
     mechanism = linkage(study) if study.table.mechanism else None
-    return {name: case_loads(study, name, mechanism) for name in cases}
+    wrong = Errors(study.path)
+    found = {name: wrong.attempt(partial(case_loads, study, name, mechanism)) for name in cases}
+    wrong.tell()
+    return {name: loads for name, loads in found.items() if loads is not None}
 
 
 @dataclass(frozen=True)
@@ -78,11 +83,17 @@ def prepare(
 
     Raises: InputError for bad input.
     """
-    published = read_published(study)
-    loads = all_loads(study, select(study.table.case, cases, "case"))
+    names = select(study.table.pin, pins, "pin")
+    wrong = Errors(study.path)
+    published = wrong.attempt(lambda: read_published(study))
+    loads = wrong.attempt(lambda: all_loads(study, select(study.table.case, cases, "case")))
+    shapes = {name: wrong.attempt(partial(pin_of, study, name)) for name in names}
+    wrong.tell()
+    assert published is not None
+    assert loads is not None
     checks.motion_check(study, loads, published)  # mistakes there should not wait for the stresses
     published_values(study, loads, published)
-    todo = tasks(study, select(study.table.pin, pins, "pin"), loads)
+    todo = tasks(study, [pin for pin in shapes.values() if pin is not None], loads)
     check, checked = study.table.beam_check, None
     if check is not None:
         choice = (t for t in todo if t.pin.name == check.pin and check.case in t.left_out)

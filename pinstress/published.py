@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import csv
-import math
 from dataclasses import dataclass, field
 
+from loads import TableError, read_table
 from pinstress.errors import InputError
 from pinstress.study import Study
 
@@ -46,9 +45,9 @@ def read_published(study: Study) -> Published:
     reactions = _rows(study, named.reactions, ("case", "connection"), ("force",))
     motion = _rows(study, named.motion, (), ("time", "speed", "acceleration"))
     return Published(
-        peaks={(names[0], names[1]): (v[0], v[1]) for names, v in peaks},
-        reactions={(names[0], names[1]): v[0] for names, v in reactions},
-        motion=tuple((v[0], v[1], v[2]) for _, v in motion),
+        peaks={(names[0], names[1]): (v[0], v[1]) for _, names, v in peaks},
+        reactions={(names[0], names[1]): v[0] for _, names, v in reactions},
+        motion=tuple((v[0], v[1], v[2]) for _, _, v in motion),
         values=_values(study, named.values),
     )
 
@@ -56,9 +55,8 @@ def read_published(study: Study) -> Published:
 def _values(study: Study, name: str | None) -> tuple[PublishedRow, ...]:
     columns = ("case", "time", "quantity", "name", "reason")
     found = []
-    for i, (text, (value,)) in enumerate(_rows(study, name, columns, ("published",)), 2):
+    for where, text, (value,) in _rows(study, name, columns, ("published",)):
         case, when, quantity, what, reason = text
-        where = f"{study.beside(name or '')}, line {i}"
         if case not in study.table.case:
             raise InputError(f"{where}: the study has no case {case!r}")
         try:
@@ -71,26 +69,15 @@ def _values(study: Study, name: str | None) -> tuple[PublishedRow, ...]:
 
 def _rows(
     study: Study, name: str | None, names: tuple[str, ...], numbers: tuple[str, ...]
-) -> list[tuple[list[str], list[float]]]:
-    """Rows of one table, as its names and its numbers."""
+) -> list[tuple[str, list[str], list[float]]]:
+    """Rows of one table: where each is, its names and its numbers."""
     if name is None:
         return []
-    path = study.beside(name)
-    try:
-        reader = csv.DictReader(path.read_text(encoding="utf-8-sig").splitlines())
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: cannot be read ({error})") from None
-    for column in (*names, *numbers):
-        if column not in (reader.fieldnames or ()):
-            needed = ",".join((*names, *numbers))
-            raise InputError(f"{path}: column {column!r} is missing; needed are {needed}")
     found = []
-    for row in reader:
-        try:
-            values = [float(row[c]) for c in numbers]
-        except (TypeError, ValueError):
-            values = [math.nan]
-        if not all(math.isfinite(v) for v in values):
-            raise InputError(f"{path}, line {reader.line_num}: {','.join(numbers)} must be numbers")
-        found.append(([row[c] for c in names], values))
+    try:
+        for row in read_table(study.beside(name), (*names, *numbers)):
+            cells = [row.cells[c] for c in names]
+            found.append((row.where, cells, [row.number(c) for c in numbers]))
+    except TableError as error:
+        raise InputError(str(error)) from None
     return found

@@ -132,7 +132,12 @@ PIN_SIZED = Within(_pin_sized, "from 1 µm to 1 km")
 
 
 def usable_name(name: str) -> str:
-    if not name or name[0] in ". " or any(c in '/\\:*?"<>|' for c in name):
+    if bad := [c for c in dict.fromkeys(name) if c in '/\\:*?"<>|']:
+        raise ValueError(
+            f"{name!r} cannot be part of a file name on every system, because of {' '.join(bad)}; "
+            "use letters, digits, - and _"
+        )
+    if not name or name[0] in ". ":
         raise ValueError(f"{name!r} cannot be part of a file name; use letters, digits, - and _")
     if len(quote(name)) > LONGEST_NAME:
         raise ValueError(f"{name!r} is too long for a part of a file name")

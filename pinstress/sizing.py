@@ -13,6 +13,7 @@ from fea.ladder import Asked, solve_pin
 from fea.peak import Peak, Verdict
 from pinstress.errors import InputError
 from pinstress.pins import material as material_of
+from pinstress.pins import pin as pin_of
 from pinstress.plan import Plan
 from pinstress.resize import resized
 from pinstress.size_search import NoSizeError, smallest
@@ -102,7 +103,7 @@ def governing(plan: Plan, study: Study, pin: str, tell: Tell = lambda _: None) -
     peaks: list[Peak] = []
     material = material_of(study, study.table.pin[pin].material)
     asked: Asked = replace(plan.asked, goal="value")
-    for task in tasks(study, [pin], plan.loads):
+    for task in tasks(study, [pin_of(study, pin)], plan.loads):
         found = solve_pin(task.pin, material, task.clamps, task.loads, asked, tell)
         peaks += [solution.peak for solution in found]
     for peak in peaks:

@@ -13,6 +13,7 @@ from fea.second_opinion import Opinion
 from pinstress import checks, gather, gather_fields
 from pinstress.cache import Cache
 from pinstress.gather_surface import surface_of
+from pinstress.pins import lost_shape
 from pinstress.pins import material as material_of
 from pinstress.plan import Plan
 from pinstress.solved import Entry, Solved, lasting, question
@@ -119,7 +120,8 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
         if field is not None:
             tell(f"pin {task.pin.name}, pictures")
             keep(field)
-    peaks = tuple(s.peak for s in found)
+    lost = lost_shape(task.pin)
+    peaks = tuple(replace(s.peak, note="; ".join(filter(None, (s.peak.note, lost)))) for s in found)
     ranges = (gather.landing_range(study, plan.loads, task, s) for s in found)
     landing = tuple(r for r in ranges if r is not None)
     beam = None

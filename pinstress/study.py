@@ -6,7 +6,7 @@ import difflib
 import hashlib
 import re
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -65,7 +65,11 @@ class Study:
         """What is wrong with this study, with the line of the key that the message begins with,
         or of the key `at`.
         """
-        return study_error(self.path, self.text, [message], at)
+        return self.errors([message], [at])
+
+    def errors(self, messages: Sequence[str], at: Sequence[str]) -> InputError:
+        """The same for several."""
+        return study_error(self.path, self.text, messages, at)
 
     def clamps(self, pin: str, case: str) -> tuple[str, ...]:
         """What holds a pin in a case, in the study's words."""

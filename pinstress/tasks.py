@@ -11,7 +11,6 @@ from geometry import PinLike
 from loads import Reactions
 from pinstress.build import CaseLoads
 from pinstress.pins import material
-from pinstress.pins import pin as pin_of
 from pinstress.study import Study
 
 
@@ -30,15 +29,14 @@ class Task:
     ranges: dict[str, PinLoads]
 
 
-def tasks(study: Study, pins: list[str], loads: dict[str, CaseLoads]) -> list[Task]:
+def tasks(study: Study, pins: list[PinLike], loads: dict[str, CaseLoads]) -> list[Task]:
     """What is to be solved: the pins that any case loads.
 
     Raises: InputError when nothing is, or when all loads on a pin are at what holds it.
     """
     out = []
-    for name in pins:
-        pin = pin_of(study, name)
-        ways = dict.fromkeys(study.clamps(name, case) for case in loads)
+    for pin in pins:
+        ways = dict.fromkeys(study.clamps(pin.name, case) for case in loads)
         for clamps in ways:
             task = _task(study, pin, clamps, loads)
             if task.loads:
@@ -49,7 +47,7 @@ def tasks(study: Study, pins: list[str], loads: dict[str, CaseLoads]) -> list[Ta
         many = "s" if len(loads) > 1 else ""
         raise study.error(
             f"case{many} {', '.join(loads)} {'do' if many else 'does'} not load "
-            f"pin{'s' if len(pins) > 1 else ''} {', '.join(pins)}"
+            f"pin{'s' if len(pins) > 1 else ''} {', '.join(pin.name for pin in pins)}"
         )
     return out
 

@@ -33,6 +33,7 @@ Progress = Callable[[str, float], None]
 TICK = 0.2  # s between two calls of progress at most, for its clock
 GRACE = 0.5  # s for a process to clean up once it is told to end
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "LP_NUM_THREADS")
+INTERRUPTS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 PARENT_DEATH = 1  # PR_SET_PDEATHSIG
 
 
@@ -72,10 +73,17 @@ def hold_threads() -> None:
 
 
 def preload(*modules: str) -> None:
-    """Import what jobs will need once for all of them; what is missing they miss themselves."""
-    for name in modules:
-        with suppress(ImportError):
-            import_module(name)
+    """Import what jobs will need once for all of them; what is missing they miss themselves.
+
+    Interrupts wait until then: one in the middle of VTK's import crashes it.
+    """
+    held = signal.pthread_sigmask(signal.SIG_BLOCK, INTERRUPTS)
+    try:
+        for name in modules:
+            with suppress(ImportError):
+                import_module(name)
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, held)
 
 
 def side_by_side(

@@ -76,8 +76,7 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Any) 
             (staging / "vtk").mkdir()
         keep = partial(_keep, staging, _units(study), wanted.vtk, paints, cache)
         with progress_bar(alone=most == 1, quiet=wanted.quiet) as progress:
-            if most > 1:
-                preload(*SOLVERS, *(PAINTERS if paints else ()))
+            preload(*SOLVERS, *(PAINTERS if paints else ()))
             ask = {"ask": opinions.ask} if opinions else {}
             found = solve_tasks(plan, keep, progress, jobs=most, cache=cache, **ask)
             results = results_of(plan, found)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from decimal import Decimal
 
 DASH = "–"
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -22,7 +23,7 @@ def engineering(value: float | None, digits: int = 4) -> str:
     if -3 <= size < 7:
         return _plain(rounded, digits, size)
     power = 3 * (size // 3)
-    return f"{_plain(rounded / 10.0**power, digits, size - power)}×{ten_to(power)}"
+    return f"{_plain(float(Decimal(rounded).scaleb(-power)), digits, size - power)}×{ten_to(power)}"
 
 
 def ten_to(power: int) -> str:

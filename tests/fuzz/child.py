@@ -17,6 +17,7 @@ from pinstress.cli import run_command_line
 __all__ = ["End", "check", "run", "write"]
 
 SECONDS = 60  # of processor time: the machine may have other things to do
+OUT_OF_TIME = f"signal {int(signal.SIGXCPU)} "  # as a worker's end is told
 MEMORY = 4 * 2**30  # bytes of address space
 SIGNS = re.compile(r"Traceback|Warning|Exception ignored|\w+Error\b(?!:? the numerics)|<class ")
 
@@ -32,7 +33,7 @@ class End:
     @property
     def wrong(self) -> str:
         """What a user should not have met; empty when all is well."""
-        if self.status is None:
+        if self.status is None or (self.status == 3 and OUT_OF_TIME in self.err):
             return f"no end after {SECONDS} s"
         if self.status not in (0, 1, 2, 3):
             return f"status {self.status}"

@@ -4,41 +4,41 @@ from __future__ import annotations
 
 import random
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from tests.conftest import ROOT
+from tests.fuzz import bodies
 from tests.fuzz.child import End, run
 from tests.fuzz.mutate import STUDY, TABLE, mutant
+from tests.fuzz.mutate_file import damaged
 
 STUDIES = sorted(
     [*(ROOT / "studies").glob("*.toml"), *(ROOT / "studies" / "failures").glob("*.toml")]
 )
-QUICK = ("--no-pictures", "--tolerance", "0.5", "--jobs", "1", "--memory-limit", "300")
+QUICK = ("--no-pictures", "--tolerance", "0.5", "--memory-limit", "300")
+
+
+Break = Callable[[Path, random.Random], str]
 
 
 @dataclass(frozen=True)
 class Case:
-    """A command on a mutant, and how it ended."""
+    """A command on a mutant of a study, or of a file beside one, and how it ended."""
 
     seed: int
-    study: str
+    of: str
     command: str
     end: End
 
     def __str__(self) -> str:
-        return f"mutant {self.seed} of {self.study}, {self.command}: {self.end.wrong}"
+        return f"mutant {self.seed} of {self.of}, {self.command}: {self.end.wrong}"
 
 
-def hunt(seed: int, place: Path, run_too: bool) -> Iterator[Case]:
-    """Break a study, or a table beside it, and give it to the commands. What ends well is removed
-    from `place` again. run_too: whether what can be run is.
-    """
-    rng = random.Random(seed)
+def break_study(folder: Path, rng: random.Random) -> str:
+    """Put a shipped study that is broken, or a table beside it, in a folder; its name."""
     study = rng.choice(STUDIES)
-    folder = place / f"{seed}"
-    folder.mkdir()
     for path in study.parent.iterdir():
         if path.suffix == ".msh":
             shutil.copy(path, folder)
@@ -52,17 +52,40 @@ def hunt(seed: int, place: Path, run_too: bool) -> Iterator[Case]:
     else:
         path, kinds = folder / "study.toml", STUDY
     path.write_bytes(mutant(path.read_text(), kinds, rng))
+    return study.name
+
+
+def break_file(whole: Path, folder: Path, rng: random.Random) -> str:
+    """Put a study in a folder, with a file of `whole` (tests.fuzz.bodies) that is broken; its
+    name.
+    """
+    name = rng.choice(rng.choice(bodies.KINDS))
+    shutil.copytree(whole, folder, dirs_exist_ok=True)
+    (folder / "study.toml").write_text(bodies.study(name))
+    path = folder / name
+    path.write_bytes(damaged(path.read_bytes(), path.suffix == ".csv", rng))
+    return name
+
+
+def hunt(seed: int, place: Path, run_too: bool, broken: Break = break_study) -> Iterator[Case]:
+    """Break something and give it to the commands. What ends well is removed from `place` again.
+    run_too: whether what can be run is.
+    """
+    folder = place / f"{seed}"
+    folder.mkdir()
+    name = broken(folder, random.Random(seed))
     bad = False
     commands = [["check", "study.toml"]]
     while commands:
         arguments = commands.pop(0)
-        case = Case(seed, study.name, arguments[0], run(folder, arguments))
+        case = Case(seed, name, arguments[0], run(folder, arguments))
         bad |= bool(case.end.wrong)
         yield case
         if arguments[0] == "check" and case.end.status == 0:
             commands.append(["loads", "study.toml", "--no-pictures"])
         elif arguments[0] == "loads" and case.end.status == 0 and run_too:
-            commands.append(["run", "study.toml", "--no-cache", *QUICK])
+            jobs = "1" if broken is break_study else "2"
+            commands.append(["run", "study.toml", "--no-cache", *QUICK, "--jobs", jobs])
     if not bad:
         shutil.rmtree(folder)
         for end in (".out", ".err"):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pinstress.units import DIMENSIONS, SYSTEMS, UNIT_NEEDED, to_si
-from tests.fuzz.hunt import hunt
+from tests.fuzz.bodies import write_files
+from tests.fuzz.hunt import break_file, hunt
+from tests.fuzz.kills import kill, whole_run
 
 
 @pytest.mark.slow
@@ -24,6 +27,37 @@ def test_broken_studies_end_with_a_message_or_a_result(tmp_path: Path, first: in
         if case.end.wrong
     ]
     assert wrong == []
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("whole") / "files"
+    write_files(folder)
+    return folder
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("first", range(1, 81, 20))
+def test_broken_files_end_with_a_message_or_a_result(
+    tmp_path: Path, whole: Path, first: int
+) -> None:
+    """Tables, CAD files and meshes."""
+    wrong = [
+        str(case)
+        for seed in range(first, first + 20)
+        for case in hunt(seed, tmp_path, seed == first, partial(break_file, whole))
+        if case.end.wrong
+    ]
+    assert wrong == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_a_run_that_is_ended_leaves_a_whole_folder_and_no_process(
+    tmp_path: Path, jobs: int
+) -> None:
+    longest = whole_run(tmp_path, jobs)
+    assert [k.wrong for k in (kill(seed, tmp_path, jobs, longest) for seed in range(4))] == [""] * 4
 
 
 UNITS = st.lists(

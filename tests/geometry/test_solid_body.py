@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import meshio
@@ -14,6 +15,7 @@ from fea.surface import Patch, surface
 from geometry import CutPin, GeometryError, Hole, Pin, Segment
 from geometry import cad_mesh as cad
 from geometry.body_file import BodyFile, Place
+from geometry.elements import with_element
 from geometry.gmsh_session import gmsh_model
 from geometry.meshing import solid_mesh as any_mesh
 from geometry.quadratic import refined
@@ -105,6 +107,35 @@ def test_a_mesh_is_taken_as_it_is(ending: str, linear: bool, tmp_path: Path) -> 
     assert volumes[1] == pytest.approx(volumes[0], rel=1e-5)
 
 
+@pytest.mark.parametrize("pin", [IN_METRES, Pin("P", (Segment(0.06, 0.02, connection="B"),))])
+def test_what_straight_sides_cut_off_is_told(pin: Pin, tmp_path: Path) -> None:
+    """Within a quarter of it, beside the volume of the same mesh with curved sides."""
+    curved = solid_mesh(pin, MeshSize())
+    straight = replace(curved, mesh=with_element(curved.mesh, "straight"))
+    whole, less = (
+        body(write_mesh(m, tmp_path / f"{i}.msh")) for i, m in enumerate((curved, straight))
+    )
+    assert whole.cut_off == 0.0
+    lost = 1.0 - less.volume / whole.volume
+    assert lost > 0.01
+    assert less.cut_off == pytest.approx(lost, rel=0.25)
+    assert body(write_mesh(curved, tmp_path / "2.vtk", linear=True)).cut_off == pytest.approx(
+        less.cut_off
+    )
+
+
+def test_a_box_has_no_round_surface(tmp_path: Path) -> None:
+    with gmsh_model("box") as gmsh:
+        gmsh.model.occ.addBox(-5, -5, 0, 10, 10, 30)
+        gmsh.model.occ.synchronize()
+        gmsh.option.setNumber("Mesh.MeshSizeMax", 3.0)
+        gmsh.model.addPhysicalGroup(2, [6], name="top")
+        gmsh.model.addPhysicalGroup(3, [1], name="box")
+        gmsh.model.mesh.generate(3)
+        gmsh.write(str(tmp_path / "box.msh"))
+    assert body(tmp_path / "box.msh", Place("B", surface="top")).cut_off == 0.0
+
+
 def test_refining_keeps_the_curved_shape() -> None:
     mesh = solid_mesh(IN_METRES, MeshSize(across=2.5)).mesh
     coarse, fine = Discretisation(mesh), Discretisation(refined(mesh))
@@ -149,6 +180,29 @@ def test_the_outermost_surface_is_without_holes(tmp_path: Path) -> None:
     assert len(outside) == len(solid.mesh.boundaries["B"])
     space = Discretisation(solid.mesh)
     assert found.band("B").area == pytest.approx(Patch(space, surface(space), "B").area, rel=1e-9)
+
+
+def test_meshes_that_are_no_pin(tmp_path: Path) -> None:
+    """Two bodies, nodes that are not there or nowhere, and junk of every ending."""
+    whole = meshio.read(write_mesh(solid_mesh(IN_METRES, MeshSize(across=2.0)), tmp_path / "a.vtk"))
+    points, cells, path = whole.points, whole.cells[0].data, tmp_path / "bad.vtk"
+
+    def refuse(message: str, x: np.ndarray, t: np.ndarray) -> None:
+        meshio.write(path, meshio.Mesh(x, [("tetra10", t)]))
+        with pytest.raises(GeometryError, match=message):
+            body(path)
+
+    two = np.concatenate([points, points + np.array([0.0, 0.0, 60.0])])
+    refuse("in 2 pieces that share no facet", two, np.concatenate([cells, cells + len(points)]))
+    refuse("names nodes that it does not have", points, np.where(cells == 5, 10**6, cells))
+    refuse("names nodes that it does not have", points, np.where(cells == 5, -3, cells))
+    for wrong in (np.nan, np.inf, 1e308):
+        refuse("no finite numbers or further than", np.where(points > 59.0, wrong, points), cells)
+    for ending in ("msh", "inp", "vtk", "vtu", "med", "bdf", "mesh", "xdmf", "doc"):
+        for junk in (b"", b"\0" * 1000, bytes(range(256)) * 20, "Stöße\n".encode("latin-1") * 50):
+            (tmp_path / f"junk.{ending}").write_bytes(junk)
+            with pytest.raises(GeometryError, match=r"is no geometry that can be read|no volume"):
+                body(tmp_path / f"junk.{ending}")
 
 
 def test_bad_files(tmp_path: Path, step: Path) -> None:

@@ -408,8 +408,12 @@ def test_a_solid_that_needs_more_memory_than_allowed_is_refused(
     Path("study.toml").write_text(ONE_PIN.replace("tolerance = 0.05", "tolerance = 0.001"))
     command = ["run", "study.toml", "--no-pictures", "--model", "solid", "--memory-limit"]
     assert run_command_line([*command, "50"]) == 3
-    assert "and 0.049 GB are allowed" in capsys.readouterr().err
+    told = capsys.readouterr().err
+    assert "and 0.049 GB are allowed (--memory-limit): close other programs, allow more" in told
     assert run_command_line([*command, "300"]) == 1
+    told = capsys.readouterr().err
+    assert "only, so the error is not known; on the next mesh" in told
+    assert "and 0.29 GB are allowed (--memory-limit): allow more, or ask for a larger" in told
     (pin,) = json.loads(Path("out/study/results.json").read_text())["pins"]
     assert pin["verdict"] == "unconverged"
     assert 1 <= len(pin["history"]) < 3

@@ -83,6 +83,36 @@ def test_each_mistake_is_told(tmp_path: Path, text: str, old: str, new: str, mes
     assert str(path) in str(caught.value)
 
 
+def test_what_shows_when_parts_are_put_together_is_told_at_once(tmp_path: Path) -> None:
+    """Of the mechanism, of two pins and of a table, each with its line; a part once."""
+    text = CRANK
+    for old, new in (
+        ('line = ["O", "A"]', 'line = ["A", "A"]'),
+        ('joints = ["O", "C"]', 'joints = ["A", "C"]'),
+        ('connections = { C = "rod" }', 'connections = { C = "piston" }'),
+        ("fillet = 3", "fillet = 30"),
+        ('clamp = ["left", "right"]', 'clamp = ["lift", "light"]'),
+        ("[mechanism]", '[case.more]\nkind = "given"\ntable = "gone.csv"\n\n[mechanism]'),
+    ):
+        assert old in text
+        text = text.replace(old, new, 1)
+    path = write(tmp_path, text)
+    with pytest.raises(InputError) as caught:
+        describe(load_study(path))
+    told = str(caught.value).splitlines()
+    assert told[0] == f"{path}: 6 errors"
+    for key, message in (
+        ("[mechanism.drive]", "drive crank: a line needs two different joints"),
+        ("[mechanism.slider.guide]", "slider guide: joint A is not on ground"),
+        ('  { length = 10, diameter = 30, name = "web" }', "pin O: a fillet of"),
+        ('clamp = ["lift"', "pin C has no surface 'lift'"),
+        ('clamp = ["lift"', "pin C has no surface 'light'"),
+    ):
+        line = text[: text.index(key)].count("\n") + 1
+        assert [t for t in told if t.startswith(f"{path}:{line}: ") and message in t], message
+    assert [t for t in told if "gone.csv: no such file" in t]
+
+
 def test_jamming_is_told_with_time_and_remedy() -> None:
     study = load_study(STUDIES / "slider_crank_jammed.toml")
     with pytest.raises(

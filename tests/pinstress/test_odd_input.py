@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -82,3 +83,18 @@ def test_a_file_that_was_cut_off_is_one_message(
     told = capsys.readouterr().err
     assert told.count("Error") == 1
     assert f"pin{ending}" in told
+
+
+@pytest.mark.parametrize("model", ["auto", "harmonic"])
+def test_no_force_makes_no_stress(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], model: str
+) -> None:
+    """A force of nought, and one whose square is none."""
+    for i, force in enumerate(("0.0", "1e-320")):
+        study = tmp_path / f"{i}.toml"
+        study.write_text(ONE_PIN.replace("-988.86", force))
+        out = str(tmp_path / "out")
+        asked = ["--model", model, "--jobs", "1", "--out", out, "--no-pictures", "--json"]
+        assert run_command_line(["run", str(study), *asked]) == 0
+        (pin,) = json.loads(capsys.readouterr().out)["pins"]
+        assert (pin["max_von_mises"], pin["safety_factor"]) == (0.0, None)

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import json
 import math
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -14,6 +17,7 @@ from pinstress import InputError, load_study
 from pinstress.check import describe
 from pinstress.cli import run_command_line
 from pinstress.pins import pin as pin_of
+from tests.conftest import ROOT
 from tests.geometry.files import write_mesh, write_step
 
 STUDY = """
@@ -145,6 +149,23 @@ def test_bad_shapes(
 def step(tmp_path_factory: pytest.TempPathFactory) -> Path:
     pin = Pin("P", (Segment(20.0, 30.0), Segment(40.0, 20.0)), fillet=4.0)
     return write_step(pin, tmp_path_factory.mktemp("step") / "pin.step")
+
+
+def test_a_file_over_which_opencascade_crashes_is_one_message(tmp_path: Path, step: Path) -> None:
+    """In a process of its own, as here other threads may run, beside which there is none."""
+    text = step.read_text()
+    known = "= DIRECTION('',(0.,1.))"
+    assert known in text
+    (tmp_path / "pin.step").write_text(text.replace(known, known.replace("DIR", "DAR"), 1))
+    done = subprocess.run(
+        [sys.executable, "-m", "pinstress", "check", str(write(tmp_path, FILE))],
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+    )
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.count("Error") == 1
+    assert "pin P: pin.step is damaged" in done.stderr
 
 
 def test_a_beam_check_needs_a_profile(tmp_path: Path) -> None:

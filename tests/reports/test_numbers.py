@@ -24,6 +24,8 @@ from reports.spread import rows, spread
         (0.9999999, "1.000"),
         (8.123456e8, "812.3×10⁶"),
         (1.5e-5, "15.00×10⁻⁶"),
+        (9.88e-321, "9.881×10⁻³²¹"),
+        (1.5e308, "150.0×10³⁰⁶"),
     ],
 )
 def test_engineering(value: float | None, text: str) -> None:
