@@ -1,5 +1,6 @@
 """Run every benchmark and print its table: `make bench`, or `python -m benchmarks assembly`.
 
+Those of accuracy alone come first, one on each core; those that measure times follow one by one.
 With --record a table also goes to docs/measured/NAME.md, with the day and the machine, for the page
 of the documentation that includes it.
 """
@@ -7,6 +8,8 @@ of the documentation that includes it.
 from __future__ import annotations
 
 import sys
+import time
+from collections.abc import Iterator
 
 from benchmarks import (
     accuracy,
@@ -28,31 +31,35 @@ from benchmarks import (
     tension,
 )
 from benchmarks.record import record
+from pinstress.workers import Died, Job, Tell, cores, side_by_side
 
-ALL = {
+ACCURACY = {
+    "coverage": coverage.contained,
+    "failures": failures.failures,
+    "corners": coverage.singular,
+    "holding": modelling.holding,
+    "terms": modelling.terms,
+    "instants": modelling.instants,
+    "recovery": recovery.recovery,
+    "tension": tension.tension,
+    "publications": publications.publications,
+}
+TIMES = {
     "motion": speed.motion,
     "motion-accuracy": motion_accuracy.motion_accuracy,
     "assembly": speed.assembly,
     "solvers": linear_solvers.linear_solvers,
-    "holding": modelling.holding,
-    "terms": modelling.terms,
-    "instants": modelling.instants,
     "fillet": accuracy.fillet,
-    "recovery": recovery.recovery,
     "growth": growth.growth,
     "gear": gear.gear,
     "demo": speed.demo,
     "models": models.models,
     "shoulders": shoulders.shoulders,
-    "coverage": coverage.contained,
-    "corners": coverage.singular,
-    "failures": failures.failures,
     "calculix": calculix.calculix,
     "ngsolve": ngsolve_peer.ngsolve,
-    "tension": tension.tension,
     "peers-motion": peers_motion.peers_motion,
-    "publications": publications.publications,
 }
+ALL = ACCURACY | TIMES
 
 
 def main(arguments: list[str]) -> int:
@@ -62,12 +69,31 @@ def main(arguments: list[str]) -> int:
     if unknown:
         print(f"no benchmark {unknown[0]!r}; there are {', '.join(ALL)}", file=sys.stderr)
         return 2
-    for name in names or ALL:
-        text = ALL[name]()
+    start, status = time.perf_counter(), 0
+    for name, text in _made(names or list(ALL)):
+        if isinstance(text, Died):
+            print(f"{name}: {text.reason}", file=sys.stderr)
+            status = 3
+            continue
         print(f"\n## {name}\n\n{text}", flush=True)
         if "--record" in arguments:
             print(f"written: {record(name, text)}", file=sys.stderr)
-    return 0
+        print(f"{time.perf_counter() - start:.0f} s by now", file=sys.stderr)
+    return status
+
+
+def _made(names: list[str]) -> Iterator[tuple[str, str | Died]]:
+    def job(name: str) -> Job[str]:
+        def work(_: Tell) -> str:
+            return ALL[name]()
+
+        return Job(name, work)
+
+    first = [n for n in names if n in ACCURACY]
+    yield from zip(first, side_by_side([job(n) for n in first], cores()), strict=True)
+    for name in names:
+        if name in TIMES:
+            yield name, TIMES[name]()
 
 
 sys.exit(main(sys.argv[1:]))

@@ -26,7 +26,7 @@ from fea.linear import Floats, Solve
 Ints = NDArray[np.int64]
 
 ACROSS = (6.3, 9.2, 12.2, 18.0)  # elements over the shaft
-SECONDS, GIGABYTES = 60.0, 12.0
+SECONDS, GIGABYTES = 40.0, 12.0
 OVER = f"over {SECONDS:.0f} s"  # of a size, and of all larger ones, which are not tried
 NAMES = {
     "cholmod": "CHOLMOD, nested dissection",

@@ -25,7 +25,7 @@ PINS = (
 DRAWN = 1
 TOLERANCE, MESHES, RUNS = 0.01, 5, 3
 LIMITS = Limits(seconds=300.0, memory=8000.0)
-LONGEST = 40.0  # s: no finer mesh of the solid is tried after one that took so long
+LONGEST = 20.0  # s: no finer mesh of the solid is tried after one that took so long
 
 
 def models() -> str:
