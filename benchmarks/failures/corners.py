@@ -1,4 +1,6 @@
-"""Places without a maximum: a sharp corner, the edge of a clamp, the edge of a uniform load."""
+"""Places without a maximum: a sharp corner, the edge of a clamp, the edge of a uniform load. And the
+edge of a bearing pressure, where no node sees it.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from benchmarks.failures.asked import command, row, task, told
+from benchmarks.failures.asked import command, off, row, task, told
 from benchmarks.failures.draw import INK, decades, line_style, note, ratio_line, ticks
 from benchmarks.failures.entry import Entry
 from benchmarks.failures.fields import MPA, Mesh, even, finest, graded, revolved, towards
@@ -115,6 +117,22 @@ def load_edge() -> LoadEdge:
     return LoadEdge(np.array(sizes), np.array(highest), slope, jump / np.pi, row(name))
 
 
+@dataclass(frozen=True)
+class PressureEdge:
+    """meshes: of one size each. truth: Pa, on a far finer one. found: what pinstress says."""
+
+    meshes: tuple[Mesh, ...]
+    truth: float
+    found: PinResult
+
+
+@cache
+def pressure_edge() -> PressureEdge:
+    """Two pressures that meet, on opposite sides of a pin."""
+    name = "pressure_edge"
+    return PressureEdge(tuple(even(name, n)[0] for n in ACROSS), finest(name), row(name))
+
+
 def entries() -> tuple[Entry, ...]:
     """Of this family."""
     return (
@@ -134,6 +152,7 @@ def entries() -> tuple[Entry, ...]:
         ),
         _looks(looks_converged()),
         _logarithm(load_edge()),
+        _pressed(pressure_edge()),
     )
 
 
@@ -287,3 +306,42 @@ def _draw_logarithm(axes: Axes, e: LoadEdge) -> None:
     axes.invert_xaxis()
     axes.set(xlabel="size of the elements [mm]", ylabel="circumferential shear [MPa]")
     ticks(axes, size)
+
+
+def _pressed(e: PressureEdge) -> Entry:
+    lows = [100.0 * (1.0 - m.maximum / e.truth) for m in e.meshes]
+    return Entry(
+        "pressure_edge",
+        "The edge of a bearing pressure",
+        "Where a pressure p ends, stress has a bound but depends on the direction from which the "
+        "edge is approached: that of a half-plane under p on one half, the same at all distances "
+        "(Johnson, *Contact Mechanics*, 2.5). The largest is right below the edge.",
+        "No node is at no distance: the largest stress of the nodes is "
+        + ", ".join(f"{low:.0f}" for low in lows[:-1])
+        + f" and {lows[-1]:.1f} % low with {e.meshes[0].unknowns:,} to "
+        f"{e.meshes[-1].unknowns:,} unknowns, and which node that is changes from mesh to mesh.",
+        f"{engineering(e.truth / MPA)} MPa, on a mesh of four times pinstress's last.",
+        f"{told(e.found)} Elements beside the edge are not read; the half-plane's stress, whose "
+        "pressure is known, is taken off those further on and put back direction by direction, so "
+        f"that the first mesh, with {e.found.history[0].dofs:,} unknowns, is "
+        f"{abs(off(e.found.history[0].max_von_mises, e.truth / MPA)):.1f} % off.",
+        (command("pressure_edge"),),
+        "The largest stress of the nodes creeps up with the unknowns, pinstress's is right on the "
+        "first mesh",
+        lambda figure, axes: _draw_pressed(axes[0], e),
+        panels=1,
+    )
+
+
+def _draw_pressed(axes: Axes, e: PressureEdge) -> None:
+    unknowns = [m.unknowns for m in e.meshes]
+    peak = [m.maximum / MPA for m in e.meshes]
+    axes.semilogx(unknowns, peak, "o-", color=INK, ms=4)
+    note(axes, unknowns[1], peak[1], "nodes of even meshes", (8, -12), INK)
+    axes.axhline(e.truth / MPA, color=INK, lw=0.8, ls=":")
+    own = line_style(1)
+    axes.semilogx(*zip(*((s.dofs, s.max_von_mises) for s in e.found.history), strict=True), **own)
+    last = e.found.history[-1]
+    note(axes, last.dofs, last.max_von_mises, "pinstress", (8, 4), own["color"])
+    axes.set(xlabel="unknowns", ylabel="largest von Mises stress [MPa]")
+    decades(axes, which="x")

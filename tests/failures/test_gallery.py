@@ -55,6 +55,17 @@ def test_the_edge_of_a_uniform_load_is_a_logarithm() -> None:
 
 
 @pytest.mark.slow
+def test_the_edge_of_a_pressure_is_read_from_every_direction() -> None:
+    e = corners.pressure_edge()
+    low = [1.0 - m.maximum / e.truth for m in e.meshes]
+    assert np.all(np.diff(low) < 0.0)
+    assert min(low[:3]) > 0.02  # on meshes of the size of ours
+    assert e.found.verdict == "converged"
+    assert contains(e.found, e.truth / 1e6)
+    assert e.found.history[0].max_von_mises == pytest.approx(e.truth / 1e6, rel=0.02)
+
+
+@pytest.mark.slow
 def test_linear_elements_lock_in_bending() -> None:
     b = locking.bending()
     linear, own = b.linear / b.truth, b.quadratic / b.truth
