@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 
 Floats = NDArray[np.float64]
 
-NEIGHBOURS = 16  # samples whose stress a quadratic polynomial is fitted to; it has six terms
+NEIGHBOURS = 24  # samples whose stress a quadratic polynomial is fitted to; it has six terms
 _LITTLE = 1e-10  # added where samples leave slope or curvature open, of their number
 
 
@@ -35,7 +35,8 @@ def extension(elements: NDArray[np.int64], samples: Floats, places: Floats) -> s
 
 def continuation(samples: Floats, points: Floats) -> sp.csr_matrix:
     """Matrix (P, S) from values at samples (S, 2) to those at points (P, 2): of the quadratic
-    polynomial that fits those at the nearest samples best, the nearer the better.
+    polynomial that fits those at the nearest samples best; the nearer, the more they count, down to
+    nothing for the last, so that it does not matter which of several at its distance that is.
 
     Source: Zienkiewicz & Zhu, Int. J. Numer. Meth. Engng 33 (1992) 1331, whose patches are the
     elements round a node instead.
@@ -44,7 +45,7 @@ def continuation(samples: Floats, points: Floats) -> sp.csr_matrix:
         return sp.csr_matrix((0, len(samples)))
     count = min(NEIGHBOURS, len(samples))
     distance, near = (np.asarray(x) for x in cKDTree(samples).query(points, count))
-    confidence = 1.0 / (0.3 + distance / distance[:, -1:])
+    confidence = 1.0 - (distance / distance[:, -1:]) ** 2
     weights = at_one_place(samples[near] - points[:, None], confidence)
     row = np.arange(len(points)).repeat(count)
     shape = (len(points), len(samples))

@@ -1,4 +1,4 @@
-"""Places without a maximum: a sharp corner, the edge of a clamp, the edge of a uniform load. And the
+"""Places without a maximum: a sharp corner, the edge of a clamp, that of a uniform load. And the
 edge of a bearing pressure, where no node sees it.
 """
 
@@ -342,6 +342,6 @@ def _draw_pressed(axes: Axes, e: PressureEdge) -> None:
     own = line_style(1)
     axes.semilogx(*zip(*((s.dofs, s.max_von_mises) for s in e.found.history), strict=True), **own)
     last = e.found.history[-1]
-    note(axes, last.dofs, last.max_von_mises, "pinstress", (8, 4), own["color"])
+    note(axes, last.dofs, last.max_von_mises, "pinstress", (8, -10), own["color"])
     axes.set(xlabel="unknowns", ylabel="largest von Mises stress [MPa]")
     decades(axes, which="x")

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from skfem import ElementTriP2
 
 from fea.harmonic import HarmonicModel
 from fea.material import Material
 from fea.pin_loads import Floats
-from fea.section import Section
+from fea.recovery import extension
+from fea.section import Section, elasticity
 from fea.section_stress import beside, section_stress
 from fea.skin import skin
 from geometry import Pin, Segment
@@ -143,8 +145,10 @@ def test_orders(case: str, inner: float, steel: Material) -> None:
 
 @pytest.mark.parametrize("case", CASES)
 def test_order_of_recovered_stress(case: str, steel: Material) -> None:
-    """Largest error over the nodes, the axis and the surface included, falls with order 2 or more;
-    less 0.3, because a maximum wanders from node to node.
+    """Largest error over the nodes: on the skin with order 2, less 0.1 because a maximum wanders
+    from node to node; fitted to samples, up to the axis and the surface, where these are on one
+    side only, with order 1.5 at least (measured 1.55), but on meshes like ours with at most half
+    the error of averages of extrapolated stress, which have order 2.
     """
     n, factors = CASES[case]
     exact = manufactured(steel, n, *(f * c for f, c in zip(factors, smooth(n), strict=True)))
@@ -154,7 +158,20 @@ def test_order_of_recovered_stress(case: str, steel: Material) -> None:
         model = model_on(pin, rectangle(0.0, 1.0, 1.2, k, k), steel)
         u = with_edges_moved(model.space, model.outline, steel, exact, model._on_axis(n))
         seen.append(_nodal_errors(model.space, model, exact, u))
-    assert np.all(orders(seen)[-1] > 1.7), seen
+        assert seen[-1][0] < 0.5 * _by_averages(model.space, steel, exact, u)
+    fitted, on_skin = orders(seen)[-1]
+    assert fitted > 1.5, seen
+    assert on_skin > 1.9, seen
+
+
+def _by_averages(space: Section, steel: Material, exact: Exact, u: Floats) -> float:
+    """Largest error of stress at nodes off the ends, of the largest stress."""
+    stress = elasticity(steel) @ space.sampled_strains(exact.n, u)
+    averaged = extension(space.elements, space._samples, ElementTriP2.doflocs.T)
+    inside = (space.nodes[:, 1] > 0.0) & (space.nodes[:, 1] < 1.2)
+    true = exact.stress(*space.nodes[inside].T)
+    wrong = np.abs((averaged @ stress.reshape(-1, 6))[inside] - true).max()
+    return float(wrong / np.abs(true).max())
 
 
 def _nodal_errors(
