@@ -26,7 +26,9 @@ def describe(study: Study) -> str:
     wrong.attempt(lambda: read_published(study))
     mechanism = wrong.attempt(lambda: linkage(study)) if table.mechanism else None
     if mechanism is not None:
-        lines += wrong.attempt(partial(_mechanism, study, mechanism)) or []
+        told = wrong.attempt(partial(_mechanism, study, mechanism))
+        lines += told or []
+        mechanism = mechanism if told else None  # its cases would say the same again
     for name, case in table.case.items():
         if mechanism is not None or isinstance(case, GivenCase | LegCase):
             lines.append(wrong.attempt(partial(_case, study, name, mechanism)) or "")
