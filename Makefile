@@ -3,7 +3,7 @@ BIN := .venv/bin
 LOCKBIN := .venv-lock/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-peers coverage mutants check bench docs lock clean
+.PHONY: help setup demo test test-browser test-peers coverage mutants check bench docs lock clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | expand -t 12
@@ -20,6 +20,10 @@ demo: setup ## run studies/grenier2008.toml and tell where its report is
 
 test: setup ## run the tests; ARGS="..." goes to pytest
 	$(BIN)/python -m pytest $(ARGS)
+
+test-browser: setup ## run the tests of the report in Chromium, which root gets installed
+	@sh scripts/browser.sh
+	$(BIN)/python -m pytest -m browser $(ARGS)
 
 test-peers: setup ## run the tests beside CalculiX, which root gets installed
 	@sh scripts/peers.sh

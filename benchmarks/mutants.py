@@ -74,7 +74,7 @@ def mutants(source: str) -> Iterator[Mutant]:
         for name, value in ast.iter_fields(changed):
             setattr(target, name, value)
         target.__class__ = changed.__class__
-        words = f"{ast.unparse(node)}  →  {ast.unparse(changed)}"
+        words = f"{ast.unparse(node)} → {ast.unparse(changed)}"
         yield Mutant(getattr(node, "lineno", 0), " ".join(words.split()), other)
 
 
@@ -150,7 +150,6 @@ def examined(path: str, most: int) -> str:
     every = list(mutants(source))
     drawn = sorted(random.Random(0).sample(every, min(most, len(every))), key=lambda m: m.line)
     left = [m for m in drawn if survives(path, m.tree, FILES[path], limit)]
-    print(f"{path}: {len(left)} of {len(drawn)} survive", file=sys.stderr)
     lines = [f"{path}: {len(drawn)} of {len(every)} mutants, {len(left)} survive"]
     return "\n".join(lines + [f"  line {m.line}: {m.change}" for m in left])
 
@@ -159,10 +158,12 @@ def main(arguments: list[str]) -> None:
     """Print the table of all files or those named; --record keeps it, --most=N: so many of each."""
     named = [a for a in arguments if not a.startswith("--")]
     most = next((int(a[7:]) for a in arguments if a.startswith("--most=")), MOST)
-    text = "\n\n".join(examined(path, most) for path in named or FILES)
-    print(text)
+    parts = []
+    for path in named or FILES:
+        parts.append(examined(path, most))
+        print(parts[-1], flush=True)
     if "--record" in arguments:
-        record("mutants", text)
+        record("mutants", "\n\n".join(parts), "python -m benchmarks.mutants")
 
 
 if __name__ == "__main__":

@@ -10,12 +10,12 @@ from pathlib import Path
 FOLDER = Path(__file__).parent.parent / "docs" / "measured"
 
 
-def record(name: str, text: str) -> Path:
+def record(name: str, text: str, command: str = "") -> Path:
     """Write a benchmark's text with its command, day and machine; returns the file."""
     FOLDER.mkdir(exist_ok=True)
     path = FOLDER / f"{name}.md"
     day = datetime.date.today().isoformat()
-    told = f"`python -m benchmarks {name}`, {day}, {machine()}:"
+    told = f"`{command or f'python -m benchmarks {name}'}`, {day}, {machine()}:"
     if not any(line.startswith("|") for line in text.splitlines()):
         text = f"```text\n{text}\n```"  # no table of Markdown, whose lines would run together
     path.write_text(f"{told}\n\n{text}\n", encoding="utf-8")

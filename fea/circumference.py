@@ -133,7 +133,10 @@ class Circumference:
             here = rows[k : k + POINTS]
             bound = self.bound(here)
             for i, t in self._worth(bound, best, together):
-                value = bound[i, t] if len(self._waves) < 2 else self.round(here[i], t)[0]
+                value = bound[i, t]
+                if len(self._waves) > 1:
+                    beat = np.full(len(t), best.max()) if together else best[t]
+                    value = self.round(here[i], t, beat)[0]
                 bound[i, t] = -1.0
                 order = np.argsort(value, kind="stable")
                 i, t, value = i[order], t[order], value[order]
@@ -172,17 +175,20 @@ class Circumference:
             yield i, t
             batch *= 4
 
-    def round(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
+    def round(
+        self, points: Ints, instants: Ints, beat: Floats | None = None
+    ) -> tuple[Floats, Floats]:
         """Largest von Mises stress (J,) Pa round the axis at pairs of points and instants, and the
-        angle (rad) where it is.
+        angle (rad) where it is. beat: (J,) Pa, of pairs that cannot exceed it any value below it.
         """
+        beat = np.zeros(len(points)) if beat is None else beat
         value, angle = np.zeros(len(points)), np.zeros(len(points))
         for k in range(0, len(points), CHUNK):
             here = slice(k, k + CHUNK)
-            value[here], angle[here] = self._round(points[here], instants[here])
+            value[here], angle[here] = self._round(points[here], instants[here], beat[here])
         return value, angle
 
-    def _round(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
+    def _round(self, points: Ints, instants: Ints, beat: Floats) -> tuple[Floats, Floats]:
         n = self._n[[wave.start for wave in self._waves]]
         back, forth = self._parts(points, instants)  # (J, 5, W)
         if len(n) < 2:
@@ -191,7 +197,7 @@ class Circumference:
         count = max(SAMPLES, SAMPLES_PER_WAVE * degree)
         even = n[:, None] * (np.arange(count) * 2.0 * np.pi / count)
         found = np.concatenate([back, forth], axis=2) @ np.concatenate([np.cos(even), np.sin(even)])
-        angle = highest_crest(np.square(found).sum(axis=1), degree)
+        angle = highest_crest(np.square(found).sum(axis=1), degree, beat**2)
         there = n * angle[:, None]
         found = np.einsum("jiw,jw->ji", back, np.cos(there))
         found += np.einsum("jiw,jw->ji", forth, np.sin(there))

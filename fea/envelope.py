@@ -1,4 +1,4 @@
-"""The maximum over all instants and the whole surface, by superposing unit fields.
+"""The maximum over all instants and all points that are read, by superposing unit fields.
 
 Von Mises squared is a quadratic form of the stress, so at every point it is c . M c with the
 instant's loads c: two matrix products cover any number of instants. With many unit loads the
@@ -58,16 +58,16 @@ def envelope(
     within: Sequence[Mask] = (),
     directions: int = DIRECTIONS,
 ) -> Envelope:
-    """Largest von Mises stress over the surface and all instants of a case.
+    """Largest von Mises stress over the points of the fields and all instants of a case.
 
-    fields: with all the unit loads of which `loads` are made. outside: nodes of the surface (S,)
-    among which the maximum is looked for, all by default; within: regions of which the largest
-    stress is wanted, too.
+    fields: with all the unit loads of which `loads` are made. outside: points (S + P,) among which
+    the maximum is looked for, all by default; within: regions of which the largest stress is
+    wanted, too.
     """
-    nodes = fields.surface.nodes
-    among = np.ones(len(nodes), dtype=bool) if outside is None else outside
+    points, surface = fields.points, len(fields.surface.nodes)
+    among = np.ones(len(points), dtype=bool) if outside is None else outside
     directions = directions if fields.revolved else 1
-    squares_of = _squares(fields.stress[nodes])
+    squares_of = _squares(fields.read)
 
     def squares(turn: float) -> Floats:
         return squares_of(fields.coefficients(loads.turned(turn)))
@@ -83,19 +83,19 @@ def envelope(
     maxima = peaks.mean(axis=0)
     instant = int(maxima.argmax())
 
-    def place(nodes: NDArray[np.int64], values: Floats) -> Point:
-        x, y, z = fields.space.nodes[nodes[values.argmax()]].tolist()
+    def place(here: Mask, values: Floats) -> Point:
+        x, y, z = points[here][values.argmax()].tolist()
         return (x, y, z)
 
     return Envelope(
         maximum=float(maxima[instant]),
         scatter=float(np.ptp(peaks[:, instant])) / 2.0,
         instant=instant,
-        location=place(nodes[among], as_is[among, instant]),
-        field=np.sqrt(np.maximum(as_is.max(axis=1), 0.0)),
+        location=place(among, as_is[among, instant]),
+        field=np.sqrt(np.maximum(as_is[:surface].max(axis=1), 0.0)),
         maxima=maxima,
         inside=tuple(
-            (float(np.sqrt(as_is[m].max())), place(nodes[m], as_is[m].max(axis=1))) for m in within
+            (float(np.sqrt(as_is[m].max())), place(m, as_is[m].max(axis=1))) for m in within
         ),
     )
 

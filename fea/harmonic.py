@@ -7,6 +7,7 @@ directions, share it.
 from __future__ import annotations
 
 import numpy as np
+import scipy.sparse as sp
 
 from fea.linear import Analysis, SolveError
 from fea.material import Material
@@ -106,6 +107,8 @@ class HarmonicModel:
         """Unknowns (unknowns, K) under nodal forces."""
         fixed = np.concatenate([self._on_axis(n), self._held(n)])
         K = self.space.stiffness(self.material, n)
+        if n < 2:
+            self._require_equilibrium(K, n)
         free = np.ones(K.shape[0])
         free[fixed] = 0.0
         row = np.repeat(np.arange(len(free)), np.diff(K.indptr))
@@ -114,6 +117,18 @@ class HarmonicModel:
         if self._analysis is None:
             self._analysis = Analysis(K)
         return self._analysis.factorize(K)(forces * free[:, None])
+
+    def _require_equilibrium(self, K: sp.csr_matrix, n: int) -> None:
+        """A section that moves as a whole takes no force, so that whatever its displacements are,
+        the forces of its supports answer its loads.
+        """
+        modes = rigid_motions(self.space.nodes, n)
+        lost = np.abs(K @ modes).max(axis=0) / (np.abs(K.data).max() * np.abs(modes).max(axis=0))
+        if not lost.max() < 1e-9:
+            raise SolveError(
+                f"pin {self.pin.name}: moving it as a whole takes {lost.max():.1e} of its "
+                "stiffness; the solution would not be in equilibrium"
+            )
 
     def _on_axis(self, n: int) -> Ints:
         """Unknowns that vanish on the axis, so that displacements are smooth there."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fea.answer import Picture
 from fea.circumference import Circumference, Top
@@ -17,17 +18,23 @@ from fea.material import Material
 from fea.meridian_fields import MeridianFields
 from fea.pin_loads import Floats, PinLoads
 from fea.revolved import revolve
+from fea.rims import rim
 from fea.zones import Place, outside
 from geometry import Pin
-from geometry.meridian_mesh import SectionSize, Spot, meridian_mesh
+from geometry.grading import Grade, SectionSize, Spot, size_at
+from geometry.meridian_mesh import meridian_mesh
+
+Mask = NDArray[np.bool_]
 
 SIZE = SectionSize()  # of the first mesh
 CLOSE = (1e-2, 1e-3, 1e-4)  # element at a corner or clamp's edge, of the diameter, mesh by mesh
 EDGE = 0.04  # element at the edge of any band, of the diameter
 LOGARITHM = 0.2  # element at a load's edge, of the excluded distance
 MATTERS = 0.5  # of the maximum elsewhere
-RIM = 32  # points round a place
 REST = 0.6  # of a pressure's last harmonic, at most what follows it: terms go as +-1/(n^2 - 1)
+ELSEWHERE = 0.5  # power of the refinement where stresses are low
+HIGH, APART, MOST_HIGH = 0.95, 0.1, 3  # places where they are: of the maximum, of r apart, so many
+PATCH = 2.0  # elements of the first mesh about such a place, in which all are refined
 READ = (4.0, 0.01)  # exponents: from so many elements to so much of the diameter
 
 
@@ -50,17 +57,43 @@ def harmonic_solution(
     before: Collection[Look] = (),
 ) -> HarmonicSolution:
     """All unit loads of the cases on mesh number `level`, each `ratio` times finer than the one
-    before, from which the looks `before` are.
+    before, from which the looks `before` are: where these have high stresses, that is, and
+    elsewhere by the root of that; all over, without looks before.
 
     Raises: MeshError, SolveError.
     """
     close = tuple(
         CLOSE[min(level, len(CLOSE) - 1) if _matters(k, before) else 0] for k in range(len(places))
     )
+    spots = partial(_spots, pin, cases, places, close)
+    high = dict.fromkeys(place for look in before for place in look.high)
+    finer = []
+    for place in high:
+        first = size_at(pin, SIZE, spots(1.0), place)
+        now = size_at(pin, SIZE.finer(ratio**level), spots(ratio**level), place)
+        finer.append(Grade((place,), now, PATCH * first, SIZE.growth))
+    factor = ratio ** (level * ELSEWHERE if high else level)
+    section = meridian_mesh(pin, SIZE.finer(factor), spots(factor), finer)
+    loads = tuple(dict.fromkeys(load for case in cases for load in case.coefficients()))
+    read = [rim(pin, p, part * p.radius) for p in places for part in (1.0, FELT)]
+    rims = np.concatenate([np.zeros((0, 2)), *read])
+    return HarmonicSolution(HarmonicModel(pin, section, material, clamps).solve(loads, rims), close)
+
+
+def _spots(
+    pin: Pin,
+    cases: tuple[PinLoads, ...],
+    places: tuple[Place, ...],
+    close: tuple[float, ...],
+    factor: float,
+) -> list[Spot]:
+    """At singular places, with elements `close` (of the diameter), and at edges of bands, `factor`
+    times finer than on the first mesh.
+    """
     spots = [
         Spot(p.r, p.z, near * 2.0 * p.r, p.radius)
         if p.kind != "edge of a load"
-        else Spot(p.r, p.z, LOGARITHM * p.radius / ratio**level, p.radius)
+        else Spot(p.r, p.z, LOGARITHM * p.radius / factor, p.radius)
         for p, near in zip(places, close, strict=True)
     ]
     taken = {(s.r, s.z) for s in spots}
@@ -68,11 +101,8 @@ def harmonic_solution(
         band = pin.band(name)
         for at in {(band.radius, band.z0), (band.radius, band.z1)} - taken:
             d = 2.0 * band.radius
-            spots.append(Spot(*at, EDGE * d / ratio**level, 4.0 * EDGE * d))
-    section = meridian_mesh(pin, SIZE.finer(ratio**level), sorted(spots))
-    loads = tuple(dict.fromkeys(load for case in cases for load in case.coefficients()))
-    rims = np.concatenate([np.zeros((0, 2)), *map(partial(_rim, pin), places)])
-    return HarmonicSolution(HarmonicModel(pin, section, material, clamps).solve(loads, rims), close)
+            spots.append(Spot(*at, EDGE * d / factor, 4.0 * EDGE * d))
+    return sorted(spots)
 
 
 def _matters(place: int, before: Collection[Look]) -> bool:
@@ -80,32 +110,15 @@ def _matters(place: int, before: Collection[Look]) -> bool:
     return any(look.places[place].felt >= MATTERS * look.maximum for look in before)
 
 
-def _rim(pin: Pin, place: Place) -> Floats:
-    """Points (P, 2) inside the pin at the excluded distance and at FELT of it, so that what is read
-    there does not depend on where nodes are.
-    """
-    angle = 2.0 * np.pi * (np.arange(RIM) + 0.5) / RIM
-    circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    both = np.concatenate([place.radius * circle, FELT * place.radius * circle])
-    x = both + np.array([place.r, place.z])
-    at = np.clip(np.searchsorted(pin.stations, x[:, 1]) - 1, 0, len(pin.segments) - 1)
-    outer = np.array([s.diameter / 2.0 for s in pin.segments])[at]
-    inner = np.array([s.bore / 2.0 for s in pin.segments])[at]
-    little = 1e-3 * place.radius
-    inside = (x[:, 0] > inner + little) & (x[:, 0] < outer - little)
-    found: Floats = x[inside & (x[:, 1] > little) & (x[:, 1] < pin.length - little)]
-    return found
-
-
 class HarmonicAnswer:
     """What a solution says of any loads made of its unit loads (fea.answer)."""
 
     def __init__(self, solution: HarmonicSolution, places: tuple[Place, ...]) -> None:
-        self.fields, self._places = solution.fields, places
+        self.fields, self.places = solution.fields, places
 
     def maxima(self, loads: PinLoads) -> Floats:
         """Largest von Mises stress (T,) Pa at every instant outside the places."""
-        among = outside(self._places, *self.fields.points.T)
+        among = outside(self.places, *self.fields.points.T)
         return Circumference(self.fields, loads).largest(among)[0]
 
     def picture(self, loads: PinLoads, instant: int) -> Picture:
@@ -126,7 +139,8 @@ def harmonic_look(
     around = Circumference(fields, loads)
     mine = places if own is None else own
     r, z = fields.points.T
-    top = around.top(outside(mine, r, z))
+    among = outside(mine, r, z)
+    top = around.top(among)
     return Look(
         unknowns=fields.unknowns,
         maximum=top.value,
@@ -137,7 +151,25 @@ def harmonic_look(
             for p, close in zip(places, solution.close, strict=True)
         ),
         left_out=_left_out(around, loads, top),
+        high=_high(around, fields.points, among, top),
     )
+
+
+def _high(
+    around: Circumference, points: Floats, among: Mask, top: Top
+) -> tuple[tuple[float, float], ...]:
+    """Points (r, z) where stress is nearly the maximum, the highest first, well apart."""
+    rows = np.flatnonzero(among)
+    rows = rows[around.bound(rows)[:, top.instant] >= HIGH * top.value]
+    value, _ = around.round(rows, np.full(len(rows), top.instant))
+    found: list[Floats] = []
+    for k in np.argsort(-value, kind="stable"):
+        if value[k] < HIGH * top.value or len(found) == MOST_HIGH:
+            break
+        at = points[rows[k]]
+        if all(np.hypot(*(at - other)) > APART * at[0] for other in found):
+            found.append(at)
+    return tuple((float(r), float(z)) for r, z in found)
 
 
 def _left_out(around: Circumference, loads: PinLoads, top: Top) -> float:

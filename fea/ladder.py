@@ -20,6 +20,7 @@ from fea.beam_error import PLAIN
 from fea.harmonic_look import HarmonicAnswer, HarmonicSolution, harmonic_look, harmonic_solution
 from fea.look import Look
 from fea.material import Material
+from fea.memory import allowed_memory, solid_memory
 from fea.peak import Peak
 from fea.pin_loads import PinLoads
 from fea.solid_look import SolidAnswer, solid_look, solid_solution
@@ -44,7 +45,8 @@ TELL = 1e-6  # of the largest load: what bands take up to close the balance is t
 class Asked:
     """What is wanted: the maximum to a `tolerance`, or (goal "decide") only on which side of the
     `required` factor of safety it is. distance: of the local diameter, that is excluded at corners
-    and edges of clamps. meshes: at most so many, as the model has it by default.
+    and edges of clamps. meshes: at most so many, as the model has it by default. memory: MB that a
+    solid may take, by default most of what is free.
     """
 
     tolerance: float = 0.02
@@ -53,6 +55,7 @@ class Asked:
     required: float | None = None
     distance: float = 0.1
     meshes: int | None = None
+    memory: float | None = None
 
 
 @dataclass(frozen=True)
@@ -183,7 +186,10 @@ def _refined(
     answers: dict[str, Answer] = {}
     for level in range(asked.meshes or MESHES[model]):
         largest = max((s.looks[-1].unknowns for s in seen.values()), default=0)
-        if level and largest * ratio ** GROWTH[model] > MOST_UNKNOWNS[model]:
+        finer = largest * ratio ** GROWTH[model]
+        if level and finer > MOST_UNKNOWNS[model]:
+            break
+        if level and model == "solid" and solid_memory(finer) > allowed_memory(asked.memory):
             break
         job.progress(f"pin {pin.name}, {model} model, mesh {level + 1}")
         start = time.perf_counter()
@@ -198,7 +204,16 @@ def _refined(
             answers = {case: HarmonicAnswer(section, mine) for case, mine in own.items()}
         else:
             size = MeshSize().finer(ratio**level)
-            solid = solid_solution(pin, job.material, job.held, cases, places, size, asked.distance)
+            solid = solid_solution(
+                pin,
+                job.material,
+                job.held,
+                cases,
+                places,
+                size,
+                asked.distance,
+                memory=asked.memory,
+            )
             before = {case: s.looks[-1] for case, s in seen.items()}
             found, look = solid.places, partial(solid_look, solid, before, ratio)
             answers = dict.fromkeys(own, SolidAnswer(solid))

@@ -30,7 +30,8 @@ class Look:
     governing `instant`. places: what is inside of each.
 
     scatter: of the maximum by the mesh alone, where it was seen, Pa. left_out: by how much the
-    harmonics of a bearing pressure that are not taken may change the maximum, Pa.
+    harmonics of a bearing pressure that are not taken may change the maximum, Pa. high: points
+    (r, z) of a section, m, where a finer mesh may find the maximum.
     """
 
     unknowns: int
@@ -40,3 +41,4 @@ class Look:
     places: tuple[Inside, ...] = ()
     scatter: float = 0.0
     left_out: float = 0.0
+    high: tuple[tuple[float, float], ...] = ()

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-Verdict = Literal["converged", "unconverged", "singular", "rigid"]
+Verdict = Literal["converged", "unconverged", "singular", "rigid", "failed"]
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,8 @@ class SingularZone:
 
 @dataclass(frozen=True)
 class Peak:
-    """max_von_mises and error_estimate in Pa, None when the pin is `rigid`.
+    """max_von_mises and error_estimate in Pa, None when the pin is `rigid` or its numerics
+    `failed`.
 
     location: (x, y, z) in the pin's axes, m. instant: index of the governing instant. note: one
     sentence on the verdict, for people. why: which model answered, and why it was enough.

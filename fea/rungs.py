@@ -10,8 +10,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
-import numpy as np
-
 from fea.beam_answer import BeamAnswer
 from fea.envelope import envelope
 from fea.harmonic_look import harmonic_look, harmonic_solution
@@ -20,7 +18,7 @@ from fea.look import Look
 from fea.material import Material
 from fea.pin_loads import PinLoads
 from fea.solid_look import solid_solution
-from fea.zones import Place, outside
+from fea.zones import Place
 from geometry import Pin, PinLike
 from geometry.elements import Element
 from geometry.solid_mesh import MeshSize
@@ -79,7 +77,5 @@ def _solid_look(problem: Problem, rung: Rung) -> Look:
         problem.distance, rung.element,
     )  # fmt: skip
     fields = solution.fields
-    x = fields.space.nodes[fields.surface.nodes]
-    among = solution.outside & outside(problem.places, np.hypot(x[:, 0], x[:, 1]), x[:, 2])
-    top = envelope(fields, problem.loads, among)
+    top = envelope(fields, problem.loads, solution.outside)
     return Look(fields.space.unknowns, top.maximum, top.instant, top.location, (), top.scatter)

@@ -20,7 +20,6 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 from skfem import Basis, ElementTriP2
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
@@ -28,12 +27,11 @@ from skfem.refdom import RefTri
 from fea.material import Material
 from fea.pattern import Pattern
 from fea.recovery import extension
+from fea.rims import interpolation
 from geometry.meridian_mesh import MeridianMesh
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-
-NEAREST = 12  # elements by their middles, among which the one round a point is looked for
 
 
 class Section:
@@ -126,20 +124,7 @@ class Section:
 
     def values_at(self, points: Floats) -> sp.csr_matrix:
         """Matrix (P, N) from values at nodes to those at points (P, 2) inside the section."""
-        corners = self.nodes[self.elements[:, :3]]
-        near = cKDTree(corners.mean(axis=1)).query(points, min(NEAREST, len(corners)))[1]
-        a, b, c = (corners[near, k] for k in range(3))
-        edges = np.stack([b - a, c - a], axis=3)
-        x = np.linalg.solve(edges, (points[:, None] - a)[..., None])[..., 0]
-        depth = np.minimum(x.min(axis=2), 1.0 - x.sum(axis=2))  # in elements, as if straight-sided
-        best = depth.argmax(axis=1)
-        every = np.arange(len(points))
-        element, at = np.asarray(near)[every, best], x[every, best].T
-        values = [ElementTriP2().lbasis(at, i)[0] for i in range(6)]
-        row = np.arange(len(points)).repeat(6)
-        column = self.elements[element].ravel()
-        shape = (len(points), len(self.nodes))
-        return sp.csr_matrix((np.stack(values, axis=1).ravel(), (row, column)), shape=shape)
+        return interpolation(self.nodes, self.elements, points)
 
 
 def around(n: int) -> float:

@@ -7,7 +7,7 @@ any instant of any case is a linear combination.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -19,6 +19,7 @@ from fea.elasticity import Discretisation
 from fea.linear import SolveError, factorize
 from fea.material import Material
 from fea.pin_loads import PinLoads
+from fea.rims import interpolation
 from fea.solid_loads import Unit, closed, nodal_loads, part
 from fea.stress import nodal_stress, with_known_traction
 from fea.surface import Surface, held_nodes, resultants, surface
@@ -28,13 +29,16 @@ from geometry.solid_mesh import SolidMesh
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+_NOWHERE = np.zeros((0, 3))
+
 
 @dataclass(frozen=True)
 class UnitFields:
     """Fields of L unit loads, each in one phase: displacement (N, 3, L) in m, stress (N, 6, L) in
     Pa, both per unit of load, and the nodal forces (N, 3, L) in N that they came from.
 
-    fixed: displacement components that were held, 3 n + c for component c of node n. support:
+    extra: further points (P, 3) inside the body where stress is read, m. fixed: displacement
+    components that were held, 3 n + c for component c of node n. support:
     (6, L) force and moment of the clamps about (0, 0, 0), from the residual of the system; minus
     those of the load when all is well. revolved: whether the pin is the same all round.
     """
@@ -48,6 +52,20 @@ class UnitFields:
     fixed: Ints
     support: Floats
     revolved: bool = True
+    extra: Floats = field(default_factory=lambda: np.zeros((0, 3)))
+
+    @property
+    def points(self) -> Floats:
+        """Where stress is read, (S + P, 3) m: at nodes of the surface, then at the extra points."""
+        return np.concatenate([self.space.nodes[self.surface.nodes], self.extra])
+
+    @cached_property
+    def read(self) -> Floats:
+        """The stress there, (S + P, 6, L) Pa."""
+        there = interpolation(self.space.nodes, self.space.elements, self.extra)
+        inside = there @ self.stress.reshape(len(self.stress), -1)
+        shape = len(self.extra), *self.stress.shape[1:]
+        return np.concatenate([self.stress[self.surface.nodes], inside.reshape(shape)])
 
     def coefficients(self, loads: PinLoads) -> Floats:
         """How much of each unit load acts at each instant, (T, L).
@@ -105,8 +123,9 @@ class SolidModel:
             return (3 * nodes[:, None] + np.arange(3)).ravel()
         return _isostatic(self.space.nodes)
 
-    def solve(self, units: tuple[Unit, ...]) -> UnitFields:
-        """Unit fields of loads in their phases; on surfaces that are no bands, forces only.
+    def solve(self, units: tuple[Unit, ...], extra: Floats = _NOWHERE) -> UnitFields:
+        """Unit fields of loads in their phases, at `extra` points (P, 3) inside the body too; on
+        surfaces that are no bands, forces only.
 
         Raises: SolveError when the pin is not held or a check fails.
         """
@@ -131,6 +150,7 @@ class SolidModel:
             self.fixed,
             support,
             self.pin.revolved,
+            extra,
         )
 
     def _displace(self, F: Floats) -> tuple[Floats, Floats]:

@@ -12,10 +12,12 @@ from fea.answer import Picture
 from fea.envelope import envelope
 from fea.look import Inside, Look
 from fea.material import Material
+from fea.memory import require_memory
 from fea.pin_loads import Floats, PinLoads, UnitLoad
+from fea.rims import all_round, rim
 from fea.sharp_edges import sharp_edges
 from fea.solid import SolidModel, UnitFields, acting
-from fea.zones import Place, clamp_rims
+from fea.zones import Place, clamp_rims, outside
 from geometry import CutPin, Pin, PinLike
 from geometry.elements import Element
 from geometry.meshing import solid_mesh
@@ -27,7 +29,7 @@ Mask = NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class SolidSolution:
-    """Unit fields on one mesh, and which nodes of the surface are in each singular place."""
+    """Unit fields on one mesh, and which of their points are in each singular place."""
 
     fields: UnitFields
     places: tuple[Place, ...]
@@ -35,8 +37,8 @@ class SolidSolution:
 
     @property
     def outside(self) -> Mask:
-        """Nodes of the surface that are in no singular place."""
-        out = np.ones(len(self.fields.surface.nodes), dtype=bool)
+        """Points that are in no singular place."""
+        out = np.ones(len(self.fields.points), dtype=bool)
         for mask in self.within:
             out &= ~mask
         return out
@@ -51,11 +53,12 @@ def solid_solution(
     size: MeshSize,
     distance: float,
     element: Element = "curved",
+    memory: float | None = None,
 ) -> SolidSolution:
     """All unit loads of the cases on a mesh, which is finer at edges of bands and clamps.
 
     places: of a body of revolution; those of any other are found on its mesh, `distance` (of the
-    diameter) wide. Raises: MeshError, SolveError.
+    diameter) wide. memory: as in fea.ladder.Asked. Raises: MeshError, SolveError.
     """
     names = tuple(dict.fromkeys(name for c in cases for name in c.surfaces))
     edges = tuple(z for name in names for z in (pin.band(name).z0, pin.band(name).z1))
@@ -65,16 +68,16 @@ def solid_solution(
         edges += tuple(z for _, z in clamp_rims(profile, turned))
     mesh = solid_mesh(pin, size, tuple(dict.fromkeys(edges)), element)
     units = acting(cases) or ((UnitLoad(names[0], "force", 1), 0),)  # of which there is nought
-    fields = SolidModel(pin, mesh, material, clamps).solve(units)
-    x = fields.space.nodes[fields.surface.nodes]
+    model = SolidModel(pin, mesh, material, clamps)
+    require_memory(pin.name, model.unknowns, memory)
     if isinstance(pin, Pin):
-        powers = tuple(p for p in places if p.kind != "edge of a load")  # a mesh of a solid is no
-        r, z = np.hypot(x[:, 0], x[:, 1]), x[:, 2]  # finer than what a logarithm needs
-        return SolidSolution(
-            fields, powers, tuple(np.hypot(r - p.r, z - p.z) <= p.radius for p in powers)
-        )
+        rims = [all_round(rim(pin, p, p.radius)) for p in places]
+        fields = model.solve(units, np.concatenate([np.zeros((0, 3)), *rims]))
+        r, z = np.hypot(*fields.points[:, :2].T), fields.points[:, 2]
+        return SolidSolution(fields, places, tuple(~outside((p,), r, z) for p in places))
+    fields = model.solve(units)
     edge = sharp_edges(fields.space, fields.surface, clamps)
-    found = edge.places(x, distance)
+    found = edge.places(fields.points, distance)
     return SolidSolution(fields, tuple(p for p, _ in found), tuple(mask for _, mask in found))
 
 

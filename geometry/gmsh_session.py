@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -14,7 +16,8 @@ def gmsh_model(name: str) -> Iterator[Any]:
     """The gmsh module with an empty model; finalised on the way out."""
     import gmsh
 
-    gmsh.initialize(readConfigFiles=False, interruptible=False)
+    with _signals_kept():
+        gmsh.initialize(readConfigFiles=False, interruptible=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         gmsh.option.setNumber("General.NumThreads", 1)  # same mesh on any machine
@@ -22,6 +25,18 @@ def gmsh_model(name: str) -> Iterator[Any]:
         yield gmsh
     finally:
         gmsh.finalize()
+
+
+@contextmanager
+def _signals_kept() -> Iterator[None]:
+    """gmsh takes the handlers of some signals away, so that they would end the process at once."""
+    taken = (signal.SIGHUP, signal.SIGINT, signal.SIGPIPE, signal.SIGTERM)
+    kept = {each: signal.getsignal(each) for each in taken}
+    yield
+    if threading.current_thread() is threading.main_thread():  # only it may set them
+        for each, handler in kept.items():
+            if handler is not None:  # not set from Python
+                signal.signal(each, handler)
 
 
 def set_size(gmsh: Any, fields: list[int]) -> None:

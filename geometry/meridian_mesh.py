@@ -13,9 +13,12 @@ from numpy.typing import NDArray
 from skfem import MeshTri2
 
 from geometry.gmsh_session import gmsh_model, set_size
+from geometry.grading import Grade, SectionSize, Spot, grades, largest
 from geometry.meridian import RZ, Arc, Edge, meridian
 from geometry.pin import Pin
 from geometry.solid_mesh import MeshError
+
+__all__ = ["MeridianMesh", "SectionSize", "Spot", "meridian_mesh"]
 
 Ints = NDArray[np.int64]
 
@@ -23,34 +26,6 @@ TRIANGLE6, LINE3 = 9, 8  # gmsh's element types
 MOST_TRIANGLES = 2e5
 SMALLEST_JACOBIAN = 0.1  # min / max of det J that every element must exceed
 SMALLEST_FILLET = 1e-8  # of the diameter beside it: gmsh hangs at 1e-13
-STEEPEST = 0.6  # growth of elements next to a spot, on all meshes
-
-
-@dataclass(frozen=True)
-class SectionSize:
-    """How fine. across: elements over the thinnest shaft or wall. arc: elements along a fillet's
-    quarter circle. growth: increase of the element size per distance from where it is small.
-    """
-
-    across: float = 2.0
-    arc: float = 4.0
-    growth: float = 0.8
-
-    def finer(self, factor: float) -> SectionSize:
-        """The same grading with every size divided by `factor`."""
-        return SectionSize(self.across * factor, self.arc * factor, self.growth / factor)
-
-
-@dataclass(frozen=True, order=True)
-class Spot:
-    """A point of the outline where the elements are `size` (m) small; within `reach` (m) of it they
-    grow as fast as on the coarsest mesh.
-    """
-
-    r: float
-    z: float
-    size: float
-    reach: float
 
 
 @dataclass(frozen=True)
@@ -64,8 +39,10 @@ class MeridianMesh:
     axis: Ints
 
 
-def meridian_mesh(pin: Pin, size: SectionSize, spots: Iterable[Spot] = ()) -> MeridianMesh:
-    """Mesh a pin's section, finer at spots.
+def meridian_mesh(
+    pin: Pin, size: SectionSize, spots: Iterable[Spot] = (), finer: Iterable[Grade] = ()
+) -> MeridianMesh:
+    """Mesh a pin's section, finer at spots and where gradings say so.
 
     Raises: MeshError when the section cannot be meshed within reason.
     """
@@ -75,7 +52,7 @@ def meridian_mesh(pin: Pin, size: SectionSize, spots: Iterable[Spot] = ()) -> Me
         try:
             spots = tuple(spots)
             curves = _draw(gmsh, outline, spots)
-            _set_sizes(gmsh, pin, size, spots)
+            _set_sizes(gmsh, largest(pin, size), [*grades(pin, size, spots), *finer])
             gmsh.model.mesh.generate(2)
             gmsh.model.mesh.setOrder(2)
             return _collect(gmsh, pin, outline, curves)
@@ -85,15 +62,9 @@ def meridian_mesh(pin: Pin, size: SectionSize, spots: Iterable[Spot] = ()) -> Me
             raise MeshError(f"pin {pin.name}: gmsh could not mesh its section ({error})") from None
 
 
-def _far(pin: Pin, size: SectionSize) -> float:
-    """Element size (m) away from all that is small: by the thinnest wall, or half a shaft."""
-    walls = [s.diameter - s.bore for s in pin.segments]
-    return min(walls) / size.across
-
-
 def _require_reasonable(pin: Pin, size: SectionSize) -> None:
     area = sum(s.length * (s.diameter - s.bore) / 2.0 for s in pin.segments)
-    triangles = area / (0.43 * _far(pin, size) ** 2)  # 0.43 h^2: an equilateral triangle
+    triangles = area / (0.43 * largest(pin, size) ** 2)  # 0.43 h^2: an equilateral triangle
     if triangles > MOST_TRIANGLES:
         raise MeshError(
             f"pin {pin.name}: it would take {triangles:.1e} elements, because its thinnest part is "
@@ -144,40 +115,22 @@ def _cuts(edge: Edge, spots: tuple[Spot, ...]) -> list[RZ]:
     return [(r + x * (to_r - r), z + x * (to_z - z)) for x in sorted(parts) if 0.001 < x < 0.999]
 
 
-def _set_sizes(gmsh: Any, pin: Pin, size: SectionSize, spots: tuple[Spot, ...]) -> None:
-    """Element size as the least of fields about all spots and fillets."""
-    far = _far(pin, size)
-    field = gmsh.model.mesh.field
+def _set_sizes(gmsh: Any, far: float, found: Iterable[Grade]) -> None:
+    """Element size as the least of gradings, `far` (m) at most."""
+    field, geo = gmsh.model.mesh.field, gmsh.model.geo
     fields: list[int] = []
-
-    def grow(points: tuple[int, ...], near: float, flat: float, growth: float) -> None:
-        """`near` within the distance `flat` of the points, and growing from there."""
-        if near >= far:
-            return
+    for grade in found:
+        if grade.near >= far:
+            continue
         distance = field.add("Distance")
-        field.setNumbers(distance, "PointsList", points)
+        field.setNumbers(distance, "PointsList", [geo.addPoint(*p, 0.0) for p in grade.points])
         fields.append(field.add("Threshold"))
         field.setNumber(fields[-1], "InField", distance)
-        field.setNumber(fields[-1], "SizeMin", near)
-        field.setNumber(fields[-1], "DistMin", flat)
+        field.setNumber(fields[-1], "SizeMin", grade.near)
+        field.setNumber(fields[-1], "DistMin", grade.flat)
         field.setNumber(fields[-1], "SizeMax", far)
-        field.setNumber(fields[-1], "DistMax", flat + (far - near) / growth)
-
-    alike: dict[tuple[float, float], list[int]] = {}
-    for s in dict.fromkeys(spots):
-        alike.setdefault((s.size, s.reach), []).append(gmsh.model.geo.addPoint(s.r, s.z, 0.0))
-    for i in range(len(pin.segments) - 1):
-        rho = pin.fillet_at(i)
-        if rho > 0.0:
-            thin = min(pin.segments[i].diameter, pin.segments[i + 1].diameter) / 2
-            corner = gmsh.model.geo.addPoint(thin, pin.stations[i + 1], 0.0)
-            grow((corner,), rho * math.pi / 2 / size.arc, 1.3 * rho, size.growth)
-    for (near, reach), points in alike.items():
-        steep = near < size.growth * reach
-        grow(tuple(points), near, 0.0, STEEPEST if steep else size.growth)
-        if steep:
-            grow(tuple(points), size.growth * reach, reach, size.growth)
-    gmsh.model.geo.synchronize()
+        field.setNumber(fields[-1], "DistMax", grade.flat + (far - grade.near) / grade.growth)
+    geo.synchronize()
     set_size(gmsh, fields)
     gmsh.option.setNumber("Mesh.MeshSizeMax", far)
 

@@ -24,9 +24,10 @@ from pinstress.climb import (
 from pinstress.errors import InputError
 from pinstress.own_process import Measure, Measured
 from pinstress.pins import material as material_of
-from pinstress.pipeline import Progress, all_loads, select
+from pinstress.plan import all_loads, select
 from pinstress.study import Study
 from pinstress.tasks import tasks
+from pinstress.workers import Progress
 from reports.chart import Chart, ChartPoint, Reference
 
 NAMES = {

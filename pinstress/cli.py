@@ -13,6 +13,7 @@ import click
 
 from pinstress.errors import InputError
 
+INTERRUPTS = signal.SIGINT, signal.SIGTERM, signal.SIGHUP
 REACHED, NOT_REACHED, BAD_INPUT, NUMERICS_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
 
 
@@ -20,7 +21,9 @@ def run_command_line(arguments: list[str]) -> int:
     """Exit status of a command: 0 done, 1 something asked for was not reached, 2 bad input, 3 the
     numerics failed, 130 interrupted.
     """
-    signal.signal(signal.SIGTERM, _interrupt)
+    for each in INTERRUPTS:
+        if signal.getsignal(each) != signal.SIG_IGN:  # nohup, or a job in the background
+            signal.signal(each, _interrupt)
     try:
         status = commands.main(arguments, prog_name="pinstress", standalone_mode=False)
         return int(status or REACHED)
@@ -46,6 +49,8 @@ def run_command_line(arguments: list[str]) -> int:
 
 
 def _interrupt(*_: object) -> None:
+    for each in INTERRUPTS:
+        signal.signal(each, signal.SIG_IGN)  # clearing up is not interrupted once more
     raise KeyboardInterrupt
 
 
@@ -99,6 +104,18 @@ def example(text: str) -> str:
 )
 @click.option("--no-pictures", is_flag=True, help="Neither plots nor rendered pins: faster.")
 @click.option(
+    "--jobs",
+    type=click.IntRange(1),
+    metavar="N",
+    help="So many processes at a time [as many as there are cores]; the results are the same.",
+)
+@click.option(
+    "--memory-limit",
+    type=click.FloatRange(0.0, min_open=True),
+    metavar="MB",
+    help="What a solid model may take [80 % of what is free]; past it no finer mesh is solved.",
+)
+@click.option(
     "--second-opinion",
     type=click.Choice(["ccx"]),
     help="Have CalculiX solve every row once more on the solid model's mesh, and compare.",
@@ -111,19 +128,32 @@ def run(
     model: str | None,
     tolerance: float | None,
     no_pictures: bool,
+    jobs: int | None,
+    memory_limit: float | None,
     second_opinion: str | None,
 ) -> int:
     if second_opinion is not None:
         _require_calculix()
+    from pinstress.workers import hold_threads
+
+    hold_threads()
     from pinstress.study import load_study
 
     loaded = load_study(study)
     directory = out or Path("out") / loaded.name
     from pinstress.write import run_and_write
 
-    chosen: dict[str, Any] = {"pins": pins, "cases": cases, "model": model, "tolerance": tolerance}
+    chosen: dict[str, Any] = {
+        "pins": pins,
+        "cases": cases,
+        "model": model,
+        "tolerance": tolerance,
+        "memory": memory_limit,
+    }
     second = second_opinion is not None
-    return run_and_write(loaded, directory, pictures=not no_pictures, second=second, **chosen)
+    return run_and_write(
+        loaded, directory, pictures=not no_pictures, second=second, jobs=jobs, **chosen
+    )
 
 
 def _require_calculix() -> None:
@@ -148,7 +178,9 @@ def _require_calculix() -> None:
 @click.option("--no-pictures", is_flag=True, help="No plots: faster.")
 def loads(study: Path, out: Path | None, cases: list[str] | None, no_pictures: bool) -> int:
     from pinstress.study import load_study
+    from pinstress.workers import hold_threads
 
+    hold_threads()
     loaded = load_study(study)
     from pinstress.write import loads_and_write
 

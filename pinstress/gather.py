@@ -25,14 +25,14 @@ PACKAGES = ("pinstress", "numpy", "scipy", "scikit-fem", "gmsh", "meshio", "cvxo
 def results(
     study: Study,
     loads: dict[str, CaseLoads],
-    solutions: list[tuple[Task, Solution]],
+    rows: list[tuple[Task, Peak]],
     beam: plain.BeamCheck | None,
     published: Published,
     tolerance: float,
 ) -> plain.Results:
-    """Everything a run found."""
+    """Everything a run found. rows: each peak with its task, in the order of the table."""
     table, system = study.table, study.system
-    tasks = {task.pin.name: task for task, _ in reversed(solutions)}
+    tasks = {task.pin.name: task for task, _ in reversed(rows)}
     return plain.Results(
         title=table.title,
         study=study.path.name,
@@ -40,7 +40,7 @@ def results(
         units=plain.Units(system.length, system.force, system.stress, system.time),
         required_safety_factor=table.analysis.required_safety_factor,
         tolerance=tolerance,
-        pins=tuple(_pin_result(study, loads, task, s.peak, published) for task, s in solutions),
+        pins=tuple(_pin_result(study, loads, task, peak, published) for task, peak in rows),
         shapes=tuple(_shape(study, tasks[name]) for name in table.pin if name in tasks),
         **mechanics(study, loads, published),
         beam_check=beam,
@@ -48,6 +48,7 @@ def results(
         published_source=table.published.source if table.published else "",
         assumptions=tuple(table.assumptions),
         versions={name: version(name) for name in PACKAGES},
+        study_text=study.text,
     )
 
 

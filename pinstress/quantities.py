@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from textwrap import dedent
 from typing import Annotated, Any
+from urllib.parse import quote
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, GetJsonSchemaHandler, model_validator
 from pydantic_core import core_schema
@@ -18,6 +19,7 @@ from pydantic_core import core_schema
 from pinstress.units import DIMENSIONS, SYSTEMS, to_si
 
 KINDS = ("given", "derived", "fitted", "assumed")
+LONGEST_NAME = 100  # as it is quoted: two of them fit into a file name
 
 
 @dataclass(frozen=True)
@@ -123,8 +125,10 @@ PIN_SIZED = Within(_pin_sized, "from 1 µm to 1 km")
 
 
 def usable_name(name: str) -> str:
-    if not name or len(name) > 64 or name[0] in ". " or any(c in '/\\:*?"<>|' for c in name):
+    if not name or name[0] in ". " or any(c in '/\\:*?"<>|' for c in name):
         raise ValueError(f"{name!r} cannot be part of a file name; use letters, digits, - and _")
+    if len(quote(name)) > LONGEST_NAME:
+        raise ValueError(f"{name!r} is too long for a part of a file name")
     if not name.isprintable():
         raise ValueError(f"{name!r} contains characters that cannot be printed")
     return name

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import click
@@ -11,7 +11,7 @@ from rich.console import Console
 from fea.peak import Peak
 from fea.second_opinion import Opinion, second_opinions
 from pinstress.pins import material
-from pinstress.pipeline import Plan
+from pinstress.plan import Plan
 from pinstress.tasks import Task
 from reports.second_opinion import print_second_opinion, write_second_opinion
 
@@ -23,15 +23,28 @@ class Opinions:
         self.plan = plan
         self.found: list[Opinion] = []
 
-    def ask(self, task: Task, peaks: tuple[Peak, ...], progress: Callable[[str], None]) -> None:
-        """Solve the rows of a task once more. Raises: MeshError, SolveError."""
+    def ask(
+        self, task: Task, peaks: tuple[Peak, ...], progress: Callable[[str], None]
+    ) -> tuple[Opinion, ...]:
+        """Solve the rows of a task once more; for the task's own process."""
         study = self.plan.study
         steel = material(study, study.table.pin[task.pin.name].material)
         distance = self.plan.asked.distance
-        self.found += second_opinions(
-            task.pin, steel, task.clamps, task.loads, peaks, distance, progress
-        )
-        pins, cases = list(study.table.pin), list(self.plan.loads)
+        try:
+            return second_opinions(
+                task.pin, steel, task.clamps, task.loads, peaks, distance, progress
+            )
+        except ArithmeticError as error:  # MeshError, SolveError: no mesh to compare on
+            return tuple(
+                Opinion(p.pin, p.case, p.max_von_mises, p.error_estimate, failure=str(error))
+                for p in peaks
+                if p.verdict != "rigid"
+            )
+
+    def hear(self, opinions: Iterable[Opinion]) -> None:
+        """Take opinions from the tasks' processes, in any order."""
+        pins, cases = list(self.plan.study.table.pin), list(self.plan.loads)
+        self.found += opinions
         self.found.sort(key=lambda o: (pins.index(o.pin), cases.index(o.case)))
 
     def write(self, directory: Path) -> None:

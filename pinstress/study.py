@@ -13,6 +13,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from pinstress.errors import InputError
+from pinstress.file_names import same_files
 from pinstress.quantities import KINDS
 from pinstress.schema import StudyTable
 from pinstress.schema_cases import GivenCase, LegCase, MotionCase
@@ -94,6 +95,7 @@ def load_study(path: str | Path) -> Study:
     except ValidationError as error:
         raise InputError(_listed(path, wrong + _explain(error))) from None
     wrong += _cross_references(table)
+    wrong += same_files(table.pin, table.case)
     if wrong:
         raise InputError(_listed(path, wrong))
     return Study(path, text, table, tuple(provenance))

@@ -1,4 +1,4 @@
-"""report.html: one file that shows everything a run found, without network or scripts."""
+"""report.html: one file that shows everything a run found, without network; scripts add to it."""
 
 from __future__ import annotations
 
@@ -10,8 +10,10 @@ from typing import Any
 
 from reports.drawing import draw_pin
 from reports.hand_checks import HAND_CHECKS
+from reports.headline import headline
 from reports.landing import NOTE, landing_blocks
 from reports.numbers import DASH, engineering, like, ratio, short
+from reports.page_loads import timings
 from reports.page_motion import motion_parts
 from reports.page_rows import pin_parts, reaction_tables
 from reports.plot_names import SVG, drive_names, plot_name
@@ -67,10 +69,13 @@ def render(
     templates.filters.update(eng=engineering, short=_short, word=word, like=like)
     template = templates.get_template("report.html.j2")
     drawings: dict[str, str] = {s.pin: Markup(_drawing(s, results)) for s in results.shapes}
+    parts = pin_parts(results, drawings, {k: data_uri(p) for k, p in pictures.items()})
     return template.render(
         results=results,
         units=results.units,
+        headline=headline(results),
         summary=summary(results),
+        timings=timings(results),
         reading=READING,
         meaning=MEANING,
         beyond=BEYOND,
@@ -81,8 +86,9 @@ def render(
         drive_names=drive_names,
         ratio=ratio,
         motion=motion_parts(results, _Plots(plots).uri, directory),
+        anchors={part.pin: part.anchor for part in parts},
         timed=any(v.time is not None for v in results.published),
-        pins=pin_parts(results, drawings, {k: data_uri(p) for k, p in pictures.items()}),
+        pins=parts,
         published=published_reactions(results),
         landing=landing_blocks(results),
         landed=list(dict.fromkeys(r.case for r in results.landing)),
@@ -109,10 +115,16 @@ def _safety_factors(results: Results) -> dict[str, Any]:
                 "pin": pin.pin,
                 "outcome": outcome(pin),
                 "cells": {name: shown(name, row) for name in columns},
+                "values": {name: _plain(row[name]) for name in columns},
             }
             for pin, row in zip(results.pins, rows, strict=True)
         ],
     }
+
+
+def _plain(value: str | float | None) -> str:
+    """For sorting: every digit, empty for none."""
+    return "" if value is None else str(value)
 
 
 def data_uri(path: Path) -> str:

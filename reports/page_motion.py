@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
-from urllib.parse import quote
 
 from reports.plot_names import animation_name
 from reports.results import LinkageMotion, Results
@@ -21,7 +20,7 @@ LEG = {
 
 @dataclass(frozen=True)
 class MotionPart:
-    """A case's motion: address of its animation (empty without), figures with their texts."""
+    """A case's motion: its animation, a page of its own (empty without), figures with texts."""
 
     case: str
     animation: str
@@ -29,7 +28,7 @@ class MotionPart:
 
 
 def motion_parts(results: Results, uri: Uri, directory: Path) -> list[MotionPart]:
-    """The cases that have figures or an animation beside the page.
+    """The cases that have figures or an animation, which is read from beside the page.
 
     uri: address of a plot by its kind and names, None where it is not there.
     """
@@ -68,6 +67,5 @@ def _part(case: str, texts: dict[str, str], uri: Uri, animation: str) -> MotionP
 
 
 def _animation(case: str, directory: Path) -> str:
-    name = animation_name(case)
-    # Percent signs in a file's name are none of its address.
-    return quote(name) if (directory / name).is_file() else ""
+    path = directory / animation_name(case)
+    return path.read_text(encoding="utf-8") if path.is_file() else ""

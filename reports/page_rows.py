@@ -6,8 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from reports.grid import Grid
 from reports.hand_checks import hand_check_table
+from reports.numbers import ratio
+from reports.page_loads import loads_at
 from reports.results import PinResult, PinShape, ReactionTable, Results, Units
+from reports.view3d import PinView, pin_views
 from reports.words import outcome
 from reports.zones import Zone, pin_zones, zone_table
 
@@ -15,18 +19,9 @@ ZONE_NUMBERS = ("zone", "exponent")
 
 
 @dataclass(frozen=True)
-class Grid:
-    """A table of texts; numeric: which columns hold numbers."""
-
-    head: list[str]
-    body: list[list[str]]
-    numeric: list[bool]
-
-
-@dataclass(frozen=True)
 class PinCase:
     """A pin's result in one case, one word for it, its picture's address, its position's unit, its
-    singular zones and its checks by hand.
+    singular zones, its checks by hand, what acts on it, and our maximum over the published one.
     """
 
     result: PinResult
@@ -35,11 +30,15 @@ class PinCase:
     position_unit: str
     zones: Grid | None
     checks: Grid | None
+    loads: Grid | None
+    ratio: float | None
 
 
 @dataclass(frozen=True)
 class PinPart:
-    """All of one pin: its anchor on the page, profile and drawing, cases, cases with a motion."""
+    """All of one pin: its anchor on the page, profile and drawing, cases, cases with a motion, and
+    views that can be turned.
+    """
 
     pin: str
     anchor: str
@@ -47,6 +46,7 @@ class PinPart:
     drawing: str
     cases: tuple[PinCase, ...]
     moving: tuple[str, ...]
+    views: list[PinView]
 
     @property
     def zoned(self) -> bool:
@@ -76,6 +76,8 @@ def pin_parts(
                     positions.get(p.case) or results.units.length,
                     _zones(zones[name][p.case], results.units),
                     Grid(*hand_check_table(p, results.units)) if p.hand_checks else None,
+                    loads_at(p, results),
+                    ratio(p.max_von_mises, p.published_max_von_mises),
                 )
                 for p in results.pins
                 if p.pin == name
@@ -83,6 +85,7 @@ def pin_parts(
             moving=tuple(
                 t.case for t in results.reactions if t.times is not None and name in t.pins
             ),
+            views=pin_views(results, name),
         )
         for number, name in enumerate(names, start=1)
     ]

@@ -17,13 +17,17 @@ LOG_SPAN = 100.0
 WITHOUT = "no-pin"  # connections that bear on no pin of the study
 
 
-def reaction_plots(table: ReactionTable, units: Units, directory: Path) -> list[Path]:
-    """For each pin its connections' components and magnitudes along the motion."""
-    paths = []
-    for pin in dict.fromkeys(table.pins):
-        paths += _components(table, pin, units, directory)
-        paths += _magnitudes(table, pin, units, directory)
-    return paths
+def reaction_plots(
+    table: ReactionTable, pin: str, units: Units, directory: Path, governs: float | None = None
+) -> list[Path]:
+    """Of one pin its connections' components and magnitudes along the motion.
+
+    governs: where on that axis the pin's stress is largest.
+    """
+    return [
+        *_components(table, pin, units, directory, governs),
+        *_magnitudes(table, pin, units, directory, governs),
+    ]
 
 
 def along(table: ReactionTable, units: Units) -> tuple[Floats, str]:
@@ -48,7 +52,9 @@ def _name(table: ReactionTable, c: int) -> str:
     return f"{name} (shared)" if name in table.shared else name
 
 
-def _components(table: ReactionTable, pin: str, units: Units, directory: Path) -> list[Path]:
+def _components(
+    table: ReactionTable, pin: str, units: Units, directory: Path, governs: float | None
+) -> list[Path]:
     members = _of_pin(table, pin)
     shown = _components_that_act(table, members, units)
     columns = 2 if len(shown) > 3 else 1
@@ -58,11 +64,14 @@ def _components(table: ReactionTable, pin: str, units: Units, directory: Path) -
         for panel, (name, values) in zip(axes, shown.items(), strict=False):
             _component(panel, x, values, members, table)
             panel.set(ylabel=name, xlabel=heading)
+            _governs(panel, governs)
         for unused in axes[len(shown) :]:
             unused.remove()
         figure.align_ylabels()
         title = f"{_whose(pin)}, {table.case}: components, world axes; a dot marks each peak"
-        figure.suptitle(title + "\n(components that stay zero are left out)", x=0.01, ha="left")
+        told = "" if governs is None else "; dashed: the stress governs"
+        note = f"\n(components that stay zero are left out{told})"
+        figure.suptitle(title + note, x=0.01, ha="left")
         figure.legend(
             *axes[0].get_legend_handles_labels(),
             loc="outside lower left",
@@ -102,7 +111,9 @@ def _component(
     plain_numbers(axes)
 
 
-def _magnitudes(table: ReactionTable, pin: str, units: Units, directory: Path) -> list[Path]:
+def _magnitudes(
+    table: ReactionTable, pin: str, units: Units, directory: Path, governs: float | None
+) -> list[Path]:
     members = _of_pin(table, pin)
     x, heading = along(table, units)
     with panels(1, height=3.2) as (figure, (axes,)):
@@ -119,8 +130,22 @@ def _magnitudes(table: ReactionTable, pin: str, units: Units, directory: Path) -
         # Room over the highest dot, however little the forces vary.
         axes.set_ylim(0.0, 1.06 * float(table.magnitudes[:, members].max()) or 1.0)
         plain_numbers(axes)
+        _governs(axes, governs, "stress governs")
         label_ends(figure, axes, lines, texts)
         return save(figure, directory, plot_name("magnitudes", table.case, pin or WITHOUT))
+
+
+def _governs(axes: Axes, at: float | None, text: str = "") -> None:
+    """A line where the pin's stress is largest, which is where no one force need be."""
+    if at is None:
+        return
+    axes.axvline(at, color=INK, linewidth=1.0, linestyle=(0, (4, 3)), zorder=0.5)
+    low, high = sorted(axes.get_xlim())
+    right = at > 0.5 * (low + high)
+    axes.annotate(
+        text, (at, 0.03), xycoords=("data", "axes fraction"), xytext=(-4 if right else 4, 0),
+        textcoords="offset points", ha="right" if right else "left", fontsize=8.0, color=INK,
+    )  # fmt: skip
 
 
 def _peak(table: ReactionTable, values: Floats, peak: int, units: Units) -> str:

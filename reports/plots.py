@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
+from reports.draw import Draw, Plot, in_turn
 from reports.plot_checks import beam_plots, motion_plot
 from reports.plot_drive import drive_plot
 from reports.plot_landing import landing_plot
@@ -12,41 +15,65 @@ from reports.plot_linkage import linkage_plot
 from reports.plot_motion import motion_plots
 from reports.plot_reactions import bars, reaction_plots
 from reports.plot_refinement import pin_refinement_plot, refinement_plot
-from reports.results import PinResult, Results
+from reports.plot_surface import surface_plot
+from reports.results import PinResult, ReactionTable, Results
 
 
-def save_plots(results: Results, directory: Path) -> list[Path]:
+def save_plots(results: Results, directory: Path, draw: Draw = in_turn) -> list[Path]:
     """Draw everything the results hold into `directory`; returns the files."""
     directory.mkdir(parents=True, exist_ok=True)
+    return draw([*_mechanics(results, directory), *_pins(results, directory)])
+
+
+def _mechanics(results: Results, directory: Path) -> Iterator[Plot]:
     units = results.units
-    paths = []
     for table in results.reactions:
-        moving = table.times is not None
-        paths += (reaction_plots if moving else bars)(table, units, directory)
+        if table.times is None:
+            yield partial(bars, table, units, directory)
+        else:
+            at = governing(results, table)
+            for pin in dict.fromkeys(table.pins):
+                yield partial(reaction_plots, table, pin, units, directory, at.get(pin))
     for drive in results.drive:
-        paths += drive_plot(drive, units, directory)
+        yield partial(drive_plot, drive, units, directory)
     for motion in results.motion:
-        paths += linkage_plot(motion, units, directory)
-        paths += motion_plots(motion, units, directory)
+        yield partial(linkage_plot, motion, units, directory)
+        yield partial(motion_plots, motion, units, directory)
     for leg in results.legs:
-        paths += leg_plots(leg, units, directory)
-    if results.beam_check is not None:
-        paths += beam_plots(results.beam_check, units, directory)
+        yield partial(leg_plots, leg, units, directory)
     if results.motion_check is not None:
-        paths += motion_plot(results.motion_check, units, directory)
+        yield partial(motion_plot, results.motion_check, units, directory)
+
+
+def _pins(results: Results, directory: Path) -> Iterator[Plot]:
+    units = results.units
+    if results.beam_check is not None:
+        yield partial(beam_plots, results.beam_check, units, directory)
     for case in dict.fromkeys(r.case for r in results.landing):
         members = [r for r in results.landing if r.case == case]
-        paths += landing_plot(case, members, results.required_safety_factor, units, directory)
+        yield partial(landing_plot, case, members, results.required_safety_factor, units, directory)
     for case in dict.fromkeys(pin.case for pin in results.pins):
         refined = [pin for pin in results.pins if pin.case == case and _can_be_drawn(pin)]
         if refined:
-            paths += refinement_plot(case, refined, units, directory)
+            yield partial(refinement_plot, case, refined, units, directory)
     for name in dict.fromkeys(pin.pin for pin in results.pins):
         refined = [pin for pin in results.pins if pin.pin == name and _can_be_drawn(pin)]
         # A single mesh says nothing about others.
         if any(len(pin.history) > 1 for pin in refined):
-            paths += pin_refinement_plot(name, refined, units, directory)
-    return paths
+            yield partial(pin_refinement_plot, name, refined, units, directory)
+    found = {(p.pin, p.case): p for p in results.pins}
+    shapes = {s.pin: s for s in results.shapes}
+    for surface in results.surfaces:
+        for held in surface.cases if surface.revolved else ():
+            row, shape = found[surface.pin, held.case], shapes.get(surface.pin)
+            yield partial(surface_plot, surface, held, row, shape, units, directory)
+
+
+def governing(results: Results, table: ReactionTable) -> dict[str, float]:
+    """Where on a motion's axis (reports.plot_reactions.along) each pin's stress is largest."""
+    rows = (p for p in results.pins if p.case == table.case)
+    at = {p.pin: p.time if table.position is None else p.position for p in rows}
+    return {pin: x for pin, x in at.items() if x is not None}
 
 
 def _can_be_drawn(pin: PinResult) -> bool:

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from reports.surface import Surface
+
 Floats = NDArray[np.float64]
 
 
@@ -70,7 +72,7 @@ class HandCheck:
 
 @dataclass(frozen=True)
 class PinResult:
-    """One pin in one case. Numbers are None for verdict `rigid`; time is None without a motion.
+    """One pin in one case. Numbers are None for `rigid` and `failed`, time without a motion.
 
     location: x, y, z in the pin's own axes. held: what holds the pin, in words. left_out: given
     forces that were not applied because their band is held. published_*: the publication's value.
@@ -377,7 +379,7 @@ class Provenance:
 
 @dataclass(frozen=True)
 class Results:
-    """Everything a run found, without the fields (those are written pin by pin)."""
+    """Everything a run found, without the fields inside of pins (those are written pin by pin)."""
 
     title: str
     study: str
@@ -395,7 +397,9 @@ class Results:
     published: tuple[PublishedValue, ...] = ()
     legs: tuple[LegTable, ...] = ()
     landing: tuple[LandingRange, ...] = ()
+    surfaces: tuple[Surface, ...] = ()
     provenance: tuple[Provenance, ...] = ()
     published_source: str = ""
     assumptions: tuple[str, ...] = ()
     versions: dict[str, str] = field(default_factory=dict)
+    study_text: str = ""

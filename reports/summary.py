@@ -71,10 +71,9 @@ def _yielding(results: Results) -> str:
 
 def _no_values(results: Results) -> str:
     total = len(results.pins)
-    singular, loose, unsolved = (
-        sum(p.verdict == verdict for p in results.pins)
-        for verdict in ("singular", "unconverged", "rigid")
-    )
+    verdicts = [p.verdict for p in results.pins]
+    singular, loose = verdicts.count("singular"), verdicts.count("unconverged")
+    unsolved = verdicts.count("rigid") + verdicts.count("failed")
     text = ""
     if singular:
         text = f"{_count(singular, 'row')} of {total} {('are', 'is')[singular == 1]} singular: "

@@ -9,14 +9,15 @@ WORDS = {
     "unconverged": "unconverged",
     "singular": "singular",
     "rigid": "not solved",
+    "failed": "failed",
 }
 BEYOND = "beyond yield"
 
 READING = (
-    "Each row is one pin in one case: the largest von Mises stress on the pin's surface at any "
-    "instant, its estimated error (±) from successive meshes, and the yield stress over that "
-    "maximum. The solid model gives the mean over turning the loads about the axis; pictures and "
-    "VTU files show the pin as it is loaded, and their maximum may differ by as much as the ±."
+    "Each row is one pin in one case: the largest von Mises stress in the pin at any instant, its "
+    "estimated error (±) from successive meshes, and the yield stress over that maximum. The solid "
+    "model gives the mean over turning the loads about the axis; pictures and VTU files show the "
+    "pin as it is loaded, and their maximum may differ by as much as the ±."
 )
 # What each word beside a factor means, one sentence each.
 MEANING = {
@@ -28,6 +29,7 @@ MEANING = {
     "below the required one is enough to say that the pin misses it, and no factor shows that it "
     "meets it.",
     "not solved": "nothing holds the pin and its loads are not in balance, so there is no number.",
+    "failed": "the numerics failed, for the reason given, so there is no number.",
     BEYOND: "the stress is above the yield stress, where linear elasticity has ended: it is not "
     "what the material does.",
 }
@@ -49,7 +51,9 @@ def outcome(pin: PinResult) -> str:
     An unconverged row may have an error small enough to say whether it meets what is required. A
     singular one can only miss or yield: more stress than is read has no bound.
     """
-    if pin.verdict == "rigid" or (pin.verdict == "unconverged" and pin.meets_required is None):
+    if pin.verdict in ("rigid", "failed") or (
+        pin.verdict == "unconverged" and pin.meets_required is None
+    ):
         return "no value"
     if pin.meets_required is not None:
         found = "meets" if pin.meets_required else "misses"

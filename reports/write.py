@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from reports.animation import write_animations
+from reports.draw import Draw, in_turn
 from reports.hand_checks import write_hand_checks
 from reports.json_results import write_json
 from reports.landing import write_landing
@@ -27,13 +28,18 @@ from reports.zones import write_zones
 
 
 def write_reports(
-    results: Results, directory: Path, pictures: dict[tuple[str, str], Path], plots: bool = True
+    results: Results,
+    directory: Path,
+    pictures: dict[tuple[str, str], Path],
+    plots: bool = True,
+    draw: Draw = in_turn,
 ) -> Path:
     """Write results.json, the tables, the plots and report.html; returns the page's path.
 
-    pictures: of pins, by pin and case. plots: whether to draw them, which takes seconds.
+    pictures: of pins, by pin and case. plots: whether to draw them, which takes seconds,
+    and `draw` by whom.
     """
-    drawn = write_loads(results, directory, plots)
+    drawn = write_loads(results, directory, plots, draw)
     write_safety_factors(results, directory)
     write_hand_checks(results, directory)
     write_zones(results, directory)
@@ -43,7 +49,9 @@ def write_reports(
     return write_page(results, directory, pictures, drawn)
 
 
-def write_loads(results: Results, directory: Path, plots: bool = True) -> list[Path]:
+def write_loads(
+    results: Results, directory: Path, plots: bool = True, draw: Draw = in_turn
+) -> list[Path]:
     """Write results.json and all that needs no stresses; returns the plots."""
     directory.mkdir(parents=True, exist_ok=True)
     write_json(results, directory / "results.json")
@@ -66,4 +74,4 @@ def write_loads(results: Results, directory: Path, plots: bool = True) -> list[P
         return []
     from reports.plots import save_plots
 
-    return save_plots(results, directory / "plots")
+    return save_plots(results, directory / "plots", draw)

@@ -20,16 +20,17 @@ PSI = LBF / INCH**2
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Tests that run other codes are left out unless `-m` names them.
+    """Tests that need other programs are left out unless `-m` names them.
 
     Here and not in addopts, where any other `-m` would bring them back.
     """
-    if "peers" in config.getoption("markexpr"):
-        return
-    left_out = [item for item in items if item.get_closest_marker("peers")]
-    if left_out:
-        config.hook.pytest_deselected(items=left_out)
-        items[:] = [item for item in items if item not in left_out]
+    for mark in ("peers", "browser"):
+        if mark in config.getoption("markexpr"):
+            continue
+        left_out = [item for item in items if item.get_closest_marker(mark)]
+        if left_out:
+            config.hook.pytest_deselected(items=left_out)
+            items[:] = [item for item in items if item not in left_out]
 
 
 @pytest.fixture(scope="session")

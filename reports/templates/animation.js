@@ -257,8 +257,9 @@
 
   for (const part of all(".controls, .help")) part.hidden = false;
   rescale();
-  // animation_x.html#t=1.5 opens at that time; otherwise it plays, unless less motion is asked for.
+  // animation_x.html#t=1.5 opens at that time; otherwise it plays, unless less motion is asked for or
+  // it is a part of another page.
   const asked = /^#t=([-+.\deE]+)$/.exec(location.hash);
   if (asked && Number.isFinite(Number(asked[1]))) go(Number(asked[1]));
-  else if (last > 0 && !matchMedia("(prefers-reduced-motion: reduce)").matches) turn(true);
+  else if (last > 0 && self === top && !matchMedia("(prefers-reduced-motion: reduce)").matches) turn(true);
 })();

@@ -7,10 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.__main__ import ALL
 from tests.conftest import ROOT
 
 ROOMS = "loads|geometry|fea|reports|pinstress|studies|tests|benchmarks|docs|scripts"
+NAMES = re.findall(
+    r'^    "([\w-]+)": ', (ROOT / "benchmarks" / "__main__.py").read_text(), re.MULTILINE
+)
 PAGES = [*(ROOT / "docs").glob("*.md"), ROOT / "README.md", ROOT / "CONTRIBUTING.md"]
 
 
@@ -25,7 +27,7 @@ def test_named_files_exist(page: Path) -> None:
 def test_named_benchmarks_and_targets_exist(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
     for name in re.findall(r"python -m benchmarks ([a-z][\w-]*)", text):
-        assert name in ALL, name
+        assert name in NAMES, name
     targets = re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.MULTILINE)
     for name in re.findall(r"(?:`|^ +)make ([a-z][\w-]*)", text, re.MULTILINE):
         assert name in targets, name

@@ -26,6 +26,7 @@ def test_the_matrix_is_scikit_fems(cantilever_pin: Pin, steel: Material, element
     size = MeshSize(across=2.0, arc=1.0)
     space = Discretisation(solid_mesh(cantilever_pin, size, element=element).mesh)
     ours = space.stiffness(steel)
+    assert ours.shape == (space.unknowns, space.unknowns)
     theirs_own, order = (ElementTetP1(), 1) if element == "linear" else (ElementTetP2(), 2)
     basis = Basis(space.mesh, ElementVector(theirs_own), intorder=order)
     lam, mu = lame_parameters(steel.youngs_modulus, steel.poisson_ratio)

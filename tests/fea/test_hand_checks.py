@@ -165,3 +165,12 @@ def test_no_load_no_factor(steel: Material) -> None:
         "bending",
     }
     assert all(x.stress == 0.0 and x.factor is None for x in checks)
+
+
+def test_checks_are_proportional_to_the_load(steel: Material) -> None:
+    """Also below a newton: what is small is not nothing."""
+    whole, part = (hand_checks(LUGS, steel, lugs((f, 0.0))) for f in (F, 1e-5 * F))
+    assert [(x.name, x.at) for x in whole] == [(x.name, x.at) for x in part]
+    assert "double shear, mean" in {x.name for x in part}
+    for a, b in zip(whole, part, strict=True):
+        assert b.stress == pytest.approx(1e-5 * a.stress)

@@ -127,7 +127,7 @@ def test_a_sharp_corner_and_a_clamp_edge_are_singular(steel: Material) -> None:
     for inside, zone in zip(peak.singular_at, exact.singular_at, strict=True):
         assert inside.exponent is not None
         assert inside.exponent > 0.2  # it grows with every mesh, how fast is known to no more
-        assert zone.exponent == pytest.approx(zone.exponent_theory, abs=0.03)
+        assert zone.exponent == pytest.approx(zone.exponent_theory, abs=0.05)
     assert exact.max_von_mises is not None
     assert peak.max_von_mises == pytest.approx(exact.max_von_mises, rel=0.05)
 

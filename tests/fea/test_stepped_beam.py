@@ -165,3 +165,16 @@ def test_a_tube(steel: Material) -> None:
     area = math.pi / 4 * (d**2 - 0.012**2)
     shift = deflections(forces, steel, np.array([L]))[0, AXIAL, 0]
     assert shift == pytest.approx(L / 2 / (steel.youngs_modulus * area), rel=1e-12)
+
+
+@pytest.mark.parametrize("clamps", [("start",), ()])
+def test_a_couple_along_its_band(clamps: tuple[str, ...], steel: Material) -> None:
+    """w = 12 (z - L/2) / L^3 has the moment 1 and no force: V is a parabola of 3/2 / L in the
+    middle, M falls from 1 to 0. Balanced, the same traction takes it up again.
+    """
+    forces = stepped_beam(PLAIN, steel, (COUPLE,), clamps)
+    for z in (0.0, 0.1 * L, 0.25 * L, 0.5 * L, 0.8 * L, L):
+        x = z / L - 0.5
+        V = 6.0 / L * (0.25 - x**2) if clamps else 0.0
+        M = 0.5 - 1.5 * x + 2.0 * x**3 if clamps else 0.0
+        assert one(forces, z)[:2] == pytest.approx([V, M], rel=1e-12, abs=1e-12)

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import pytest
 
+from geometry import Pin
 from pinstress.cli import run_command_line
 from pinstress.errors import InputError
 from pinstress.output import replacing
@@ -23,6 +24,15 @@ from tests.conftest import ROOT
 ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()
 # a coarse answer is enough to test what surrounds it
 QUICK = ONE_PIN.replace("tolerance = 0.05", "tolerance = 0.3")
+
+
+def two_pins(text: str) -> str:
+    """The study with a second pin, C, a tenth thicker, under the same force."""
+    head, rest = text.split("[pin.B]")
+    pin, case = rest.split("[case.landing]")
+    other = pin.replace('"B"', '"C"').replace("2.0, connection", "2.2, connection")
+    case = case.replace("{ B = [0.0, -988.86] }", "{ B = [0.0, -988.86], C = [0.0, -988.86] }")
+    return f"{head}[pin.B]{pin}[pin.C]{other}[case.landing]{case}"
 
 
 def pinstress(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
@@ -327,18 +337,66 @@ def test_a_failure_keeps_the_earlier_results(tmp_path: Path) -> None:
     assert [p.name for p in tmp_path.iterdir()] == ["out"]
 
 
-def test_numerics_that_fail_are_status_3(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize("jobs", ["1", "2"])
+def test_a_pin_whose_numerics_fail_is_told_and_the_others_go_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], jobs: str
 ) -> None:
     import fea.harmonic_look
+    import geometry.meridian_mesh
     from geometry.solid_mesh import MeshError
 
-    def no_mesh(*_: object) -> None:
-        raise MeshError("pin B: no mesh")
+    good = geometry.meridian_mesh.meridian_mesh
+
+    def no_mesh(pin: Pin, *rest: object) -> object:
+        if pin.name == "B":
+            raise MeshError("pin B: no mesh")
+        return good(pin, *rest)  # type: ignore[arg-type]
 
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(fea.harmonic_look, "meridian_mesh", no_mesh)
-    Path("study.toml").write_text(ONE_PIN)
-    assert run_command_line(["run", "study.toml", "--no-pictures"]) == 3
-    assert "the numerics failed: pin B: no mesh" in capsys.readouterr().err
-    assert [p.name for p in tmp_path.iterdir()] == ["study.toml"]
+    Path("study.toml").write_text(two_pins(QUICK))
+    assert run_command_line(["run", "study.toml", "--no-pictures", "--jobs", jobs]) == 3
+    said = capsys.readouterr()
+    assert "the numerics failed: B (landing): pin B: no mesh" in said.err
+    assert "failed" in said.out
+    failed, solved = json.loads(Path("out/study/results.json").read_text())["pins"]
+    assert (failed["pin"], failed["verdict"], failed["note"]) == ("B", "failed", "pin B: no mesh")
+    assert failed["max_von_mises"] is failed["safety_factor"] is failed["meets_required"] is None
+    assert (solved["pin"], solved["verdict"]) == ("C", "converged")
+
+
+def test_a_crash_of_a_library_costs_its_pin_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    import fea.harmonic_look
+    import geometry.meridian_mesh
+
+    good = geometry.meridian_mesh.meridian_mesh
+
+    def crash(pin: Pin, *rest: object) -> object:
+        if pin.name == "B":
+            os.kill(os.getpid(), signal.SIGKILL)
+        return good(pin, *rest)  # type: ignore[arg-type]
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(fea.harmonic_look, "meridian_mesh", crash)
+    Path("study.toml").write_text(two_pins(QUICK))
+    assert run_command_line(["run", "study.toml", "--no-pictures", "--jobs", "2"]) == 3
+    assert "B (landing): its process was ended by signal 9" in capsys.readouterr().err
+    pins = json.loads(Path("out/study/results.json").read_text())["pins"]
+    assert [p["verdict"] for p in pins] == ["failed", "converged"]
+
+
+def test_a_solid_that_needs_more_memory_than_allowed_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Its first mesh, before it is solved; with room for that one alone, no finer one is made."""
+    monkeypatch.chdir(tmp_path)
+    Path("study.toml").write_text(ONE_PIN.replace("tolerance = 0.05", "tolerance = 0.001"))
+    command = ["run", "study.toml", "--no-pictures", "--model", "solid", "--memory-limit"]
+    assert run_command_line([*command, "50"]) == 3
+    assert "and 0.049 GB are allowed" in capsys.readouterr().err
+    assert run_command_line([*command, "300"]) == 1
+    (pin,) = json.loads(Path("out/study/results.json").read_text())["pins"]
+    assert pin["verdict"] == "unconverged"
+    assert 1 <= len(pin["history"]) < 3

@@ -1,0 +1,54 @@
+// Sorting, colours for day or night, and the frames of the animations. The page is whole without.
+
+const sortable = (table) => {
+  const heads = [...table.tHead.rows[0].cells];
+  const key = (row, k) => row.cells[k].dataset.value ?? row.cells[k].textContent.trim();
+  const order = (a, b) => {
+    if (a === "" || b === "") return (a === "") - (b === ""); // what has no number comes last
+    const x = Number(a), y = Number(b);
+    return Number.isNaN(x) || Number.isNaN(y) ? a.localeCompare(b) : x - y;
+  };
+  heads.forEach((head, k) => {
+    const button = document.createElement("button");
+    button.type = "button";
+    button.append(...head.childNodes);
+    head.append(button);
+    head.setAttribute("aria-sort", "none");
+    button.addEventListener("click", () => {
+      const down = head.getAttribute("aria-sort") === "ascending";
+      heads.forEach((h) => h.setAttribute("aria-sort", "none"));
+      head.setAttribute("aria-sort", down ? "descending" : "ascending");
+      const known = (row) => key(row, k) !== "";
+      const rows = [...table.tBodies[0].rows].sort((a, b) => (down && known(a) && known(b) ? -1 : 1) * order(key(a, k), key(b, k)));
+      table.tBodies[0].append(...rows);
+    });
+  });
+};
+
+document.querySelectorAll("table.sortable").forEach(sortable);
+
+const shade = document.getElementById("shade");
+const frames = [...document.querySelectorAll("iframe")];
+const dark = () => (document.documentElement.style.colorScheme || (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light")) === "dark";
+const shaded = () => {
+  shade.textContent = dark() ? "Light" : "Dark";
+  for (const frame of frames) {
+    const inner = frame.contentDocument?.documentElement;
+    if (inner) inner.style.colorScheme = document.documentElement.style.colorScheme;
+  }
+};
+shade.hidden = false;
+shade.addEventListener("click", () => { document.documentElement.style.colorScheme = dark() ? "light" : "dark"; shaded(); });
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", shaded);
+shaded();
+
+// As high as what is in them, whatever the width of the page.
+const fit = (frame) => { frame.style.height = `${frame.contentDocument.documentElement.offsetHeight + 4}px`; };
+const framed = (frame) => {
+  shaded();
+  new ResizeObserver(() => fit(frame)).observe(frame.contentDocument.documentElement);
+};
+for (const frame of frames) {
+  frame.addEventListener("load", () => framed(frame));
+  if (frame.contentDocument?.readyState === "complete") framed(frame);
+}

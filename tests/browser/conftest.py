@@ -1,0 +1,86 @@
+"""A browser without network, and the pages that it opens from disk."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+STUDIES = ROOT / "studies"
+ODD = 'Ünit <img src=x onerror="document.title=1"> & "q" \' 😀 שלום {{ 1 }}'
+PIN = "bolt &'😀שלום"  # which may be no part of a path
+WITHOUT_NETWORK = ("--host-resolver-rules=MAP * ~NOTFOUND", "--disable-background-networking")
+WEBGL = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    """Chromium, headless, with WebGL in software and nothing to reach but files."""
+    from selenium import webdriver
+    from selenium.webdriver.chrome.service import Service
+
+    options = webdriver.ChromeOptions()
+    options.binary_location = _program("chromium")
+    for argument in ("--headless", "--window-size=1300,1000", *WITHOUT_NETWORK, *WEBGL):
+        options.add_argument(argument)
+    if os.geteuid() == 0:
+        options.add_argument("--no-sandbox")
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    driver = webdriver.Chrome(options=options, service=Service(_program("chromedriver")))
+    try:
+        yield driver
+    finally:
+        driver.quit()
+
+
+def _program(name: str) -> str:
+    path = shutil.which(name)
+    assert path is not None, f"{name} is missing: sh scripts/browser.sh installs it or says how"
+    return path
+
+
+@pytest.fixture(scope="session")
+def gear_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of the landing gear's run, as the command writes it."""
+    return _run(STUDIES / "grenier2008.toml", tmp_path_factory.mktemp("gear") / "out")
+
+
+@pytest.fixture(scope="session")
+def odd_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a study whose names and texts are not to be taken for markup."""
+    directory = tmp_path_factory.mktemp("odd")
+    text = (STUDIES / "one_pin.toml").read_text(encoding="utf-8")
+    quoted = _quoted(ODD)
+    changes = {
+        'title = "One pin"': f"title = {quoted}\nassumptions = [{quoted}]",
+        "[pin.B]": f'[pin."{PIN}"]',
+        'name = "root"': f"name = {_quoted('root ' + ODD)}",
+        'connection = "B"': f"connection = {quoted}",
+        "B = [0.0, -988.86]": f"{quoted} = [0.0, -988.86]",
+        '"AISI 4340"': quoted,
+    }
+    for old, new in changes.items():
+        assert old in text
+        text = text.replace(old, new)
+    study = directory / "odd.toml"
+    study.write_text(text, encoding="utf-8")
+    return _run(study, directory / "out", "--no-pictures")
+
+
+def _quoted(text: str) -> str:
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
+
+
+def _run(study: Path, out: Path, *options: str) -> Path:
+    command = [sys.executable, "-m", "pinstress", "run", str(study), "--out", str(out), *options]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True)
+    assert done.returncode in (0, 1), done.stderr
+    return out

@@ -1,0 +1,152 @@
+"""The landing gear's report as a whole."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.browser.looks import errors, opened, wait
+
+pytestmark = pytest.mark.browser
+
+AXE = Path(__file__).parent / "axe" / "axe.min.js"
+LARGEST = 15e6  # bytes
+NUMBERS = ("time", "max_von_mises", "error_estimate", "safety_factor", "required")
+ROWS = """
+return [...document.querySelectorAll("#factors tbody tr")].map(
+  (row) => [...row.cells].map((cell) => cell.dataset.value ?? cell.textContent));
+"""
+HEADS = 'return [...document.querySelectorAll("#factors thead th")].map((h) => h.textContent);'
+BROKEN = """
+return [...document.querySelectorAll('a[href^="#"]')].map((a) => a.getAttribute("href"))
+  .filter((href) => !document.getElementById(decodeURIComponent(href.slice(1))));
+"""
+REQUESTS = "return performance.getEntriesByType('resource').map((r) => r.name);"
+FAULTS = """
+const done = arguments[arguments.length - 1];
+axe.run(document, { iframes: true }).then((found) => done(found.violations
+  .filter((v) => ["serious", "critical"].includes(v.impact))
+  .map((v) => `${v.id}: ${v.nodes.slice(0, 3).map((n) => n.html.slice(0, 200)).join(" | ")}`)));
+"""
+
+
+@pytest.fixture(scope="module")
+def page(browser: Any, gear_run: Path) -> Any:
+    opened(browser, gear_run)
+    return browser
+
+
+def column(page: Any, name: str) -> int:
+    return next(k for k, head in enumerate(page.execute_script(HEADS)) if head.startswith(name))
+
+
+def sort_by(page: Any, name: str) -> list[str]:
+    """Click on a heading; the column's values then."""
+    k = column(page, name)
+    page.find_elements("css selector", "#factors thead th button")[k].click()
+    return [row[k] for row in page.execute_script(ROWS)]
+
+
+def test_page_is_one_file_that_asks_for_nothing(page: Any, gear_run: Path) -> None:
+    assert (gear_run / "report.html").stat().st_size < LARGEST
+    assert page.execute_script("return document.readyState") == "complete"
+    outside = [r for r in page.execute_script(REQUESTS) if not r.startswith("data:")]
+    assert outside == []
+    assert errors(page) == []
+
+
+def test_every_anchor_leads_somewhere(page: Any) -> None:
+    assert len(page.find_elements("css selector", 'a[href^="#"]')) > 20
+    assert page.execute_script(BROKEN) == []
+
+
+def test_columns_sort_both_ways(page: Any) -> None:
+    first = [float(v) for v in sort_by(page, "safety factor")]
+    assert first == sorted(first)
+    assert len(set(first)) > 10
+    second = [float(v) for v in sort_by(page, "safety factor")]
+    assert second == first[::-1]
+    heads = page.find_elements("css selector", "#factors thead th")
+    sorts = [head.get_attribute("aria-sort") for head in heads]
+    assert sorts.count("descending") == 1
+    assert sorts.count("none") == len(sorts) - 1
+    times = sort_by(page, "time")
+    assert times.index("") == sum(t != "" for t in times)  # rows without a time are the last
+    assert [float(t) for t in times if t] == sorted(float(t) for t in times if t)
+    assert sort_by(page, "pin") == sorted("ABCDEFGHJ" * 2)
+
+
+def test_page_csv_and_json_have_the_same_numbers(page: Any, gear_run: Path) -> None:
+    with (gear_run / "safety_factors.csv").open(encoding="utf-8", newline="") as file:
+        table = {(r["pin"], r["case"]): r for r in csv.DictReader(file)}
+    found = json.loads((gear_run / "results.json").read_text(encoding="utf-8"))["pins"]
+    names = {"time": "time", "max_von_mises": "max von", "error_estimate": "±"}
+    names |= {"safety_factor": "safety", "required": "required"}
+    at = {key: column(page, name) for key, name in names.items()}
+    pin, case = column(page, "pin"), column(page, "case")
+    rows = page.execute_script(ROWS)
+    assert len(rows) == len(table) == len(found) == 18
+    for row in rows:
+        told = table[row[pin], row[case]]
+        assert [row[at[key]] for key in NUMBERS] == [told[key] for key in NUMBERS]
+    for entry in found:
+        told = table[entry["pin"], entry["case"]]
+        for key in ("time", "max_von_mises", "error_estimate", "safety_factor"):
+            assert (float(told[key]) if told[key] else None) == entry[key]
+
+
+def test_animations_are_inside(page: Any) -> None:
+    frames = page.find_elements("css selector", "iframe")
+    assert len(frames) == 2
+    page.execute_script("arguments[0].scrollIntoView();", frames[0])
+    page.switch_to.frame(frames[0])
+    try:
+        wait(page, lambda: page.find_element("css selector", "#play").is_displayed())
+        before = page.find_element("css selector", "#time").text
+        page.find_element("css selector", "#on").click()
+        assert page.find_element("css selector", "#time").text != before
+    finally:
+        page.switch_to.default_content()
+
+
+@pytest.mark.parametrize("shade", ["light", "dark"])
+def test_axe_finds_nothing_serious(page: Any, gear_run: Path, shade: str) -> None:
+    opened(page, gear_run)
+    features = [{"name": "prefers-color-scheme", "value": shade}]
+    page.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
+    page.execute_script(AXE.read_text(encoding="utf-8"))
+    page.set_script_timeout(120)
+    assert page.execute_async_script(FAULTS) == []
+
+
+def test_shade_can_be_changed(page: Any) -> None:
+    body = page.find_element("css selector", "body")
+
+    def paper() -> str:
+        return str(body.value_of_css_property("background-color"))
+
+    page.execute_script("scrollTo(0, 0);")
+    before = paper()
+    page.find_element("id", "shade").click()
+    assert paper() != before
+    page.find_element("id", "shade").click()
+    assert paper() == before
+
+
+def test_page_is_whole_without_scripts(page: Any, gear_run: Path) -> None:
+    page.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": True})
+    try:
+        opened(page, gear_run)
+        assert not page.find_elements("css selector", "th button")
+        assert len(page.find_elements("css selector", "#factors tbody tr")) == 18
+        assert not any(v.is_displayed() for v in page.find_elements("css selector", "[data-view]"))
+        stills = page.find_elements("css selector", ".still img")
+        assert len(stills) == 18
+        assert all(still.is_displayed() for still in stills)
+        assert not page.find_element("id", "shade").is_displayed()
+    finally:
+        page.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": False})

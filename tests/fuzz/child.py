@@ -1,0 +1,71 @@
+"""A command in its own process, held to a time and a memory, and what is wrong with its end."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import re
+import resource
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from pinstress import check, write  # imported once, before the forks
+from pinstress.cli import run_command_line
+
+__all__ = ["End", "check", "run", "write"]
+
+SECONDS = 60.0
+MEMORY = 4 * 2**30  # bytes of address space
+SIGNS = re.compile(r"Traceback|Warning|Exception ignored|\w+Error\b(?!:? the numerics)|<class ")
+
+
+@dataclass(frozen=True)
+class End:
+    """How a command ended: its status (None when it had to be killed) and what it printed."""
+
+    status: int | None
+    out: str
+    err: str
+
+    @property
+    def wrong(self) -> str:
+        """What a user should not have met; empty when all is well."""
+        if self.status is None:
+            return f"no end after {SECONDS:g} s"
+        if self.status not in (0, 1, 2, 3):
+            return f"status {self.status}"
+        if sign := SIGNS.search(self.err):
+            return f"says {sign[0]!r}"
+        errors = [line for line in self.err.splitlines() if line.startswith("Error: ")]
+        if self.status == 2 and (len(errors) != 1 or self.out):
+            return f"{len(errors)} messages of bad input, {len(self.out)} letters of data"
+        if self.status < 2 and errors:
+            return "a message of an error, but no status"
+        return "" if errors or self.status < 2 else "no message"
+
+
+def run(folder: Path, arguments: list[str]) -> End:
+    """Run a pinstress command in a folder; forked, so that nothing is imported anew."""
+    out, err = folder.with_suffix(".out"), folder.with_suffix(".err")
+    process = multiprocessing.get_context("fork").Process(
+        target=_serve, args=(folder, arguments, out, err)
+    )
+    process.start()
+    process.join(SECONDS)
+    if hung := process.is_alive():
+        process.kill()
+        process.join()
+    status = None if hung else process.exitcode
+    return End(status, out.read_text(errors="replace"), err.read_text(errors="replace"))
+
+
+def _serve(folder: Path, arguments: list[str], out: Path, err: Path) -> None:
+    for number, path in ((1, out), (2, err)):
+        os.dup2(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC), number)
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    os.chdir(folder)
+    status = run_command_line(arguments)
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(status)
