@@ -9,7 +9,7 @@ sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parent.parent)]
 
 project = "pinstress"
 version = release = installed("pinstress")
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "study_reference"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "mathml", "study_reference"]
 myst_enable_extensions = ["amsmath", "dollarmath"]
 myst_heading_anchors = 3
 exclude_patterns = ["measured"]  # tables that pages include
@@ -22,6 +22,7 @@ autodoc_preserve_defaults = True
 toc_object_entries = False
 add_module_names = False
 
+html_math_renderer = "mathml"
 html_title = "pinstress"
 html_static_path = ["static"]
 html_css_files = ["wide.css"]
