@@ -77,7 +77,8 @@ def _peaks(plan: Plan, processes: int) -> list[Peak]:
 
         return Job(task.pin.name, solve)
 
-    found = side_by_side([job(i) for i in range(len(plan.tasks))], processes)
+    most = sorted(range(len(plan.tasks)), key=lambda i: -len(plan.tasks[i].pin.connections))
+    found = side_by_side([job(i) for i in most], processes)  # as a run does: the longest first
     return [peak for peaks in found if isinstance(peaks, list) for peak in peaks]
 
 

@@ -27,7 +27,7 @@ Ints = NDArray[np.int64]
 
 ACROSS = (6.3, 9.2, 12.2, 18.0)  # elements over the shaft
 SECONDS, GIGABYTES = 40.0, 12.0
-OVER = f"over {SECONDS:.0f} s"  # of a size, and of all larger ones, which are not tried
+OVER = f"over {SECONDS:.0f} s"
 NAMES = {
     "cholmod": "CHOLMOD, nested dissection",
     "superlu": "SuperLU, minimum degree",
@@ -46,13 +46,13 @@ def linear_solvers() -> str:
             file = Path(folder) / f"{k}.npz"
             counts.append(int(_child("matrix", str(across), str(file))["unknowns"]))
             for name, row in found.items():
-                passed = any(point == OVER for point in row)
-                row.append(OVER if passed else _point(name, file))
+                row.append(OVER if _hopeless(counts, row) else _point(name, file))
             file.unlink()
     return "\n\n".join(
         (
             f"Factoring and {_RIGHT_HAND_SIDES} right-hand sides, s (MB above the matrix); a "
-            f"point is given up after {SECONDS:.0f} s or {GIGABYTES:.0f} GB:",
+            f"point is given up after {SECONDS:.0f} s or {GIGABYTES:.0f} GB, or not begun where "
+            "the two before it foretell half as much again:",
             table(
                 ("unknowns", *(f"{n:,}" for n in counts), "time ~", "memory ~"),
                 [
@@ -62,6 +62,17 @@ def linear_solvers() -> str:
             ),
         )
     )
+
+
+def _hopeless(counts: list[int], row: list[tuple[float, float] | str]) -> bool:
+    """Whether a smaller size was over the limit, or the last two foretell half as much again."""
+    if OVER in row:
+        return True
+    if len(row) < 2 or any(isinstance(point, str) for point in row):
+        return False
+    n, seconds, _ = np.array([(n, *p) for n, p in zip(counts, row, strict=False)]).T
+    step = np.log(counts[len(row)] / n[-1]) / np.log(n[-1] / n[-2])
+    return float(seconds[-1] * (seconds[-1] / seconds[-2]) ** step) > 1.5 * SECONDS
 
 
 def _cell(point: tuple[float, float] | str) -> str:

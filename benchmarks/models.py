@@ -23,7 +23,7 @@ PINS = (
     ("charted/floating.toml", "P", "pressed"),
 )
 DRAWN = 1
-TOLERANCE, MESHES, RUNS = 0.01, 5, 3
+TOLERANCE, MESHES, RUNS = 0.01, 4, 3
 LIMITS = Limits(seconds=300.0, memory=8000.0)
 LONGEST = 20.0  # s: no finer mesh of the solid is tried after one that took so long
 
