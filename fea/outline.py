@@ -1,17 +1,13 @@
-"""The outline of a section's mesh: loads on it, and its normals for the recovery of stresses."""
+"""The outline of a section's mesh, and loads on it."""
 
 from __future__ import annotations
-
-from functools import cached_property
 
 import numpy as np
 
 from fea.section import Floats, Ints, Section, around
-from fea.surface import Surface
 from fea.tractions import Traction
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
-_ENDS_AND_MIDDLE = np.array([-1.0, 1.0, 0.0])
 
 
 def shapes(x: Floats) -> Floats:
@@ -32,6 +28,7 @@ class Outline:
     def __init__(self, space: Section) -> None:
         edges = space.section.edges
         self._nodes = space.nodes
+        self._kept: dict[str, tuple[Floats, Floats]] = {}
         self.nodes: Ints = np.concatenate(list(edges.values()))
         self.after = _after(self.nodes)
         ends = np.cumsum([len(found) for found in edges.values()])
@@ -47,15 +44,6 @@ class Outline:
             out[self.rows[name]] = True
         return out
 
-    @cached_property
-    def surface(self) -> Surface:
-        """Nodes and normals, in axes r, theta, z."""
-        x = self._nodes[self.nodes]
-        tangent = np.einsum("qi,eia->eqa", slopes(_ENDS_AND_MIDDLE), x)
-        normals = np.stack([tangent[..., 1], 0.0 * tangent[..., 0], -tangent[..., 0]], axis=2)
-        normals /= np.linalg.norm(normals, axis=2, keepdims=True)
-        return Surface(np.unique(self.nodes), np.arange(len(self.nodes)), self.nodes, normals)
-
     def traction(self, parts: tuple[Traction, ...]) -> Floats:
         """Amplitudes at the nodes of all edges, (E, 3, 3)."""
         out = np.zeros((*self.nodes.shape, 3))
@@ -67,16 +55,23 @@ class Outline:
     def forces(self, parts: tuple[Traction, ...], n: int) -> Floats:
         """Nodal forces (N, 3) along r, theta and z of tractions of harmonic n."""
         out = np.zeros((len(self._nodes), 3))
-        values = shapes(_POINTS)
         for part in parts:
-            edges = self.nodes[self.rows[part.surface]]
-            x = self._nodes[edges]
+            z, weight = self._quadrature(part.surface)
+            found = around(n) * np.einsum("eqi,eqa->eia", weight, part.at(z))
+            np.add.at(out, self.nodes[self.rows[part.surface]], found)
+        return out
+
+    def _quadrature(self, surface: str) -> tuple[Floats, Floats]:
+        """On the edges of a surface: z (E, Q), m, and the weights (E, Q, 3) of its nodes' values in
+        an integral over length times r, m^2.
+        """
+        if surface not in self._kept:
+            x, values = self._nodes[self.nodes[self.rows[surface]]], shapes(_POINTS)
             at = np.einsum("qi,eia->eqa", values, x)
             length = np.linalg.norm(np.einsum("qi,eia->eqa", slopes(_POINTS), x), axis=2)
-            weight = around(n) * _WEIGHTS * length * at[..., 0]
-            found = np.einsum("eq,qi,eqa->eia", weight, values, part.at(at[..., 1]))
-            np.add.at(out, edges, found)
-        return out
+            weight = (_WEIGHTS * length * at[..., 0])[..., None] * values
+            self._kept[surface] = at[..., 1], weight
+        return self._kept[surface]
 
 
 def _after(edges: Ints) -> Ints:
