@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import resource
+from collections.abc import Sequence
 from dataclasses import astuple, dataclass, replace
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from pinstress import load_study
 from pinstress.pins import material
 from pinstress.pipeline import Plan, prepare
 from pinstress.study import Study
+from pinstress.tasks import Task
 from pinstress.workers import Job, Tell, side_by_side
 
 STUDIES = Path(__file__).parent.parent / "studies"
@@ -32,9 +34,9 @@ def gear() -> str:
         "floating pins clamped, as published": prepare(published),
         "floating pins in balance": prepare(_floating(published)),
     }
-    _peaks(next(iter(ways.values())), 1)  # imports
+    _peaks(list(ways.values())[:1], 1)  # imports
     rows = [_whole(way, plan) for way, plan in ways.items()]
-    rows.append(_sum("both ways", *rows))
+    rows.append(_whole("both ways at once", *ways.values()))
     rows.append(_whole("in balance, with fillets and bearing pressure", improved))
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
     head = ("how", "s", f"s on {CORES} cores", "meshes", "unknowns of the largest")
@@ -67,18 +69,18 @@ def _material(plan: Plan, pin: str) -> Material:
     return material(plan.study, plan.study.table.pin[pin].material)
 
 
-def _peaks(plan: Plan, processes: int) -> list[Peak]:
-    def job(number: int) -> Job[list[Peak]]:
-        task = plan.tasks[number]
-
+def _peaks(plans: Sequence[Plan], processes: int) -> list[Peak]:
+    def job(plan: Plan, task: Task) -> Job[list[Peak]]:
         def solve(_: Tell) -> list[Peak]:
             steel = _material(plan, task.pin.name)
-            return [s.peak for s in solve_pin(task.pin, steel, task.clamps, task.loads, plan.asked)]
+            found = solve_pin(task.pin, steel, task.clamps, task.loads, plan.asked)
+            return [s.peak for s in found]
 
         return Job(task.pin.name, solve)
 
-    most = sorted(range(len(plan.tasks)), key=lambda i: -len(plan.tasks[i].pin.connections))
-    found = side_by_side([job(i) for i in most], processes)  # as a run does: the longest first
+    work = [(plan, task) for plan in plans for task in plan.tasks]
+    work.sort(key=lambda each: -len(each[1].pin.connections))  # as a run does: the longest first
+    found = side_by_side([job(*each) for each in work], processes)
     return [peak for peaks in found if isinstance(peaks, list) for peak in peaks]
 
 
@@ -93,26 +95,14 @@ class _Row:
     of: int
 
 
-def _whole(way: str, plan: Plan) -> _Row:
-    peaks = _peaks(plan, 1)
-    alone, together = (seconds(lambda n=n: _peaks(plan, n)) for n in (1, CORES))  # type: ignore[misc]
-    meshes = {(p.pin, step.dofs) for p in peaks for step in p.history}
-    known = sum((p.error_estimate or 0.0) <= 0.02 * (p.max_von_mises or 0.0) for p in peaks)
-    largest = max(dofs for _, dofs in meshes)
-    return _Row(way, alone, together, len(meshes), largest, known, len(peaks))
-
-
-def _sum(way: str, a: _Row, b: _Row) -> _Row:
-    largest = max(a.largest, b.largest)
-    return _Row(
-        way,
-        a.alone + b.alone,
-        a.together + b.together,
-        a.meshes + b.meshes,
-        largest,
-        a.known + b.known,
-        a.of + b.of,
-    )
+def _whole(way: str, *plans: Plan) -> _Row:
+    peaks = [_peaks([plan], 1) for plan in plans]
+    alone, together = (seconds(lambda n=n: _peaks(plans, n)) for n in (1, CORES))  # type: ignore[misc]
+    meshes = [(k, p.pin, s.dofs) for k, found in enumerate(peaks) for p in found for s in p.history]
+    flat = [p for found in peaks for p in found]
+    known = sum((p.error_estimate or 0.0) <= 0.02 * (p.max_von_mises or 0.0) for p in flat)
+    largest = max(dofs for *_, dofs in meshes)
+    return _Row(way, alone, together, len(set(meshes)), largest, known, len(flat))
 
 
 def _one(plan: Plan) -> list[tuple[object, ...]]:
