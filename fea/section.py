@@ -64,12 +64,17 @@ class Section:
     @cached_property
     def _gradients(self) -> Floats:
         """N,r N,z and N / r at all points of the basis, (M, Q, 3, 6), 1/m."""
-        return gradients(self.basis)
+        return gradients(self.basis, self._places[0])
+
+    @cached_property
+    def _places(self) -> Floats:
+        """r and z of all points of the basis, (2, M, Q), m."""
+        return np.asarray(self.basis.global_coordinates())
 
     @cached_property
     def _weights(self) -> Floats:
         """Areas times r at all points of the basis (M, Q), m^3."""
-        return np.asarray(self.basis.dx * self.basis.global_coordinates()[0])
+        return np.asarray(self.basis.dx * self._places[0])
 
     @cached_property
     def _pattern(self) -> Pattern:
@@ -116,8 +121,7 @@ class Section:
     @cached_property
     def samples(self) -> Floats:
         """Where those are, (3 M, 2): r, z in m, element by element."""
-        x = np.asarray(self.basis.global_coordinates())[:, :, self._sampled]
-        return np.ascontiguousarray(x.reshape(2, -1).T)
+        return np.ascontiguousarray(self._places[:, :, self._sampled].reshape(2, -1).T)
 
     @cached_property
     def continued_to_nodes(self) -> sp.csr_matrix:
@@ -142,9 +146,10 @@ def elasticity(material: Material) -> Floats:
     return D
 
 
-def gradients(basis: Basis) -> Floats:
-    """N,r N,z and N / r of the shape functions at a basis' points, (M, Q, 3, 6), 1/m."""
-    r = basis.global_coordinates()[0]
+def gradients(basis: Basis, r: Floats) -> Floats:
+    """N,r N,z and N / r of the shape functions at a basis' points, which are at r (M, Q), m;
+    (M, Q, 3, 6), 1/m.
+    """
     parts = [
         (*basis.basis[i][0].grad, np.asarray(basis.basis[i][0]) / r) for i in range(basis.Nbfun)
     ]

@@ -121,7 +121,7 @@ def errors(space: Section, material: Material, exact: Exact, u: Floats) -> tuple
     basis, r, z, weight, values = _fine(space)
     moved = np.einsum("imq,mia->mqa", values, u[space.elements][..., 0])
     local = unknowns_of(u[..., 0]).reshape(-1, 3)[space.elements]
-    strain = np.einsum("sca,mqai,mic->mqs", strain_map(exact.n), gradients(basis), local)
+    strain = np.einsum("sca,mqai,mic->mqs", strain_map(exact.n), gradients(basis, r), local)
     stress = strain @ elasticity(material).T
 
     def off(found: Floats, true: Floats) -> float:
