@@ -97,7 +97,7 @@ class _Row:
 
 def _whole(way: str, *plans: Plan) -> _Row:
     peaks = [_peaks([plan], 1) for plan in plans]
-    alone, together = (seconds(lambda n=n: _peaks(plans, n)) for n in (1, CORES))  # type: ignore[misc]
+    alone, together = (seconds(lambda n=n: _peaks(plans, n), 2) for n in (1, CORES))  # type: ignore[misc]
     meshes = [(k, p.pin, s.dofs) for k, found in enumerate(peaks) for p in found for s in p.history]
     flat = [p for found in peaks for p in found]
     known = sum((p.error_estimate or 0.0) <= 0.02 * (p.max_von_mises or 0.0) for p in flat)
