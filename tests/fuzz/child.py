@@ -54,6 +54,8 @@ def run(folder: Path, arguments: list[str]) -> End:
         target=_serve, args=(folder, arguments, out, err)
     )
     process.start()
+    process.join(5.0 * SECONDS)  # one that waits takes no processor time
+    process.kill()
     process.join()
     status = process.exitcode
     if status in (-signal.SIGXCPU, -signal.SIGKILL):

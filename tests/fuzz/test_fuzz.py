@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from contextlib import suppress
-from functools import partial
 from pathlib import Path
 
 import pytest
@@ -11,44 +12,23 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pinstress.units import DIMENSIONS, SYSTEMS, UNIT_NEEDED, to_si
-from tests.fuzz.bodies import write_files
-from tests.fuzz.hunt import break_file, hunt
 from tests.fuzz.kills import kill, whole_run
 
-
-@pytest.mark.slow
-@pytest.mark.parametrize("first", range(1, 121, 20))
-def test_broken_studies_end_with_a_message_or_a_result(tmp_path: Path, first: int) -> None:
-    """Twenty mutants each, of which one is run if it can be."""
-    wrong = [
-        str(case)
-        for seed in range(first, first + 20)
-        for case in hunt(seed, tmp_path, run_too=seed == first)
-        if case.end.wrong
-    ]
-    assert wrong == []
-
-
-@pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("whole") / "files"
-    write_files(folder)
-    return folder
+ROOT = Path(__file__).parents[2]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("first", range(1, 81, 20))
-def test_broken_files_end_with_a_message_or_a_result(
-    tmp_path: Path, whole: Path, first: int
-) -> None:
-    """Tables, CAD files and meshes."""
-    wrong = [
-        str(case)
-        for seed in range(first, first + 20)
-        for case in hunt(seed, tmp_path, seed == first, partial(break_file, whole))
-        if case.end.wrong
-    ]
-    assert wrong == []
+@pytest.mark.parametrize(("kind", "first"), [("mutants", 1), ("mutants", 61), ("files", 1)])
+def test_broken_input_ends_with_a_message_or_a_result(kind: str, first: int) -> None:
+    """120 studies; 80 tables, CAD files and meshes. From a process of its own, which forks: here
+    other tests have left threads, beside which a forked gmsh waits for ever.
+    """
+    many = {"mutants": "60", "files": "80"}[kind]
+    command = [sys.executable, "-m", "tests.fuzz", f"--{kind}", many, "--seed", f"{first}"]
+    done = subprocess.run(
+        [*command, "--runs", "20"], cwd=ROOT, capture_output=True, text=True, timeout=1200
+    )
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
 
 
 @pytest.mark.slow
