@@ -4,7 +4,8 @@ More samples than twice its degree determine it, so that its slope and its bend 
 lies where the slope changes sign between two samples, and Newton's method finds it there. Between
 samples h apart, a polynomial of degree D rises above both by at most (D h / 2)^2 / 2 times its
 half range, which itself is at most that of the samples over cos(D h / 2) (Ehlich and Zeller 1964);
-so crests that cannot be the highest are not looked at.
+so crests that cannot be the highest are not looked at. Of two crests between the same samples,
+where the polynomial is flat, one may be missed: 1e-6 of the maximum, where that was seen.
 """
 
 from __future__ import annotations
