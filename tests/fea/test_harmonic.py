@@ -26,7 +26,6 @@ PIN = Pin(
     ),
     fillet=0.002,
 )
-NONE = np.zeros((0, 2))
 
 
 @pytest.fixture(scope="module")

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tests.conftest import ROOT
+from tests.process_group import alive
 
 SIGNALS = (signal.SIGKILL, signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
 PATIENCE = 30.0  # s for the last process to be gone, on a machine with other work
@@ -121,15 +122,3 @@ def _found(out: Path, whole: Path) -> str:
     except (OSError, ValueError):
         return "half"
     return "new" if names == wanted and ends and len(pins) == 2 else "half"
-
-
-def alive(group: int) -> bool:
-    """Whether a process of that group runs; one that has ended may wait for its parent."""
-    for entry in Path("/proc").glob("[0-9]*"):
-        try:
-            state, _, its = (entry / "stat").read_text().rpartition(")")[2].split()[:3]
-        except OSError:
-            continue
-        if int(its) == group and state != "Z":
-            return True
-    return False

@@ -17,6 +17,7 @@ from pinstress import output
 from pinstress.errors import InputError
 from pinstress.output import replacing
 from tests.conftest import ROOT
+from tests.process_group import alive
 
 WRITER = """
 import sys, time
@@ -126,22 +127,10 @@ def test_workers_end_when_their_run_is_killed(earlier: Path) -> None:
             time.sleep(0.02)
         process.kill()
     deadline = time.monotonic() + 60.0
-    while _alive(process.pid):
+    while alive(process.pid):
         assert time.monotonic() < deadline
         time.sleep(0.02)
     assert (earlier / "results.json").read_text() == "earlier"
-
-
-def _alive(group: int) -> bool:
-    """Whether a process of that group runs; one that has ended may wait for its parent."""
-    for entry in Path("/proc").glob("[0-9]*"):
-        try:
-            state, _, its = (entry / "stat").read_text().rpartition(")")[2].split()[:3]
-        except OSError:
-            continue
-        if int(its) == group and state != "Z":
-            return True
-    return False
 
 
 @pytest.mark.parametrize("jobs", ["1", "2"])
