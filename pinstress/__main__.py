@@ -9,7 +9,8 @@ import sys
 
 def main() -> None:
     """Run the command line; never returns."""
-    from pinstress.cli import INTERRUPTED, INTERRUPTS, run_command_line
+    from pinstress.cli import INTERRUPTED, run_command_line
+    from pinstress.command import INTERRUPTS
 
     status = run_command_line(sys.argv[1:])
     for each in INTERRUPTS:

@@ -12,10 +12,9 @@ from typing import Any
 import click
 
 from pinstress.cli_more import completion, init, schema, size, view
-from pinstress.command import example, names
+from pinstress.command import INTERRUPTS, example, names
 from pinstress.errors import InputError
 
-INTERRUPTS = signal.SIGINT, signal.SIGTERM, signal.SIGHUP
 REACHED, NOT_REACHED, BAD_INPUT, NUMERICS_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
 
 

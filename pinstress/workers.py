@@ -25,6 +25,8 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.context import ForkProcess
 from typing import Any, Generic, TypeVar
 
+from pinstress.command import INTERRUPTS
+
 T = TypeVar("T")
 T_co = TypeVar("T_co", covariant=True)
 Tell = Callable[[str], None]
@@ -33,7 +35,6 @@ Progress = Callable[[str, float], None]
 TICK = 0.2  # s between two calls of progress at most, for its clock
 GRACE = 0.5  # s for a process to clean up once it is told to end
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "LP_NUM_THREADS")
-INTERRUPTS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 PARENT_DEATH = 1  # PR_SET_PDEATHSIG
 
 
