@@ -25,6 +25,7 @@ from fea.material import Material
 from fea.outline import Outline
 from fea.recovery import at_one_place
 from fea.section import Floats, Ints, Section
+from fea.skin import in_axes
 
 DIRECTIONS = 25  # from the surface on one side of the edge to that on the other
 TOUCHED = 1.5  # elements beside the edge whose stress is of no use
@@ -94,28 +95,18 @@ def _jump(space: Section, outline: Outline, material: Material, before: int) -> 
     weights = at_one_place(space.samples[nearest] - place, np.ones(len(nearest)))
     x, y = np.stack([along, -normal]) @ (space.samples[nearest] - place).T
     nu = material.poisson_ratio
-    there = _field(np.arctan2(y, x), along, normal, nu)
-    field = _field(np.linspace(0.0, np.pi, DIRECTIONS), along, normal, nu)
+    there = _field(np.arctan2(y, x), along, nu)
+    field = _field(np.linspace(0.0, np.pi, DIRECTIONS), along, nu)
     r, z = (float(x) for x in place)
     return Jump(
         r, z, before, after, normal, UNREAD * beside, nearest, weights, field - weights @ there
     )
 
 
-def _field(chi: Floats, along: Floats, normal: Floats, nu: float) -> Floats:
+def _field(chi: Floats, along: Floats, nu: float) -> Floats:
     """Stress (J, 6) in directions chi (J,) of the pressure 1 on the half of a plane's edge."""
     both, apart = chi / np.pi, np.sin(chi) * np.cos(chi) / np.pi
-    ss, nn, sn = -(both + apart), -(both - apart), np.sin(chi) ** 2 / np.pi
-    (t_r, t_z), (n_r, n_z) = along, normal
+    ss, nn, ns = -(both + apart), -(both - apart), np.sin(chi) ** 2 / np.pi
     none = np.zeros_like(chi)
-    return np.stack(
-        [
-            n_r**2 * nn + t_r**2 * ss + 2.0 * n_r * t_r * sn,
-            nu * (ss + nn),
-            n_z**2 * nn + t_z**2 * ss + 2.0 * n_z * t_z * sn,
-            none,
-            n_r * n_z * nn + t_r * t_z * ss + (n_r * t_z + n_z * t_r) * sn,
-            none,
-        ],
-        axis=1,
-    )
+    parts = (part[:, None] for part in (ss, nu * (ss + nn), nn, ns, none, none))
+    return in_axes(along, *parts)[..., 0]

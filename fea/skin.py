@@ -144,14 +144,25 @@ def _stress(
     s_ss = plane * (e_ss + nu * e_tt) + nu / (1.0 - nu) * s_nn
     s_tt = plane * (e_tt + nu * e_ss) + nu / (1.0 - nu) * s_nn
     s_st = material.lame[1] * shear
+    return in_axes(tangent, s_ss, s_tt, s_nn, s_ns, s_st, T_t)
+
+
+def in_axes(
+    tangent: Floats, ss: Floats, tt: Floats, nn: Floats, ns: Floats, st: Floats, nt: Floats
+) -> Floats:
+    """Stress (..., 6, K): rr, tt, zz, tz, rz, rt, of what it is along a surface's tangent (..., 2),
+    across it and along its outward normal, (..., K) each.
+    """
+    t_r, t_z = tangent[..., 0, None], tangent[..., 1, None]
+    n_r, n_z = t_z, -t_r
     return np.stack(
         [
-            n_r**2 * s_nn + t_r**2 * s_ss + 2.0 * n_r * t_r * s_ns,
-            s_tt,
-            n_z**2 * s_nn + t_z**2 * s_ss + 2.0 * n_z * t_z * s_ns,
-            n_z * T_t + t_z * s_st,
-            n_r * n_z * s_nn + t_r * t_z * s_ss + (n_r * t_z + n_z * t_r) * s_ns,
-            n_r * T_t + t_r * s_st,
+            n_r**2 * nn + t_r**2 * ss + 2.0 * n_r * t_r * ns,
+            tt,
+            n_z**2 * nn + t_z**2 * ss + 2.0 * n_z * t_z * ns,
+            n_z * nt + t_z * st,
+            n_r * n_z * nn + t_r * t_z * ss + (n_r * t_z + n_z * t_r) * ns,
+            n_r * nt + t_r * st,
         ],
-        axis=2,
+        axis=-2,
     )
