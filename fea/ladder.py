@@ -110,6 +110,17 @@ class _Job:
     progress: Progress
 
 
+def ratio_of(pin: PinLike) -> float:
+    """From one mesh of a pin to the next."""
+    return HALF if pin.meshed else STEP
+
+
+def unknowns_after(pin: PinLike, model: str, unknowns: int) -> float:
+    """Of the mesh that comes after one with so many, roughly."""
+    grown: float = ratio_of(pin) ** GROWTH[model]
+    return unknowns * grown
+
+
 def decided(asked: Asked, material: Material, maximum: float, error: float) -> bool:
     """Whether the interval of the factor of safety is all on one side of what is required."""
     strength, required = material.yield_strength, asked.required
@@ -179,14 +190,14 @@ def _refined(
 ) -> dict[str, Solution]:
     """Finer and finer meshes until every case is known or decided, or a limit is met."""
     pin, asked = job.pin, job.asked
-    ratio = HALF if pin.meshed else STEP
+    ratio = ratio_of(pin)
     places = _places(job, cases)
     own = {case.case: _places(job, (case,)) for case in cases}
     seen: dict[str, Seen] = {}
     answers: dict[str, Answer] = {}
     for level in range(asked.meshes or MESHES[model]):
         largest = max((s.looks[-1].unknowns for s in seen.values()), default=0)
-        finer = largest * ratio ** GROWTH[model]
+        finer = unknowns_after(pin, model, largest)
         if level and finer > MOST_UNKNOWNS[model]:
             break
         if level and model == "solid" and (told := too_much(finer, asked.memory)):

@@ -6,8 +6,8 @@ import hashlib
 from dataclasses import dataclass, replace
 from math import inf
 
-from fea.ladder import GROWTH, HALF, MESHES, MOST_UNKNOWNS, STEP
-from fea.memory import allowed_memory, solid_memory
+from fea.ladder import MESHES, MOST_UNKNOWNS, unknowns_after
+from fea.memory import too_much
 from fea.peak import Peak
 from fea.second_opinion import Opinion
 from geometry import CutPin, Pin, PinLike
@@ -94,7 +94,5 @@ def lasting(plan: Plan, task: Task, peaks: tuple[Peak, ...]) -> bool:
     ]
     if not open_ or len(open_[0].history) >= (plan.asked.meshes or MESHES["solid"]):
         return True
-    ratio = HALF if task.pin.meshed else STEP
-    finer = max(p.dofs for p in open_) * ratio ** GROWTH["solid"]
-    limit = allowed_memory(plan.asked.memory)
-    return finer > MOST_UNKNOWNS["solid"] or solid_memory(finer) <= limit
+    finer = unknowns_after(task.pin, "solid", max(p.dofs for p in open_))
+    return finer > MOST_UNKNOWNS["solid"] or not too_much(finer, plan.asked.memory)
