@@ -17,6 +17,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,7 +73,6 @@ class Circumference:
         self._five = METRIC @ self._stress  # (S, 5, K)
         self._n = np.array([load.n for load in units], dtype=np.int64)
         starts = np.flatnonzero(np.diff(self._n, prepend=-1))
-        self._each: Floats | None = None
         self._kept: dict[int, tuple[Floats, Floats, Floats]] = {}
         self._waves = [slice(*ends) for ends in itertools.pairwise([*starts, len(units)])]
 
@@ -176,11 +176,14 @@ class Circumference:
 
     def reach(self, points: Ints, instants: slice = EVERY) -> Floats:
         """A bound that is sooner found: the sum over unit loads of what each can do by itself."""
-        if self._each is None:
-            even, odd = (np.square(self._five[:, part]).sum(axis=1) for part in (_EVEN, _ODD))
-            self._each = np.sqrt(np.maximum(even, odd))  # (S, K)
         most = np.hypot(self._first[instants], self._second[instants]).T
         return np.asarray((self._each[points] @ most) * (1.0 + 1e-12))
+
+    @cached_property
+    def _each(self) -> Floats:
+        """The most that each unit load does at each point, (S, K) Pa."""
+        even, odd = (np.square(self._five[:, part]).sum(axis=1) for part in (_EVEN, _ODD))
+        return np.asarray(np.sqrt(np.maximum(even, odd)))
 
     def _worth(self, bound: Floats, best: Floats, together: bool) -> Iterator[tuple[Ints, Ints]]:
         """Pairs of points and instants whose bound (J, T) exceeds the best so far, both of which

@@ -18,6 +18,7 @@ from fea.meridian_fields import MeridianFields
 from fea.pin_loads import Floats, PinLoads, UnitLoad
 from fea.revolved import revolve
 from fea.rims import rim
+from fea.section_stress import NOWHERE
 from fea.zones import Place, smooth_edges
 from geometry import Pin
 from geometry.grading import Grade, SectionSize, Spot, size_at
@@ -74,7 +75,7 @@ def harmonic_solution(
     loads = tuple(dict.fromkeys(load for case in cases for load in case.coefficients()))
     loads = loads or (UnitLoad(cases[0].surfaces[0], "force", 1),)  # of which there is nought
     read = [rim(pin, p, part * p.radius) for p in places for part in (1.0, FELT)]
-    rims = np.concatenate([np.zeros((0, 2)), *read])
+    rims = np.concatenate([NOWHERE, *read])
     model = HarmonicModel(pin, section, material, clamps)
     return HarmonicSolution(model.solve(loads, rims, _ends(pin, clamps, loads)), close)
 

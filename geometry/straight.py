@@ -21,17 +21,13 @@ def cut_off(mesh: MeshTet2) -> float:
     arc's angle. The sags of a facet's sides, as quadratic shapes, hold a third of its area times
     their sum.
     """
-    here = facets(mesh)
-    x, corners = mesh.doflocs.T, mesh.facets[:, here.number]
+    here, x = facets(mesh), mesh.doflocs.T
     normals = np.zeros((mesh.nvertices, 3))
-    for corner in corners:
+    for corner in mesh.facets[:, here.number]:
         np.add.at(normals, corner, here.normals)
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
-    sides = np.concatenate([corners[[i, k]] for i, k in ((0, 1), (1, 2), (0, 2))], axis=1)
-    a, b = np.sort(sides, axis=0)
-    edges, weigh = np.sort(mesh.edges, axis=0), np.array([mesh.nvertices + 1, 1])
-    order = np.argsort(weigh @ edges)
-    edge = order[np.searchsorted((weigh @ edges)[order], weigh @ np.stack([a, b]))]
+    edge = mesh.f2e[:, here.number].ravel()
+    a, b = mesh.edges[:, edge]
     length = np.linalg.norm(x[b] - x[a], axis=1)
     lean = [np.sum(normals[end] * (x[b] - x[a]), axis=1) / length for end in (a, b)]
     angle = np.abs(lean[1] - lean[0])
