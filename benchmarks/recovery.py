@@ -10,7 +10,7 @@ from benchmarks.timing import table
 from fea.circumference import Circumference
 from fea.harmonic import HarmonicModel, _polar
 from fea.meridian_fields import MeridianFields
-from fea.recovery import extension
+from fea.recovery import continuation, extension
 from fea.section import elasticity
 from fea.solid import SolidModel, acting
 from fea.stress import nodal_stress
@@ -67,7 +67,7 @@ def _section(size: SectionSize) -> tuple[int, float, float, float]:
         (matrix @ sampled)[:, :, None]
         for matrix in (
             extension(space.elements, space._samples, ElementTriP2.doflocs.T),
-            space.continued_to_nodes,
+            continuation(space.samples, space.nodes),
         )
     )
     still = np.zeros((len(averaged), 3, 1))

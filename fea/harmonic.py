@@ -15,11 +15,10 @@ from fea.jumps import unread
 from fea.linear import Analysis, SolveError
 from fea.material import Material
 from fea.meridian_fields import MeridianFields
-from fea.outline import Outline, shapes
+from fea.outline import Outline
 from fea.pin_loads import Floats, UnitLoad
 from fea.section import Ints, Section, around
-from fea.section_stress import NOWHERE, beside, inner_nodes, section_stress
-from fea.skin import AT
+from fea.section_stress import NOWHERE, reading
 from fea.tractions import ALONG_X, ALONG_Z, Traction, closing_tractions, traction
 from geometry import Pin
 from geometry.meridian_mesh import MeridianMesh
@@ -60,34 +59,23 @@ class HarmonicModel:
 
         Raises: SolveError when the pin is not held or a check fails.
         """
-        skin = np.einsum("qi,eia->eqa", shapes(AT), self.space.nodes[self.outline.nodes])
-        inner = inner_nodes(self.space, self.outline)
-        also = beside(self.space, self.outline, self.material, extra, ends)
-        points = np.concatenate([skin.reshape(-1, 2), self.space.nodes[inner], also.points])
-        displacement = np.zeros((len(points) - len(also.points), 3, len(loads)))
-        stress = np.zeros((len(points), 6, len(loads)))
+        read = reading(self.space, self.outline, self.material, self.clamps, extra, ends)
+        displacement = np.zeros((read.skin + len(read.inner), 3, len(loads)))
+        stress = np.zeros((len(read.points), 6, len(loads)))
         for n in sorted({load.n for load in loads}):
             here = [k for k, load in enumerate(loads) if load.n == n]
             forces, tractions = self._applied(n, [loads[k] for k in here])
             u = _polar(self._displace(n, forces))
-            displacement[:, :, here], stress[:, :, here] = section_stress(
-                self.space, self.outline, self.material, n, u, tractions, self.clamps, also
-            )
-        skin_points = len(AT) * len(self.outline.nodes)
-        row = np.zeros(len(self.space.nodes), dtype=np.int64)  # of every node that is a corner
-        row[inner] = skin_points + np.arange(len(inner))
-        first = len(AT) * np.arange(len(self.outline.nodes))
-        row[self.outline.nodes[:, 1]], row[self.outline.nodes[:, 0]] = first + len(AT) - 1, first
-        triangles = row[self.space.elements[:, :3]]
+            displacement[:, :, here], stress[:, :, here] = read.of(n, u, tractions)
         return MeridianFields(
-            points,
+            read.points,
             loads,
             stress,
             displacement,
-            skin_points,
+            read.skin,
             self.space.unknowns,
-            triangles,
-            unread(also.jumps, points, skin_points),
+            read.triangles,
+            unread(read.jumps, read.points, read.skin),
         )
 
     def _applied(self, n: int, loads: list[UnitLoad]) -> tuple[Floats, Floats]:

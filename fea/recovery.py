@@ -58,10 +58,11 @@ def at_one_place(offsets: Floats, confidence: Floats) -> Floats:
     nearest samples in a row), of that with the least slope and curvature.
     """
     x, y = np.moveaxis(offsets / np.abs(offsets).max(axis=(-2, -1), keepdims=True), -1, 0)
-    terms = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=-1)
-    terms *= confidence[..., None]
-    form = terms.swapaxes(-2, -1) @ terms
-    inverse = np.linalg.inv(form + _LITTLE * form[..., :1, :1] * np.diag([0.0, 1, 1, 1, 1, 1]))
-    value = inverse[..., :1]
-    value = value + inverse @ (np.eye(6)[:, :1] - form @ value)  # as if nothing had been added
-    return np.asarray((terms @ value)[..., 0] * confidence)
+    terms = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=-2)
+    terms *= confidence[..., None, :]
+    form = terms @ terms.swapaxes(-2, -1)
+    definite = form + _LITTLE * form[..., :1, :1] * np.diag([0.0, 1, 1, 1, 1, 1])
+    one = np.broadcast_to(np.eye(6)[:, :1], (*form.shape[:-1], 1))
+    value = np.linalg.solve(definite, one)
+    value += np.linalg.solve(definite, one - form @ value)  # as if nothing had been added
+    return np.asarray((value.swapaxes(-2, -1) @ terms)[..., 0, :] * confidence)

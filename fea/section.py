@@ -28,7 +28,6 @@ from skfem.refdom import RefTri
 
 from fea.material import Material
 from fea.pattern import Pattern
-from fea.recovery import continuation
 from geometry.meridian_mesh import MeridianMesh
 
 Floats = NDArray[np.float64]
@@ -122,15 +121,6 @@ class Section:
     def samples(self) -> Floats:
         """Where those are, (3 M, 2): r, z in m, element by element."""
         return np.ascontiguousarray(self._places[:, :, self._sampled].reshape(2, -1).T)
-
-    @cached_property
-    def continued_to_nodes(self) -> sp.csr_matrix:
-        """The same to those at nodes (N, 3 M)."""
-        return self.continued_to(self.nodes)
-
-    def continued_to(self, points: Floats) -> sp.csr_matrix:
-        """Matrix (P, 3 M) from values at the samples to those at points (P, 2)."""
-        return continuation(self.samples, points)
 
 
 def around(n: int) -> float:

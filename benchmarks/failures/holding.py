@@ -15,11 +15,10 @@ from benchmarks.failures.entry import Entry
 from benchmarks.failures.fields import MPA, finest, revolved
 from fea.circumference import Circumference
 from fea.meridian_fields import MeridianFields
-from fea.outline import Outline, shapes
+from fea.outline import Outline
 from fea.pin_loads import Floats, PinLoads, UnitLoad
 from fea.section import Section
-from fea.section_stress import inner_nodes, section_stress
-from fea.skin import AT
+from fea.section_stress import reading
 from fea.solid import SolidModel
 from fea.surface import Patch, resultants
 from fea.tractions import traction
@@ -66,13 +65,12 @@ def _unheld(across: float) -> tuple[float, float]:
     unknowns[free] = splu(K, permc_spec="MMD_AT_PLUS_A").solve(forces[free])
     p, m, w = unknowns.reshape(-1, 3).T
     u = np.stack([p + m, p - m, w], axis=1)[..., None]
-    moved, found = section_stress(space, outline, steel, 1, u, parts[..., None])
-    skin = np.einsum("qi,eia->eqa", shapes(AT), space.nodes[outline.nodes]).reshape(-1, 2)
-    points = np.concatenate([skin, space.nodes[inner_nodes(space, outline)]])
+    read = reading(space, outline, steel)
+    moved, found = read.of(1, u, parts[..., None])
     unit = (UnitLoad("left", "force", 1),)
-    fields = MeridianFields(points, unit, found, moved, len(skin), space.unknowns)
+    fields = MeridianFields(read.points, unit, found, moved, read.skin, space.unknowns)
     one = PinLoads("one", ("left",), np.array([[[0.0, 1.0, 0.0]]]))
-    return Circumference(fields, one).top(np.ones(len(points), bool)).value, float(
+    return Circumference(fields, one).top(np.ones(len(read.points), bool)).value, float(
         np.abs(moved).max()
     )
 

@@ -30,6 +30,7 @@ from fea.circumference import Circumference
 from fea.material import Material
 from fea.outline import Outline
 from fea.pin_loads import Floats, UnitLoad
+from fea.recovery import continuation
 from fea.section import Section
 from fea.solid import SolidModel
 from fea.solid_loads import nodal_loads
@@ -229,7 +230,7 @@ def _mixed(space: Section, forces: Floats, material: Material) -> float:
     u = _held(K, f, space.nodes[:, 0], len(space.nodes))[: basis.N].reshape(-1, 2)
     three = np.stack([u[:, 0], 0.0 * u[:, 0], u[:, 1]], axis=1)[..., None]
     e = space.sampled_strains(0, three)[..., 0]  # rr, tt, zz, tz, rz, rt, shears doubled
-    at_nodes = (space.continued_to_nodes @ e.reshape(-1, 6)).T
+    at_nodes = (continuation(space.samples, space.nodes) @ e.reshape(-1, 6)).T
     return float(_size([*at_nodes[:3], 0.5 * at_nodes[4]], mu).max())
 
 

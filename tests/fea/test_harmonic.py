@@ -11,7 +11,7 @@ from fea.linear import SolveError
 from fea.material import Material
 from fea.pin_loads import BODY, Floats, PinLoads, UnitLoad
 from fea.section import Section
-from fea.section_stress import section_stress
+from fea.section_stress import reading
 from fea.tractions import closing_tractions
 from geometry import Pin, Segment
 from geometry.meridian_mesh import MeridianMesh, SectionSize, meridian_mesh
@@ -74,15 +74,8 @@ def test_superposition_is_solving_at_once(section: MeridianMesh, steel: Material
     summed = model._displace(1, forces) @ amount
     assert at_once == pytest.approx(summed, abs=1e-10 * np.abs(summed).max())
     _, tractions = model._applied(1, list(units))
-    _, expected = section_stress(
-        model.space,
-        model.outline,
-        steel,
-        1,
-        displacements_of(at_once),
-        (tractions @ amount)[..., None],
-        model.clamps,
-    )
+    read = reading(model.space, model.outline, steel, model.clamps)
+    _, expected = read.of(1, displacements_of(at_once), (tractions @ amount)[..., None])
     together = model.solve(units).stress @ amount
     assert together == pytest.approx(expected[..., 0], abs=1e-10 * np.abs(together).max())
 

@@ -11,7 +11,7 @@ from fea.material import Material
 from fea.pin_loads import Floats
 from fea.recovery import extension
 from fea.section import Section, elasticity
-from fea.section_stress import beside, section_stress
+from fea.section_stress import reading
 from fea.skin import skin
 from geometry import Pin, Segment
 from geometry.meridian_mesh import MeridianMesh, SectionSize, meridian_mesh
@@ -69,8 +69,8 @@ def test_patch(state: str, steel: Material) -> None:
     true = exact.stress(*space.nodes.T)
     size = steel.youngs_modulus * np.abs(truth).max() / SHOULDER.length
     traction = edge_tractions(space, outline, exact)
-    everywhere = beside(space, outline, steel, space.nodes)
-    _, stress = section_stress(space, outline, steel, n, truth, traction, extra=everywhere)
+    everywhere = reading(space, outline, steel, inside=space.nodes)
+    _, stress = everywhere.of(n, truth, traction)
     assert np.abs(stress[-len(space.nodes) :, :, 0] - true).max() < 1e-11 * size
     found = skin(space, outline, steel, n, truth, traction)
     true = exact.stress(*np.moveaxis(found.points, -1, 0))
@@ -180,10 +180,8 @@ def _nodal_errors(
     """Largest error of stress at inner nodes and on the skin, of the largest stress."""
     traction = edge_tractions(space, model.outline, exact)
     inside = space.nodes[(space.nodes[:, 1] > 0.0) & (space.nodes[:, 1] < 1.2)]
-    there = beside(space, model.outline, model.material, inside)
-    _, stress = section_stress(
-        space, model.outline, model.material, exact.n, u, traction, extra=there
-    )
+    there = reading(space, model.outline, model.material, inside=inside)
+    _, stress = there.of(exact.n, u, traction)
     found = skin(space, model.outline, model.material, exact.n, u, traction)
     away = found.points[..., 0] > 0.0
     on_skin = found.stress[..., 0] - exact.stress(*np.moveaxis(found.points, -1, 0))

@@ -18,7 +18,7 @@ from fea.harmonic import HarmonicModel
 from fea.material import Material
 from fea.outline import shapes
 from fea.pin_loads import Floats
-from fea.section_stress import section_stress
+from fea.section_stress import reading
 from fea.skin import AT
 from geometry import Pin, Segment
 from geometry.gmsh_session import gmsh_model
@@ -68,7 +68,7 @@ def by_harmonic(steel: Material, across: int) -> tuple[float, float]:
     forces = boundary_forces(model.space, model.outline, exact)
     u = displacements_of(model._displace(0, forces[:, None])[:, 0])
     tractions = edge_tractions(model.space, model.outline, exact)
-    _, stress = section_stress(model.space, model.outline, steel, 0, u, tractions)
+    _, stress = reading(model.space, model.outline, steel).of(0, u, tractions)
     edges = model.space.nodes[model.outline.nodes]
     r, z = np.einsum("qi,eia->eqa", shapes(AT), edges).reshape(-1, 2).T
     true = exact.displacement(*model.space.nodes.T)[:, 0]

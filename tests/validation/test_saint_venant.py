@@ -20,10 +20,8 @@ import pytest
 
 from fea.harmonic import HarmonicModel, rigid_motions
 from fea.material import Material
-from fea.outline import shapes
 from fea.pin_loads import Floats
-from fea.section_stress import inner_nodes, section_stress
-from fea.skin import AT
+from fea.section_stress import reading
 from geometry import Pin, Segment
 from tests.fea.exact import (
     Exact,
@@ -63,20 +61,12 @@ def solved(exact: Exact, material: Material, b: float, fine: int) -> Solved:
     truth = unknowns_of(exact.at_nodes(space)[..., 0])
     modes = rigid_motions(space.nodes, exact.n)
     rigid = modes @ np.linalg.lstsq(modes, x - truth, rcond=None)[0]
-    _, stress = section_stress(
-        space,
-        outline,
-        material,
-        exact.n,
-        displacements_of(x),
-        edge_tractions(space, outline, exact),
-    )
-    skin = np.einsum("qi,eia->eqa", shapes(AT), space.nodes[outline.nodes]).reshape(-1, 2)
-    points = np.concatenate([skin, space.nodes[inner_nodes(space, outline)]])
+    read = reading(space, outline, material)
+    _, stress = read.of(exact.n, displacements_of(x), edge_tractions(space, outline, exact))
     moved = np.abs(x - truth - rigid).max() / np.abs(truth).max()
     inside = errors(space, material, exact, displacements_of(x - rigid))[1]
     work, true_work = float(forces @ x), float(forces @ truth)
-    return Solved(points, stress[..., 0], work, true_work, float(moved), inside)
+    return Solved(read.points, stress[..., 0], work, true_work, float(moved), inside)
 
 
 @INNER
