@@ -50,23 +50,31 @@ def test_answers_come_in_the_order_of_the_jobs(most: int) -> None:
     assert multiprocessing.active_children() == []
 
 
-def test_each_job_has_its_own_process_unless_there_is_one_at_a_time() -> None:
-    work = [Job("pid", lambda _: os.getpid())] * 3
-    assert side_by_side(work, 1) == [os.getpid()] * 3
+def test_there_are_as_many_processes_as_jobs_at_a_time_and_none_beside_this_one_for_one() -> None:
+    def where(_: Tell) -> int:
+        time.sleep(0.05)
+        return os.getpid()
+
+    work = [Job("pid", where)] * 6
+    assert side_by_side(work, 1) == [os.getpid()] * 6
     apart = side_by_side(work, 2)
-    assert len({os.getpid(), *map(str, apart)}) == 4
+    assert len(set(map(str, apart))) == 2
+    assert os.getpid() not in apart
 
 
-def test_a_process_that_dies_costs_its_own_job_alone() -> None:
-    def crash(_: Tell) -> int:
-        os.kill(os.getpid(), signal.SIGKILL)
-        return 0
+def crash(_: Tell) -> int:
+    os.kill(os.getpid(), signal.SIGKILL)
+    return 0
 
-    found = side_by_side([Job("a", lambda _: 1), Job("b", crash), Job("c", lambda _: 3)], 2)
-    assert found[0] == 1
-    assert found[2] == 3
-    assert isinstance(found[1], Died)
-    assert "signal 9" in found[1].reason
+
+@pytest.mark.parametrize("most", [2, 3])
+def test_a_process_that_dies_costs_the_job_it_was_doing_alone(most: int) -> None:
+    """Also when all processes have died before the last job."""
+    names = "a!b!!!c!"
+    work = [Job(n, crash if n == "!" else (lambda _, n=n: n)) for n in names]  # type: ignore[misc]
+    found = side_by_side(work, most)
+    assert ["!" if isinstance(f, Died) else f for f in found] == list(names)
+    assert all("signal 9" in f.reason for f in found if isinstance(f, Died))
 
 
 def test_an_exception_is_raised_with_the_jobs_name_and_ends_the_others() -> None:
