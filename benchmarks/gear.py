@@ -72,7 +72,7 @@ def _material(plan: Plan, pin: str) -> Material:
 
 
 def _peaks(plans: Sequence[Plan], processes: int) -> list[Peak]:
-    """Of all plans; what several ask alike is solved once, as a second run has it from the cache."""
+    """Of all plans; what several ask alike is solved once, as a second run finds it cached."""
 
     def job(plan: Plan, task: Task) -> Job[list[Peak]]:
         def solve(_: Tell) -> list[Peak]:
