@@ -60,13 +60,14 @@ class HarmonicModel:
         Raises: SolveError when the pin is not held or a check fails.
         """
         read = reading(self.space, self.outline, self.material, self.clamps, extra, ends)
-        displacement = np.zeros((read.skin + len(read.inner), 3, len(loads)))
-        stress = np.zeros((len(read.points), 6, len(loads)))
-        for n in sorted({load.n for load in loads}):
-            here = [k for k, load in enumerate(loads) if load.n == n]
-            forces, tractions = self._applied(n, [loads[k] for k in here])
-            u = _polar(self._displace(n, forces))
-            displacement[:, :, here], stress[:, :, here] = read.of(n, u, tractions)
+        harmonics = np.array([load.n for load in loads])
+        u = np.zeros((len(self.space.nodes), 3, len(loads)))
+        tractions = np.zeros((*self.outline.nodes.shape, 3, len(loads)))
+        for n in sorted(set(harmonics.tolist())):
+            here = np.flatnonzero(harmonics == n)
+            forces, tractions[..., here] = self._applied(n, [loads[k] for k in here])
+            u[:, :, here] = _polar(self._displace(n, forces))
+        displacement, stress = read.of(harmonics, u, tractions)
         return MeridianFields(
             read.points,
             loads,

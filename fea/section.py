@@ -106,16 +106,17 @@ class Section:
         count = len(self.nodes)
         return np.bincount(self.elements.ravel(), found.ravel(), count).astype(np.float64)
 
-    def sampled_strains(self, n: int, u: Floats) -> Floats:
-        """Strains (M, 3, 6, K), shears doubled, of displacements (N, 3, K) at three points of each
-        element, where they are most exact.
+    def sampled_strains(self, n: Ints | int, u: Floats) -> Floats:
+        """Strains (M, 3, 6, K), shears doubled, of displacements (N, 3, K) of harmonics n, one or
+        (K,), at three points of each element, where they are most exact.
         """
         U, V, W = (u[self.elements, a] for a in range(3))
         unknowns = np.stack([(U + V) / 2.0, (U - V) / 2.0, W], axis=2)  # (M, 6, 3, K)
         m, _, _, k = unknowns.shape
         there = self._gradients[:, self._sampled].reshape(m, -1, 6) @ unknowns.reshape(m, 6, -1)
-        by = strain_map(n).transpose(0, 2, 1).reshape(6, 9)
-        return np.asarray(by @ there.reshape(m, -1, 9, k))
+        at_0, at_1 = (strain_map(n).transpose(0, 2, 1).reshape(6, 9) for n in (0, 1))
+        parts = there.reshape(m, -1, 9, k)
+        return np.asarray(at_0 @ parts + n * ((at_1 - at_0) @ parts))  # linear in n
 
     @cached_property
     def samples(self) -> Floats:

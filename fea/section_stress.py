@@ -41,10 +41,10 @@ class Reading:
     continued: sp.csr_matrix
     jumps: tuple[Jump, ...]
 
-    def of(self, n: int, u: Floats, traction: Floats) -> tuple[Floats, Floats]:
+    def of(self, n: Ints | int, u: Floats, traction: Floats) -> tuple[Floats, Floats]:
         """Displacement (D, 3, K) in m and stress (S, 6, K) in Pa, amplitudes, of displacements u
-        (N, 3, K) of harmonic n under tractions (E, 3, 3, K), Pa, at the nodes of the outline's
-        edges.
+        (N, 3, K) of harmonics n, one or (K,), under tractions (E, 3, 3, K), Pa, at the nodes of the
+        outline's edges.
         """
         K = u.shape[2]
         stress = elasticity(self.material) @ self.space.sampled_strains(n, u)  # (M, 3, 6, K)

@@ -43,10 +43,11 @@ class Skin:
 
 
 def skin(
-    space: Section, outline: Outline, material: Material, n: int, u: Floats, traction: Floats
+    space: Section, outline: Outline, material: Material, n: Ints | int, u: Floats, traction: Floats
 ) -> Skin:
-    """Of displacements u (N, 3, K), m, of harmonic n under tractions (E, 3, 3, K), Pa, at the ends
-    and middle of the outline's edges. On an axis (r = 0) stresses are finite and mean nothing.
+    """Of displacements u (N, 3, K), m, of harmonics n, one or (K,), under tractions (E, 3, 3, K),
+    Pa, at the ends and middle of the outline's edges. On an axis (r = 0) stresses are finite and
+    mean nothing.
     """
     x, moved = space.nodes[outline.nodes], u[outline.nodes]
     at = np.einsum("qi,eia->eqa", shapes(AT), x)
@@ -61,7 +62,7 @@ def skin(
 
 
 def _strains(
-    outline: Outline, n: int, x: Floats, moved: Floats, traction: Floats
+    outline: Outline, n: Ints | int, x: Floats, moved: Floats, traction: Floats
 ) -> tuple[Floats, Floats]:
     """e_ss and 2 e_st at the points, (E, 5, K) each; both are nought in rigid motions."""
     at = np.array([-_GAUSS, _GAUSS])

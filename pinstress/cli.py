@@ -14,6 +14,7 @@ import click
 from pinstress.cli_more import completion, init, schema, size, view
 from pinstress.command import INTERRUPTS, example, names
 from pinstress.errors import InputError
+from pinstress.threads import hold_threads
 
 REACHED, NOT_REACHED, BAD_INPUT, NUMERICS_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
 
@@ -62,6 +63,7 @@ def _interrupt(*_: object) -> None:
 @click.version_option(package_name="pinstress")
 def commands() -> None:
     """Stresses and safety factors of the pins of a linkage."""
+    hold_threads()
 
 
 @commands.command(
@@ -139,9 +141,6 @@ def run(
 ) -> int:
     if second_opinion is not None:
         _require_calculix()
-    from pinstress.workers import hold_threads
-
-    hold_threads()
     from pinstress.study import load_study
 
     loaded = load_study(study)
@@ -185,9 +184,7 @@ def loads(
     study: Path, out: Path | None, cases: list[str] | None, no_pictures: bool, quiet: bool
 ) -> int:
     from pinstress.study import load_study
-    from pinstress.workers import hold_threads
 
-    hold_threads()
     loaded = load_study(study)
     from pinstress.write import loads_and_write
 
@@ -249,9 +246,7 @@ def chart(
     memory_limit: float,
 ) -> int:
     from pinstress.study import load_study
-    from pinstress.workers import hold_threads
 
-    hold_threads()
     loaded = load_study(study)
     from pinstress.own_process import Limits
     from pinstress.write_chart import chart_and_write
@@ -266,9 +261,6 @@ def chart(
 )
 @click.argument("study", type=click.Path(path_type=Path))
 def check(study: Path) -> None:
-    from pinstress.workers import hold_threads
-
-    hold_threads()
     from pinstress.check import describe
     from pinstress.study import load_study
 

@@ -32,9 +32,6 @@ def init(directory: Path, opens: bool) -> int:
     if not opens:
         click.echo(f"Next: pinstress run {target}  (its report: {out / 'report.html'})", err=True)
         return 0
-    from pinstress.workers import hold_threads
-
-    hold_threads()
     from pinstress.study import load_study
     from pinstress.write import Wanted, run_and_write
 
@@ -127,9 +124,6 @@ def size(
     quiet: bool,
     jobs: int | None,
 ) -> int:
-    from pinstress.workers import hold_threads
-
-    hold_threads()
     from pinstress.study import load_study
     from pinstress.units import to_si
 

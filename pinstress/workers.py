@@ -35,7 +35,6 @@ Progress = Callable[[str, float], None]
 
 TICK = 0.2  # s between two calls of progress at most, for its clock
 GRACE = 0.5  # s for a process to clean up once it is told to end
-THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "LP_NUM_THREADS")
 PARENT_DEATH = 1  # PR_SET_PDEATHSIG
 
 
@@ -67,11 +66,6 @@ def processes(asked: int | None) -> int:
     """
     threads = len(os.listdir("/proc/self/task"))
     return 1 if threads > 1 else asked or cores()
-
-
-def hold_threads() -> None:
-    """One thread in every numeric library that is imported from now on, and in Mesa's renderer."""
-    os.environ.update(dict.fromkeys(THREADS, "1"))
 
 
 def preload(*modules: str) -> None:

@@ -369,7 +369,7 @@ def test_a_pin_whose_numerics_fail_is_told_and_the_others_go_on(
 
 CRASHES = """
 import os, signal, sys
-from pinstress.workers import hold_threads
+from pinstress.threads import hold_threads
 hold_threads()
 import fea.harmonic_look
 from pinstress.cli import run_command_line
