@@ -41,6 +41,7 @@ ACCURACY = {
     "terms": modelling.terms,
     "instants": modelling.instants,
     "recovery": recovery.recovery,
+    "fillet": accuracy.fillet,
     "tension": tension.tension,
     "publications": publications.publications,
 }
@@ -49,7 +50,6 @@ TIMES = {
     "motion-accuracy": motion_accuracy.motion_accuracy,
     "assembly": speed.assembly,
     "solvers": linear_solvers.linear_solvers,
-    "fillet": accuracy.fillet,
     "growth": growth.growth,
     "gear": gear.gear,
     "demo": speed.demo,

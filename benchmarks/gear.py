@@ -5,6 +5,7 @@ from __future__ import annotations
 import resource
 from collections.abc import Sequence
 from dataclasses import astuple, dataclass, replace
+from functools import partial
 from pathlib import Path
 
 from benchmarks.timing import seconds, table
@@ -71,8 +72,10 @@ def _material(plan: Plan, pin: str) -> Material:
     return material(plan.study, plan.study.table.pin[pin].material)
 
 
-def _peaks(plans: Sequence[Plan], processes: int) -> list[Peak]:
-    """Of all plans; what several ask alike is solved once, as a second run finds it cached."""
+def _peaks(plans: Sequence[Plan], processes: int) -> list[tuple[bytes, Peak]]:
+    """Of all plans, each with what was asked; what several ask alike is solved once, as a second
+    run finds it cached.
+    """
 
     def job(plan: Plan, task: Task) -> Job[list[Peak]]:
         def solve(_: Tell) -> list[Peak]:
@@ -87,8 +90,8 @@ def _peaks(plans: Sequence[Plan], processes: int) -> list[Peak]:
     order = sorted(work, key=lambda key: -len(work[key][1].pin.connections))  # as in a run
     done = side_by_side([job(*work[key]) for key in order], processes)
     found = dict(zip(order, done, strict=True))
-    peaks = [found[key] for key, _, _ in asked]
-    return [peak for own in peaks if isinstance(own, list) for peak in own]
+    peaks = [(key, found[key]) for key, _, _ in asked]
+    return [(key, peak) for key, own in peaks if isinstance(own, list) for peak in own]
 
 
 @dataclass(frozen=True)
@@ -103,13 +106,16 @@ class _Row:
 
 
 def _whole(way: str, *plans: Plan) -> _Row:
-    peaks = [_peaks([plan], 1) for plan in plans]
-    alone, together = (seconds(lambda n=n: _peaks(plans, n), 2) for n in (1, CORES))  # type: ignore[misc]
-    meshes = [(k, p.pin, s.dofs) for k, found in enumerate(peaks) for p in found for s in p.history]
-    flat = [p for found in peaks for p in found]
-    known = sum((p.error_estimate or 0.0) <= 0.02 * (p.max_von_mises or 0.0) for p in flat)
-    largest = max(dofs for *_, dofs in meshes)
-    return _Row(way, alone, together, len(set(meshes)), largest, known, len(flat))
+    found: list[tuple[bytes, Peak]] = []
+
+    def solve(processes: int) -> None:
+        found[:] = _peaks(plans, processes)
+
+    alone, together = (seconds(partial(solve, n), 2) for n in (1, CORES))
+    meshes = {(key, step.dofs) for key, p in found for step in p.history}
+    known = sum((p.error_estimate or 0.0) <= 0.02 * (p.max_von_mises or 0.0) for _, p in found)
+    largest = max(dofs for _, dofs in meshes)
+    return _Row(way, alone, together, len(meshes), largest, known, len(found))
 
 
 def _one(plan: Plan) -> list[tuple[object, ...]]:

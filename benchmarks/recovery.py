@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 from skfem import ElementTriP2
 
-from benchmarks.accuracy import LOAD, PIN, STEEL
+from benchmarks.accuracy import FILLET, LOAD, PIN, STEEL, peak, truth
 from benchmarks.timing import table
-from fea.circumference import Circumference
 from fea.harmonic import HarmonicModel, _polar
 from fea.meridian_fields import MeridianFields
 from fea.recovery import continuation, extension
@@ -20,14 +19,12 @@ from geometry.solid_mesh import MeshSize, solid_mesh
 
 FINER = (1.0, 1.4, 2.0, 2.8)
 SECTION = SectionSize(3.0, 6.0, 0.5)
-FINEST = SectionSize(24.0, 50.0, 0.08)
 SOLID = MeshSize(across=3.0, arc=1.5)
-FILLET = (0.02, 0.024)  # z, m: from the shoulder to the tangent
 
 
 def recovery() -> str:
     """Errors of the largest von Mises stress in the fillet, %."""
-    true = _section(FINEST)[-1]
+    true = truth()
 
     def row(model: str, unknowns: int, *peaks: float | None) -> tuple[object, ...]:
         errors = ("" if p is None else f"{100.0 * (p / true - 1.0):+.2f}" for p in peaks)
@@ -72,16 +69,10 @@ def _section(size: SectionSize) -> tuple[int, float, float, float]:
     )
     still = np.zeros((len(averaged), 3, 1))
     plain = [
-        _peak(MeridianFields(space.nodes, (load,), at_nodes, still, 0, space.unknowns))
+        peak(MeridianFields(space.nodes, (load,), at_nodes, still, 0, space.unknowns))
         for at_nodes in (averaged, fitted)
     ]
-    return space.unknowns, plain[0], plain[1], _peak(fields)
-
-
-def _peak(fields: MeridianFields) -> float:
-    r, z = fields.points.T
-    near = (z >= FILLET[0]) & (z <= FILLET[1]) & (r >= PIN.segments[1].diameter / 2.0 * (1 - 1e-9))
-    return Circumference(fields, LOAD).top(near).value
+    return space.unknowns, plain[0], plain[1], peak(fields)
 
 
 def _solid(size: MeshSize) -> tuple[int, float, float]:

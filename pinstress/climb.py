@@ -107,10 +107,9 @@ def climb_solid(climb: Climb, element: Element, meshes: int | None) -> None:
 
 
 def harmonic_reference(climb: Climb) -> tuple[Rung, Seen]:
-    """Finer and finer from twice as fine as the finest that is charted, until an order larger."""
+    """Finer and finer than the finest that is charted, until an order larger."""
     level, charted = _finest(climb, "harmonic")
     looks: list[Look] = []
-    level += 1
     while len(looks) < FEWEST_OF_REFERENCE or looks[-1].unknowns < ORDER * charted[-1].unknowns:
         level += 1
         found = climb.to(Rung("harmonic", level=level), keep=False)
