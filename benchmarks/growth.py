@@ -18,7 +18,7 @@ from geometry.meridian_mesh import SectionSize, meridian_mesh
 from geometry.solid_mesh import MeshSize, solid_mesh
 
 SECTION, SECTIONS = SectionSize(3.0, 6.0, 0.5), (1.0, 1.6, 2.5, 4.0, 6.3)
-SOLID, SOLIDS = MeshSize(across=3.0, arc=1.5), (1.0, 1.4, 2.0, 2.8)
+SOLID, SOLIDS = MeshSize(across=3.0, arc=1.5), (1.0, 1.4, 2.0, 2.4)
 RUNS = 2
 
 

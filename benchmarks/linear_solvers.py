@@ -113,7 +113,7 @@ def _child(*arguments: str) -> dict[str, float]:
         capture_output=True,
         text=True,
         check=True,
-        timeout=SECONDS + 30.0,
+        timeout=SECONDS + 10.0,
     )
     found: dict[str, float] = json.loads(done.stdout.splitlines()[-1])
     return found
