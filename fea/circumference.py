@@ -29,9 +29,8 @@ from fea.pin_loads import Floats, PinLoads
 Ints = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
-SAMPLES = 64  # round the axis, at least
 SAMPLES_PER_WAVE = 5  # of von Mises squared
-FIRST = 8  # pairs of points and instants that are sampled to begin with
+FIRST = 16  # pairs of points and instants that are sampled to begin with
 CHUNK = 4096  # pairs sampled at once
 POINTS = 64  # points looked at together
 EVERY = slice(None)
@@ -220,8 +219,7 @@ class Circumference:
         if len(n) < 2:
             return _one_wave(n, back, forth)
         degree = 2 * int(n[-1])  # of von Mises squared
-        count = max(SAMPLES, SAMPLES_PER_WAVE * degree)
-        even = n[:, None] * (np.arange(count) * 2.0 * np.pi / count)
+        even = n[:, None] * np.linspace(0.0, 2.0 * np.pi, SAMPLES_PER_WAVE * degree, endpoint=False)
         found = np.concatenate([back, forth], axis=2) @ np.concatenate([np.cos(even), np.sin(even)])
         angle = highest_crest(np.square(found).sum(axis=1), degree, beat**2)
         there = n * angle[:, None]
