@@ -15,6 +15,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -25,36 +26,27 @@ from benchmarks.timing import power, table
 from fea.linear import Floats, Solve
 
 Ints = NDArray[np.int64]
+Point = tuple[float, float] | str  # s and MB, or what was wrong
 
 ACROSS = (6.3, 8.0, 11.0, 18.0)  # elements over the shaft
-SECONDS, GIGABYTES, ABREAST = 100.0, 12.0, 2
+SECONDS, GIGABYTES, ABREAST = 120.0, 12.0, 2
+PATIENCE = SECONDS + 10.0  # with the start of a process and the reading of the matrix
 OVER = f"over {SECONDS:.0f} s"
 NAMES = {
     "cholmod": "CHOLMOD, nested dissection",
+    "multigrid": "smoothed aggregation + CG",
     "superlu": "SuperLU, minimum degree",
     "pardiso": "PARDISO (MKL)",
-    "multigrid": "smoothed aggregation + CG",
 }
 _RIGHT_HAND_SIDES = 2
 
 
 def linear_solvers() -> str:
     """Seconds and megabytes by unknowns, and the powers of the unknowns with which they grow."""
-    counts: list[int] = []
-    found: dict[str, list[tuple[float, float] | str]] = {name: [] for name in NAMES}
-    with tempfile.TemporaryDirectory() as folder:
-        for k, across in enumerate(ACROSS):
-            file = Path(folder) / f"{k}.npz"
-            counts.append(int(_child("matrix", str(across), str(file))["unknowns"]))
-            with ThreadPoolExecutor(ABREAST) as pool:
-                points = {
-                    name: pool.submit(_point, name, file)
-                    for name, row in found.items()
-                    if not _hopeless(counts, row)
-                }
-            for name, row in found.items():
-                row.append(points[name].result() if name in points else OVER)
-            file.unlink()
+    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(ABREAST) as pool:
+        files = [Path(folder) / f"{across:g}.npz" for across in ACROSS]
+        counts = list(pool.map(_matrix_file, ACROSS, files))
+        found = dict(zip(NAMES, pool.map(partial(_row, counts, files), NAMES), strict=True))
     return "\n\n".join(
         (
             f"Factoring and {_RIGHT_HAND_SIDES} right-hand sides, s (MB above the matrix); a "
@@ -71,7 +63,20 @@ def linear_solvers() -> str:
     )
 
 
-def _hopeless(counts: list[int], row: list[tuple[float, float] | str]) -> bool:
+def _matrix_file(across: float, file: Path) -> int:
+    """Unknowns of the matrix that is written."""
+    return int(_child("matrix", str(across), str(file))["unknowns"])
+
+
+def _row(counts: list[int], files: list[Path], name: str) -> list[Point]:
+    """Of one solver, from the smallest matrix on."""
+    row: list[Point] = []
+    for file in files:
+        row.append(OVER if _hopeless(counts, row) else _point(name, file))
+    return row
+
+
+def _hopeless(counts: list[int], row: list[Point]) -> bool:
     """Whether a smaller size was over the limit, or the last two foretell half as much again."""
     if OVER in row:
         return True
@@ -82,11 +87,11 @@ def _hopeless(counts: list[int], row: list[tuple[float, float] | str]) -> bool:
     return float(seconds[-1] * (seconds[-1] / seconds[-2]) ** step) > 1.5 * SECONDS
 
 
-def _cell(point: tuple[float, float] | str) -> str:
+def _cell(point: Point) -> str:
     return point if isinstance(point, str) else f"{point[0]:.2g} ({point[1]:.0f})"
 
 
-def _growth(counts: list[int], row: list[tuple[float, float] | str]) -> tuple[str, str]:
+def _growth(counts: list[int], row: list[Point]) -> tuple[str, str]:
     done = [(n, *p) for n, p in zip(counts, row, strict=True) if not isinstance(p, str)]
     if len(done) < 2:
         return "", ""
@@ -94,7 +99,7 @@ def _growth(counts: list[int], row: list[tuple[float, float] | str]) -> tuple[st
     return f"n^{power(n, seconds):.2f}", f"n^{power(n, memory):.2f}"
 
 
-def _point(name: str, file: Path) -> tuple[float, float] | str:
+def _point(name: str, file: Path) -> Point:
     try:
         found = _child("solve", name, str(file))
     except subprocess.TimeoutExpired:
@@ -108,13 +113,7 @@ def _point(name: str, file: Path) -> tuple[float, float] | str:
 
 def _child(*arguments: str) -> dict[str, float]:
     command = [sys.executable, "-m", "benchmarks.linear_solvers", *arguments]
-    done = subprocess.run(
-        command,
-        capture_output=True,
-        text=True,
-        check=True,
-        timeout=SECONDS + 10.0,
-    )
+    done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=PATIENCE)
     found: dict[str, float] = json.loads(done.stdout.splitlines()[-1])
     return found
 
