@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 from benchmarks.timing import power, table
 from fea.linear import Floats, Solve
+from reports.numbers import engineering
 
 Ints = NDArray[np.int64]
 Point = tuple[float, float] | str  # s and MB, or what was wrong
@@ -88,7 +89,7 @@ def _hopeless(counts: list[int], row: list[Point]) -> bool:
 
 
 def _cell(point: Point) -> str:
-    return point if isinstance(point, str) else f"{point[0]:.2g} ({point[1]:.0f})"
+    return point if isinstance(point, str) else f"{engineering(point[0], 2)} ({point[1]:.0f})"
 
 
 def _growth(counts: list[int], row: list[Point]) -> tuple[str, str]:

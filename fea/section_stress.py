@@ -17,6 +17,7 @@ from fea.section import Floats, Ints, Section, elasticity
 from fea.skin import AT, skin
 
 NOWHERE = np.zeros((0, 2))
+AXIS = 1e-9  # r on it at most, of the largest
 
 
 @dataclass(frozen=True)
@@ -87,7 +88,8 @@ def reading(
     skin_at = np.einsum("qi,eia->eqa", shapes(AT), space.nodes[outline.nodes])
     inner = np.setdiff1d(np.arange(len(space.nodes)), outline.nodes)
     held = outline.held(clamps)
-    axis = np.intersect1d(space.section.axis, outline.nodes)
+    on_axis = AXIS * space.nodes[:, 0].max()
+    axis = outline.nodes[space.nodes[outline.nodes, 0] < on_axis]
     rough = np.union1d(outline.nodes[held], axis)
     points = [skin_at.reshape(-1, 2), space.nodes[inner], inside, on_jumps]
     there = np.concatenate([space.nodes[inner], space.nodes[rough], inside])
@@ -99,7 +101,7 @@ def reading(
         np.concatenate(points),
         len(points[0]),
         inner,
-        held[:, None] | (skin_at[..., 0] < 1e-9 * space.nodes[:, 0].max()),
+        held[:, None] | (skin_at[..., 0] < on_axis),
         rough,
         continued,
         found,
