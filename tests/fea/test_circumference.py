@@ -71,8 +71,8 @@ def test_one_harmonic_is_closed(seed: int, angle: float, couple: float) -> None:
 @example(seed=557, angle=0.0, terms=2)
 @given(st.integers(0, 10**6), st.floats(0.0, 6.3), st.sampled_from([2, 4, 6, 12, 20]))
 def test_several_harmonics(seed: int, angle: float, terms: int) -> None:
-    """Nothing that 7200 angles find is larger, and what is found is there. Of two crests between
-    two samples the lower one may be found: 1e-6 too low in a rare random set, the example.
+    """Nothing that 7200 angles find is larger, and what is found is there. In the example two
+    crests are so close that the lower one was found, with fewer angles: 1e-6 too low.
     """
     loads = bearing(angle, terms, axial=0.5)
     fields = unit_fields(loads, 8, seed)
