@@ -44,7 +44,7 @@ check: setup ## lint, format check, types, import contracts, strict docs build
 	$(BIN)/lint-imports --no-logo
 	@$(MAKE) --no-print-directory docs
 
-bench: setup ## run all benchmarks and write their tables into docs/measured (about 15 minutes)
+bench: setup ## run all benchmarks and write their tables into docs/measured (about 17 minutes)
 	$(BIN)/pip install --quiet --require-hashes -r requirements-bench.lock
 	$(BIN)/python -m benchmarks --record
 
