@@ -3,7 +3,8 @@ BIN := .venv/bin
 LOCKBIN := .venv-lock/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-browser test-peers coverage mutants check bench docs lock clean
+.PHONY: help setup demo test test-rest test-all test-browser test-peers test-portable coverage mutants check \
+	bench docs lock clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | expand -t 12
@@ -13,13 +14,24 @@ setup: .venv/.ready ## make .venv with everything pinstress needs (run by the ta
 .venv/.ready: requirements.lock pyproject.toml scripts/setup.sh
 	@sh scripts/setup.sh
 
+PORTABLE = $(addprefix tests/pinstress/test_,portable.py workers.py output.py read_body.py import.py) \
+	$(addprefix tests/fea/test_,linear.py memory.py) tests/loads/test_regular_file.py
+
 # Status 1 means: done, but a requested accuracy was not reached (printed last).
 demo: setup ## run studies/grenier2008.toml and tell where its report is
 	@status=0; PINSTRESS_CACHE=build/cache $(BIN)/pinstress run studies/grenier2008.toml || status=$$?; \
 	if [ $$status -gt 1 ]; then exit $$status; fi
 
-test: setup ## run the tests; ARGS="..." goes to pytest
-	$(BIN)/python -m pytest $(ARGS)
+PYTEST = $(BIN)/python -m pytest -n auto
+
+test: setup ## run the quick tests; ARGS="..." goes to pytest
+	$(PYTEST) -m "not slow" $(ARGS)
+
+test-rest: setup ## run the slow ones: packaging, the fuzzer, every shipped study, slow validation
+	$(PYTEST) -m slow $(ARGS)
+
+test-all: setup ## run both in one go
+	$(PYTEST) $(ARGS)
 
 test-browser: setup ## run the tests of the report in Chromium, which root gets installed
 	@sh scripts/tools.sh test-browser "Chromium or its driver" "chromium chromium-driver" \
@@ -29,6 +41,10 @@ test-browser: setup ## run the tests of the report in Chromium, which root gets 
 test-peers: setup ## run the tests beside CalculiX, which root gets installed
 	@sh scripts/tools.sh test-peers CalculiX calculix-ccx ccx
 	$(BIN)/python -m pytest -m peers $(ARGS)
+
+test-portable: setup ## run quick tests without what Linux alone has, as on Windows and macOS
+	PINSTRESS_PORTABLE=1 $(BIN)/python -m pytest -n auto -m "not slow" \
+	$(PORTABLE) $(ARGS)
 
 coverage: setup ## branches of loads, geometry, fea that their own quick tests do not take; fails below 95 %
 	@for room in loads geometry fea; do $(BIN)/python -m pytest -q -m "not slow and not peers" --cov=$$room \

@@ -3,6 +3,6 @@
 Numeric libraries have one thread, as in `pinstress run`, where nothing else is said.
 """
 
-from pinstress.threads import hold_threads
+from pinstress.processes.threads import hold_threads
 
 hold_threads()

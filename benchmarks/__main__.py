@@ -18,6 +18,7 @@ from benchmarks import (
     failures,
     gear,
     growth,
+    joint,
     linear_solvers,
     modelling,
     models,
@@ -31,7 +32,7 @@ from benchmarks import (
     tension,
 )
 from benchmarks.record import record
-from pinstress.workers import Died, Job, Tell, cores, side_by_side
+from pinstress.processes.pool import Died, Job, Tell, cores, side_by_side
 
 ACCURACY = {
     "coverage": coverage.contained,  # the longest first
@@ -52,6 +53,7 @@ TIMES = {
     "solvers": linear_solvers.linear_solvers,
     "growth": growth.growth,
     "gear": gear.gear,
+    "joint": joint.joint,
     "demo": speed.demo,
     "models": models.models,
     "shoulders": shoulders.shoulders,

@@ -5,17 +5,17 @@ from __future__ import annotations
 import numpy as np
 
 from benchmarks.timing import table
-from fea.circumference import Circumference
-from fea.envelope import envelope
-from fea.harmonic import HarmonicModel
-from fea.material import Material
-from fea.meridian_fields import MeridianFields
-from fea.peak import Refinement, discretisation_error
-from fea.pin_loads import PinLoads
-from fea.solid import SolidModel, acting
+from fea.core.material import Material
+from fea.core.peak import Refinement, discretisation_error
+from fea.core.pin_loads import PinLoads
+from fea.harmonic.fields import MeridianFields
+from fea.harmonic.model import HarmonicModel
+from fea.harmonic.superposition import Circumference
+from fea.solid.model import SolidModel, acting
+from fea.solid.superposition import envelope
 from geometry import Pin, Segment
-from geometry.meridian_mesh import SectionSize, meridian_mesh
-from geometry.solid_mesh import MeshSize, solid_mesh
+from geometry.mesh.section_mesh import SectionSize, meridian_mesh
+from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 
 PIN = Pin("P", (Segment(0.02, 0.03), Segment(0.04, 0.02, connection="B")), fillet=0.004)
 STEEL = Material("steel", 2.0e11, 0.3)

@@ -16,9 +16,9 @@ from benchmarks.processes import Process, process
 from benchmarks.section_beside import beside
 from benchmarks.solid_peers import FINER, bare_mesh, cost, ratios, solved_by_us
 from benchmarks.timing import table
-from fea.calculix import COMMAND, JOB, TO_GET, Solved, installed, solved
-from fea.calculix_deck import write_deck
-from fea.tensor import von_mises
+from fea.checks.calculix import COMMAND, JOB, TO_GET, CalculixSolution, installed, solved
+from fea.checks.calculix_deck import write_deck
+from fea.core.voigt import von_mises
 
 MISSING = f"CalculiX is not installed (no {COMMAND}); {TO_GET}"
 AGREEMENT = ("unknowns", "displacements", "our peak", "ours, averaged only", "CalculiX's peak")
@@ -31,7 +31,7 @@ class Pair:
     fillet: Ints
     ours: Ours
     process: Process
-    theirs: Solved
+    theirs: CalculixSolution
     their_process: Process
 
     @property

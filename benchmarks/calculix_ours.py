@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 from skfem import MeshTet2
 
-from fea.elasticity import Discretisation
-from fea.linear import factorize
-from fea.material import Material
-from fea.pin_loads import UnitLoad
-from fea.solid_loads import Unit, nodal_loads
-from fea.stress import nodal_stress, with_known_traction
-from fea.surface import Surface, held_nodes, surface
+from fea.core.linear_solver import factorize
+from fea.core.material import Material
+from fea.core.pin_loads import UnitLoad
+from fea.solid.assembly import Discretisation
+from fea.solid.boundary import SurfaceMesh, held_nodes, surface
+from fea.solid.nodal_loads import Unit, nodal_loads
+from fea.solid.stress_recovery import nodal_stress, with_known_traction
 from geometry import Pin, Segment
 
 Floats = NDArray[np.float64]
@@ -48,7 +48,7 @@ class Loaded:
 
     def __init__(self, mesh: MeshTet2) -> None:
         self.space = Discretisation(mesh)
-        self.boundary: Surface = surface(self.space)
+        self.boundary: SurfaceMesh = surface(self.space)
         self.held: Ints = held_nodes(self.space, (CLAMP,))
         loads = nodal_loads(PIN, STEEL, self.space, self.boundary, ALONG_Y)
         self.traction: Floats = FORCE * loads.traction

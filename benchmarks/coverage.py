@@ -11,9 +11,9 @@ from dataclasses import replace
 from typing import Any
 
 from benchmarks.random_pins import STEEL, Trial, trials
-from fea.harmonic_look import harmonic_look, harmonic_solution
-from fea.ladder import STEP, Asked, Solution, places_of, solve_pin
-from fea.material import Material
+from fea.core.material import Material
+from fea.harmonic.evaluate import harmonic_result, harmonic_solution
+from fea.solve_pin import STEP, Asked, Solution, singularities_of, solve_pin
 
 Row = dict[str, Any]
 
@@ -32,12 +32,12 @@ def solved(trial: Trial, tolerance: float = 0.02) -> Solution:
 
 def truth(trial: Trial, meshes: int, material: Material = STEEL, beyond: int = BEYOND) -> float:
     """Maximum outside the singular places on a mesh, `beyond` the last of `meshes`, Pa."""
-    places = places_of(trial.pin, material, trial.clamps, (trial.loads,))
+    singularities = singularities_of(trial.pin, material, trial.clamps, (trial.loads,))
     held = tuple(trial.pin.surface(c) for c in trial.clamps)
     level = meshes - 1 + beyond
     loads = replace(trial.loads, terms=TERMS)
-    fine = harmonic_solution(trial.pin, material, held, (loads,), places, level, STEP)
-    return harmonic_look(fine, places, loads).maximum
+    fine = harmonic_solution(trial.pin, material, held, (loads,), singularities, level, STEP)
+    return harmonic_result(fine, singularities, loads).maximum
 
 
 def coverage(count: int = PINS, seed: int = 4, tolerance: float = 0.02) -> Iterator[Row]:

@@ -9,19 +9,19 @@ from functools import partial
 from pathlib import Path
 
 from benchmarks.timing import seconds, table
-from fea.harmonic_look import harmonic_look, harmonic_solution
-from fea.ladder import STEP, places_of, solve_pin
-from fea.material import Material
-from fea.peak import Peak
+from fea.core.material import Material
+from fea.core.peak import Peak
+from fea.harmonic.evaluate import harmonic_result, harmonic_solution
+from fea.solve_pin import STEP, singularities_of, solve_pin
 from geometry import Pin
 from pinstress import load_study
-from pinstress.packing import pack
-from pinstress.pins import material
-from pinstress.pipeline import Plan, prepare
-from pinstress.solved import question
-from pinstress.study import Study
-from pinstress.tasks import Task
-from pinstress.workers import Job, Tell, side_by_side
+from pinstress.analysis.plan import Plan, prepare
+from pinstress.analysis.stored import question
+from pinstress.cache.serialise import pack
+from pinstress.model.pins import material
+from pinstress.model.tasks import Task
+from pinstress.processes.pool import Job, Tell, side_by_side
+from pinstress.study.file import Study
 
 STUDIES = Path(__file__).parent.parent / "studies"
 FLOATING = ("C", "E", "F", "G", "J")
@@ -113,7 +113,9 @@ def _whole(way: str, *plans: Plan) -> _Row:
 
     alone, together = (seconds(partial(solve, n), 2) for n in (1, CORES))
     meshes = {(key, step.dofs) for key, p in found for step in p.history}
-    known = sum((p.error_estimate or 0.0) <= 0.02 * (p.max_von_mises or 0.0) for _, p in found)
+    known = sum(
+        (p.parts.total if p.parts else 0.0) <= 0.02 * (p.max_von_mises or 0.0) for _, p in found
+    )
     largest = max(dofs for _, dofs in meshes)
     return _Row(way, alone, together, len(meshes), largest, known, len(found))
 
@@ -122,15 +124,15 @@ def _one(plan: Plan) -> list[tuple[object, ...]]:
     (task,) = (t for t in plan.tasks if t.pin.name == ONE)
     pin, steel, loads = task.pin, _material(plan, ONE), task.loads[0]
     assert isinstance(pin, Pin)
-    places = places_of(pin, steel, task.clamps, (loads,))
+    singularities = singularities_of(pin, steel, task.clamps, (loads,))
     rows: list[tuple[object, ...]] = []
     for level in range(3):
         unknowns: list[int] = []
 
         def solve(level: int = level, unknowns: list[int] = unknowns) -> None:
             held = tuple(pin.surface(c) for c in task.clamps)
-            solution = harmonic_solution(pin, steel, held, (loads,), places, level, STEP)
-            unknowns.append(harmonic_look(solution, places, loads).unknowns)
+            solution = harmonic_solution(pin, steel, held, (loads,), singularities, level, STEP)
+            unknowns.append(harmonic_result(solution, singularities, loads).unknowns)
 
         spent = seconds(solve)
         units = len(loads.coefficients())

@@ -10,12 +10,12 @@ import numpy as np
 
 from benchmarks.accuracy import LOAD, PIN, STEEL
 from benchmarks.timing import power, table
-from fea.circumference import Circumference
-from fea.envelope import envelope
-from fea.harmonic import HarmonicModel
-from fea.solid import SolidModel, acting
-from geometry.meridian_mesh import SectionSize, meridian_mesh
-from geometry.solid_mesh import MeshSize, solid_mesh
+from fea.harmonic.model import HarmonicModel
+from fea.harmonic.superposition import Circumference
+from fea.solid.model import SolidModel, acting
+from fea.solid.superposition import envelope
+from geometry.mesh.section_mesh import SectionSize, meridian_mesh
+from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 
 SECTION, SECTIONS = SectionSize(3.0, 6.0, 0.5), (1.0, 1.6, 2.5, 4.0, 6.3)
 SOLID, SOLIDS = MeshSize(across=3.0, arc=1.5), (1.0, 1.4, 2.0, 2.4)

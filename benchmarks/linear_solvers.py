@@ -23,8 +23,8 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from benchmarks.timing import power, table
-from fea.linear import Floats, Solve
-from reports.numbers import engineering
+from fea.core.linear_solver import Floats, Solve
+from reports.format.numbers import engineering
 
 Ints = NDArray[np.int64]
 Point = tuple[float, float] | str  # s and MB, or what was wrong
@@ -122,9 +122,9 @@ def _child(*arguments: str) -> dict[str, float]:
 def _matrix(across: float, file: Path) -> dict[str, float]:
     """Write the matrix of a cantilever with a fillet, and the nodes of its unknowns."""
     from benchmarks.speed import PIN, STEEL
-    from fea.elasticity import Discretisation
-    from fea.surface import held_nodes
-    from geometry.solid_mesh import MeshSize, solid_mesh
+    from fea.solid.assembly import Discretisation
+    from fea.solid.boundary import held_nodes
+    from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 
     space = Discretisation(solid_mesh(PIN, MeshSize(across, arc=1.5)).mesh)
     fixed = (3 * held_nodes(space, ("start",))[:, None] + np.arange(3)).ravel()
@@ -167,13 +167,13 @@ def _cholmod(K: sp.csr_matrix, free: Ints, nodes: Floats) -> Callable[[], Solve]
     import cvxopt.cholmod  # noqa: F401, so that imports are not timed
     import pymetis  # noqa: F401
 
-    from fea.linear import factorize
+    from fea.core.linear_solver import factorize
 
     return lambda: factorize(K, free // 3)
 
 
 def _superlu(K: sp.csr_matrix, free: Ints, nodes: Floats) -> Callable[[], Solve]:
-    from fea.linear import _superlu
+    from fea.core.linear_solver import _superlu
 
     return lambda: _superlu(K)
 
@@ -192,7 +192,7 @@ def _pardiso(K: sp.csr_matrix, free: Ints, nodes: Floats) -> Callable[[], Solve]
 def _multigrid(K: sp.csr_matrix, free: Ints, nodes: Floats) -> Callable[[], Solve]:
     import pyamg
 
-    from fea.solid import rigid_modes
+    from fea.solid.model import rigid_modes
 
     motions = rigid_modes(nodes)[free]
 

@@ -11,17 +11,17 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.timing import table
-from fea.circumference import Circumference
-from fea.harmonic_look import harmonic_look, harmonic_solution
-from fea.ladder import STEP, Asked, places_of, solve_pin
-from fea.material import Material
-from fea.pin_loads import PinLoads
+from fea.core.material import Material
+from fea.core.pin_loads import PinLoads
+from fea.harmonic.evaluate import harmonic_result, harmonic_solution
+from fea.harmonic.superposition import Circumference
+from fea.solve_pin import STEP, Asked, singularities_of, solve_pin
 from geometry import Pin
 from pinstress import load_study
-from pinstress.build import CaseLoads
-from pinstress.pins import material
-from pinstress.pipeline import prepare
-from pinstress.tasks import Task, pin_loads
+from pinstress.analysis.plan import prepare
+from pinstress.model.cases import CaseLoads
+from pinstress.model.pins import material
+from pinstress.model.tasks import Task
 
 STUDY = Path(__file__).parent.parent / "studies" / "grenier2008_improved.toml"
 CASE = "retract"
@@ -74,10 +74,12 @@ def terms() -> str:
     rows = []
     for name, task in found.items():
         pin, loads = _revolved(task), replace(task.loads[0], terms=TRUE_TERMS)
-        places = places_of(pin, steel, (), (loads,))
-        solution = harmonic_solution(pin, steel, (), (loads,), places, LEVEL, STEP)
-        true = harmonic_look(solution, places, loads).maximum
-        few = (harmonic_look(solution, places, replace(loads, terms=n)).maximum for n in TERMS)
+        singularities = singularities_of(pin, steel, (), (loads,))
+        solution = harmonic_solution(pin, steel, (), (loads,), singularities, LEVEL, STEP)
+        true = harmonic_result(solution, singularities, loads).maximum
+        few = (
+            harmonic_result(solution, singularities, replace(loads, terms=n)).maximum for n in TERMS
+        )
         rows.append((name, *(f"{100.0 * (value / true - 1.0):+.2f}" for value in few)))
     head = ("pin", *(f"n <= {n}" for n in TERMS))
     told = f"Change of the maximum from that with terms up to {TRUE_TERMS}, %:"
@@ -87,19 +89,16 @@ def terms() -> str:
 def instants() -> str:
     """Error of the maximum over the motion by the number of even instants at which it is read."""
     found, given, steel = _gear()
-    assert given.at is not None
     assert given.reactions.times is not None
     start, end = given.reactions.times[[0, -1]]
     counts = (*INSTANTS, TRUE_INSTANTS)
-    sampled = [given.at(np.linspace(start, end, n)) for n in counts]
     rows = []
     for name, task in found.items():
-        pin, (asked,) = _revolved(task), task.loads
-        applied, weightless = list(asked.surfaces), np.zeros(3)
-        cases = [pin_loads(CASE, applied, r, asked.distribution, weightless) for r in sampled]
-        places = places_of(pin, steel, (), (cases[-1],))
-        solution = harmonic_solution(pin, steel, (), (cases[-1],), places, LEVEL, STEP)
-        among = solution.fields.outside(places)
+        pin = _revolved(task)
+        cases = [task.between[CASE](np.linspace(start, end, n)) for n in counts]
+        singularities = singularities_of(pin, steel, (), (cases[-1],))
+        solution = harmonic_solution(pin, steel, (), (cases[-1],), singularities, LEVEL, STEP)
+        among = solution.fields.outside(singularities)
         *few, true = (Circumference(solution.fields, loads).top(among).value for loads in cases)
         rows.append((name, *(f"{100.0 * (value / true - 1.0):+.3f}" for value in few)))
     told = f"Error of the maximum over the retraction beside that of {TRUE_INSTANTS} instants, %:"

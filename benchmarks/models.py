@@ -7,15 +7,15 @@ from functools import partial
 from pathlib import Path
 
 from benchmarks.timing import table
-from fea.rungs import Rung
+from fea.single_mesh import Rung
 from pinstress import load_study
-from pinstress.chart import NAMES, Plan, chart, prepare
-from pinstress.climb import FIRST
-from pinstress.own_process import Job, Limits, Measured, measure
-from reports.chart import Chart, ChartPoint
-from reports.chart_summary import cost, error, percent, seconds
-from reports.numbers import engineering
-from reports.plot_chart import chart_plot
+from pinstress.chart.chart import NAMES, ChartPlan, chart, plan_chart
+from pinstress.chart.measured_process import Measured, MeasureJob, MeasureLimits, measure
+from pinstress.chart.mesh_sequences import FIRST
+from reports.data.chart import Chart, ChartPoint
+from reports.format.numbers import engineering
+from reports.plots.chart import chart_plot
+from reports.text.chart_summary import cost, error, percent, seconds
 
 ROOT = Path(__file__).parent.parent
 PINS = (
@@ -26,7 +26,7 @@ PINS = (
 DRAWN = 1
 TOLERANCE, MESHES, RUNS = 0.01, 4, 5
 NEAR = 4.0  # times more or less than the tolerance is about it
-LIMITS = Limits(seconds=300.0, memory=8000.0)
+LIMITS = MeasureLimits(seconds=300.0, memory=8000.0)
 LARGEST = 140_000  # unknowns: no finer mesh of the solid is tried after one that has so many
 
 
@@ -34,8 +34,8 @@ def models() -> str:
     """The table; draws the chart of the second pin in docs/images."""
     rows = []
     for k, (study, pin, case) in enumerate(PINS):
-        plan = prepare(load_study(ROOT / "studies" / study), pin, case, TOLERANCE)
-        jobs: dict[int, Job] = {}
+        plan = plan_chart(load_study(ROOT / "studies" / study), pin, case, TOLERANCE)
+        jobs: dict[int, MeasureJob] = {}
         found = chart(plan, partial(_noted, jobs, k == DRAWN), MESHES, RUNS)
         if k == DRAWN:
             chart_plot(found, ROOT / "docs" / "images")
@@ -52,12 +52,12 @@ def models() -> str:
     )
 
 
-def _measured(job: Job) -> Measured:
+def _measured(job: MeasureJob) -> Measured:
     """The median of a few runs; of a solid, which takes seconds, one will do."""
     return measure(replace(job, runs=1) if job.rung.model == "solid" else job, LIMITS)
 
 
-def _noted(jobs: dict[int, Job], drawn: bool, job: Job) -> Measured:
+def _noted(jobs: dict[int, MeasureJob], drawn: bool, job: MeasureJob) -> Measured:
     """Measured, and added by its unknowns to the jobs if it is a harmonic mesh that is charted. All
     that is drawn is measured as often as the chart says.
     """
@@ -65,12 +65,12 @@ def _noted(jobs: dict[int, Job], drawn: bool, job: Job) -> Measured:
     if rung.model == "solid" and rung.element != "curved" and not drawn:
         return Measured(None, failed="not measured", over=True)
     found = measure(job, LIMITS) if drawn else _measured(job)
-    if rung.model == "harmonic" and not job.reference and found.look:
-        jobs[found.look.unknowns] = job
+    if rung.model == "harmonic" and not job.reference and found.result:
+        jobs[found.result.unknowns] = job
     return found
 
 
-def _once_more(found: Chart, jobs: dict[int, Job]) -> Chart:
+def _once_more(found: Chart, jobs: dict[int, MeasureJob]) -> Chart:
     """With the harmonic meshes of about that error measured once more after the solids, which take
     minutes, and the mean of both: other work on the machine is not the same all the time.
     """
@@ -85,7 +85,7 @@ def _once_more(found: Chart, jobs: dict[int, Job]) -> Chart:
     return replace(found, points=tuple(points))
 
 
-def _further(plan: Plan, found: Chart) -> list[ChartPoint]:
+def _further(plan: ChartPlan, found: Chart) -> list[ChartPoint]:
     """Curved solid elements on finer meshes than are charted, once each, until the error is reached
     or they become too large.
     """
@@ -93,14 +93,14 @@ def _further(plan: Plan, found: Chart) -> list[ChartPoint]:
     points = [p for p in found.points if p.element == NAMES["curved"] and not p.failed]
     more: list[ChartPoint] = []
     while error((points + more)[-1]) > TOLERANCE and ((points + more)[-1].dofs or 0) < LARGEST:
-        made = _measured(Job(plan.problem, Rung("solid", "curved", level)))
-        if made.look is None:
+        made = _measured(MeasureJob(plan.problem, Rung("solid", "curved", level)))
+        if made.result is None:
             break
-        value = made.look.maximum / stress
+        value = made.result.maximum / stress
         off = abs(value / found.reference.max_von_mises - 1.0)
         more.append(
             replace(
-                points[-1], dofs=made.look.unknowns, seconds=made.seconds, memory=made.memory,
+                points[-1], dofs=made.result.unknowns, seconds=made.seconds, memory=made.memory,
                 max_von_mises=value, error=off, chosen=False,
             )
         )  # fmt: skip

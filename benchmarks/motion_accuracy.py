@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from benchmarks.timing import seconds, table
-from loads import Lever, Linkage, Slider, motion_reactions, move
-from loads.factors import Factors
-from loads.loops import Loops
-from loads.peaks import peak_forces
+from loads import Course, Lever, Linkage, Slider, motion_reactions, move, peak_forces
+from loads.least_squares import Factors
+from loads.loop_equations import Loops
 from loads.reactions import Reactions
-from pinstress import load_study, mechanism
+from pinstress import load_study
+from pinstress.model import linkage as mechanism
 
 Floats = NDArray[np.float64]
 
@@ -32,8 +32,10 @@ def motion_accuracy() -> str:
     linkage, laws = mechanism.linkage(study), mechanism.laws(study)
     span = mechanism.span(study)
 
+    course = Course(linkage, laws, 0.0, span)
+
     def at(times: Floats) -> Reactions:
-        return motion_reactions("retract", move(linkage, laws, times)).reactions
+        return motion_reactions("retract", course.at(times)).reactions
 
     peaks = _peaks(at, span)
     ways = _ways(linkage, laws[0], span)
@@ -48,19 +50,23 @@ def motion_accuracy() -> str:
 
 def _peaks(at: Callable[[Floats], Reactions], span: float) -> list[tuple[float, ...]]:
     """Largest relative error of all connections' peaks: from samples alone, and refined."""
-    exact = np.array([p.force for p in peak_forces(at(np.linspace(0.0, span, 4001)), at)])
+
+    def resolved(times: Floats) -> Floats:
+        return np.array([p.value for p in peak_forces(times, at).force.values()])
+
+    exact = resolved(np.linspace(0.0, span, 4001))
     rows: list[tuple[float, ...]] = []
     for n in SAMPLES:
         times = np.linspace(0.0, span, n)
         sampled = at(times)
-        refined = np.array([p.force for p in peak_forces(sampled, at)])
+        refined = resolved(times)
         rows.append(
             (
                 n,
                 float(np.abs(sampled.magnitudes.max(axis=0) / exact - 1.0).max()),
                 seconds(lambda t=times: at(t)),  # type: ignore[misc]
                 float(np.abs(refined / exact - 1.0).max()),
-                seconds(lambda t=times: peak_forces(at(t), at)),  # type: ignore[misc]
+                seconds(lambda t=times: resolved(t)),  # type: ignore[misc]
             )
         )
     return rows
@@ -162,7 +168,7 @@ def _integrate(
 def _chart(peaks: list[tuple[float, ...]], ways: list[tuple[object, ...]]) -> None:
     from matplotlib.ticker import NullFormatter
 
-    from reports.style import line_style, panels, save
+    from reports.format.style import line_style, panels, save
 
     with panels(1, 2, height=3.4) as (figure, (left, right)):
         n = [row[0] for row in peaks]

@@ -1,4 +1,4 @@
-"""Mutation testing of formulas: `make mutants`, or `python -m benchmarks.mutants loads/energy.py`.
+"""Mutation testing of formulas: `make mutants`, or `python -m benchmarks.mutants FILE`.
 
 One operator, comparison, sign or number of a file is changed at a time, and the tests that belong
 to the file must fail. Nothing is written to the tree: a forked process, in which pytest and the
@@ -35,16 +35,18 @@ from benchmarks.record import FOLDER, record
 
 LOADED = (np, scipy, skfem)
 FILES = {
-    "fea/notch.py": ("tests/fea/test_notch.py", "tests/fea/test_beam_stress.py"),
-    "fea/hand_checks.py": ("tests/fea/test_hand_checks.py",),
-    "fea/stepped_beam.py": ("tests/fea/test_stepped_beam.py", "tests/fea/test_beam_stress.py"),
-    "fea/elasticity.py": ("tests/fea/test_elasticity.py",),
-    "fea/corner.py": ("tests/fea/test_corner.py", "tests/fea/test_corner_determinant.py"),
-    "fea/tractions.py": ("tests/fea/test_bearing_pressure.py", "tests/fea/test_harmonic.py"),
-    "fea/distributed_load.py": ("tests/fea/test_distributed_load.py",),
-    "loads/forces.py": ("tests/loads/test_energy.py", "tests/loads/test_four_bar.py",
+    "fea/beam/stress_concentration.py": ("tests/fea/test_notch.py",
+                                         "tests/fea/test_beam_stress.py"),
+    "fea/checks/hand_checks.py": ("tests/fea/test_hand_checks.py",),
+    "fea/beam/timoshenko.py": ("tests/fea/test_stepped_beam.py", "tests/fea/test_beam_stress.py"),
+    "fea/solid/assembly.py": ("tests/fea/test_elasticity.py",),
+    "fea/singular/williams.py": ("tests/fea/test_corner.py",
+                                 "tests/fea/test_corner_determinant.py"),
+    "fea/core/tractions.py": ("tests/fea/test_bearing_pressure.py", "tests/fea/test_harmonic.py"),
+    "fea/checks/michell.py": ("tests/fea/test_distributed_load.py",),
+    "loads/inverse_dynamics.py": ("tests/loads/test_energy.py", "tests/loads/test_four_bar.py",
                         "tests/loads/test_slider_crank.py", "tests/loads/test_reactions.py"),
-    "loads/energy.py": ("tests/loads/test_energy.py", "tests/loads/test_slider_crank.py"),
+    "loads/power_balance.py": ("tests/loads/test_energy.py", "tests/loads/test_slider_crank.py"),
     "loads/impulse.py": ("tests/loads/test_reactions.py",),
 }  # fmt: skip
 ARITHMETIC = {ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult,
@@ -56,9 +58,9 @@ SAME = {
     ("if value > best[3]:", "value > best[3] → value >= best[3]"):
         "equal stresses at two places: either is the largest",
     ("return (tuple(Traction(b.name, 0.0, ABOUT_Z * b.radius, _NONE) for b in bands),)",
-     "0.0 → 1.0"): "the middle from which a slope of nought is counted",
+     "0.0 → 1.0"): "the middle from which a slope of zero is counted",
     ("inertia = np.array([item.inertia or 0.0 for item in items])", "0.0 → 1.0"):
-        "pins and particles, which have no inertia, do not turn (`loads.loops._frames`)",
+        "pins and particles, which have no inertia, do not turn (`loads.loop_equations._frames`)",
     ("return root if root.real < 1.0 else 1.0 + 0.0j", "root.real < 1.0 → root.real <= 1.0"):
         "an eigenvalue of exactly 1 is what the other branch returns",
     ("return _root(lambda x: math.sin(x) - q * x, math.pi / 2.0, math.pi + 1e-9)", "2.0 → 2.2"):

@@ -23,7 +23,7 @@ from loads import (
 )
 from loads.linkage import Floats, Point
 from pinstress import load_study
-from pinstress.mechanism import laws, linkage, span
+from pinstress.model.linkage import laws, linkage, span
 
 STUDY = Path(__file__).parent.parent / "studies" / "grenier2008.toml"
 INCH, POUND = 0.0254, 0.45359237

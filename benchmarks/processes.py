@@ -8,7 +8,7 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from pinstress.threads import THREADS as LIBRARIES
+from pinstress.processes.threads import THREADS as LIBRARIES
 
 THREADS = 2
 

@@ -1,4 +1,4 @@
-"""docs/publications.md: every published number beside ours, from the studies themselves."""
+"""docs/publications.md: every published number compared with ours, computed from the studies."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ import numpy as np
 from loads import LegDynamics, leg_dynamics
 from loads.spatial_leg import t1, t2
 from pinstress import load_study, run
-from pinstress.leg import dynamics
-from pinstress.pipeline import loads_only
-from pinstress.schema_cases import LegCase
-from reports import markdown
-from reports.numbers import engineering, ratio
-from reports.published import published_reactions
-from reports.published_values import published_table
-from reports.results import Results
+from pinstress.analysis.gather import loads_only
+from pinstress.model.spatial_leg import dynamics, instants
+from pinstress.schema.cases import LegCase
+from reports.data.results import Results
+from reports.format import markdown
+from reports.format.numbers import engineering, ratio
+from reports.tables.published_reactions import published_reactions
+from reports.tables.published_values import published_table
 
 ROOT = Path(__file__).parent.parent
 STUDIES = ROOT / "studies"
 PAGE = ROOT / "docs" / "publications.md"
-HEAD = """# The publications, beside ours
+HEAD = """# Comparison with the publications
 
-Written by `python -m benchmarks publications` from the studies; nothing here is typed. Ratios are
-ours over theirs.
+`python -m benchmarks publications` computes this page from the studies. Ratios are
+ours / published.
 """
 UNKNOWNS = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y", "T2")
 
@@ -72,8 +72,8 @@ def grenier_peaks(results: Results) -> str:
     table = markdown.table(head, rows, (False, False, True, True, True, True, True, False))
     return (
         f"## Landing-gear pins: {results.published_source}\n\n{table}\n\n"
-        "These peaks sit at sharp corners and clamp edges, where no value exists; "
-        "[](grenier2008.md) says pin by pin what the ratios hang on.\n"
+        "These peaks are at sharp corners and clamp edges, where no maximum exists; "
+        "[](grenier2008.md) explains the ratios pin by pin.\n"
     )
 
 
@@ -97,14 +97,14 @@ def grenier() -> str:
     )  # fmt: skip
     return (
         "### Reactions in landing (table 4)\n\n"
-        f"{forces}\n\nThe linkage is rebuilt from the printed forces; J3 alone, the weight of a "
-        "body that the drawings would show, hangs on a small difference.\n\n"
+        f"{forces}\n\nThe linkage is reconstructed from the printed forces. Only J3, the weight "
+        "of a body that the lost drawings would show, depends on a small difference.\n\n"
         f"### Motion of pin F (appendix A-5)\n\n{moved}\n"
     )
 
 
 def bowman() -> str:
-    """The snapshot, and the printed system with its errors put right one after the other."""
+    """The snapshot, and the printed system with its errors corrected one after the other."""
     results = loads_only(load_study(STUDIES / "bowman2019.toml"))
     retract = next(m for m in results.motion if m.case == "retract")
     (drive,) = results.drive
@@ -115,10 +115,11 @@ def bowman() -> str:
         "### The printed system, corrected step by step\n\n"
         f"{markdown.table(('correction', *UNKNOWNS), _corrected(results), (False, *[True] * 9))}"
         "\n\nForces in lbf, the torque in lbf in. The last row is ours, from geometry and the "
-        "crank's motion. Over the whole motion its powers balance to "
+        "crank's motion. Over the whole motion powers balance to "
         f"{closed:.0e}; torque mean {engineering(drive.mean)}, RMS "
-        f"{engineering(drive.rms)} lbf in. The publication itself says that its snapshot and its "
-        "sweep disagree; the sweep's program takes r14x from r32y and does not divide A12 by 12.\n"
+        f"{engineering(drive.rms)} lbf in. The publication notes that its snapshot and its "
+        "sweep disagree; the program of the sweep uses r32y for r14x and does not divide A12 by "
+        "12.\n"
     )
 
 
@@ -153,14 +154,14 @@ def four_bar() -> str:
     """The printed solution, and what the crank's motion alone gives."""
     results = loads_only(load_study(STUDIES / "matrix_four_bar.toml"))
     return (
-        f"## Four-bar worked by matrices: {results.published_source}\n\n"
-        "`printed` works with the print's own inertia forces and couples (d'Alembert); `motion` "
-        f"from geometry and the crank's motion alone.\n\n{published_table(results.published)}\n"
+        f"## Four-bar by the matrix method: {results.published_source}\n\n"
+        "`printed` uses the printed inertia forces and couples (d'Alembert); `motion` only the "
+        f"geometry and the crank's motion.\n\n{published_table(results.published)}\n"
     )
 
 
 def leg() -> str:
-    """The wrong terms of the publication, each with its value and the right one's."""
+    """The incorrect terms of the publication, each with its value and the correct one."""
     found = _halfway()
     symbols = _symbols(found)
     rows = []
@@ -172,12 +173,14 @@ def leg() -> str:
                 *(f"`{r['right']}`", right, r["why"]),
             ]
         )
-    head = ("equation", "quantity", "printed term", "value", "right term", "value ", "why")
+    head = ("equation", "quantity", "printed term", "value", "correct term", "value ", "reason")
     table = markdown.table(head, rows, (False, False, False, True, False, True, False))
     return (
         "## Leg in space with a spinning wheel: KU Leuven (2014)\n\n"
-        "The publication has no numbers; its wrong terms are evaluated halfway through the fold of "
-        "`studies/kuleuven2014.toml` (SI, heading 0). Every right term is tested against numerical "
+        "The publication has no numbers; its incorrect terms are evaluated halfway through the "
+        "fold of "
+        "`studies/kuleuven2014.toml` (SI, heading 0). Every corrected term is tested against "
+        "numerical "
         f"differentiation of the motion (`tests/validation/test_kuleuven2014.py`).\n\n{table}\n"
     )
 
@@ -186,7 +189,7 @@ def _halfway() -> LegDynamics:
     study = load_study(STUDIES / "kuleuven2014.toml")
     case = study.table.case["fold"]
     assert isinstance(case, LegCase)
-    _, found = dynamics(study, case)
+    found = dynamics(study, instants(study, case))
     middle = slice(case.samples // 2, case.samples // 2 + 1)
     motion = found.motion
     here = {

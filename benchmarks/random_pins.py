@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea.material import Material
-from fea.pin_loads import Distribution, PinLoads
+from fea.core.material import Material
+from fea.core.pin_loads import Distribution, PinLoads
 from geometry import Pin, Segment
 
 STEEL = Material("steel", 2.0e11, 0.3, 7850.0, 1.0e9)

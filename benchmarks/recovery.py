@@ -7,15 +7,15 @@ from skfem import ElementTriP2
 
 from benchmarks.accuracy import FILLET, LOAD, PIN, STEEL, peak, truth
 from benchmarks.timing import table
-from fea.harmonic import HarmonicModel, _polar
-from fea.meridian_fields import MeridianFields
-from fea.recovery import continuation, extension
-from fea.section import elasticity
-from fea.solid import SolidModel, acting
-from fea.stress import nodal_stress
-from fea.tensor import von_mises
-from geometry.meridian_mesh import SectionSize, meridian_mesh
-from geometry.solid_mesh import MeshSize, solid_mesh
+from fea.core.local_fit import continuation, extension
+from fea.core.voigt import von_mises
+from fea.harmonic.assembly import elasticity
+from fea.harmonic.fields import MeridianFields
+from fea.harmonic.model import HarmonicModel, _polar
+from fea.solid.model import SolidModel, acting
+from fea.solid.stress_recovery import nodal_stress
+from geometry.mesh.section_mesh import SectionSize, meridian_mesh
+from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 
 FINER = (1.0, 1.4, 2.0, 2.8)
 SECTION = SectionSize(3.0, 6.0, 0.5)
@@ -57,7 +57,7 @@ def _section(size: SectionSize) -> tuple[int, float, float, float]:
     model = HarmonicModel(PIN, meridian_mesh(PIN, size), STEEL, ("start",))
     fields = model.solve((load,))
     space = model.space
-    u = _polar(model._displace(load.n, model._applied(load.n, [load])[0]))
+    u = _polar(model.displace(load.n, model._applied(load.n, [load])[0]))
     stress = elasticity(STEEL) @ space.sampled_strains(load.n, u)
     sampled = stress.reshape(-1, 6)
     averaged, fitted = (

@@ -8,10 +8,10 @@ import numpy as np
 
 from benchmarks.calculix_ours import ALONG_Y, BAND, CLAMP, FORCE, PIN, STEEL
 from benchmarks.timing import table
-from fea.circumference import Circumference
-from fea.harmonic import HarmonicModel
-from fea.pin_loads import PinLoads
-from geometry.meridian_mesh import SectionSize, meridian_mesh
+from fea.core.pin_loads import PinLoads
+from fea.harmonic.model import HarmonicModel
+from fea.harmonic.superposition import Circumference
+from geometry.mesh.section_mesh import SectionSize, meridian_mesh
 
 SIZES = tuple(SectionSize(2.0, 5.0, 0.7).finer(f) for f in (1.0, 1.4, 2.0, 2.8))
 FINEST = SectionSize(20.0, 50.0, 0.1)

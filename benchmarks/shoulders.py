@@ -10,14 +10,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmarks.random_pins import STEEL
-from fea.circumference import Circumference
-from fea.harmonic import HarmonicModel
-from fea.meridian_fields import MeridianFields
-from fea.notch import BENDING, TENSION, TORSION, shoulder_factor
-from fea.pin_loads import Floats, PinLoads
-from fea.tensor import TENSOR
+from fea.beam.stress_concentration import BENDING, TENSION, TORSION, shoulder_factor
+from fea.core.pin_loads import Floats, PinLoads
+from fea.core.voigt import TENSOR
+from fea.harmonic.fields import MeridianFields
+from fea.harmonic.model import HarmonicModel
+from fea.harmonic.superposition import Circumference
 from geometry import Pin, Segment
-from geometry.meridian_mesh import SectionSize, meridian_mesh
+from geometry.mesh.section_mesh import SectionSize, meridian_mesh
 
 D = 0.05
 SHAPES = (

@@ -15,7 +15,7 @@ from skfem import MeshTet2
 from benchmarks.calculix_ours import PIN, Ours
 from benchmarks.processes import THREADS, Process, process
 from benchmarks.timing import table
-from geometry.solid_mesh import MeshSize, solid_mesh
+from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 
 ROOT = Path(__file__).parent.parent
 COARSE = MeshSize(across=3.8, arc=1.9)

@@ -14,12 +14,13 @@ from skfem import Basis, ElementTetP2, ElementVector, MeshTet2
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
 from benchmarks.timing import seconds, table
-from fea.elasticity import Discretisation
-from fea.material import Material
+from fea.core.material import Material
+from fea.solid.assembly import Discretisation
 from geometry import Pin, Segment
-from geometry.solid_mesh import MeshSize, solid_mesh
+from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 from loads import motion_reactions, move
-from pinstress import load_study, mechanism
+from pinstress import load_study
+from pinstress.model import linkage as mechanism
 
 STUDY = Path(__file__).parent.parent / "studies" / "grenier2008.toml"
 STEEL = Material("steel", 2.0e11, 0.3)
@@ -72,7 +73,7 @@ def _form(mesh: MeshTet2, order: int | None) -> object:
 # child's, kB
 PROBE = """
 import re, resource, sys
-from pinstress.cli import run_command_line
+from pinstress.cli.commands import run_command_line
 status = run_command_line(sys.argv[1:])
 own = int(re.search(r"VmHWM:\\s+(\\d+)", open("/proc/self/status").read())[1])
 print(max(own, resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss), file=sys.stderr)

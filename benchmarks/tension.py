@@ -18,14 +18,14 @@ from benchmarks.calculix import MISSING
 from benchmarks.random_pins import STEEL
 from benchmarks.shoulders import CHARTS, FINEST, KINDS, D, Run, run, shoulder
 from benchmarks.timing import table
-from fea.calculix import JOB, installed, seconds_of, stresses
-from fea.calculix import run as run_calculix
-from fea.calculix_deck import mesh_lines
-from fea.notch import shoulder_factor
-from fea.section import Section
-from fea.tensor import von_mises
+from fea.beam.stress_concentration import shoulder_factor
+from fea.checks.calculix import JOB, installed, seconds_of, stresses
+from fea.checks.calculix import run as run_calculix
+from fea.checks.calculix_deck import mesh_lines
+from fea.core.voigt import von_mises
+from fea.harmonic.assembly import Section
 from geometry import Pin
-from geometry.meridian_mesh import MeridianMesh, SectionSize, meridian_mesh
+from geometry.mesh.section_mesh import MeridianMesh, SectionSize, meridian_mesh
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

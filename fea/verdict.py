@@ -1,20 +1,29 @@
-"""From what successive meshes say to a verdict: is the maximum known, and is there one at all?"""
+"""A verdict from successive meshes: is the maximum accurate enough, and does one exist at all?"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from fea.linear import SolveError
-from fea.look import Look
-from fea.peak import Peak, Refinement, SingularZone, Verdict, discretisation_error
-from fea.zones import Place
+from fea.core.linear_solver import SolveError
+from fea.core.mesh_result import MeshResult
+from fea.core.peak import (
+    NOTHING,
+    ErrorParts,
+    Note,
+    Peak,
+    Refinement,
+    SingularZone,
+    Verdict,
+    discretisation_error,
+)
+from fea.singular.singularities import Singularity
 
-LEAST_ORDER = {"harmonic": 1.0}  # meshes of sections have points at the rims of what is excluded
-# Of the maximum on the first mesh, by where nodes happen to lie; ~ h^2. Of sections as of random
-# shoulders; of solids as of fillets with and without a bore, where it is 0.07 to 0.13.
+LEAST_ORDER = {"harmonic": 1.0}  # meshes of sections have nodes on the edges of excluded zones
+# Scatter of the maximum on the first mesh with the positions of nodes, relative; ~ h^2. Sections:
+# measured on random shoulders; solids: on fillets with and without a bore, 0.07 to 0.13.
 NOISE = {"harmonic": 0.026, "solid": 0.13}
-FEWEST = 3  # meshes before a maximum may be called converged: two can agree by chance
+FEWEST = 3  # meshes before a maximum can be converged: two can agree by chance
 
 ARTICLES = {"sharp corner": "a", "edge of a clamp": "the", "edge of a load": "the"}
 
@@ -22,113 +31,152 @@ ARTICLES = {"sharp corner": "a", "edge of a clamp": "the", "edge of a load": "th
 @dataclass(frozen=True)
 class Seen:
     """The meshes of one case so far, coarse to fine, each `ratio` times finer than the one before;
-    seconds: what each took. first: how many meshes of a run are coarser than the first of these.
+    seconds: the time of each. first: how many meshes of a run are coarser than the first of these.
     """
 
     pin: str
     case: str
     model: str
-    looks: tuple[Look, ...]
+    results: tuple[MeshResult, ...]
     seconds: tuple[float, ...]
     ratio: float
     first: int = 0
 
     @property
     def history(self) -> tuple[Refinement, ...]:
-        """Maxima outside the singular places, mesh by mesh."""
+        """Maxima outside the singular zones, mesh by mesh."""
         return tuple(
-            Refinement(look.unknowns, look.maximum, spent)
-            for look, spent in zip(self.looks, self.seconds, strict=True)
+            Refinement(result.unknowns, result.maximum, spent)
+            for result, spent in zip(self.results, self.seconds, strict=True)
         )
 
     @property
     def error(self) -> float:
-        """Estimated error of the last maximum, Pa: from the meshes' sequence, but never less than
-        what a mesh is off by where its nodes happen to lie; and what the loads leave out.
+        """Estimated error of the last maximum, Pa."""
+        return self.parts.total
+
+    @property
+    def parts(self) -> ErrorParts:
+        """Parts of the error of the last maximum: that of the mesh from the sequence of meshes, but
+        never less than the scatter with the positions of nodes.
         """
-        last = self.looks[-1]
-        if len(self.looks) == 1:
-            return last.maximum
+        last = self.results[-1]
+        if len(self.results) == 1:
+            return ErrorParts(last.maximum)  # as large as the value
+        return ErrorParts(self._of_mesh(last), last.between, last.left_out)
+
+    def _of_mesh(self, last: MeshResult) -> float:
         least = LEAST_ORDER.get(self.model, 0.5)
-        finer = self.ratio ** (self.first + len(self.looks) - 1)
+        finer = self.ratio ** (self.first + len(self.results) - 1)
         noise = NOISE.get(self.model, 0.0) * last.maximum / finer**2
         scatter = max(last.scatter, noise)
-        return discretisation_error(self.history, self.ratio, scatter, least) + last.left_out
+        return discretisation_error(self.history, self.ratio, scatter, least)
 
     @property
     def relative(self) -> float:
-        """The same over the maximum."""
-        largest = self.looks[-1].maximum
+        """The error over the maximum."""
+        largest = self.results[-1].maximum
         return self.error / largest if largest else 0.0
 
+    @property
+    def range(self) -> tuple[float, float]:
+        """Bounds of the maximum, Pa: from its error; where a singular zone governs, from half and
+        twice the excluded distance, with the error.
+        """
+        last = self.results[-1]
+        if not last.singular:
+            return last.maximum - self.error, last.maximum + self.error
+        low, high = last.interval or (last.maximum, last.maximum)
+        return low * (1.0 - self.relative), high * (1.0 + self.relative)
+
     def known(self, tolerance: float) -> bool:
-        """Whether the maximum is known to `tolerance`."""
-        return len(self.looks) >= FEWEST and self.relative <= tolerance
+        """Whether the error is within `tolerance`."""
+        return len(self.results) >= FEWEST and self.relative <= tolerance
 
 
-def zones(look: Look, places: Sequence[Place]) -> tuple[SingularZone, ...]:
-    """What is to be told of each singular place."""
+def zones(result: MeshResult, singularities: Sequence[Singularity]) -> tuple[SingularZone, ...]:
+    """The zones to report."""
     return tuple(
         SingularZone(
             location=inside.location,
-            kind=f"{ARTICLES[place.kind]} {place.kind}",
-            between=place.between,
+            kind=f"{ARTICLES[singularity.kind]} {singularity.kind}",
+            between=singularity.between,
             exponent=inside.exponent,
-            exponent_theory=place.theory,
-            excluded=place.radius,
-            governs=inside.felt > look.maximum,
+            exponent_theory=singularity.theory,
+            excluded=singularity.radius,
+            governs=inside.felt > result.maximum,
             max_von_mises=inside.maximum,
-            advice=place.advice,
+            advice=singularity.advice,
+            strength=inside.strength,
         )
-        for place, inside in zip(places, look.places, strict=True)
+        for singularity, inside in zip(singularities, result.singularities, strict=True)
         if inside.acts
     )
 
 
-def judge(seen: Seen, places: Sequence[Place], tolerance: float, note: str = "") -> Peak:
-    """The peak of a case; `note` is put behind the verdict's own sentence.
+def judge(
+    seen: Seen, singularities: Sequence[Singularity], tolerance: float, note: Note = NOTHING
+) -> Peak:
+    """The peak of a case; `note` is appended to that of the verdict.
 
     Raises: SolveError when the stress is not finite.
     """
-    last = seen.looks[-1]
+    last = seen.results[-1]
     if not last.maximum < float("inf"):
-        raise SolveError(f"pin {seen.pin}, case {seen.case}: the stress is not finite")
-    found = zones(last, places)
+        raise SolveError(
+            f"pin {seen.pin}, case {seen.case}: the stress is not finite", "not-finite"
+        )
+    found = zones(last, singularities)
     governing = [zone for zone in found if zone.governs]
     known = seen.known(tolerance)
     verdict: Verdict = "converged" if known else "unconverged"
-    told = f"known to {seen.relative:.1%}" + (
-        "" if known else f" only, {tolerance:.1%} was asked for"
-    )
-    if len(seen.looks) < FEWEST and not known:
-        meshes = "one mesh" if len(seen.looks) == 1 else f"{len(seen.looks)} meshes"
-        told = f"from {meshes} only, so the error is not known"
+    own = accuracy(seen.relative, tolerance, known)
+    if len(seen.results) < FEWEST and not known:
+        meshes = "one mesh was" if len(seen.results) == 1 else f"{len(seen.results)} meshes were"
+        own = Note(f"only {meshes} solved, too few to estimate the error", ("too-few-meshes",))
+    error, interval = seen.error, None
     if governing:
         verdict = "singular"
         worst = max(governing, key=lambda zone: zone.max_von_mises)
-        told = f"{_nowhere(worst)}; outside of what is excluded, {told}"
+        interval = seen.range
+        error = max(last.maximum - interval[0], interval[1] - last.maximum)
+        ends = " to ".join(f"{end / last.maximum - 1.0:+.0%}" for end in interval)
+        outside = "" if known else f"; outside, {own.text}"
+        text = f"{_nowhere(worst)}; half and twice the excluded distance give {ends}{outside}"
+        own = Note(text, own.codes)
+    own = own + note
     return Peak(
         pin=seen.pin,
         case=seen.case,
         model=seen.model,
         verdict=verdict,
-        note=told + note,
+        note=own.text,
         max_von_mises=last.maximum,
-        error_estimate=seen.error,
+        error_estimate=error,
         location=last.location,
-        instant=last.instant,
         history=seen.history,
         singular_at=found,
+        interval=interval,
+        parts=seen.parts,
+        reasons=own.codes,
     )
+
+
+def accuracy(relative: float, tolerance: float, known: bool) -> Note:
+    """The relative error, and whether it is within the tolerance."""
+    if known:
+        return Note(f"estimated error {relative:.1%}", ("within-tolerance",))
+    text = f"estimated error {relative:.1%}, above the tolerance of {tolerance:.1%}"
+    return Note(text, ("above-tolerance",))
 
 
 def _nowhere(zone: SingularZone) -> str:
     first, second = zone.between
     where = f"{zone.kind} ({first} / {second})"
     if zone.exponent_theory == 0.0:
-        return f"no maximum exists: at {where} stress grows like log(1/distance)"
-    exponents = ((zone.exponent, "measured"), (zone.exponent_theory, "by theory"))
-    told = ", ".join(f"{s:.2f} {how}" for s, how in exponents if s is not None)
-    if not told:
+        return f"no maximum exists: at {where} stress grows as log(1/distance)"
+    exponents = ((zone.exponent, "measured"), (zone.exponent_theory, "theoretical"))
+    found = ", ".join(f"{s:.2f} {how}" for s, how in exponents if s is not None)
+    if not found:
         return f"no maximum exists: at {where} stress grows without bound"
-    return f"no maximum exists: at {where} stress grows like distance^-s, s = {told}"
+    return f"no maximum exists: at {where} stress grows as distance^-s, s = {found}"

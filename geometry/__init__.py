@@ -1,19 +1,22 @@
 """Geometry: a pin as a body of revolution, its exact volume, and its solid mesh.
 
-Lengths in m. This room imports nothing else of ours. `geometry.solid_mesh` needs meshio, scikit-fem
-and gmsh and is therefore not imported here.
+Lengths in m. This room imports nothing else of ours. `geometry.mesh.solid_mesh` needs meshio,
+scikit-fem and gmsh and is therefore not imported here.
 """
 
-from geometry.cut_pin import CutPin
-from geometry.features import Flat, Hole
-from geometry.meridian import Arc, Corner, Edge, meridian, sharp_corners
-from geometry.pin import Band, GeometryError, Pin, Segment
-from geometry.pin_like import PinLike
-from geometry.vertices import Vertex, vertices
+from geometry.coded import ArgumentError, Coded
+from geometry.mesh.cut_pin import CutPin
+from geometry.shape.corners import Vertex, vertices
+from geometry.shape.features import Flat, Hole
+from geometry.shape.pin import Band, GeometryError, Pin, Segment
+from geometry.shape.pin_like import PinLike
+from geometry.shape.profile import Arc, Corner, Edge, meridian, sharp_corners
 
 __all__ = [
     "Arc",
+    "ArgumentError",
     "Band",
+    "Coded",
     "Corner",
     "CutPin",
     "Edge",

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from geometry import solid_mesh as turned
-from geometry.cut_pin import CutPin
-from geometry.elements import Element, with_element
-from geometry.pin import Pin
-from geometry.pin_like import PinLike
-from geometry.solid_body import SolidBody
-from geometry.solid_mesh import MeshSize, SolidMesh
+from geometry.imported.imported_pin import SolidBody
+from geometry.mesh import solid_mesh as turned
+from geometry.mesh.cut_pin import CutPin
+from geometry.mesh.elements import Element, with_element
+from geometry.mesh.solid_mesh import MeshSize, SolidMesh
+from geometry.shape.pin import Pin
+from geometry.shape.pin_like import PinLike
 
 
 def solid_mesh(

@@ -3,7 +3,9 @@
 Everything here is in SI units. This room imports nothing else of ours.
 """
 
-from loads.drive import (
+from loads.closed_form.lever import Lever
+from loads.coded import LoadsArgumentError, LoadsError
+from loads.drives import (
     ConstantDrive,
     CosineDrive,
     CycloidalDrive,
@@ -11,12 +13,9 @@ from loads.drive import (
     StateDrive,
     TableDrive,
 )
-from loads.energy import Energy, Ledger, energy, ledger
-from loads.forces import Applied, Dynamics, motion_reactions, static_reactions
 from loads.friction import JammingError
-from loads.impasse import Impasse
 from loads.impulse import impulse_force
-from loads.lever import Lever
+from loads.inverse_dynamics import Applied, Dynamics, motion_reactions, static_reactions
 from loads.linkage import (
     GROUND,
     Body,
@@ -29,22 +28,40 @@ from loads.linkage import (
     Turn,
 )
 from loads.mobility import Mobility, mobility
-from loads.motion import Motion, at_rest, move
+from loads.motion import Course, Motion, at_rest, move
+from loads.over_time import (
+    Effort,
+    Extreme,
+    OverTime,
+    PeakForces,
+    over_time,
+    peak_forces,
+    require_possible,
+)
+from loads.power_balance import Energy, Ledger, energy, ledger
 from loads.reactions import Reactions, given_reactions, read_reactions
+from loads.refine import Resolved, resolved
+from loads.singular_positions import Impasse
 from loads.spatial_leg import Contact, LegDynamics, LegMotion, SpatialLeg, leg_dynamics
-from loads.table import TableError, read_table
+from loads.tables.csv_table import TableError, read_table
+from loads.tables.regular_file import MB, FileError, read_regular, require_regular
 
 __all__ = [
     "GROUND",
+    "MB",
     "Applied",
     "Body",
     "Connection",
     "ConstantDrive",
     "Contact",
     "CosineDrive",
+    "Course",
     "CycloidalDrive",
     "Dynamics",
+    "Effort",
     "Energy",
+    "Extreme",
+    "FileError",
     "Impasse",
     "JammingError",
     "Joint",
@@ -55,9 +72,14 @@ __all__ = [
     "Lever",
     "Linkage",
     "LinkageError",
+    "LoadsArgumentError",
+    "LoadsError",
     "Mobility",
     "Motion",
+    "OverTime",
+    "PeakForces",
     "Reactions",
+    "Resolved",
     "Sharing",
     "Slider",
     "SpatialLeg",
@@ -74,7 +96,13 @@ __all__ = [
     "mobility",
     "motion_reactions",
     "move",
+    "over_time",
+    "peak_forces",
     "read_reactions",
+    "read_regular",
     "read_table",
+    "require_possible",
+    "require_regular",
+    "resolved",
     "static_reactions",
 ]

@@ -1,11 +1,11 @@
-"""Coulomb friction at sliders: which signs of the contact forces agree with themselves.
+"""Coulomb friction at sliders: which signs of the contact forces are consistent.
 
 Friction opposes sliding with mu times the size of each contact force n, and changes the contact
-forces in turn: n = n0 - B |n|, with n0 the forces without friction and B what one newton of |n|
-takes from them. Every pattern of signs gives a linear system; the patterns that its solution has
-are the answers. With weak friction there is always exactly one. When there is none, no forces agree
-with the motion; when there are two, rigid-body mechanics does not decide between them (Painleve):
-the slider jams.
+forces in turn: n = n0 - B |n|, with n0 the forces without friction and B their
+reduction by one newton of |n|. Every pattern of signs gives a linear system; the patterns that its
+solution reproduces are the answers. With weak friction there is always exactly one. When there is
+none, no forces are consistent with the motion; when there are two, rigid-body mechanics cannot
+decide between them (Painleve): the slider jams.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from itertools import product
 import numpy as np
 
 from loads.linkage import Floats, LinkageError
-from loads.loops import Ints
+from loads.loop_equations import Ints
 
 MOST_CONTACTS = 8  # 256 patterns of signs
 SAME = 1e-9  # of the largest contact force: what counts as zero and as the same answer
@@ -24,9 +24,8 @@ SAME = 1e-9  # of the largest contact force: what counts as zero and as the same
 class JammingError(LinkageError):
     """Friction has no answer, or several.
 
-    instants: numbers of those concerned. none: whether there is none at the first of them. grip:
-    how much of themselves the contact forces bring back by their friction there (from 1 on it can
-    jam).
+    instants: indices of those concerned. none: whether there is none at the first of them. grip:
+    gain of the loop from contact force to friction to contact force there (from 1 on it can jam).
     """
 
     def __init__(
@@ -35,15 +34,17 @@ class JammingError(LinkageError):
         self.instants, self.none, self.grip = instants, none, grip
         self.sliders = sliders
         what = (
-            "no friction force agrees with the motion"
+            "no friction force is consistent with the motion"
             if none
-            else "two friction forces agree with the motion, and rigid bodies do not decide"
+            else "two friction forces are consistent with the motion, and rigid-body mechanics "
+            "cannot decide between them"
         )
         where = f"friction jams {sliders or 'a slider'}{' at ' + when if when else ''}"
         super().__init__(
-            f"{where}: {what} (each newton on the guide brings {grip:.3g} N more of itself by "
-            "friction; below 1 it slides); lower the friction, lengthen the bearing, drive from "
-            "the other end, or avoid this part of the motion"
+            f"{where}: {what} (friction adds {grip:.3g} N to each newton of contact force; it "
+            "slides below 1); reduce the friction, lengthen the bearing, drive from the other end, "
+            "or avoid this part of the motion",
+            "friction-jams",
         )
 
 

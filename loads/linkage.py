@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+
+from loads.coded import LoadsError
 
 Floats = NDArray[np.float64]
 Point = tuple[float, float]
@@ -15,11 +17,27 @@ Point = tuple[float, float]
 GROUND = "ground"
 
 
-class LinkageError(ValueError):
-    """The linkage as described cannot be analysed; each of `args` says why and what is right."""
+class LinkageError(LoadsError, ValueError):
+    """The linkage as described cannot be analysed; the message says why and what would be right."""
 
-    def __str__(self) -> str:
-        return "; ".join(map(str, self.args))
+    several: tuple[LinkageError, ...] = ()
+
+    @classmethod
+    def all(cls, wrong: Sequence[LinkageError]) -> LinkageError:
+        """One error for everything that is wrong."""
+        error = LinkageError("; ".join(map(str, wrong)), wrong[0].code, wrong[0].at)
+        error.several = tuple(wrong)
+        return error
+
+    @property
+    def each(self) -> tuple[LinkageError, ...]:
+        """Everything that is wrong, one by one."""
+        return self.several or (self,)
+
+    @property
+    def codes(self) -> tuple[str, ...]:
+        """Their codes."""
+        return tuple(error.code for error in self.each)
 
 
 @dataclass(frozen=True)
@@ -27,7 +45,7 @@ class Body:
     """A rigid body in the drawn position.
 
     mass: kg. centre: centre of mass in world axes, m. inertia: about the centre, kg m^2; a body
-    without inertia is a particle, held at `centre` by a single connection, or slides on the ground.
+    without inertia is a particle, with a single connection at `centre`, or slides on the ground.
     """
 
     name: str
@@ -38,7 +56,7 @@ class Body:
 
 @dataclass(frozen=True)
 class Connection:
-    """One body's hold on a pin; `name` labels the force between them."""
+    """A body that turns on a pin; `name` labels the force between them."""
 
     name: str
     body: str
@@ -128,7 +146,7 @@ class Linkage:
 
     def __post_init__(self) -> None:
         if wrong := list(_contradictions(self)):
-            raise LinkageError(*wrong)
+            raise LinkageError.all(wrong)
 
     @cached_property
     def connections(self) -> tuple[tuple[Joint, Connection], ...]:
@@ -182,9 +200,9 @@ def _pin_item(joint: Joint) -> str:
     return f"pin {joint.name}"
 
 
-def _contradictions(linkage: Linkage) -> Iterator[str]:
+def _contradictions(linkage: Linkage) -> Iterator[LinkageError]:
     if not linkage.joints:
-        yield "the linkage has no joints"
+        yield LinkageError("the linkage has no joints", "no-joints")
     bodies = {b.name: b for b in linkage.bodies}
     names = [c.name for j in linkage.joints for c in j.connections]
     coordinates = [s.name for s in linkage.sliders] + [t.name for t in linkage.turns]
@@ -196,65 +214,101 @@ def _contradictions(linkage: Linkage) -> Iterator[str]:
         ("drive", list(linkage.driven)),
     ):
         for name in sorted({n for n in seen if seen.count(n) > 1}):
-            yield f"{what} {name!r} is named twice; names must be unique"
+            yield LinkageError(
+                f"{what} {name!r} is named twice; names must be unique", "duplicate-name"
+            )
     if GROUND in bodies:
-        yield f"no body may be called {GROUND!r}: that is what stands still"
+        yield LinkageError(
+            f"body {GROUND!r}: this name is reserved for the fixed frame; rename the body",
+            "reserved-name",
+            ("body", GROUND),
+        )
     yield from _of_joints(linkage, bodies)
     yield from _of_sliders(linkage, bodies)
     for name in linkage.driven:
         if name not in coordinates:
-            yield f"the drive moves {name!r}, which does not exist"
+            yield LinkageError(
+                f"drive {name!r}: there is no slider or turn of this name",
+                "unknown-drive",
+                ("drive", name),
+            )
     for share in linkage.sharing:
         for name in share.connections:
             if name not in names:
-                yield f"sharing names connection {name!r}, which does not exist"
+                yield LinkageError(
+                    f"sharing: there is no connection {name!r}", "unknown-connection", ("sharing",)
+                )
     for body in linkage.bodies:
         if body.inertia is None:
             yield from _of_particle(linkage, body)
 
 
-def _of_joints(linkage: Linkage, bodies: dict[str, Body]) -> Iterator[str]:
+def _of_joints(linkage: Linkage, bodies: dict[str, Body]) -> Iterator[LinkageError]:
     for joint in linkage.joints:
+        at = ("joint", joint.name)
         for c in joint.connections:
+            key = (*at, "connections", c.name)
             if c.body not in (GROUND, *bodies):
-                yield f"connection {c.name}: there is no body {c.body!r}"
+                yield LinkageError(
+                    f"connection {c.name}: there is no body {c.body!r}", "unknown-body", key
+                )
             if c.body == joint.fixed_in:
-                yield (
-                    f"connection {c.name}: pin {joint.name} is fixed in {c.body}, so that body "
-                    "cannot also turn on it"
+                yield LinkageError(
+                    f"connection {c.name}: pin {joint.name} is fixed in {c.body}, so {c.body} "
+                    "cannot also turn on it",
+                    "fixed-and-turning",
+                    key,
                 )
         if joint.fixed_in not in (None, GROUND, *bodies):
-            yield f"joint {joint.name}: there is no body {joint.fixed_in!r}"
+            yield LinkageError(
+                f"joint {joint.name}: there is no body {joint.fixed_in!r}",
+                "unknown-body",
+                (*at, "fixed_in"),
+            )
         if joint.fixed_in is None and len(joint.connections) < 2:
-            yield f"joint {joint.name}: a floating pin needs at least two connections"
+            yield LinkageError(
+                f"joint {joint.name}: a floating pin needs at least two connections",
+                "too-few-connections",
+                at,
+            )
 
 
-def _of_sliders(linkage: Linkage, bodies: dict[str, Body]) -> Iterator[str]:
+def _of_sliders(linkage: Linkage, bodies: dict[str, Body]) -> Iterator[LinkageError]:
+    pairs = [("slider", s.name, (s.base, s.moving)) for s in linkage.sliders]
+    pairs += [("drive", t.name, (t.base, t.body)) for t in linkage.turns]
+    for kind, name, pair in pairs:
+        for body in pair:
+            if body not in (GROUND, *bodies):
+                yield LinkageError(
+                    f"{kind} {name}: there is no body {body!r}", "unknown-body", (kind, name)
+                )
+        if pair[0] == pair[1]:
+            yield LinkageError(
+                f"{kind} {name}: {pair[0]} cannot move relative to itself; name two bodies",
+                "same-body",
+                (kind, name),
+            )
     for slider in linkage.sliders:
-        for body in (slider.base, slider.moving):
-            if body not in (GROUND, *bodies):
-                yield f"slider {slider.name}: there is no body {body!r}"
-        if slider.base == slider.moving:
-            yield f"slider {slider.name}: {slider.base} cannot slide on itself"
         if slider.axis == (0.0, 0.0):
-            yield (f"slider {slider.name}: its two points coincide, it has no direction; give one")
-    for turn in linkage.turns:
-        for body in (turn.base, turn.body):
-            if body not in (GROUND, *bodies):
-                yield f"drive {turn.name}: there is no body {body!r}"
-        if turn.base == turn.body:
-            yield f"drive {turn.name}: {turn.base} cannot turn against itself"
+            yield LinkageError(
+                f"slider {slider.name}: its two points coincide, so they define no direction; "
+                "give direction = [x, y]",
+                "no-direction",
+                ("slider", slider.name),
+            )
 
 
-def _of_particle(linkage: Linkage, body: Body) -> Iterator[str]:
+def _of_particle(linkage: Linkage, body: Body) -> Iterator[LinkageError]:
     slides = [s for s in linkage.sliders if body.name in (s.base, s.moving)]
     if any(GROUND in (s.base, s.moving) for s in slides):
         return
-    held = [j for j in linkage.joints for c in j.connections if c.body == body.name]
+    joined = [j for j in linkage.joints for c in j.connections if c.body == body.name]
     carries = any(j.fixed_in == body.name for j in linkage.joints)
-    alone = len(held) == 1 and not slides and not carries
-    if not alone or not np.allclose(held[0].at, body.centre, atol=1e-9):
-        yield (
-            f"body {body.name}: without inertia it is a particle, held by one connection at its "
-            "centre; give it an inertia, or put its centre at that joint"
+    alone = len(joined) == 1 and not slides and not carries
+    if not alone or not np.allclose(joined[0].at, body.centre, atol=1e-9):
+        yield LinkageError(
+            f"body {body.name}: a body without inertia is a particle, which must have exactly one "
+            "connection, at its centre; give its inertia, or place its centre at that joint",
+            "particle",
+            ("body", body.name),
         )

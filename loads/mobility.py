@@ -1,14 +1,16 @@
-"""Rank of the loop equations: is every body guided, which connections are redundant."""
+"""Rank of the loop equations: is every body constrained, which connections are redundant."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
+from loads.as_drawn import singular_as_drawn
+from loads.joint_forces import connection_members
 from loads.linkage import GROUND, Floats, Linkage, LinkageError
-from loads.loops import Loops, Pose
-from loads.members import connection_members
+from loads.loop_equations import Loops, Pose
 
 RANK_TOLERANCE = 1e-9  # smallest singular value that counts, relative to the largest
 TAKES_PART = 1e-6  # of the largest part in a null vector
@@ -16,10 +18,10 @@ TAKES_PART = 1e-6  # of the largest part in a null vector
 
 @dataclass(frozen=True)
 class Mobility:
-    """What joints and drives leave open in the drawn position.
+    """The freedom that joints and drives leave in the drawn position.
 
     kutzbach: degrees of freedom by counting links and joints. degrees: by rank, without drives.
-    free: motions that remain with the drives held (0 when the position is determined). loose:
+    free: motions that remain with the drives locked (0 when the position is determined). loose:
     bodies that take part in them. redundant: number of equations too many. shared: connections
     whose force rigid-body statics does not determine.
     """
@@ -54,7 +56,7 @@ def mobility(linkage: Linkage) -> Mobility:
 def kutzbach(linkage: Linkage) -> int:
     """Degrees of freedom by count: 3 (links - 1) - 2 (pins and sliders).
 
-    A pin on which k links meet counts k - 1 times; particles count for nothing.
+    A pin on which k links meet counts k - 1 times; particles do not count.
     """
     links = {b.name for b in linkage.bodies if not is_particle(linkage, b.name)} | {GROUND}
     pins = 0
@@ -111,7 +113,7 @@ def stressed_connections(loops: Loops, multipliers: Floats) -> tuple[str, ...]:
 
 
 def require_determined(linkage: Linkage) -> Mobility:
-    """The mobility, once it is certain that the drives determine every position.
+    """The mobility, provided that the drives determine every position.
 
     Raises: LinkageError naming the bodies that can still move.
     """
@@ -119,11 +121,66 @@ def require_determined(linkage: Linkage) -> Mobility:
     if 0 < found.degrees < len(linkage.driven):
         raise LinkageError(
             f"{len(linkage.driven)} drives ({', '.join(linkage.driven)}) for {found.degrees} "
-            "degree(s) of freedom: take one away"
+            "degree(s) of freedom: remove one",
+            "too-many-drives",
+            ("drive",),
         )
     if found.free:
-        raise LinkageError(
-            f"with the drives held the linkage can still move in {found.free} way(s): "
-            f"{', '.join(found.loose)} not guided; add the missing connection or drive"
-        )
+        raise _unguided(linkage, found)
+    if wrong := list(_idle_sharing(linkage, found)):
+        raise LinkageError.all(wrong)
     return found
+
+
+def _unguided(linkage: Linkage, found: Mobility) -> LinkageError:
+    """Why bodies can move with the drives locked: the position as drawn, or a missing part."""
+    loose = ", ".join(found.loose)
+    match singular_as_drawn(Loops(linkage)):
+        case "change point":
+            return LinkageError(
+                f"as drawn the linkage is at a change point, where {loose} can move in either of "
+                "two ways; draw it in another position, on the intended branch",
+                "change-point",
+            )
+        case "dead point":
+            return LinkageError(
+                f"as drawn the linkage is at a dead point, where {', '.join(linkage.driven)} "
+                f"cannot move it and {loose} can move with the drive locked; draw it in another "
+                "position, on the intended side of the dead point, or drive another body",
+                "dead-point",
+            )
+    return LinkageError(
+        f"with the drives locked the linkage still has {found.free} degree(s) of freedom: {loose} "
+        "can move; add the missing connection or drive",
+        "underconstrained",
+    )
+
+
+def _idle_sharing(linkage: Linkage, found: Mobility) -> Iterator[LinkageError]:
+    """Errors of sharing rules none of whose connections is statically indeterminate."""
+    for share in linkage.sharing:
+        if set(share.connections) & set(found.shared):
+            continue
+        right = f"name some of {', '.join(found.shared)} instead" if found.shared else "remove it"
+        yield LinkageError(
+            f"sharing over {', '.join(share.connections)} has no effect: rigid-body statics "
+            f"determines the forces there; {right}{_undriven(linkage, share.connections)}",
+            "sharing-idle",
+            ("sharing",),
+        )
+
+
+def _undriven(linkage: Linkage, idle: tuple[str, ...]) -> str:
+    """Advice for cylinders that should share the load when only one of them is driven."""
+    bodies = {c.body for _, c in linkage.connections if c.name in idle}
+    free = [
+        s.name
+        for s in linkage.sliders
+        if s.name not in linkage.driven and bodies & {s.base, s.moving}
+    ]
+    if not free:
+        return ""
+    return (
+        f". Slider {', '.join(free)} has no drive and so carries no axial force to share; describe "
+        "parallel cylinders as one, whose force is then their sum"
+    )

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from loads.drive import Law, StateDrive
-from loads.factors import Factors
-from loads.impasse import impasse
+from loads.drives import Law, StateDrive
+from loads.least_squares import Factors
 from loads.linkage import Floats, Linkage, LinkageError, Point
-from loads.loops import Complex, Loops, Points, Pose, number, pairs
+from loads.loop_equations import Complex, Loops, Points, Pose, number, pairs
 from loads.mobility import RANK_TOLERANCE, Mobility, require_determined
-from loads.position import positions
+from loads.positions import Path
+from loads.singular_positions import impasse
+
+GRID = 257  # instants at which a course looks where its drives go, besides their laws' own
+SAME = 1e-12  # of the whole time: this close to a corner is at it
 
 
 @dataclass(frozen=True)
@@ -22,6 +25,8 @@ class Motion:
     """Coordinates of a linkage and their rates, (T, n), in rad and m.
 
     times: (T,) s. drives, speeds, rates: (T, D) values of the drives (m or rad) and their rates.
+    pace: largest rate of all coordinates along the whole course, m/s (of angles times the
+    length scale).
     """
 
     loops: Loops
@@ -34,6 +39,7 @@ class Motion:
     v: Floats
     a: Floats
     factors: Factors
+    pace: float
 
     def __len__(self) -> int:
         return len(self.times)
@@ -107,29 +113,75 @@ def _along(rates: Floats, slopes: Complex) -> Complex:
     return np.asarray((rates[:, None, :] @ slopes)[:, 0])
 
 
-def move(linkage: Linkage, laws: Sequence[Law], times: Floats) -> Motion:
-    """The motion under one law per drive at `times` (T,) s.
+class Course:
+    """The motion of a linkage under one law per drive, from a first to a last time (s).
 
+    Its path is followed once; every instant between belongs to it, whatever others are requested.
     Velocities and accelerations follow from the differentiated loop equations, not from
-    differences. Raises: LinkageError when the linkage is not determined or cannot follow (Impasse).
+    differences.
+
+    Raises: LinkageError when the linkage is not determined or cannot follow (Impasse).
     """
-    if len(laws) != len(linkage.driven):
-        raise LinkageError(f"{len(linkage.driven)} drives need as many laws, not {len(laws)}")
-    found = require_determined(linkage)
-    loops = Loops(linkage)
-    course = [law(times) for law in laws]
-    drives, speeds, rates = (np.stack([c[k] for c in course], axis=1) for k in range(3))
-    q = positions(loops, drives)
-    pose = loops.pose(q)
-    factors = Factors(loops.jacobian(pose))
-    weak = int(factors.weakest.argmin())
-    if factors.weakest[weak] < RANK_TOLERANCE:
-        raise impasse(loops, q[weak], drives[weak], drives[-1])
-    v = factors.solve(loops.drive_side(speeds)) / loops.scale
-    a = factors.solve(loops.drive_side(rates) + loops.bend_side(pose, v)) / loops.scale
-    return Motion(loops, found, times, drives, speeds, rates, q, v, a, factors)
+
+    def __init__(self, linkage: Linkage, laws: Sequence[Law], first: float, last: float) -> None:
+        if len(laws) != len(linkage.driven):
+            raise LinkageError(
+                f"{len(linkage.driven)} drives need as many laws, not {len(laws)}", "laws-mismatch"
+            )
+        self.found = require_determined(linkage)
+        self.loops, self.laws = Loops(linkage), tuple(laws)
+        self.first, self.last = first, last
+        self.corners = self._inside(t for law in laws for t in law.corners)
+        grid = [*np.linspace(first, last, GRID), *self._inside(t for x in laws for t in x.pieces)]
+        self.path = Path(self.loops, self._drives, np.unique(grid))
+        self.pace = 0.0
+        self.pace = float(np.abs(self.at(self.path.nodes).v * self.loops.scale).max(initial=0.0))
+
+    def _inside(self, times: Iterable[float]) -> Floats:
+        """Those of the times (s) inside the course, rising."""
+        return np.unique([t for t in times if self.first < t < self.last])
+
+    def _drives(self, times: Floats) -> Floats:
+        """Values of the drives, (T, D)."""
+        return self._values(times)[0]
+
+    def _values(self, times: Floats) -> tuple[Floats, Floats, Floats]:
+        """Values of the drives and their rates, (T, D) each. Where one drive may end and another
+        begin, they are those just before.
+        """
+        if len(self.laws) > 1 and len(self.corners):
+            same = SAME * (self.last - self.first)
+            k = np.clip(np.searchsorted(self.corners, times - same), 0, len(self.corners) - 1)
+            times = np.where(np.abs(times - self.corners[k]) <= same, times - 3.0 * same, times)
+        course = [law(times) for law in self.laws]
+        values, speeds, rates = (np.stack([c[k] for c in course], axis=1) for k in range(3))
+        return values, speeds, rates
+
+    def at(self, times: Floats) -> Motion:
+        """The motion at times (T,) s, in any order. Raises: Impasse."""
+        loops = self.loops
+        drives, speeds, rates = self._values(times)
+        q = self.path.at(times)
+        pose = loops.pose(q)
+        factors = Factors(loops.jacobian(pose))
+        weak = int(factors.weakest.argmin())
+        if factors.weakest[weak] < RANK_TOLERANCE:
+            raise impasse(loops, q[weak], drives[weak], drives[int(times.argmax())])
+        v = factors.solve(loops.drive_side(speeds)) / loops.scale
+        a = factors.solve(loops.drive_side(rates) + loops.bend_side(pose, v)) / loops.scale
+        return Motion(loops, self.found, times, drives, speeds, rates, q, v, a, factors, self.pace)
+
+
+def move(linkage: Linkage, laws: Sequence[Law], times: Floats) -> Motion:
+    """The motion under one law per drive at `times` (T,) s, followed from the first of them.
+
+    Raises: LinkageError when the linkage is not determined or cannot follow (Impasse).
+    """
+    return Course(linkage, laws, float(times.min()), float(times.max())).at(times)
 
 
 def at_rest(linkage: Linkage, drives: Sequence[float]) -> Motion:
-    """The linkage held with its drives at these values (m or rad): one instant without motion."""
+    """The linkage at rest with its drives at these values (m or rad): one instant without
+    motion.
+    """
     return move(linkage, [StateDrive(value) for value in drives], np.zeros(1))

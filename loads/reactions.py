@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from loads.linkage import Floats
-from loads.table import TableError, read_table
+from loads.tables.csv_table import TableError, read_table
 
 Components = dict[str, tuple[float, ...]]
 
@@ -33,7 +33,7 @@ class Reactions:
     def __post_init__(self) -> None:
         for name in ("forces", "moments", "turn"):
             if not np.isfinite(getattr(self, name)).all():
-                raise ArithmeticError(f"case {self.case}: {name} that are not finite")
+                raise ArithmeticError(f"case {self.case}: the {name} are not finite")
 
     def __len__(self) -> int:
         return len(self.forces)
@@ -64,7 +64,7 @@ class Reactions:
 
 def given_reactions(case: str, forces: Components, moments: Components | None = None) -> Reactions:
     """One instant of stated forces (N) and moments (N m) by connection, in the pin's own axes:
-    (x, y[, z]). What is not named is nought.
+    (x, y[, z]). Those not named are zero.
     """
     moments = moments or {}
     names = tuple(dict.fromkeys((*forces, *moments)))
@@ -106,13 +106,17 @@ def read_reactions(
         name = row.cells["connection"]
         if name not in known:
             raise TableError(
-                f"{row.where}: unknown connection {name[:40]!r}; the study's pins have "
-                f"{', '.join(sorted(known))}"
+                f"{row.where}: no pin has a connection {name[:40]!r}; there are "
+                f"{', '.join(sorted(known))}",
+                "unknown-connection",
             )
         time = row.number("time") * time_unit if "time" in row.cells else None
         instant = data.setdefault(time, {})
         if name in instant:
-            raise TableError(f"{row.where}: connection {name} is given twice at the same instant")
+            raise TableError(
+                f"{row.where}: connection {name} is given twice at the same time; keep one row",
+                "duplicate-row",
+            )
         instant[name] = [
             row.number(c) * unit if c in row.cells else 0.0 for c, unit in units.items()
         ]
@@ -121,8 +125,9 @@ def read_reactions(
         gap = set(names).symmetric_difference(instant)
         if gap:
             raise TableError(
-                f"{path}: connection {sorted(gap)[0]} is not given at every time "
-                f"(see time {(time or 0.0) / time_unit:g})"
+                f"{path}: connection {sorted(gap)[0]} has no row at time "
+                f"{(time or 0.0) / time_unit:g}; every connection needs one at every time",
+                "missing-row",
             )
     first = given_reactions(case, dict.fromkeys(names, (0.0, 0.0)))
     order = sorted(data, key=lambda t: t or 0.0)

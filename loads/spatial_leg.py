@@ -21,6 +21,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from loads.coded import LoadsArgumentError
 from loads.linkage import Floats
 
 
@@ -50,15 +51,19 @@ class SpatialLeg:
         given = np.asarray(self.leg_inertia, dtype=float)
         inertia = np.diag(given) if given.shape == (3,) else given
         if inertia.shape != (3, 3) or not np.array_equal(inertia, inertia.T):
-            raise ValueError("leg_inertia must be three moments or a symmetric 3 x 3 matrix")
+            raise LoadsArgumentError(
+                "leg_inertia must be three moments or a symmetric 3 x 3 matrix", "bad-shape"
+            )
         object.__setattr__(self, "leg_inertia", inertia)
         numbers = [getattr(self, f.name) for f in fields(self) if f.name != "leg_inertia"]
         if not np.isfinite(numbers).all() or not np.isfinite(inertia).all():
-            raise ValueError("a number of the leg is not finite")
+            raise LoadsArgumentError("every number of the leg must be finite", "not-finite")
         moments = [self.wheel_axial, self.wheel_transverse, *np.linalg.eigvalsh(inertia)]
         # Rounding may leave a slender body's smallest moment just below zero.
         if min(moments) < -1e-12 * max(moments) or min(self.leg_mass, self.wheel_mass) < 0.0:
-            raise ValueError("a mass or a moment of inertia of the leg is negative")
+            raise LoadsArgumentError(
+                "masses and moments of inertia must not be negative", "negative"
+            )
 
     @property
     def wheel_inertia(self) -> Floats:
@@ -99,9 +104,12 @@ class LegMotion:
                 continue
             array = np.asarray(value, dtype=float)
             if array.ndim != 1 or array.shape != np.shape(self.v_v):
-                raise ValueError(f"{field.name} has shape {array.shape}, not that of v_v (T,)")
+                raise LoadsArgumentError(
+                    f"{field.name} has shape {array.shape}; it must be that of v_v, (T,)",
+                    "bad-shape",
+                )
             if not np.isfinite(array).all():
-                raise ValueError(f"{field.name} is not finite")
+                raise LoadsArgumentError(f"{field.name} must be finite", "not-finite")
             object.__setattr__(self, field.name, array)
 
     def __len__(self) -> int:
@@ -204,94 +212,112 @@ def leg_dynamics(leg: SpatialLeg, motion: LegMotion, contact: Contact | None = N
 
     contact: None when the wheel is off the ground.
     """
+    moved, momenta = _kinematics(leg, motion), _angular_momenta(leg, motion)
+    p = {
+        "p_leg": leg.leg_mass * moved["v_D"],
+        "p_leg_rate": leg.leg_mass * moved["a_D"],
+        "p_wheel": leg.wheel_mass * moved["v_C"],
+        "p_wheel_rate": leg.wheel_mass * moved["a_C"],
+    }
+    energy = _dot(p["p_leg"], moved["v_D"]) + _dot(p["p_wheel"], moved["v_C"])
+    energy += _dot(momenta["L_leg"], moved["leg_omega"])
+    energy += _dot(momenta["L_wheel"], moved["wheel_omega"])
+    borne = _at_hinge(leg, motion, moved, p | momenta, contact)
+    return LegDynamics(
+        leg=leg, motion=motion, **moved, **p, **momenta, **borne, kinetic_energy=0.5 * energy
+    )
+
+
+def _kinematics(leg: SpatialLeg, motion: LegMotion) -> dict[str, Floats]:
+    """Rotation, and the motion of B, C and D, primed axes; e_y'' yaws, e_x''' yaws and folds: hence
+    the products.
+    """
     c, s = np.cos(motion.beta), np.sin(motion.beta)
     o = np.zeros_like(c)
     w_g, w_i, w_w = motion.omega_g, motion.omega_i, motion.omega_w
     a_g, a_i, a_w = motion.alpha_g, motion.alpha_i, motion.alpha_w
-
-    # Rotation, primed axes; e_y'' yaws, e_x''' yaws and folds: hence the products.
     leg_omega = _row(o, w_i, w_g)
     leg_alpha = _row(-w_g * w_i, a_i, a_g)
-    wheel_omega = leg_omega + _row(-w_w * c, o, w_w * s)
-    wheel_alpha = leg_alpha + _row(
-        -a_w * c + w_i * w_w * s, -w_g * w_w * c, a_w * s + w_i * w_w * c
-    )
-
+    spin_rate = _row(-a_w * c + w_i * w_w * s, -w_g * w_w * c, a_w * s + w_i * w_w * c)
     r_BC = _row(-leg.l3 * s - leg.l4 * c, o, -leg.l3 * c + leg.l4 * s)
     r_BD = _row(-0.75 * leg.l3 * s - 0.25 * leg.l4 * c, o, -0.75 * leg.l3 * c + 0.25 * leg.l4 * s)
     v_B, a_B, _ = _point(leg, motion, np.zeros_like(r_BC))
     v_C, a_C, coriolis_C = _point(leg, motion, r_BC)
     v_D, a_D, _ = _point(leg, motion, r_BD)
+    return {
+        "leg_omega": leg_omega,
+        "leg_alpha": leg_alpha,
+        "wheel_omega": leg_omega + _row(-w_w * c, o, w_w * s),
+        "wheel_alpha": leg_alpha + spin_rate,
+        "r_BC": r_BC,
+        "r_BD": r_BD,
+        "v_B": v_B,
+        "a_B": a_B,
+        "v_C": v_C,
+        "a_C": a_C,
+        "coriolis_C": coriolis_C,
+        "v_D": v_D,
+        "a_D": a_D,
+    }
 
-    # Angular momentum where the inertia is constant: in leg axes, for the spinning wheel as well,
-    # since it is axisymmetric. Rate in the world = rate in leg axes + leg's rotation x L.
-    to_primed = t2(motion.beta)
+
+def _angular_momenta(leg: SpatialLeg, motion: LegMotion) -> dict[str, Floats]:
+    """Angular momenta about the centres and their rates, and the moment that spins the wheel up.
+
+    Found where the inertia is constant: in leg axes, for the spinning wheel as well, since it is
+    axisymmetric. Rate in the world = rate in leg axes + leg's rotation x L.
+    """
+    c, s = np.cos(motion.beta), np.sin(motion.beta)
+    o = np.zeros_like(c)
+    w_g, w_i, w_w = motion.omega_g, motion.omega_i, motion.omega_w
+    a_g, a_i, a_w = motion.alpha_g, motion.alpha_i, motion.alpha_w
     omega = _row(-w_g * s, w_i, w_g * c)
     omega_rate = _row(-a_g * s - w_g * w_i * c, a_i, a_g * c - w_g * w_i * s)
     L_leg, L_leg_rate = _spin(leg.leg_inertia, omega, omega_rate, omega)
     L_wheel, L_wheel_rate = _spin(
         leg.wheel_inertia, omega - _row(w_w, o, o), omega_rate - _row(a_w, o, o), omega
     )
-    spin_moment = -L_wheel_rate[:, 0]
-    L_leg, L_leg_rate, L_wheel, L_wheel_rate = (
-        _times(to_primed, v) for v in (L_leg, L_leg_rate, L_wheel, L_wheel_rate)
-    )
+    found = {"L_leg": L_leg, "L_leg_rate": L_leg_rate}
+    found |= {"L_wheel": L_wheel, "L_wheel_rate": L_wheel_rate}
+    to_primed = t2(motion.beta)
+    return {name: _times(to_primed, v) for name, v in found.items()}
 
-    # Newton and Euler for leg and wheel as one system about B: the attachment supplies what
-    # gravity and ground do not, and the leg does the opposite to the attachment.
+
+def _at_hinge(
+    leg: SpatialLeg,
+    motion: LegMotion,
+    moved: dict[str, Floats],
+    momenta: dict[str, Floats],
+    contact: Contact | None,
+) -> dict[str, Floats]:
+    """Newton and Euler for leg and wheel as one system about B: the attachment supplies what
+    gravity and ground do not, and the leg does the opposite to the attachment.
+    """
+    c, s = np.cos(motion.beta), np.sin(motion.beta)
+    o = np.zeros_like(c)
     down = _times(
         np.swapaxes(t1(leg.slope) @ turn_z(motion.yaw), -1, -2), _row(o, o, o - leg.gravity)
     )
     weight_leg, weight_wheel = leg.leg_mass * down, leg.wheel_mass * down
-    p_leg_rate, p_wheel_rate = leg.leg_mass * a_D, leg.wheel_mass * a_C
-    F_B = weight_leg - p_leg_rate + weight_wheel - p_wheel_rate
-    M_B = (
-        np.cross(r_BD, weight_leg - p_leg_rate)
-        - L_leg_rate
-        + np.cross(r_BC, weight_wheel - p_wheel_rate)
-        - L_wheel_rate
-    )
+    on_leg = weight_leg - momenta["p_leg_rate"]
+    on_wheel = weight_wheel - momenta["p_wheel_rate"]
+    F_B = on_leg + on_wheel
+    M_B = np.cross(moved["r_BD"], on_leg) - momenta["L_leg_rate"]
+    M_B += np.cross(moved["r_BC"], on_wheel) - momenta["L_wheel_rate"]
+    axle = _row(c, o, -s)
+    spin_moment = -_dot(momenta["L_wheel_rate"], axle)
     if contact is not None:
         F_B = F_B + contact.force
-        M_B = M_B + np.cross(r_BC + contact.arm, contact.force)
-        axle = _row(c, o, -s)
+        M_B = M_B + np.cross(moved["r_BC"] + contact.arm, contact.force)
         spin_moment = spin_moment + _dot(np.cross(contact.arm, contact.force), axle)
-
-    p_leg, p_wheel = leg.leg_mass * v_D, leg.wheel_mass * v_C
-    energy = _dot(p_leg, v_D) + _dot(p_wheel, v_C)
-    energy = 0.5 * (energy + _dot(L_leg, leg_omega) + _dot(L_wheel, wheel_omega))
-    return LegDynamics(
-        leg=leg,
-        motion=motion,
-        leg_omega=leg_omega,
-        leg_alpha=leg_alpha,
-        wheel_omega=wheel_omega,
-        wheel_alpha=wheel_alpha,
-        r_BC=r_BC,
-        r_BD=r_BD,
-        v_B=v_B,
-        a_B=a_B,
-        v_C=v_C,
-        a_C=a_C,
-        v_D=v_D,
-        a_D=a_D,
-        coriolis_C=coriolis_C,
-        p_leg=p_leg,
-        p_leg_rate=p_leg_rate,
-        p_wheel=p_wheel,
-        p_wheel_rate=p_wheel_rate,
-        L_leg=L_leg,
-        L_leg_rate=L_leg_rate,
-        L_wheel=L_wheel,
-        L_wheel_rate=L_wheel_rate,
-        weight_leg=weight_leg,
-        weight_wheel=weight_wheel,
-        F_B=F_B,
-        M_B=M_B,
-        actuator=-M_B[:, 1],
-        spin_moment=spin_moment,
-        kinetic_energy=energy,
-    )
+    return {
+        "weight_leg": weight_leg,
+        "weight_wheel": weight_wheel,
+        "F_B": F_B,
+        "M_B": M_B,
+        "actuator": -M_B[:, 1],
+        "spin_moment": spin_moment,
+    }
 
 
 def _point(leg: SpatialLeg, motion: LegMotion, r: Floats) -> tuple[Floats, Floats, Floats]:

@@ -3,6 +3,7 @@
 import pinstress
 study = pinstress.load_study("studies/grenier2008.toml")
 results = pinstress.run(study)
+results["B", "landing"].safety_factor
 """
 
 from __future__ import annotations
@@ -10,19 +11,30 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from pinstress.errors import InputError
-    from pinstress.found import Found, run
-    from pinstress.study import Study, load_study
+    from pinstress.analysis.plan import prepare
+    from pinstress.analysis.results import Found, run, solve
+    from pinstress.study.errors import InputError
+    from pinstress.study.file import Study, load_study
+    from pinstress.study.in_python import changed_study, study_from
+    from pinstress.study.shipped import shipped_studies
 
 __version__ = "0.1.0"
-__all__ = ["Found", "InputError", "Study", "load_study", "run"]
+__all__ = [
+    "Found", "InputError", "Study", "changed_study", "load_study", "prepare", "run",
+    "shipped_studies", "solve", "study_from",
+]  # fmt: skip
 
 _HOME = {
-    "Found": "pinstress.found",
-    "InputError": "pinstress.errors",
-    "Study": "pinstress.study",
-    "load_study": "pinstress.study",
-    "run": "pinstress.found",
+    "Found": "pinstress.analysis.results",
+    "InputError": "pinstress.study.errors",
+    "Study": "pinstress.study.file",
+    "changed_study": "pinstress.study.in_python",
+    "load_study": "pinstress.study.file",
+    "prepare": "pinstress.analysis.plan",
+    "run": "pinstress.analysis.results",
+    "shipped_studies": "pinstress.study.shipped",
+    "solve": "pinstress.analysis.results",
+    "study_from": "pinstress.study.in_python",
 }
 
 

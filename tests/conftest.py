@@ -3,19 +3,28 @@
 from __future__ import annotations
 
 import os
+import signal
+from collections.abc import Iterator
+from contextlib import suppress
+from multiprocessing import resource_tracker
 from pathlib import Path
 
 import pytest
 from hypothesis import settings
 
-from fea.material import Material
+from fea.core.material import Material
 from geometry import Pin, Segment
 from loads import Linkage
 from pinstress import load_study
-from pinstress.mechanism import linkage
-from pinstress.study import Study
+from pinstress.model.linkage import linkage
+from pinstress.processes.system import portable
+from pinstress.study.file import Study
+from tests.support.process_group import children
 
 os.environ["PINSTRESS_CACHE"] = ""  # what is tested is solved, in other processes too
+
+if portable():
+    resource_tracker.ensure_running()  # multiprocessing's, which stays to the end
 
 ROOT = Path(__file__).parent.parent
 INCH = 0.0254
@@ -28,17 +37,31 @@ settings.load_profile("no clock")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Tests that need other programs are left out unless `-m` names them.
+    """Tests that need other programs are left out unless `-m` names them, and those of what Linux
+    alone has under PINSTRESS_PORTABLE=1.
 
     Here and not in addopts, where any other `-m` would bring them back.
     """
-    for mark in ("peers", "browser"):
+    without = ["peers", "browser", *(["linux"] if portable() else [])]
+    for mark in without:
         if mark in config.getoption("markexpr"):
             continue
         left_out = [item for item in items if item.get_closest_marker(mark)]
         if left_out:
             config.hook.pytest_deselected(items=left_out)
             items[:] = [item for item in items if item not in left_out]
+
+
+@pytest.fixture(autouse=True)
+def _no_process_is_left() -> Iterator[None]:
+    """A test that leaves a process behind fails, and not one that runs later."""
+    before = children()
+    yield
+    left = children() - before
+    for process in left:
+        with suppress(ProcessLookupError):
+            os.kill(process, signal.SIGKILL)
+    assert not left, "the test has left a process behind"
 
 
 @pytest.fixture(scope="session")

@@ -8,11 +8,11 @@ import meshio
 import numpy as np
 
 from benchmarks.failures.asked import STUDIES
-from fea.elasticity import Discretisation
-from fea.pin_loads import Floats
+from fea.core.pin_loads import Floats
+from fea.solid.assembly import Discretisation
 from geometry import Pin, Segment
-from geometry.inverted import Ints
-from geometry.solid_mesh import MeshSize, solid_mesh
+from geometry.mesh.quality import Ints
+from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 
 MM = 1e-3
 SHAFT = Pin("P", (Segment(40 * MM, 20 * MM, connection="shaft"), Segment(20 * MM, 20 * MM)))

@@ -11,15 +11,15 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from benchmarks.failures.asked import command, off, row, task, told
+from benchmarks.failures.asked import command, error_of, off, row, task, told
 from benchmarks.failures.draw import INK, decades, line_style, note, ratio_line, ticks
 from benchmarks.failures.entry import Entry
 from benchmarks.failures.fields import MPA, Mesh, even, finest, graded, revolved, towards
-from fea.corner import plane_exponent
-from fea.meridian_fields import MeridianFields
-from fea.pin_loads import Floats
-from reports.numbers import engineering
-from reports.results import PinResult, SingularZone
+from fea.core.pin_loads import Floats
+from fea.harmonic.fields import MeridianFields
+from fea.singular.williams import plane_exponent
+from reports.data.results import PinResult, SingularZone
+from reports.format.numbers import engineering
 
 ACROSS = (5.0, 10.0, 20.0, 40.0)
 CLOSEST = 1e-4  # element at the corner, of the diameter
@@ -141,14 +141,15 @@ def entries() -> tuple[Entry, ...]:
             "sharp_corner",
             "A sharp inner corner",
             "Where two free faces meet at an inner angle of 270°, the stress of linear elasticity "
-            f"grows like distance^-s ({WILLIAMS}); a real corner has a radius.",
+            f"grows like distance^-s ({WILLIAMS}). A real corner has a radius.",
         ),
         _entry(
             clamped_edge(),
             "clamped_edge",
             "The rim of a clamped face",
-            "A rigid clamp forbids the end face to contract; at its rim the stress has no bound "
-            f"({WILLIAMS}). No hub is rigid.",
+            "A rigid clamp prevents lateral contraction of the end face; the stress at its rim is "
+            "unbounded "
+            f"({WILLIAMS}). A real hub is not rigid.",
         ),
         _looks(looks_converged()),
         _logarithm(load_edge()),
@@ -165,25 +166,27 @@ def _entry(g: Growth, name: str, title: str, physics: str) -> Entry:
         physics,
         f"The largest stress on one mesh: {engineering(first.maximum / MPA, 3)} MPa with elements "
         f"of {first.size * 1e3:g} mm, {engineering(last.maximum / MPA, 3)} MPa with "
-        f"{last.size * 1e3:.2g} mm. At the last halving it still grows by "
+        f"{last.size * 1e3:.2g} mm. The last halving still increases it by "
         f"{100 * (g.growth - 1):.0f} %.",
-        f"No maximum exists: s = {g.theory:.3f}, {100 * (2**g.theory - 1):.0f} % for every "
-        f"halving, for ever. Outside a tenth of the diameter it is "
-        f"{engineering(outside)} MPa (a mesh of four times the unknowns).",
+        f"No maximum exists: s = {g.theory:.3f}, an increase of {100 * (2**g.theory - 1):.0f} % "
+        "with "
+        f"every halving, without limit. Farther away than a tenth of the diameter the maximum is "
+        f"{engineering(outside)} MPa (on a mesh with four times the unknowns).",
         f"{told(g.found)} {_outside(g.found, outside)}",
         (command(name),),
-        "Left: the peak rises with every halving of the elements. Right: the stress rises along "
-        "the line of the theory's exponent towards the place",
+        "Left: the peak rises with every halving of the element size. Right: towards the "
+        "singularity the stress follows the theoretical exponent",
         lambda figure, axes: _draw_growth(figure, axes, g),
     )
 
 
 def _outside(found: PinResult, truth: float) -> str:
     """How good the value outside the excluded zones is."""
-    value, error = found.max_von_mises or 0.0, found.error_estimate or 0.0
+    value, error = found.max_von_mises or 0.0, error_of(found)
     return (
-        f"The value outside is {100 * abs(value / truth - 1):.1f} % from the true one, by its own "
-        f"estimate {100 * error / value:.1f} %."
+        f"The maximum outside the excluded zone differs by {100 * abs(value / truth - 1):.1f} % "
+        "from "
+        f"the true one; the error estimate is {100 * error / value:.1f} %."
     )
 
 
@@ -192,9 +195,9 @@ def _draw_growth(figure: Figure, axes: list[Axes], g: Growth) -> None:
     size = np.array([m.size for m in g.meshes]) * 1e3
     peak = np.array([m.maximum for m in g.meshes]) / MPA
     left.loglog(size, peak, "o-", color=INK, ms=4)
-    ratio_line(left, size, peak[-1] * (size / size[-1]) ** -g.theory, "theory's slope")
+    ratio_line(left, size, peak[-1] * (size / size[-1]) ** -g.theory, "theoretical slope")
     left.invert_xaxis()
-    left.set(xlabel="size of the elements [mm]", ylabel="largest von Mises stress [MPa]")
+    left.set(xlabel="element size [mm]", ylabel="largest von Mises stress [MPa]")
     note(
         left,
         size[-1],
@@ -224,9 +227,15 @@ def _draw_towards(axes: Axes, g: Growth) -> None:
     )  # fmt: skip
     axes.axvline(g.zone.excluded, color="#8a8a8a", linewidth=0.8)
     note(
-        axes, g.zone.excluded, stress.max(), "not read\nleft of here", (-4, -14), "#666666", "right"
+        axes,
+        g.zone.excluded,
+        stress.max(),
+        "not evaluated\nleft of here",
+        (-4, -14),
+        "#666666",
+        "right",
     )
-    axes.set(xlabel="distance from the place [mm]", ylabel="von Mises stress [MPa]")
+    axes.set(xlabel="distance from the singularity [mm]", ylabel="von Mises stress [MPa]")
 
 
 def _looks(g: Growth) -> Entry:
@@ -235,18 +244,19 @@ def _looks(g: Growth) -> Entry:
     return Entry(
         "looks_converged",
         "A clamp that looks converged",
-        "A clamp's singularity is weak: on coarse meshes it hides behind any fillet, and two "
-        "meshes that agree say nothing of it.",
+        "The singularity of a clamp is weak: on coarse meshes the stress at a fillet exceeds it, "
+        "and "
+        "the agreement of two meshes does not reveal it.",
         f"Two meshes, of {first.unknowns} and {second.unknowns} unknowns, agree to {apart:.2f} %: "
-        f"{engineering(second.maximum / MPA, 3)} MPa at the fillet, so converged.",
+        f"{engineering(second.maximum / MPA, 3)} MPa at the fillet, apparently converged.",
         f"The next meshes give {', '.join(engineering(m.maximum / MPA, 3) for m in g.meshes[2:])} "
-        f"MPa, at the rim of the clamp, with no end (s = {g.theory:.3f}); at the fillet it is "
+        f"MPa, at the rim of the clamp, without limit (s = {g.theory:.3f}); at the fillet it is "
         f"{engineering(finest('looks_converged') / MPA)} MPa.",
         f"{told(g.found)} {_outside(g.found, finest('looks_converged') / MPA)} "
-        "It knows from the drawing where stress has no bound, asks for three "
-        "meshes at least, and grades them towards such places.",
+        "Pinstress locates singularities from the geometry, requires at least three meshes, and "
+        "grades them towards singularities.",
         (command("looks_converged"),),
-        "The peak stands still on two meshes and then rises without end",
+        "The peak is constant on two meshes and then rises without limit",
         lambda figure, axes: _draw_looks(axes[0], g, last),
         panels=1,
     )
@@ -258,13 +268,19 @@ def _draw_looks(axes: Axes, g: Growth, last: Mesh) -> None:
     axes.semilogx(unknowns, peak, "o-", color=INK, ms=4)
     note(axes, unknowns[1], peak[1], "two meshes agree", (0, -14), INK, "center")
     note(
-        axes, unknowns[-1], peak[-1], "the rim of the clamp,\nwithout end", (-10, -4), INK, "right"
+        axes,
+        unknowns[-1],
+        peak[-1],
+        "the rim of the clamp,\nwithout limit",
+        (-10, -4),
+        INK,
+        "right",
     )
     own = [(s.dofs, s.max_von_mises) for s in g.found.history]
     axes.semilogx(*zip(*own, strict=True), "s", color=line_style(1)["color"], ms=4)
     x, y = own[-1]
     note(
-        axes, x, y, "pinstress: outside the clamp's rim,\nthe rim told by name", (10, -4),
+        axes, x, y, "pinstress: outside the excluded zone,\nsingularity reported", (10, -4),
         line_style(1)["color"],
     )  # fmt: skip
     axes.set(xlabel="unknowns", ylabel="largest von Mises stress [MPa]")
@@ -278,19 +294,23 @@ def _logarithm(e: LoadEdge) -> Entry:
     return Entry(
         "load_edge",
         "The edge of a uniform load",
-        "A traction of constant direction on a band has a circumferential part, which jumps at the "
-        "band's edge; the shear beside a jump q grows like (q/π) log(1/distance) (the antiplane "
-        "half plane; Timoshenko & Goodier have the plane one). A bearing pressure has no such "
+        "A traction of constant direction on a band has a circumferential component, which jumps "
+        "at "
+        "the band's edge. The shear stress near a jump q grows like (q/π) log(1/distance) "
+        "(antiplane "
+        "half-space; Timoshenko & Goodier give the plane case). A bearing pressure has no such "
         "jump.",
         f"The shear at the edge of the middle band: {engineering(first, 3)} MPa on the coarsest "
-        f"mesh, {engineering(last, 3)} MPa on the finest, so slowly that any two meshes seem to "
-        "agree.",
-        f"Every halving adds {engineering(e.theory * np.log(2) / MPA, 3)} MPa by theory "
-        f"({engineering(e.slope * np.log(2) / MPA, 3)} measured): a logarithm, which no mesh ends. "
-        f"Outside a hundredth of the diameter the maximum is {engineering(outside)} MPa.",
-        f'{told(e.found)} {_outside(e.found, outside)} The advice is `distribution = "cosine"`.',
+        f"mesh, {engineering(last, 3)} MPa on the finest. It grows so slowly that any two meshes "
+        "seem "
+        "to agree.",
+        f"Every halving adds {engineering(e.theory * np.log(2) / MPA, 3)} MPa in theory "
+        f"({engineering(e.slope * np.log(2) / MPA, 3)} measured): a logarithm without limit. "
+        f"Farther away than a hundredth of the diameter the maximum is {engineering(outside)} MPa.",
+        f'{told(e.found)} {_outside(e.found, outside)} The remedy is `distribution = "cosine"`.',
         (command("load_edge"),),
-        "The shear at the band's edge grows by the same amount at every halving of the elements",
+        "The shear at the band's edge grows by the same amount with every halving of the element "
+        "size",
         lambda figure, axes: _draw_logarithm(axes[0], e),
         panels=1,
     )
@@ -304,7 +324,7 @@ def _draw_logarithm(axes: Axes, e: LoadEdge) -> None:
     note(axes, size[1], line[1], "theory: (q/π) log(1/size)", (0, -14), line_style(1)["color"])
     note(axes, size[2], e.shear[2] / MPA, "at the edge of the band", (-8, 6), INK, "right")
     axes.invert_xaxis()
-    axes.set(xlabel="size of the elements [mm]", ylabel="circumferential shear [MPa]")
+    axes.set(xlabel="element size [mm]", ylabel="circumferential shear [MPa]")
     ticks(axes, size)
 
 
@@ -313,21 +333,25 @@ def _pressed(e: PressureEdge) -> Entry:
     return Entry(
         "pressure_edge",
         "The edge of a bearing pressure",
-        "Where a pressure p ends, stress has a bound but depends on the direction from which the "
-        "edge is approached: that of a half-plane under p on one half, the same at all distances "
-        "(Johnson, *Contact Mechanics*, 2.5). The largest is right below the edge.",
-        "No node is at no distance: the largest stress of the nodes is "
+        "Where a pressure p ends, the stress is bounded but depends on the direction from which "
+        "the "
+        "edge is approached: it is that of a half-plane with p on one half, at any distance "
+        "(Johnson, *Contact Mechanics*, 2.5). The largest stress is directly below the edge.",
+        "No node is exactly at the edge. The largest nodal stress is "
         + ", ".join(f"{low:.0f}" for low in lows[:-1])
         + f" and {lows[-1]:.1f} % low with {e.meshes[0].unknowns:,} to "
-        f"{e.meshes[-1].unknowns:,} unknowns, and which node that is changes from mesh to mesh.",
-        f"{engineering(e.truth / MPA)} MPa, on a mesh of four times pinstress's last.",
-        f"{told(e.found)} Elements beside the edge are not read; the half-plane's stress, whose "
-        "pressure is known, is taken off those further on and put back direction by direction, so "
+        f"{e.meshes[-1].unknowns:,} unknowns, at a different node on every mesh.",
+        f"{engineering(e.truth / MPA)} MPa, on a mesh with four times the unknowns of pinstress's "
+        "last.",
+        f"{told(e.found)} Elements at the edge are not evaluated. The half-plane "
+        "stress, known from the pressure, is subtracted farther away and added back for every "
+        "direction, so "
         f"that the first mesh, with {e.found.history[0].dofs:,} unknowns, is "
         f"{abs(off(e.found.history[0].max_von_mises, e.truth / MPA)):.1f} % off.",
         (command("pressure_edge"),),
-        "The largest stress of the nodes creeps up with the unknowns, pinstress's is right on the "
-        "first mesh",
+        "The largest nodal stress rises slowly with the number of unknowns; pinstress's is right "
+        "on "
+        "the first mesh",
         lambda figure, axes: _draw_pressed(axes[0], e),
         panels=1,
     )
@@ -337,7 +361,7 @@ def _draw_pressed(axes: Axes, e: PressureEdge) -> None:
     unknowns = [m.unknowns for m in e.meshes]
     peak = [m.maximum / MPA for m in e.meshes]
     axes.semilogx(unknowns, peak, "o-", color=INK, ms=4)
-    note(axes, unknowns[1], peak[1], "nodes of even meshes", (8, -12), INK)
+    note(axes, unknowns[1], peak[1], "nodal values, uniform meshes", (8, -12), INK)
     axes.axhline(e.truth / MPA, color=INK, lw=0.8, ls=":")
     own = line_style(1)
     axes.semilogx(*zip(*((s.dofs, s.max_von_mises) for s in e.found.history), strict=True), **own)

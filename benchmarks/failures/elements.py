@@ -13,16 +13,16 @@ from benchmarks.failures.asked import STUDIES, command, row, study, told
 from benchmarks.failures.broken_meshes import FOLDED, INSIDE_OUT, MM, TURNED
 from benchmarks.failures.draw import INK, line_style, note
 from benchmarks.failures.entry import Entry
-from fea.envelope import envelope
-from fea.pin_loads import Floats, PinLoads
-from fea.solid import SolidModel, acting
-from geometry.inverted import distortion, folded
-from geometry.places import with_places
-from geometry.quadratic import Quadratic, quadratic
-from geometry.solid_body import SolidBody
-from geometry.solid_mesh import MeshError, SolidMesh
-from pinstress.pins import material, pin
-from reports.numbers import engineering
+from fea.core.pin_loads import Floats, PinLoads
+from fea.solid.model import SolidModel, acting
+from fea.solid.superposition import envelope
+from geometry.imported.imported_pin import SolidBody
+from geometry.imported.named_bands import with_places
+from geometry.mesh.quality import distortion, folded
+from geometry.mesh.solid_mesh import MeshError, SolidMesh
+from geometry.mesh.tet10 import Quadratic, quadratic
+from pinstress.model.pins import material, pin
+from reports.format.numbers import engineering
 
 FORCE = 1e4  # N
 MPA = 1e6
@@ -85,47 +85,47 @@ def entries() -> tuple[Entry, ...]:
         Entry(
             FOLDED,
             "An inverted element in a mesh file",
-            "One inner node beyond the far side of its own elements folds them over their "
-            "neighbours. Assembly takes the size of det J and the numbering decides its sign, so "
-            "neither tells.",
-            f"{engineering(over.peak / MPA, 3)} MPa between clamp and load, from elements of "
-            f"together {engineering(over.volume / MM**3, 4)} mm³.",
-            f"{engineering(sound.peak / MPA, 3)} MPa on the sound mesh, of "
+            "An inner node that lies beyond the far side of its own elements folds them over their "
+            "neighbours. Assembly uses the magnitude of det J, and its sign depends on the node "
+            "numbering, so neither reveals the error.",
+            f"{engineering(over.peak / MPA, 3)} MPa between clamp and load, from elements with "
+            f"a total volume of {engineering(over.volume / MM**3, 4)} mm³.",
+            f"{engineering(sound.peak / MPA, 3)} MPa on the valid mesh, of "
             f"{engineering(sound.volume / MM**3, 4)} mm³.",
-            f"Refused: {over.told}. It asks of every inner facet whether its two elements are on "
-            "two sides of it; a file whose elements merely name their nodes in either sense is "
-            f"taken: {told(row(TURNED))}",
+            f"Rejected: {over.told}. It checks that the two elements of every inner facet are on "
+            "opposite sides of it; a file with mixed node orientations is accepted: "
+            f"{told(row(TURNED))}",
             (command(FOLDED), command(TURNED)),
-            "The folded mesh gives another stress than the sound one and is refused",
+            "The folded mesh gives a different stress from the valid one and is rejected",
             lambda figure, axes: _draw(axes[0], axes[1], sound, over, "one node moved"),
         ),
         Entry(
             INSIDE_OUT,
             "Quadratic elements bent inside out",
-            "The node in the middle of an edge may bend an element so far that det J changes sign "
-            "inside of it, also between all its nodes and integration points.",
+            "A mid-edge node can bend an element so far that det J changes sign inside it, even "
+            "between "
+            "all its nodes and integration points.",
             f"{engineering(out.peak / MPA, 3)} MPa, {100 * abs(out.peak / sound.peak - 1):.0f} "
-            "% off, from "
-            "one node of one edge.",
-            f"{engineering(sound.peak / MPA, 3)} MPa on the sound mesh.",
-            f"Refused: {out.told}. det J is a cubic polynomial, and the signs of its coefficients "
-            "of Bernstein prove it positive everywhere (`geometry/inverted.py`); meshes of its own "
-            "must keep det J above a tenth of its largest.",
+            "% off, because of a single mid-edge node.",
+            f"{engineering(sound.peak / MPA, 3)} MPa on the valid mesh.",
+            f"Rejected: {out.told}. det J is a cubic polynomial, and the signs of its Bernstein "
+            "coefficients prove it positive everywhere (`geometry/mesh/quality.py`); in its own "
+            "meshes the minimum of det J must exceed a tenth of its maximum.",
             (command(INSIDE_OUT),),
-            "The bent mesh gives another stress than the sound one and is refused",
+            "The bent mesh gives a different stress from the valid one and is rejected",
             lambda figure, axes: _draw(axes[0], axes[1], sound, out, "one edge bent"),
         ),
     )
 
 
 def _draw(left: Axes, right: Axes, sound: Broken, wrong: Broken, what: str) -> None:
-    texts = ("sound mesh", f"{what}:\na number all the same,\nwhich pinstress refuses")
+    texts = ("valid mesh", f"{what}:\nplausible number,\nrejected by pinstress")
     for k, (mesh, text) in enumerate(zip((sound, wrong), texts, strict=True)):
         color = (INK, line_style(1)["color"])[k]
         left.plot(mesh.peak / MPA, k, ("o", "X")[k], color=color, ms=7)
         note(left, mesh.peak / MPA, k, text, (8, -2), color)
         right.plot(np.sort(mesh.shape), drawstyle="steps-post", **line_style(k))
-        right.set(xlabel="elements, in order", ylabel="least over largest det J")
+        right.set(xlabel="elements, in order", ylabel="min / max det J")
         if wrong.folds:
             right.clear()
     left.set(xlabel="von Mises stress away from the clamp [MPa]", yticks=[], ylim=(-0.5, 1.6))
@@ -138,7 +138,7 @@ def _draw(left: Axes, right: Axes, sound: Broken, wrong: Broken, what: str) -> N
             note(right, mesh.volume / MM**3, k, f"{engineering(mesh.volume / MM**3)} mm³", (0, 12),
                  color, "center")  # fmt: skip
         a, b = sound.volume / MM**3, wrong.volume / MM**3
-        right.set(xlabel="volume of all elements [mm³]", yticks=[], ylim=(-0.5, 1.6))
+        right.set(xlabel="total element volume [mm³]", yticks=[], ylim=(-0.5, 1.6))
         right.set_xlim(a - 0.5 * (b - a), b + 0.5 * (b - a))
     else:
         right.axhline(0.0, color="#8a8a8a", linewidth=0.8)

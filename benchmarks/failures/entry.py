@@ -36,8 +36,8 @@ class Entry:
         return (
             f"## {self.title}\n\n{self.physics}\n\n"
             f"![{self.picture}](images/failures/{self.name}.svg)\n\n"
-            f"- **The naive answer.** {self.naive}\n"
-            f"- **The truth.** {self.truth}\n"
-            f"- **What pinstress says.** {self.says}\n\n"
+            f"- **Naive method.** {self.naive}\n"
+            f"- **True value.** {self.truth}\n"
+            f"- **Pinstress.** {self.says}\n\n"
             f"```sh\n{shown}\n```\n"
         )

@@ -10,12 +10,12 @@ import numpy as np
 from benchmarks.coverage import BEYOND, truth
 from benchmarks.failures.asked import material_of, row, task
 from benchmarks.random_pins import Trial
-from fea.circumference import Circumference
-from fea.harmonic import HarmonicModel
-from fea.meridian_fields import MeridianFields
-from fea.pin_loads import Floats, PinLoads
+from fea.core.pin_loads import Floats, PinLoads
+from fea.harmonic.fields import MeridianFields
+from fea.harmonic.model import HarmonicModel
+from fea.harmonic.superposition import Circumference
 from geometry import Pin
-from geometry.meridian_mesh import MeridianMesh, SectionSize, Spot, meridian_mesh
+from geometry.mesh.section_mesh import MeridianMesh, SectionSize, Spot, meridian_mesh
 
 MPA = 1e6
 BLIND = 1e-6  # elements along a fillet: no size is asked for there

@@ -9,23 +9,23 @@ import numpy as np
 from matplotlib.axes import Axes
 from scipy.sparse.linalg import splu
 
-from benchmarks.failures.asked import command, contains, material_of, row, task, told
+from benchmarks.failures.asked import command, contains, error_of, material_of, row, task, told
 from benchmarks.failures.draw import INK, decades, line_style, note
 from benchmarks.failures.entry import Entry
 from benchmarks.failures.fields import MPA, finest, revolved
-from fea.circumference import Circumference
-from fea.meridian_fields import MeridianFields
-from fea.outline import Outline
-from fea.pin_loads import Floats, PinLoads, UnitLoad
-from fea.section import Section
-from fea.section_stress import reading
-from fea.solid import SolidModel
-from fea.surface import Patch, resultants
-from fea.tractions import traction
-from geometry.meridian_mesh import SectionSize, meridian_mesh
-from geometry.solid_mesh import MeshSize, solid_mesh
-from reports.numbers import engineering, ten_to
-from reports.results import PinResult
+from fea.core.pin_loads import Floats, PinLoads, UnitLoad
+from fea.core.tractions import traction
+from fea.harmonic.assembly import Section
+from fea.harmonic.boundary import Outline
+from fea.harmonic.fields import MeridianFields
+from fea.harmonic.stress_recovery import reading
+from fea.harmonic.superposition import Circumference
+from fea.solid.boundary import Patch, resultants
+from fea.solid.model import SolidModel
+from geometry.mesh.section_mesh import SectionSize, meridian_mesh
+from geometry.mesh.solid_mesh import MeshSize, solid_mesh
+from reports.data.results import PinResult
+from reports.format.numbers import engineering, ten_to
 
 ACROSS = (3.0, 4.0, 5.0, 6.0, 8.0)
 FORCE = 1e4  # N
@@ -138,17 +138,18 @@ def _free(f: Free) -> Entry:
     stresses = ", ".join(engineering(s / MPA, 3) for s in f.stress)
     return Entry(
         "free_pin",
-        "A pin that nothing holds",
-        "Without supports the stiffness matrix is singular; round-off makes its last pivots small "
-        "numbers instead of noughts, so that a factorisation succeeds.",
-        f"SuperLU gives {stresses} MPa on five meshes, plausible stresses all, and "
-        "displacements of "
+        "An unconstrained pin",
+        "Without supports the stiffness matrix is singular. Round-off makes its last pivots small "
+        "numbers instead of zeros, so that a factorisation succeeds.",
+        f"SuperLU gives {stresses} MPa on five meshes, all plausible stresses, and displacements "
+        "of "
         f"{engineering(f.motion.min() / 1e3, 2)} km and more, which nobody prints.",
-        f"The loads leave {engineering(f.push, 3)} N that nothing carries: the pin flies off.",
+        f"The loads have a resultant of {engineering(f.push, 3)} N that nothing reacts: the pin "
+        "flies off.",
         f"{told(f.found)} No matrix is factorised.",
         (command("free_pin"),),
-        "Stresses on five meshes scatter without sense, displacements are of hundreds of thousands "
-        "of kilometres",
+        "Stresses on five meshes scatter randomly; displacements are hundreds of thousands of "
+        "kilometres",
         lambda figure, axes: _draw_free(axes[0], axes[1], f),
     )
 
@@ -160,7 +161,7 @@ def _draw_free(left: Axes, right: Axes, f: Free) -> None:
     )
     right.plot(f.across, f.motion / 1e6, "o-", color=INK, ms=4)
     right.set(xlabel="elements over the diameter", ylabel="displacement [1000 km]", ylim=(0, None))
-    note(left, f.across[1], f.stress[1] / MPA, "looks like a stress", (10, 0))
+    note(left, f.across[1], f.stress[1] / MPA, "a plausible stress", (10, 0))
     note(right, f.across[1], f.motion[1] / 1e6, "of a pin 80 mm long", (10, 0))
 
 
@@ -172,27 +173,29 @@ def _supports() -> Entry:
     return Entry(
         "supports",
         "Stiff and soft supports",
-        "A pin between two lugs bends as a beam that is built in, if they are rigid, and as one "
-        "simply supported, if they are soft (bending moments F l/8 against F l/4 in the "
-        "textbooks).",
-        "One of the two, according to taste.",
-        "Between them: it hangs on the stiffness of lugs that a study of the pin does not have.",
-        "Pinstress has no supports of finite stiffness; it answers both ends of the range. "
+        "A pin between two lugs bends like a beam with built-in ends if the lugs are rigid, and "
+        "like a "
+        "simply supported one if they are soft (textbook bending moments F l/8 and F l/4).",
+        "One of the two, chosen by habit.",
+        "Between the two: it depends on the stiffness of the lugs, which are not part of the "
+        "study.",
+        "Pinstress has no elastic supports; it computes both ends of the range. "
         "Clamped: "
-        f"{told(stiff)} With the lugs' forces on it and no clamp: {told(soft)} From {values[0]} to "
-        f"{values[1]} MPa real lugs are free to be. Meshes of four times the unknowns give "
+        f"{told(stiff)} With the lug forces applied and no clamp: {told(soft)} With real lugs the "
+        f"maximum is between {values[0]} and {values[1]} MPa. Meshes with four times the unknowns "
+        "give "
         f"{' and '.join(engineering(t) for t in truths)} MPa, "
         + ("within both errors." if held else "not within both errors."),
         (command("supports"),),
-        "The soft pin's largest stress is three times the rigidly clamped one's",
+        "The maximum stress with soft lugs is three times that with rigid clamps",
         lambda figure, axes: _draw_supports(axes[0], stiff, soft),
         panels=1,
     )
 
 
 def _draw_supports(axes: Axes, stiff: PinResult, soft: PinResult) -> None:
-    for y, (found, text) in enumerate(((stiff, "rigid clamps"), (soft, "the lugs' forces alone"))):
-        value, error = found.max_von_mises or 0.0, found.error_estimate or 0.0
+    for y, (found, text) in enumerate(((stiff, "rigid clamps"), (soft, "lug forces only"))):
+        value, error = found.max_von_mises or 0.0, error_of(found)
         axes.errorbar(value, y, xerr=error, fmt="s", color=line_style(1)["color"], capsize=3)
         note(
             axes,
@@ -215,21 +218,20 @@ def _reactions(s: Support) -> Entry:
     read = ", ".join(f"{100 * e:.0f} %" for e in s.surface)
     return Entry(
         "reactions",
-        "Reactions read from the stress on the support",
-        "At the rim of a clamp the stress has no bound, and what a mesh has of it is wrong to "
-        "first "
-        "order; the residual of the system of equations is in equilibrium with the loads whatever "
-        "the mesh (Galerkin's orthogonality with the rigid motions).",
-        f"The stresses on the held face, summed: the transverse force is off by {read} on ever "
-        "finer "
-        "meshes.",
+        "Reactions from the stress on the support",
+        "At the rim of a clamp the stress is unbounded, and its finite-element approximation has a "
+        "first-order error. The residual of the system of equations is in equilibrium with the "
+        "loads on any mesh (Galerkin orthogonality with the rigid-body motions).",
+        "Integrating the stresses over the clamped face gives a transverse force with errors of "
+        f"{read} "
+        "on successively finer meshes.",
         f"{engineering(FORCE, 3)} N, by equilibrium.",
-        "The forces of clamps are those of the residual (`fea/solid.py`), here right to "
-        f"{_power(float(s.residual.max()))} on all meshes; a solution whose clamps do not "
-        "answer its "
-        "loads to 10⁻⁶ is refused.",
+        "Clamp forces are taken from the residual (`fea/solid/model.py`), here accurate to "
+        f"{_power(float(s.residual.max()))} on all meshes; a solution whose clamp forces do not "
+        "balance its loads to 10⁻⁶ is rejected.",
         (command("clamped_edge", "run", "--model solid"),),
-        "The error of the summed stresses stays at a tenth, that of the residual at round-off",
+        "The error of the integrated stresses stays at about 10 %, that of the residual at "
+        "round-off",
         lambda figure, axes: _draw_reactions(axes[0], s),
         panels=1,
     )
@@ -243,7 +245,7 @@ def _draw_reactions(axes: Axes, s: Support) -> None:
     color = line_style(1)["color"]
     axes.loglog(s.unknowns, s.surface, "o-", color=INK, ms=4)
     axes.loglog(s.unknowns, s.residual, "s--", color=color, ms=4)
-    note(axes, s.unknowns[1], s.surface[1], "stresses on the face, summed", (0, -12), INK)
+    note(axes, s.unknowns[1], s.surface[1], "integrated stresses", (0, -12), INK)
     note(axes, s.unknowns[1], s.residual[1], "residual of the system", (0, 14), color)
     axes.set(xlabel="unknowns", ylabel="error of the clamp's force", ylim=(1e-15, 3.0))
     decades(axes, which="x")

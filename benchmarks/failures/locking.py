@@ -22,25 +22,34 @@ from skfem import (
 )
 from skfem.models.elasticity import linear_elasticity
 
-from benchmarks.failures.asked import command, contains, material_of, plan, row, task, told
+from benchmarks.failures.asked import (
+    command,
+    contains,
+    error_of,
+    material_of,
+    plan,
+    row,
+    task,
+    told,
+)
 from benchmarks.failures.draw import INK, line_style, note
 from benchmarks.failures.entry import Entry
 from benchmarks.failures.fields import MPA, even, revolved
-from fea.circumference import Circumference
-from fea.material import Material
-from fea.outline import Outline
-from fea.pin_loads import Floats, UnitLoad
-from fea.recovery import continuation
-from fea.section import Section
-from fea.solid import SolidModel
-from fea.solid_loads import nodal_loads
-from fea.surface import surface
-from fea.tensor import von_mises
-from fea.tractions import traction
-from geometry.meridian_mesh import SectionSize, meridian_mesh
-from geometry.solid_mesh import MeshSize, solid_mesh
-from reports.numbers import engineering
-from reports.results import PinResult
+from fea.core.local_fit import continuation
+from fea.core.material import Material
+from fea.core.pin_loads import Floats, UnitLoad
+from fea.core.tractions import traction
+from fea.core.voigt import von_mises
+from fea.harmonic.assembly import Section
+from fea.harmonic.boundary import Outline
+from fea.harmonic.superposition import Circumference
+from fea.solid.boundary import surface
+from fea.solid.model import SolidModel
+from fea.solid.nodal_loads import nodal_loads
+from geometry.mesh.section_mesh import SectionSize, meridian_mesh
+from geometry.mesh.solid_mesh import MeshSize, solid_mesh
+from reports.data.results import PinResult
+from reports.format.numbers import engineering
 
 FORCE = 5e3  # N
 ACROSS = (2.0, 3.5, 6.0)  # tetrahedra over the diameter
@@ -259,18 +268,20 @@ def _bending(b: Bending) -> Entry:
     return Entry(
         "linear_elements",
         "Linear elements in bending",
-        "A linear element has one strain; bending needs strains that change across it, and what it "
-        "has instead is shear that is not there (shear locking; Hughes, *The Finite Element "
+        "A linear element has constant strain; bending needs a strain gradient, which the element "
+        "replaces by spurious shear (shear locking; Hughes, *The Finite Element "
         "Method*, "
         "ch. 4).",
-        f"Linear tetrahedra, {across} over the diameter: the tip moves {_listed(tip)} of what it "
-        f"should, the bending stress is {_listed(stress)} of what it is.",
+        f"Linear tetrahedra, {across} over the diameter: the tip deflection is {_listed(tip)} and "
+        "the "
+        f"bending stress {_listed(stress)} of the true value.",
         f"{b.truth[0] * 1e3:.4f} mm and {engineering(b.truth[1] / MPA)} MPa between 1 and 2.5 "
-        "diameters from the clamp (a fine section).",
-        f"It has no linear elements, and makes those of a mesh file quadratic; on the same meshes "
-        f"{_listed(own_tip, 3)} and {_listed(own_stress)}. The study: {told(b.found)}",
+        "diameters from the clamp (a fine section mesh).",
+        "There are no linear elements; those of a mesh file are converted to quadratic ones. On "
+        "the "
+        f"same meshes {_listed(own_tip, 3)} and {_listed(own_stress)}. The study: {told(b.found)}",
         (command("linear_elements", "run", "--model solid"),),
-        "Linear elements creep towards one from below, quadratic ones are there on the first mesh",
+        "Linear elements approach one slowly from below; quadratic ones reach it on the first mesh",
         lambda figure, axes: _draw_bending(axes[0], axes[1], b),
     )
 
@@ -284,7 +295,7 @@ def _draw_bending(left: Axes, right: Axes, b: Bending) -> None:
         note(axes, b.across[1], linear[1, k], "linear", (10, -6))
         note(axes, b.across[1], own[1, k], "quadratic (pinstress)", (0, 14 if k == 0 else 16),
              line_style(1)["color"], "center")  # fmt: skip
-        axes.set(xlabel="tetrahedra over the diameter", ylabel=f"{what} over the truth")
+        axes.set(xlabel="tetrahedra over the diameter", ylabel=f"{what} / true value")
         axes.set_ylim(0.3, 1.15)
 
 
@@ -292,25 +303,24 @@ def _incompressible(ratios: tuple[Ratio, ...]) -> Entry:
     naive = ", ".join(f"{engineering(r.naive, 3)} at {r.nu:g}" for r in ratios)
     truth = ", ".join(f"{engineering(r.truth, 3)} at {r.nu:g}" for r in ratios)
     ours = ", ".join(
-        f"{engineering(r.found.max_von_mises, 3)} ± {engineering(r.found.error_estimate, 2)} "
+        f"{engineering(r.found.max_von_mises, 3)} ± {engineering(error_of(r.found), 2)} "
         f"(`{r.found.verdict}`) at {r.nu:g}"
         for r in ratios
     )
     held = sum(contains(r.found, r.truth) for r in ratios)
     return Entry(
         "incompressible",
-        "Poisson's ratio towards one half",
+        "Poisson's ratio near one half",
         "Near ν = 1/2 every element must keep its volume; linear triangles have more such "
-        "conditions "
-        "than unknowns and cannot move (volumetric locking; Hughes, ch. 4). Quadratic ones have "
-        "enough unknowns left.",
+        "constraints than unknowns and cannot deform (volumetric locking; Hughes, ch. 4). "
+        "Quadratic "
+        "ones have enough unknowns.",
         f"Linear triangles on one mesh: {naive} MPa.",
-        f"{truth} MPa, by mixed elements whose pressure is an unknown of its own (Taylor and "
-        "Hood).",
-        f"{ours} MPa; the truth is within the error in {held} of {len(ratios)}.",
+        f"{truth} MPa, from mixed elements with pressure unknowns (Taylor and Hood).",
+        f"{ours} MPa; the true value is within the error in {held} of {len(ratios)}.",
         (command("incompressible"),),
-        "Linear triangles fall away from the truth as Poisson's ratio nears one half, pinstress's "
-        "values stay at it",
+        "Linear triangles deviate from the true value as Poisson's ratio approaches one half; "
+        "pinstress's values do not",
         lambda figure, axes: _draw_incompressible(axes[0], ratios),
         panels=1,
     )
@@ -321,12 +331,12 @@ def _draw_incompressible(axes: Axes, ratios: tuple[Ratio, ...]) -> None:
     truth = np.array([r.truth for r in ratios])
     axes.plot(x, [r.naive for r in ratios] / truth, "o-", color=INK, ms=4)
     ours = np.array([r.found.max_von_mises or 0.0 for r in ratios]) / truth
-    error = np.array([r.found.error_estimate or 0.0 for r in ratios]) / truth
+    error = np.array([error_of(r.found) for r in ratios]) / truth
     axes.errorbar(x, ours, yerr=error, fmt="s", ms=4, color=color, capsize=3)
     axes.axhline(1.0, color="#8a8a8a", linewidth=0.8)
     note(axes, 1.0, ours[1], "pinstress", (12, 12), color)
     note(axes, 1.0, ratios[1].naive / truth[1], "linear triangles", (8, 8))
     axes.set(
-        xlabel="Poisson's ratio", ylabel="peak over the truth", xlim=(-0.4, 2.4), ylim=(0.4, 1.2)
+        xlabel="Poisson's ratio", ylabel="peak / true value", xlim=(-0.4, 2.4), ylim=(0.4, 1.2)
     )
     axes.set_xticks(x, [f"{r.nu:g}" for r in ratios])

@@ -12,13 +12,13 @@ from matplotlib.axes import Axes
 from benchmarks.failures.asked import command, study
 from benchmarks.failures.draw import GREY, INK, decades, line_style, note
 from benchmarks.failures.entry import Entry
-from fea.pin_loads import Floats
+from fea.core.pin_loads import Floats
 from loads import Applied, JammingError, StateDrive, at_rest, motion_reactions, move
 from loads import static_reactions as static
-from pinstress.build import case_loads
-from pinstress.errors import InputError
-from pinstress.mechanism import linkage
-from reports.numbers import engineering, ten_to
+from pinstress.model.cases import case_loads
+from pinstress.model.linkage import linkage
+from pinstress.study.errors import InputError
+from reports.format.numbers import engineering, ten_to
 
 COUPLE = 100.0  # N m on the rocker
 LENGTHS = (1.0, 0.9, 0.5, 0.6)  # of the toggle: ground, crank, coupler, rocker, m
@@ -29,7 +29,7 @@ Angles = tuple[float, float]
 
 @cache
 def refusal(name: str) -> str:
-    """What pinstress says when it refuses a study.
+    """The message with which pinstress rejects a study.
 
     Raises: AssertionError when it does not.
     """
@@ -217,18 +217,18 @@ def _toggle(t: Toggle) -> Entry:
     return Entry(
         "toggle",
         "A linkage near its dead point",
-        "Where coupler and rocker come into line the loop equations lose rank: a couple on the "
-        "rocker is carried by no finite force (Alt's transmission angle is zero there).",
-        f"The formula M / (c sin μ) with the angle as it is read off a drawing: {typed}; every "
-        "digit "
-        "more gives another force, and each looks like a number.",
-        f"The force has no bound at {t.dead:.4f}° (the cosine law); near it, it grows with the "
-        "inverse root of what is short of it.",
-        f"Refused: {refusal('toggle')}. Short of it, pinstress's forces are the formula's to "
-        f"{_within(worst)} down to {ten_to(-8)} rad, and `linkage.csv` has the condition number.",
+        "Where coupler and rocker are collinear the loop equations lose rank: no finite force can "
+        "carry a couple on the rocker (the transmission angle is zero).",
+        f"The formula M / (c sin μ) with an angle read from a drawing: {typed}. Every "
+        "additional digit gives a different, plausible force.",
+        f"The force is unbounded at {t.dead:.4f}° (law of cosines); close to it, it grows with the "
+        "inverse square root of the distance.",
+        f"Rejected: {refusal('toggle')}. Before it, pinstress's forces agree with the formula to "
+        f"{_within(worst)} up to {ten_to(-8)} rad from it, and `linkage.csv` has the condition "
+        "number.",
         (command("toggle", "loads"),),
-        "The force grows along a straight line without end towards the dead point, and the "
-        "condition number beside it",
+        "On logarithmic axes the force grows linearly towards the dead point, and so does the "
+        "condition number",
         lambda figure, axes: _draw_toggle(axes[0], axes[1], t),
     )
 
@@ -252,15 +252,16 @@ def _change(c: Change) -> Entry:
     return Entry(
         "change_point",
         "A change point",
-        "Where shortest and longest link are as long as the other two (L + S = P + Q, Grashof's "
-        "limit), all links come into line and two paths cross: parallelogram and "
+        "If shortest and longest link together are as long as the other two (L + S = P + Q, "
+        "Grashof's "
+        "limit), all links can become collinear, where two motions cross: parallelogram and "
         "antiparallelogram.",
-        f"Newton's method from each position to the next: {told} to the other path, by chance.",
-        "Both paths are right: rigid bodies do not say which is taken.",
-        f"Refused: {refusal('change_point')}.",
+        f"Newton's method from each position to the next: {told} to the other motion, by chance.",
+        "Both motions are possible; rigid-body mechanics does not determine which one occurs.",
+        f"Rejected: {refusal('change_point')}.",
         (command("change_point", "loads"),),
-        "Two paths cross at a crank angle of nought; runs with different numbers of steps leave it "
-        "on different paths",
+        "Two motions cross at a crank angle of zero; runs with different numbers of steps leave it "
+        "on different branches",
         lambda figure, axes: _draw_change(axes[0], c),
         panels=1,
     )
@@ -287,18 +288,20 @@ def _redundant(s: Shares) -> Entry:
     return Entry(
         "redundant",
         "Redundant links",
-        "Two links side by side hold the same two pins: the forces that the one adds and the other "
-        "takes away balance themselves (a null vector of the transposed Jacobian), and rigid-body "
-        "statics does not see them.",
-        f"Least squares, which any library does without a word: {engineering(s.smallest[0])} N "
+        "Two parallel links connect the same two pins. Opposite forces in them are "
+        "self-equilibrated "
+        "(a null vector of the transposed Jacobian), so rigid-body statics does not determine "
+        "them.",
+        f"Least squares, as any library computes without a warning: {engineering(s.smallest[0])} N "
         "each.",
-        f"Any pair of forces with the sum {engineering(s.total)} N; stiffness and fit decide.",
-        f"Refused: {refusal('redundant')}. With a rule in the study, stiffnesses "
-        f"{s.stiffness[0]:g} : {s.stiffness[1]:g}, it finds {first} N and {second} N, which are no "
-        "better than that rule.",
+        f"Any two forces with the sum {engineering(s.total)} N; stiffness and fit determine them.",
+        f"Rejected: {refusal('redundant')}. With a rule in the study, stiffnesses "
+        f"{s.stiffness[0]:g} : {s.stiffness[1]:g}, it finds {first} N and {second} N, which are "
+        "only "
+        "as good as that rule.",
         (command("redundant", "loads"), command("redundant_shared", "loads")),
-        "A straight line of possible pairs of forces, on which least squares and the rule of the "
-        "study each pick a point",
+        "A line of possible pairs of forces, on which least squares and the rule of the study each "
+        "select a point",
         lambda figure, axes: _draw_redundant(axes[0], s),
         panels=1,
     )
@@ -323,17 +326,16 @@ def _jammed(j: Jamming) -> Entry:
     return Entry(
         "jamming",
         "A guide that jams",
-        "The rod presses the block on its guide with what friction makes it push harder: "
-        "F (cos φ - μ sin φ) = P. From μ = cot φ on no force agrees with the motion (Painlevé).",
-        f"The formula goes on: at μ = {mu:g} the rod pulls with {engineering(-wrong, 3)} N, a "
-        "number "
-        "like any other.",
-        f"From μ = {j.limit:.4f} on there is no answer: the linkage jams.",
-        f"Refused: {refusal('jamming')}. Below the limit it has the formula's forces to "
+        "The rod presses the block against its guide, and friction increases the rod force: "
+        "F (cos φ - μ sin φ) = P. For μ ≥ cot φ no force is consistent with the motion (Painlevé).",
+        f"The formula still gives a number: at μ = {mu:g} the rod pulls with "
+        f"{engineering(-wrong, 3)} N.",
+        f"For μ ≥ {j.limit:.4f} there is no solution: the linkage jams.",
+        f"Rejected: {refusal('jamming')}. Below the limit its forces agree with the formula to "
         f"{_within(worst)}.",
         (command("jamming", "loads"), "pinstress loads studies/slider_crank_jammed.toml"),
-        "The rod's force grows to a pole at the limit and changes its sign behind it, where "
-        "pinstress gives none",
+        "The rod force has a pole at the limit and changes sign beyond it, where pinstress gives "
+        "none",
         lambda figure, axes: _draw_jammed(axes[0], j),
         panels=1,
     )

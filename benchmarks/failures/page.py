@@ -7,16 +7,16 @@ from pathlib import Path
 
 from benchmarks.failures.asked import ROOT
 from benchmarks.failures.entry import Entry
-from reports.style import panels
+from reports.format.style import panels
 
 PAGE = ROOT / "docs" / "failures.md"
 PICTURES = ROOT / "docs" / "images" / "failures"
 HEAD = """# Where methods fail
 
-Written by `python -m benchmarks failures`, which computes every number here; nothing is typed.
-Every failure is told by the program: it refuses with the reason, or its verdict is not `converged`,
-or its error contains the truth. `tests/failures` asserts what is drawn, entry by entry. The studies
-are in `studies/failures`; those without a maximum end with status 1, those refused with 2 or 3.
+`python -m benchmarks failures` computes every number on this page. Pinstress detects every one of
+these failures: it rejects the study with the reason, or its verdict is not `converged`, or its
+error estimate contains the true value. `tests/failures` checks each entry. The studies are in
+`studies/failures`; those without a maximum end with status 1, rejected ones with 2 or 3.
 """
 
 

@@ -9,16 +9,16 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import NullFormatter
 
-from benchmarks.failures.asked import command, contains, material_of, plan, row, task
+from benchmarks.failures.asked import command, contains, error_of, material_of, plan, row, task
 from benchmarks.failures.draw import INK, line_style, note
 from benchmarks.failures.entry import Entry
 from benchmarks.failures.fields import MPA, evenly, finest, revolved
-from fea.ladder import Asked, solve_pin
-from fea.pin_loads import Floats
+from fea.core.pin_loads import Floats
+from fea.solve_pin import Asked, solve_pin
 from geometry import Pin
-from geometry.meridian_mesh import SectionSize, meridian_mesh
-from reports.numbers import engineering, ten_to
-from reports.results import PinResult
+from geometry.mesh.section_mesh import SectionSize, meridian_mesh
+from reports.data.results import PinResult
+from reports.format.numbers import engineering, ten_to
 
 SCALES = tuple(10.0**k for k in (-6, -3, 0, 3, 6))
 
@@ -128,26 +128,26 @@ def entries() -> tuple[Entry, ...]:
     return (
         _entry(
             "slender", "Discs and needles", slender(),
-            "Beam theory's M c / I holds where the length is several diameters; on shorter pins "
-            "shear and the pressure itself govern. Long ones are ill-conditioned: round-off grows "
+            "Beam theory's M c / I is valid for lengths of several diameters; on shorter pins "
+            "shear and the pressure itself govern. Long pins are ill-conditioned: round-off grows "
             "with a power of the length.",
             "M c / I", "length over diameter",
-            "The needle's truth is the beam's, the others' a mesh of four times the unknowns.",
+            "The true value is the beam's for the needle, and from a mesh with four times the "
+            "unknowns for the others.",
         ),
         _entry(
             "tiny_fillet", "Tiny fillets", fillets(),
-            "The peak grows towards that of a sharp corner as the fillet gets small (like "
-            f"(r/d)$^{-0.456}$ in the end); a mesh that does not resolve the arc knows nothing "
-            "of it.",
+            "As the fillet gets smaller the peak tends to that of a sharp corner (in the limit "
+            f"like (r/d)$^{-0.456}$); a mesh that does not resolve the arc misses it.",
             "one mesh of an eighth of the diameter", "fillet over diameter",
-            "The truth is a mesh of twice the unknowns of pinstress's last.",
+            "The true value is from a mesh with twice the unknowns of pinstress's last.",
         ),
         _entry(
             "thin_tube", "Thin tubes", tubes(),
-            "A beam's section keeps its shape; a thin tube's becomes oval under its bearing "
-            "pressures, and the bending of its wall is what stresses it.",
+            "The section of a beam keeps its shape. A thin tube becomes oval under bearing "
+            "pressure, and the bending of its wall governs the stress.",
             "M c / I of the tube", "bore over diameter",
-            "The truth is a mesh of twice the unknowns of pinstress's last.",
+            "The true value is from a mesh with twice the unknowns of pinstress's last.",
         ),
         _sizes(units()),
     )  # fmt: skip
@@ -160,7 +160,7 @@ def _entry(
         return ", ".join(f"{text} at {s.ratio:g}" for s, text in zip(shapes, what, strict=True))
 
     ours = [
-        f"{engineering(s.found.max_von_mises)} ± {engineering(s.found.error_estimate, 2)} "
+        f"{engineering(s.found.max_von_mises)} ± {engineering(error_of(s.found), 2)} "
         f"(`{s.found.verdict}`)"
         for s in shapes
     ]
@@ -171,9 +171,9 @@ def _entry(
         physics,
         f"{naive[0].upper() + naive[1:]}: {listed([engineering(s.naive, 3) for s in shapes])} MPa.",
         f"{listed([engineering(s.truth) for s in shapes])} MPa. {by}",
-        f"{listed(ours)} MPa; the truth is within the error in {held} of {len(shapes)}.",
+        f"{listed(ours)} MPa; the true value is within the error in {held} of {len(shapes)}.",
         (command(name),),
-        f"{naive} over the truth, far from one at one end, and pinstress's values at one",
+        f"{naive} / true value deviates from one at one end; pinstress's values are at one",
         lambda figure, axes: _draw(axes[0], axes[1], shapes, ratio),
     )
 
@@ -182,18 +182,18 @@ def _draw(left: Axes, right: Axes, shapes: tuple[Shape, ...], ratio: str) -> Non
     x = np.arange(len(shapes))
     truth = np.array([s.truth for s in shapes])
     ours = np.array([s.found.max_von_mises or 0.0 for s in shapes]) / truth
-    error = np.array([s.found.error_estimate or 0.0 for s in shapes]) / truth
+    error = np.array([error_of(s.found) for s in shapes]) / truth
     left.semilogy(x, [s.naive / s.truth for s in shapes], "o-", color=INK, ms=4)
     for k, s in zip(x, shapes, strict=True):
         note(left, float(k), s.naive / s.truth, f"{s.naive / s.truth:.2g}", (7.0, -8.0))
     left.axhline(1.0, color="#8a8a8a", linewidth=0.8)
-    left.set(ylabel="naive value over the truth", title="the naive value")
+    left.set(ylabel="naive value / true value", title="naive method")
     left.yaxis.set_minor_formatter(NullFormatter())
     left.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
     right.axhline(1.0, color="#8a8a8a", linewidth=0.8)
     color = line_style(1)["color"]
     right.errorbar(x, ours, yerr=error, fmt="s", ms=4, color=color, capsize=3)
-    right.set(ylabel="pinstress's over the truth", title="pinstress, with its error")
+    right.set(ylabel="pinstress / true value", title="pinstress, with its error")
     for axes in (left, right):
         axes.set(xlabel=ratio, xlim=(-0.5, len(shapes) - 0.5))
         axes.set_xticks(x, [f"{s.ratio:g}" for s in shapes])
@@ -204,18 +204,20 @@ def _sizes(s: Sizes) -> Entry:
     return Entry(
         "units",
         "Units and sizes",
-        "Linear elasticity knows no length: a pin a million times smaller under a million million "
-        "times less force has the same stress. Absolute tolerances in a program do know one.",
-        "`np.isclose(r, R)`, a usual way to pick the nodes of a loaded surface, takes "
-        f"{100 * s.taken[0]:.0f} % of all nodes of a pin of 20 nm for its surface, instead of "
+        "Linear elasticity has no length scale: a pin a million times smaller under a million "
+        "million "
+        "times less force has the same stress. Absolute tolerances in a program do have one.",
+        "`np.isclose(r, R)`, a common way to select the nodes of a loaded surface, selects "
+        f"{100 * s.taken[0]:.0f} % of all nodes of a 20 nm pin instead of "
         f"{100 * s.right:.0f} %.",
         "The same stress at every size and in all units.",
         "The study's pin in m and N and in µm and GN: "
         f"{engineering(row('units', 'metres').max_von_mises)}"
         f" Pa both, the same to {_power(max(s.apart, 1e-15))}. Pins of 20 nm to 20 km: the same to "
-        f"{_power(spread)}, as round-off says about which of two nodes the next mesh is finer.",
+        f"{_power(spread)}, as round-off decides at which of two nodes the next mesh is refined.",
         (command("units"),),
-        "The stress is the same over twelve powers of ten of size, the share of nodes taken is not",
+        "The stress is the same over twelve orders of magnitude in size; the share of selected "
+        "nodes is not",
         lambda figure, axes: _draw_sizes(axes[0], axes[1], s),
     )
 
@@ -228,9 +230,9 @@ def _draw_sizes(left: Axes, right: Axes, s: Sizes) -> None:
     d = 0.02 * s.scales
     left.semilogx(d, 100.0 * s.taken, "o-", color=INK, ms=4)
     left.axhline(100.0 * s.right, color="#8a8a8a", linewidth=0.8)
-    note(left, d[-1], 100.0 * s.right, "what is on the surface", (0, 8), "#555555", "right")
-    note(left, d[0], 100.0 * s.taken[0], "all of them", (8, 0))
-    left.set(xlabel="diameter [m]", ylabel="nodes taken by np.isclose [%]", ylim=(0, 110))
+    note(left, d[-1], 100.0 * s.right, "nodes on the surface", (0, 8), "#555555", "right")
+    note(left, d[0], 100.0 * s.taken[0], "all nodes", (8, 0))
+    left.set(xlabel="diameter [m]", ylabel="nodes selected by np.isclose [%]", ylim=(0, 110))
     right.semilogx(d, s.stress / MPA, "s", color=line_style(1)["color"], ms=4)
     top = s.stress.max() / MPA
     note(right, d[2], s.stress[2] / MPA, "pinstress", (0, 12), line_style(1)["color"], "center")

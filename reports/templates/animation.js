@@ -31,7 +31,7 @@
   const plain = (value) => written(value, { factor: 1, decimals: Math.min(8, Math.max(0, 3 - Math.floor(Math.log10(Math.abs(value) || 1)))) });
   const decimals = span > 0 ? Math.min(9, Math.max(0, 3 - Math.floor(Math.log10(span)))) : 3;
 
-  // The frame before the present time, and how far it is to the next.
+  // The frame before the current time, and the fraction of the interval to the next.
   const frame = () => {
     let low = 0, high = last;
     while (high - low > 1) {
@@ -119,7 +119,7 @@
     tell(f, joints);
   };
 
-  // --- the joint that is looked at -------------------------------------------------------------
+  // --- the selected joint ----------------------------------------------------------------------
 
   const chosen = () => pointed ?? pinned;
 
@@ -143,9 +143,9 @@
       row.append(head, element("td", written(at(c.f, f), data.fixed.force)), element("td", `${written(angle, { factor: 1, decimals: 0 })}°`));
       row.cells[1].className = row.cells[2].className = "n";
     });
-    if (table.rows.length) box.append(table, element("small", "on the pin; direction from x"));
+    if (table.rows.length) box.append(table, element("small", "force on the pin; angle from the x axis"));
     callout.replaceChildren(...box.childNodes);
-    // In the corner that is further from the joint.
+    // In the corner farther from the joint.
     callout.classList.toggle("right", x < one("#scene").viewBox.baseVal.width / 2);
   };
 
@@ -257,9 +257,9 @@
 
   for (const part of all(".controls, .help")) part.hidden = false;
   rescale();
-  // animation_x.html#t=1.5 opens at that time; otherwise it plays, unless less motion is asked for or
-  // it is a part of another page.
-  const asked = /^#t=([-+.\deE]+)$/.exec(location.hash);
-  if (asked && Number.isFinite(Number(asked[1]))) go(Number(asked[1]));
+  // animation_x.html#t=1.5 opens at that time; otherwise it plays, unless the user prefers reduced
+  // motion or the page is embedded in another.
+  const start = /^#t=([-+.\deE]+)$/.exec(location.hash);
+  if (start && Number.isFinite(Number(start[1]))) go(Number(start[1]));
   else if (last > 0 && self === top && !matchMedia("(prefers-reduced-motion: reduce)").matches) turn(true);
 })();

@@ -1,10 +1,10 @@
-// Sorting, colours for day or night, and the frames of the animations. The page is whole without.
+// Table sorting, light and dark colours, animation frames. The page is complete without scripts.
 
 const sortable = (table) => {
   const heads = [...table.tHead.rows[0].cells];
   const key = (row, k) => row.cells[k].dataset.value ?? row.cells[k].textContent.trim();
   const order = (a, b) => {
-    if (a === "" || b === "") return (a === "") - (b === ""); // what has no number comes last
+    if (a === "" || b === "") return (a === "") - (b === ""); // empty cells come last
     const x = Number(a), y = Number(b);
     return Number.isNaN(x) || Number.isNaN(y) ? a.localeCompare(b) : x - y;
   };
@@ -42,7 +42,7 @@ shade.addEventListener("click", () => { document.documentElement.style.colorSche
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", shaded);
 shaded();
 
-// As high as what is in them, whatever the width of the page.
+// Frame height follows its content.
 const fit = (frame) => { frame.style.height = `${frame.contentDocument.documentElement.offsetHeight + 4}px`; };
 const framed = (frame) => {
   shaded();

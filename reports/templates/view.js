@@ -1,6 +1,6 @@
-// The view of a pin that can be turned. What is written beside it are the analysis's own maxima.
+// The interactive 3D view of a pin. The maxima shown next to it are those of the analysis.
 
-// As reports/numbers.py writes them.
+// Number format of reports/format/numbers.py.
 const written = (value, digits = 4) => {
   const rounded = Number(value.toPrecision(digits));
   if (!rounded) return "0";
@@ -63,11 +63,11 @@ const startView = (root, paint) => {
   const tell = () => {
     const k = instant(), value = chosen.maxima[k], governs = k === chosen.instant, { units } = data;
     const when = chosen.times ? `t = ${short(chosen.times[k])} ${units.time}${governs ? ", the governing instant" : ""}: ` : "";
-    const error = governs ? ` ± ${written(chosen.error, 2)}` : "";
+    const error = governs ? ` (${chosen.error})` : "";
     const where = chosen.zoned ? " outside the excluded zones" : "";
-    const factor = data.strength ? `; factor of safety ${written(data.strength / value)} (${chosen.verdict})` : "";
-    const largest = when ? "largest" : "Largest";
-    one("told").textContent = `${when}${largest} von Mises stress ${written(value)} ${units.stress}${error}${where}${factor}.`;
+    const factor = data.strength ? `; safety factor ${governs ? chosen.factor : written(data.strength / value)} (${chosen.verdict})` : "";
+    const largest = when ? "maximum" : "Maximum";
+    one("told").textContent = `${when}${largest} von Mises stress${where} ${written(value)} ${units.stress}${error}${factor}.`;
     one("told").dataset.maximum = value;
     one("beneath").hidden = !(chosen.beneath && governs);
     one("zones").hidden = !chosen.zoned;
@@ -82,7 +82,7 @@ const startView = (root, paint) => {
       if (!factors()) return written(part * top(), 3);
       return (part === 0 ? "≥ " : "") + written((data.strength / top()) * 10 ** (DECADES * (1 - part)), 3);
     });
-    one("unit").textContent = factors() ? `factor of safety (${chosen.verdict})` : `von Mises stress [${data.units.stress}]`;
+    one("unit").textContent = factors() ? `safety factor (${chosen.verdict})` : `von Mises stress [${data.units.stress}]`;
     one("ticks").replaceChildren(...ticks.map((t) => Object.assign(document.createElement("span"), { textContent: t })));
     exaggeration = largestMoved > 0 ? (0.15 * data.size * Number(one("deform").value)) / 100 / largestMoved : 0;
     one("deformed").textContent = exaggeration ? `× ${written(exaggeration, 3)}` : "not shown";
@@ -98,7 +98,7 @@ const startView = (root, paint) => {
     if (!width) return;
     canvas.width = width;
     canvas.height = height;
-    // The whole box fits as it lies at first.
+    // The whole bounding box fits the initial view.
     const half = data.box.map((c) => applied(chosen.turn, c.map((x, i) => x - data.centre[i])));
     const reach = (i) => Math.max(...half.map((c) => Math.abs(c[i])));
     const fit = (0.9 * zoom) / Math.max(reach(0), (reach(1) * width) / height);
@@ -109,7 +109,7 @@ const startView = (root, paint) => {
     if (instant() === chosen.instant && !exaggeration) mark(width, height, scale, ratio);
   };
 
-  // A dot where the maximum is; a ring when that is behind.
+  // A dot at the maximum; a ring when it is on the far side.
   const mark = (width, height, scale, ratio) => {
     const [x, y, z] = applied(turn, chosen.location.map((c, i) => c - data.centre[i]));
     flat.beginPath();
@@ -154,7 +154,7 @@ const startView = (root, paint) => {
 const startViews = () => {
   const views = [...document.querySelectorAll("[data-view]")];
   const paint = views.length ? painter() : null;
-  if (!paint) return; // pictures stand in
+  if (!paint) return; // the still pictures stay visible
   document.documentElement.classList.add("live");
   const watcher = new IntersectionObserver((seen) => {
     for (const { isIntersecting, target } of seen) {

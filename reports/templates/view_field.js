@@ -1,8 +1,8 @@
-// What a surface's unit fields add up to at an instant. The arrays are those of reports/view3d.py.
+// Superposition of a surface's unit fields at an instant. reports/page/viewer.py packs the arrays.
 
 const unpacked = (Type, text) => new Type(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
 
-// Whole numbers times a scale for each of the points (or one for all).
+// Integers times a scale per point (or one scale for all).
 const scaled = (whole, scale) => {
   const each = whole.length / scale.length;
   return Float32Array.from(whole, (x, i) => x * scale[Math.floor(i / each)]);
@@ -53,7 +53,7 @@ const strips = (count, around) => {
   return out;
 };
 
-// Means over the triangles at a vertex; the last point of an edge and the first of the next are two.
+// Vertex normals, averaged over adjacent triangles; points at edges are duplicated, so edges stay sharp.
 const normals = ({ places: x, triangles }) => {
   const out = new Float32Array(x.length);
   for (let t = 0; t < triangles.length; t += 3) {

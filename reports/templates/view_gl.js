@@ -1,7 +1,7 @@
-// Draws surfaces: one WebGL context for all views of the page, since browsers allow only some.
+// Draws surfaces with one WebGL context for all views: browsers limit the number of contexts.
 
 const STOPS = ["#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c", "#28ae80", "#5ec962", "#addc30", "#fde725"]; // viridis
-const DECADES = 2; // of the factor of safety, from its least on
+const DECADES = 2; // range of the safety factor scale, upwards from the minimum
 
 const VERTEX = `#version 300 es
 in vec3 place, moved, normal;
@@ -24,10 +24,10 @@ precision highp float;
 in vec3 seen, facing;
 in float stress, hidden;
 uniform vec3 stops[${STOPS.length}];
-uniform float top, decades; // decades > 0: of a logarithmic scale below the top
+uniform float top, decades; // decades > 0: logarithmic scale over so many decades below top
 out vec4 colour;
 void main() {
-  // Facets of a surface without normals are flat.
+  // Without normals, shade each facet flat.
   vec3 n = length(facing) > 0.0 ? normalize(facing) : normalize(cross(dFdx(seen), dFdy(seen)));
   if (n.z < 0.0) n = -n;
   float light = 0.72 + 0.28 * max(dot(n, normalize(vec3(0.25, 0.5, 0.83))), 0.0);
@@ -39,7 +39,7 @@ void main() {
   colour = vec4(c * light, 1.0);
 }`;
 
-// null where the browser has no WebGL 2.
+// null if the browser has no WebGL 2.
 const painter = () => {
   const canvas = document.createElement("canvas");
   const gl = canvas.getContext("webgl2", { antialias: true, alpha: true, premultipliedAlpha: true });
@@ -58,7 +58,7 @@ const painter = () => {
   const uniform = (name) => gl.getUniformLocation(program, name);
   gl.uniform3fv(uniform("stops"), STOPS.flatMap((s) => [1, 3, 5].map((k) => parseInt(s.slice(k, k + 2), 16) / 255)));
 
-  // Buffers of a surface: what is set once, and what changes with the instant.
+  // Buffers of a surface: constant ones, and those updated at each instant.
   const upload = (surface) => {
     const array = gl.createVertexArray(), buffers = {};
     gl.bindVertexArray(array);
@@ -80,7 +80,7 @@ const painter = () => {
     return { array, count: surface.triangles.length, set };
   };
 
-  // turn: rows right, up, towards the viewer. scale: from lengths to half the picture.
+  // turn: rows right, up, towards the viewer. scale: length to half the picture size.
   const draw = (shape, width, height, { turn, centre, scale, exaggerated, top, decades }) => {
     canvas.width = width;
     canvas.height = height;

@@ -12,7 +12,7 @@ from benchmarks import calculix
 from benchmarks.processes import RunError, process
 from benchmarks.solid_peers import Cost, ratios
 from benchmarks.tension import SHAPES, TENSION, factors
-from geometry.meridian_mesh import SectionSize
+from geometry.mesh.section_mesh import SectionSize
 
 
 def test_a_missing_calculix_is_told(monkeypatch: pytest.MonkeyPatch) -> None:

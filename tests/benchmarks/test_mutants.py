@@ -72,7 +72,8 @@ def test_files_are_tried_one_by_one_and_rows_kept(
     monkeypatch.setattr(module, "FOLDER", tmp_path)
     monkeypatch.setattr(record_module, "FOLDER", tmp_path)
     (tmp_path / "mutants.md").write_text(
-        "| `fea/notch.py` | 9 | 9 | 8 | 1 | |\n| … line 3: `a → b` | | | | | so |\n"
+        "| `fea/beam/stress_concentration.py` | 9 | 9 | 8 | 1 | |\n"
+        "| … line 3: `a → b` | | | | | so |\n"
     )
     changes = [m.change for m in mutants((ROOT / "loads/impulse.py").read_text("utf-8"))]
     passing = {ast.unparse(ast.parse((ROOT / "loads/impulse.py").read_text("utf-8")))}
@@ -81,7 +82,10 @@ def test_files_are_tried_one_by_one_and_rows_kept(
     text = (tmp_path / "mutants.md").read_text("utf-8")
     n = len(changes)
     assert f"| `loads/impulse.py` | {n} | {n} | {n} | 0 | |" in text
-    assert "| `fea/notch.py` | 9 | 9 | 8 | 1 | |\n| … line 3: `a → b` | | | | | so |\n" in text
+    assert (
+        "| `fea/beam/stress_concentration.py` | 9 | 9 | 8 | 1 | |\n"
+        "| … line 3: `a → b` | | | | | so |\n" in text
+    )
     passing |= {
         ast.unparse(m.tree) for m in mutants((ROOT / "loads/impulse.py").read_text("utf-8"))
     }

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from tests.browser.looks import errors, opened, wait
+from tests.support.browser_page import errors, opened, wait
 
 pytestmark = pytest.mark.browser
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from reports.numbers import engineering, short
-from tests.browser.looks import (
+from reports.format.numbers import engineering, short
+from tests.support.browser_page import (
     canvas,
     colours,
     errors,
@@ -77,9 +77,10 @@ def test_the_maximum_told_is_the_computed_one(page: Any, gear_run: Path) -> None
     found = result(gear_run, "B", "retract")
     assert maximum(root) == found["max_von_mises"]
     told = part(root, "told").text
-    error = engineering(found["error_estimate"], 2)
-    assert f"{engineering(found['max_von_mises'])} psi ± {error} outside" in told
-    assert f"factor of safety {engineering(found['safety_factor'])} (singular)" in told
+    low, high = (engineering(end, 3) for end in found["max_von_mises_interval"])
+    assert f"{engineering(found['max_von_mises'])} psi ({low} to {high} over half" in told
+    low, high = (engineering(end, 3) for end in found["safety_factor_interval"])
+    assert f"safety factor {low} to {high} (singular)" in told
     assert f"t = {short(found['time'])} s, the governing instant" in told
     before = pixels(page, root)
     slide(page, part(root, "time"), 0)
@@ -97,13 +98,13 @@ def test_cases_colours_and_deformation_can_be_chosen(page: Any, gear_run: Path) 
     Select(part(root, "case")).select_by_visible_text("landing")
     found = result(gear_run, "J", "landing")
     assert maximum(root) == found["max_von_mises"]
-    factor = engineering(found["safety_factor"])
+    factor = " to ".join(engineering(end, 3) for end in found["safety_factor_interval"])
     assert f"{factor} (singular, beyond yield)" in part(root, "told").text
     assert not part(root, "when").is_displayed()
     before = pixels(page, root)
-    Select(part(root, "colour")).select_by_visible_text("factor of safety")
+    Select(part(root, "colour")).select_by_visible_text("safety factor")
     wait(page, lambda: pixels(page, root) != before)
-    assert part(root, "unit").text == "factor of safety (singular, beyond yield)"
+    assert part(root, "unit").text == "safety factor (singular, beyond yield)"
     least = engineering(found["safety_factor"], 3)
     assert part(root, "ticks").text.split()[-1] == least
     before = pixels(page, root)

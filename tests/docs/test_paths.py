@@ -9,7 +9,7 @@ import pytest
 
 from tests.conftest import ROOT
 
-ROOMS = "loads|geometry|fea|reports|pinstress|studies|tests|benchmarks|docs|scripts"
+ROOMS = "loads|geometry|fea|reports|pinstress|studies|examples|tests|benchmarks|docs|scripts"
 NAMES = re.findall(
     r'^    "([\w-]+)": ', (ROOT / "benchmarks" / "__main__.py").read_text(), re.MULTILINE
 )

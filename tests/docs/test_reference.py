@@ -8,22 +8,22 @@ from typing import Any
 import pytest
 
 from docs.study_reference import reference, sections, takes
-from pinstress.quantities import Table, described
-from pinstress.schema import StudyTable
-from pinstress.schema_cases import ImpulseTable, MotionCase
-from pinstress.schema_pins import SegmentTable
+from pinstress.schema.cases import ImpulseTable, MotionCase
+from pinstress.schema.pins import SegmentTable
+from pinstress.schema.tables import StudyTable
+from pinstress.schema.types import StrictTable, described
 
 SCHEMA = StudyTable.model_json_schema()
 
 
-def tables(table: type[Table] = Table) -> Iterator[type[Table]]:
+def tables(table: type[StrictTable] = StrictTable) -> Iterator[type[StrictTable]]:
     for one in table.__subclasses__():
         yield one
         yield from tables(one)
 
 
 @pytest.mark.parametrize("table", list(tables()), ids=lambda t: t.__name__)
-def test_every_key_says_what_it_is(table: type[Table]) -> None:
+def test_every_key_says_what_it_is(table: type[StrictTable]) -> None:
     told = described(table)
     assert set(told) == set(table.model_fields)
     assert all(words.endswith(".") for words in told.values())
@@ -59,6 +59,6 @@ def test_the_reference_has_type_unit_domain_default_and_description() -> None:
         (MotionCase, "kind", '`"motion"`'),
     ],
 )
-def test_what_a_key_takes_in_words(table: type[Table], key: str, words: str) -> None:
+def test_what_a_key_takes_in_words(table: type[StrictTable], key: str, words: str) -> None:
     properties: dict[str, Any] = table.model_json_schema()["properties"]
     assert takes(properties[key]) == words

@@ -7,14 +7,14 @@ import math
 import numpy as np
 import pytest
 
-from fea.beam_error import beam_estimate
-from fea.beam_peak import harmonics, highest
-from fea.beam_stress import BeamStress, beam_stress
-from fea.circle import Circle
-from fea.line_load import acting
-from fea.material import Material
-from fea.pin_loads import Floats, PinLoads
-from fea.tensor import von_mises
+from fea.beam.error_model import beam_estimate
+from fea.beam.line_load import acting
+from fea.beam.maximum import harmonics, highest
+from fea.beam.round_section import Circle
+from fea.beam.stress import BeamStress, beam_stress
+from fea.core.material import Material
+from fea.core.pin_loads import Floats, PinLoads
+from fea.core.voigt import von_mises
 from geometry import Pin, Segment
 
 d, L = 0.02, 0.2

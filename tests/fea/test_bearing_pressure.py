@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fea.pin_loads import Floats, PinLoads, UnitLoad
-from fea.tractions import traction
+from fea.core.pin_loads import Floats, PinLoads, UnitLoad
+from fea.core.tractions import traction
 from geometry import Pin, Segment
 
 PIN = Pin("P", (Segment(0.03, 0.02), Segment(0.025, 0.02, connection="B")))

@@ -1,5 +1,5 @@
-"""The root that `fea.corner` brackets against the determinant of the boundary conditions, made from
-Williams' stress function: it is a zero, and the argument principle counts none before it.
+"""The root that `fea.singular.williams` brackets against the determinant of boundary conditions,
+made from Williams' stress function: it is a zero, and the argument principle counts none before it.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from fea.corner import Side, plane_eigenvalue
+from fea.singular.williams import Side, plane_eigenvalue
 
 Complex = NDArray[np.complex128]
 

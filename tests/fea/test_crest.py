@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fea import crest
-from fea.circumference import SAMPLES_PER_WAVE
-from fea.pin_loads import Floats
+from fea.core.pin_loads import Floats
+from fea.harmonic import trigonometric_maximum as crest
+from fea.harmonic.superposition import SAMPLES_PER_WAVE
 
 
 def even(degree: int) -> Floats:

@@ -1,7 +1,7 @@
 """Michell's constant term: the stress fields behind it satisfy elasticity, and the solid has it.
 
 Reference: J. H. Michell, Quart. J. Math. 32 (1901) 28; the fields for these two loads are worked
-out in fea/distributed_load.py. Tolerances: of the fields' derivatives what differences of step
+out in fea/checks/michell.py. Tolerances: of the fields' derivatives what differences of step
 leave, of closed forms rounding, of the solid the error of its nodal stresses, as measured there.
 The fields are for radius 1 and 1 N/m along x; M is zero at z = LENGTH.
 """
@@ -15,13 +15,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from fea.distributed_load import axis_load_term, constant_stress, surface_load_term
-from fea.material import Material
-from fea.solid import SolidModel, UnitFields
+from fea.checks.michell import axis_load_term, constant_stress, surface_load_term
+from fea.core.material import Material
+from fea.solid.model import SolidModel, UnitFields
 from geometry import Pin, Segment
-from geometry.solid_mesh import MeshSize, SolidMesh, solid_mesh
-from tests.fea.unit_loads import forces
-from tests.solid_line import axial_stress
+from geometry.mesh.solid_mesh import MeshSize, SolidMesh, solid_mesh
+from tests.support.solid_line import axial_stress
+from tests.support.unit_loads import forces
 
 Floats = NDArray[np.float64]
 Field = Callable[[Floats, float], Floats]

@@ -8,14 +8,14 @@ from numpy.typing import NDArray
 from skfem import Basis, ElementTetP1, ElementTetP2, ElementVector, MeshTet, MeshTet2
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
-from fea.elasticity import Discretisation
-from fea.linear import factorize
-from fea.material import Material
-from fea.stress import nodal_stress
-from fea.surface import surface
+from fea.core.linear_solver import factorize
+from fea.core.material import Material
+from fea.solid.assembly import Discretisation
+from fea.solid.boundary import surface
+from fea.solid.stress_recovery import nodal_stress
 from geometry import Pin
-from geometry.elements import Element, with_element
-from geometry.solid_mesh import MeshSize, solid_mesh
+from geometry.mesh.elements import Element, with_element
+from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 
 Floats = NDArray[np.float64]
 

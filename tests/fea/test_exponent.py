@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fea.exponent import growth_exponent
+from fea.singular.fit_exponent import growth_exponent
 
 NEAR = np.geomspace(4e-4, 1e-2, 60)  # of the diameter, as the harmonic model reads them
 

@@ -9,15 +9,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fea.circumference import Circumference
-from fea.envelope import envelope
-from fea.harmonic import HarmonicModel
-from fea.material import Material
-from fea.pin_loads import PinLoads, UnitLoad
-from fea.solid import SolidModel
+from fea.core.material import Material
+from fea.core.pin_loads import PinLoads, UnitLoad
+from fea.harmonic.model import HarmonicModel
+from fea.harmonic.superposition import Circumference
+from fea.solid.model import SolidModel
+from fea.solid.superposition import envelope
 from geometry import Pin
-from geometry.meridian_mesh import SectionSize, meridian_mesh
-from geometry.solid_mesh import MeshSize, solid_mesh
+from geometry.mesh.section_mesh import SectionSize, meridian_mesh
+from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 
 LOADS = {
     "bent": PinLoads("bent", ("P1",), np.array([[[1000.0, 0.0, 0.0]]])),
@@ -56,4 +56,4 @@ def test_harmonic_beside_solid(cantilever_pin: Pin, steel: Material) -> None:
 def _work(model: HarmonicModel, unit: UnitLoad) -> float:
     """Of a unit load on the displacement it causes, J."""
     forces, _ = model._applied(unit.n, [unit])
-    return float((forces.T @ model._displace(unit.n, forces))[0, 0])
+    return float((forces.T @ model.displace(unit.n, forces))[0, 0])

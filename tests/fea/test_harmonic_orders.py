@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 from skfem import ElementTriP2
 
-from fea.harmonic import HarmonicModel
-from fea.material import Material
-from fea.pin_loads import Floats
-from fea.recovery import extension
-from fea.section import Section, elasticity
-from fea.section_stress import reading
-from fea.skin import skin
+from fea.core.local_fit import extension
+from fea.core.material import Material
+from fea.core.pin_loads import Floats
+from fea.harmonic.assembly import Section, elasticity
+from fea.harmonic.model import HarmonicModel
+from fea.harmonic.stress_recovery import reading
+from fea.harmonic.surface_stress import skin
 from geometry import Pin, Segment
-from geometry.meridian_mesh import MeridianMesh, SectionSize, meridian_mesh
-from tests.fea.exact import (
+from geometry.mesh.section_mesh import MeridianMesh, SectionSize, meridian_mesh
+from tests.support.exact_fields import (
     Exact,
     boundary_forces,
     edge_tractions,
@@ -23,8 +23,8 @@ from tests.fea.exact import (
     unknowns_of,
     with_edges_moved,
 )
-from tests.fea.polynomials import manufactured, polynomial
-from tests.fea.rectangles import rectangle
+from tests.support.polynomial_fields import manufactured, polynomial
+from tests.support.section_grid import rectangle
 
 SHOULDER = Pin("P", (Segment(0.02, 0.03, bore=0.008), Segment(0.03, 0.02)), fillet=0.004)
 Terms = dict[tuple[int, int], float]

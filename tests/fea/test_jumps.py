@@ -5,19 +5,19 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fea.circumference import Circumference
-from fea.harmonic import HarmonicModel
-from fea.harmonic_look import harmonic_look, harmonic_solution
-from fea.jumps import DIRECTIONS, jumps
-from fea.ladder import STEP, Asked, solve_pin
-from fea.material import Material
-from fea.outline import Outline
-from fea.pin_loads import PinLoads
-from fea.recovery import at_one_place, continuation
-from fea.section import Section
+from fea.core.local_fit import at_one_place, continuation
+from fea.core.material import Material
+from fea.core.pin_loads import PinLoads
+from fea.harmonic.assembly import Section
+from fea.harmonic.boundary import Outline
+from fea.harmonic.evaluate import harmonic_result, harmonic_solution
+from fea.harmonic.model import HarmonicModel
+from fea.harmonic.pressure_edge import DIRECTIONS, jumps
+from fea.harmonic.superposition import Circumference
+from fea.solve_pin import STEP, Asked, solve_pin
 from geometry import Pin, Segment
-from geometry.grading import SectionSize, Spot
-from geometry.meridian_mesh import meridian_mesh
+from geometry.mesh.section_mesh import meridian_mesh
+from geometry.mesh.sizing import SectionSize, Spot
 
 R = 0.01
 PIN = Pin(
@@ -71,8 +71,8 @@ def test_the_maximum_at_a_jump_is_that_of_far_finer_elements_near_it(steel: Mate
     their common edge. Elements forty times as fine, read 0.5 to 2 % of the radius away from it,
     come near that from below.
     """
-    looks = [
-        harmonic_look(harmonic_solution(PIN, steel, (), (SHEARED,), (), level, STEP), (), SHEARED)
+    results = [
+        harmonic_result(harmonic_solution(PIN, steel, (), (SHEARED,), (), level, STEP), (), SHEARED)
         for level in range(3)
     ]
     units = tuple(SHEARED.coefficients())
@@ -83,10 +83,10 @@ def test_the_maximum_at_a_jump_is_that_of_far_finer_elements_near_it(steel: Mate
     fields = HarmonicModel(PIN, mesh, steel, ()).solve(units, there.reshape(-1, 2))
     rows = np.arange(len(fields.points) - there.size // 2, len(fields.points))
     value, _ = Circumference(fields, SHEARED).round(rows, np.zeros(len(rows), dtype=int))
-    for look in looks:
-        assert look.maximum == pytest.approx(value.max(), rel=0.03)
-        assert np.hypot(*look.location[:2]) == pytest.approx(R, rel=1e-9)
-        assert look.location[2] == pytest.approx(MIDDLE[1], rel=1e-9)
+    for result in results:
+        assert result.maximum == pytest.approx(value.max(), rel=0.03)
+        assert np.hypot(*result.location[:2]) == pytest.approx(R, rel=1e-9)
+        assert result.location[2] == pytest.approx(MIDDLE[1], rel=1e-9)
 
 
 def test_a_pin_sheared_by_pressures_converges_on_few_meshes(steel: Material) -> None:
@@ -104,7 +104,9 @@ def test_a_fillets_peak_beside_the_edge_of_a_pressure_is_read(steel: Material) -
     )
     case = PinLoads("push", ("narrow",), np.array([[[500.0, 0.0, 0.0]]]), distribution="cosine")
     coarse, fine = (
-        harmonic_look(harmonic_solution(pin, steel, ("start",), (case,), (), level, STEP), (), case)
+        harmonic_result(
+            harmonic_solution(pin, steel, ("start",), (case,), (), level, STEP), (), case
+        )
         for level in (0, 5)
     )
     assert 0.02 < fine.location[2] < 0.02 + 0.1 * R

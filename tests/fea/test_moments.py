@@ -9,21 +9,23 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from fea.balance import out_of_balance
-from fea.elasticity import Discretisation
-from fea.envelope import envelope
-from fea.ladder import Asked, solve_pin
-from fea.material import Material
-from fea.pin_loads import PinLoads, UnitLoad
-from fea.solid import SolidModel, UnitFields, acting
-from fea.solid_loads import Unit, nodal_loads
-from fea.solid_look import SolidAnswer
-from fea.surface import resultants, surface
-from fea.tensor import von_mises
-from geometry import Pin, Segment
-from geometry.solid_mesh import MeshSize, solid_mesh
-from tests.fea.unit_loads import at, forces, moments
-from tests.solid_line import axial_stress
+from fea.core.equilibrium import out_of_balance
+from fea.core.material import Material
+from fea.core.pin_loads import PinLoads, UnitLoad
+from fea.core.voigt import von_mises
+from fea.solid.assembly import Discretisation
+from fea.solid.boundary import resultants, surface
+from fea.solid.evaluate import SolidAnswer
+from fea.solid.model import SolidModel, UnitFields, acting
+from fea.solid.nodal_loads import Unit, nodal_loads
+from fea.solid.superposition import envelope
+from fea.solve_pin import Asked, solve_pin
+from geometry import ArgumentError, Pin, Segment
+from geometry.mesh.solid_mesh import MeshSize, solid_mesh
+from tests.support.errors import raises
+from tests.support.plain_pins import double_shear
+from tests.support.solid_line import axial_stress
+from tests.support.unit_loads import at, forces, moments
 
 Floats = NDArray[np.float64]
 
@@ -202,24 +204,15 @@ def test_a_load_without_a_field_is_not_dropped(bar: UnitFields) -> None:
     only = replace(bar, loads=bar.loads[:5], displacement=bar.displacement[..., :5],
                    stress=bar.stress[..., :5], support=bar.support[:, :5])  # fmt: skip
     twist = PinLoads("case", ("B",), np.zeros((1, 1, 3)), np.array([0.0, 0.0, 1.0]))
-    with pytest.raises(ValueError, match=r"no unit fields for .*'B', kind='moment', n=0"):
+    with raises(ArgumentError, "missing-fields", "'B', kind='moment', n=0"):
         envelope(only, twist)
 
 
 def test_a_floating_pin_in_balance_by_a_moment(steel: Material) -> None:
     """A couple of forces and the moment that answers it is solved; so is less of it, because bands
-    carry couples, which is told; a torque about the axis that nothing answers is refused.
+    carry couples, which is reported; a torque about the axis that nothing answers is refused.
     """
-    pin = Pin(
-        "P",
-        (
-            Segment(0.02, 0.02, connection="A"),
-            Segment(0.04, 0.02),
-            Segment(0.02, 0.02, connection="B"),
-            Segment(0.04, 0.02),
-            Segment(0.02, 0.02, connection="C"),
-        ),
-    )
+    pin = double_shear(0.02, 0.04, 0.02, 0.02)
     forces = np.array([[[0.0, -500.0, 0.0], [0.0, 0.0, 0.0], [0.0, 500.0, 0.0]]])
     moments = np.zeros((1, 3, 3))
     moments[0, 1, 0] = 500.0 * 0.12  # forces push -y at z = 10 mm and +y at 130 mm
@@ -239,11 +232,11 @@ def test_a_floating_pin_in_balance_by_a_moment(steel: Material) -> None:
     assert [b.couple for b in left] == pytest.approx([0.0, 6.0, 60.0, 1.0], abs=1e-12)
     asked = Asked(0.5, model="solid", meshes=1)
     ok, less, none, refused = solve_pin(pin, steel, (), cases, asked)
-    assert "close the balance" not in ok.peak.note
-    assert "couple of 0.086 of that times the length" in less.peak.note
-    assert "couple of 0.86 of that times the length" in none.peak.note
+    assert ok.peak.imbalance is None
+    assert less.peak.imbalance == pytest.approx((0.0, 6.0 / 500.0 / 0.14))
+    assert none.peak.imbalance == pytest.approx((0.0, 60.0 / 500.0 / 0.14))
     assert refused.peak.verdict == "rigid"
-    assert "turn it about its axis" in refused.peak.note
+    assert refused.peak.reasons == ("torque-imbalance",)
     assert isinstance(ok.answer, SolidAnswer)
     fields = ok.answer.solution.fields
     assert ok.peak.max_von_mises is not None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from fea.notch import BENDING, TENSION, TORSION, Fit, notches, shoulder_factor
+from fea.beam.stress_concentration import BENDING, TENSION, TORSION, Fit, notches, shoulder_factor
 from geometry import Pin, Segment
 
 D_SMALL = 0.02

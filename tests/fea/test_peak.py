@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fea.peak import Peak, Refinement, discretisation_error
+from fea.core.peak import Peak, Refinement, discretisation_error
 from fea.verdict import FEWEST
 
 

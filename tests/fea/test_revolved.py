@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fea.harmonic_look import HarmonicAnswer
-from fea.ladder import Asked, solve_pin
-from fea.material import Material
-from fea.pin_loads import Floats, PinLoads
-from fea.revolved import SECTORS, revolve_solid
+from fea.core.material import Material
+from fea.core.pin_loads import Floats, PinLoads
+from fea.harmonic.evaluate import HarmonicAnswer
+from fea.harmonic.revolve import SECTORS, revolve_solid
+from fea.solve_pin import Asked, solve_pin
 from geometry import Pin, Segment
 
 PIN = Pin("P", (Segment(0.02, 0.02, bore=0.008), Segment(0.01, 0.02, connection="B")))

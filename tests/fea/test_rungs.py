@@ -5,15 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fea.ladder import Asked, solve_pin
-from fea.linear import SolveError
-from fea.look import Look
-from fea.material import Material
-from fea.pin_loads import PinLoads
-from fea.rungs import Problem, Rung, look_at
+from fea.core.linear_solver import SolveError
+from fea.core.material import Material
+from fea.core.mesh_result import MeshResult
+from fea.core.pin_loads import PinLoads
+from fea.single_mesh import Problem, Rung, result_on
+from fea.solve_pin import Asked, solve_pin
 from fea.verdict import Seen, judge
-from geometry import CutPin, Hole, Pin, Segment
-from geometry.elements import Element
+from geometry import ArgumentError, CutPin, Hole, Pin, Segment
+from geometry.mesh.elements import Element
+from tests.support.errors import raises
 
 SHARP = Pin("S", (Segment(0.02, 0.03), Segment(0.02, 0.02), Segment(0.02, 0.02, connection="B")))
 LOAD = PinLoads("bending", ("B",), np.array([[[0.0, 500.0, 0.0]], [[0.0, 1000.0, 0.0]]]))
@@ -30,23 +31,25 @@ def test_no_model_reads_stress_where_it_has_no_bound(rung: Rung, steel: Material
     largest bending moment of the thin shaft.
     """
     problem = Problem(SHARP, steel, ("start",), LOAD, distance=0.3)
-    assert {p.kind for p in problem.places} == {
+    assert {p.kind for p in problem.singularities} == {
         "sharp corner", "edge of a clamp", "edge of a load",
     }  # fmt: skip
-    look = look_at(problem, rung)
-    x, y, z = look.location
-    for place in problem.places:
-        assert np.hypot(np.hypot(x, y) - place.r, z - place.z) >= place.radius * (1.0 - 1e-6)
-    assert look.instant == 1  # where the load is twice as large
-    close = look_at(Problem(SHARP, steel, ("start",), LOAD, distance=0.01), rung)
-    assert close.maximum > 1.05 * look.maximum
+    result = result_on(problem, rung)
+    x, y, z = result.location
+    for singularity in problem.singularities:
+        assert np.hypot(np.hypot(x, y) - singularity.r, z - singularity.z) >= singularity.radius * (
+            1.0 - 1e-6
+        )
+    assert result.instant == 1  # where the load is twice as large
+    close = result_on(Problem(SHARP, steel, ("start",), LOAD, distance=0.01), rung)
+    assert close.maximum > 1.05 * result.maximum
 
 
 def test_a_harmonic_rung_is_the_mesh_of_a_run(cantilever_pin: Pin, steel: Material) -> None:
     load = PinLoads("bending", ("P1",), np.array([[[0.0, 1000.0, 0.0]]]))
     problem = Problem(cantilever_pin, steel, ("start",), load)
-    first = look_at(problem, Rung("harmonic", level=0))
-    second = look_at(problem, Rung("harmonic", level=1), (first,))
+    first = result_on(problem, Rung("harmonic", level=0))
+    second = result_on(problem, Rung("harmonic", level=1), (first,))
     asked = Asked(model="harmonic", meshes=2)
     (run,) = solve_pin(cantilever_pin, steel, ("start",), (load,), asked)
     assert [s.dofs for s in run.peak.history] == [first.unknowns, second.unknowns]
@@ -62,11 +65,11 @@ def test_finer_solid_meshes_are_nearer_to_the_harmonic_model(
     """
     load = PinLoads("bending", ("P1",), np.array([[[0.0, 1000.0, 0.0]]]))
     problem = Problem(cantilever_pin, steel, ("start",), load)
-    exact = look_at(problem, Rung("harmonic", level=3)).maximum
+    exact = result_on(problem, Rung("harmonic", level=3)).maximum
     levels = (0, 3) if element == "linear" else (-1, 1)
-    looks = [look_at(problem, Rung("solid", element, level)) for level in levels]
-    coarse, fine = (abs(look.maximum / exact - 1.0) for look in looks)
-    assert looks[0].unknowns < looks[1].unknowns
+    results = [result_on(problem, Rung("solid", element, level)) for level in levels]
+    coarse, fine = (abs(result.maximum / exact - 1.0) for result in results)
+    assert results[0].unknowns < results[1].unknowns
     assert fine < 0.6 * coarse
     assert fine == pytest.approx(
         {"linear": 0.24, "straight": 0.11, "curved": 0.07}[element], abs=0.03
@@ -80,15 +83,15 @@ def test_a_pin_that_is_no_body_of_revolution_finds_its_edges_on_any_element(
     pin = CutPin(Pin("H", (Segment(0.06, 0.02, connection="B"),)), (Hole(0.04, 0.004),))
     problem = Problem(pin, steel, ("start",), LOAD)
     for rung in (Rung("solid", "linear"), Rung("solid")):
-        look = look_at(problem, rung)
-        x, y, z = look.location
+        result = result_on(problem, rung)
+        x, y, z = result.location
         assert np.hypot(np.hypot(x, y) - 0.01, z) >= 0.1 * 0.02
     for rung in (Rung("beam"), Rung("harmonic")):
-        with pytest.raises(ValueError, match="no body of revolution"):
-            look_at(problem, rung)
+        with raises(ArgumentError, "not-axisymmetric"):
+            result_on(problem, rung)
 
 
 def test_stress_that_is_not_finite_has_no_verdict() -> None:
-    look = Look(900, float("nan"), 0, (0.0, 0.0, 0.0))
-    with pytest.raises(SolveError, match="pin P, case up: the stress is not finite"):
-        judge(Seen("P", "up", "solid", (look,), (0.1,), 2.0), (), 0.02)
+    result = MeshResult(900, float("nan"), 0, (0.0, 0.0, 0.0))
+    with raises(SolveError, "not-finite", "pin P, case up"):
+        judge(Seen("P", "up", "solid", (result,), (0.1,), 2.0), (), 0.02)

@@ -1,4 +1,4 @@
-"""A second opinion: when it complains, that failures are told, and what CalculiX itself says."""
+"""A second opinion: when it differs, that failures are reported, and what CalculiX itself says."""
 
 from __future__ import annotations
 
@@ -8,21 +8,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fea import calculix
-from fea.ladder import Asked, solve_pin
-from fea.material import Material
-from fea.peak import Peak
-from fea.pin_loads import PinLoads
-from fea.second_opinion import Opinion, _outside, second_opinions
-from fea.solid_look import solid_solution
+from fea.checks import calculix
+from fea.checks.calculix_compare import Opinion, _outside, second_opinions
+from fea.core.material import Material
+from fea.core.peak import Peak
+from fea.core.pin_loads import PinLoads
+from fea.solid.evaluate import solid_solution
+from fea.solve_pin import Asked, solve_pin
 from geometry import CutPin, Flat, Pin, Segment
-from geometry.solid_mesh import MeshSize
-from tests.fea import ccx_stand_in
+from geometry.mesh.solid_mesh import MeshSize
+from tests.support import calculix_stand_in
 
 AGREED = Opinion("P", "up", 100.0, 5.0, 900, 1e-7, 1e-5, 95.0, 95.0)
 FORCES = np.array([[[0.0, 1e3, 0.0]], [[0.0, -2e3, 500.0]]])
 STUB = Pin("P", (Segment(0.01, 0.02), Segment(0.005, 0.02, connection="P1")))
 UP = PinLoads("up", ("P1",), FORCES)
+FIRST = UP.at(np.array([0]))
 
 
 def test_what_is_beyond_its_limit_is_complained_of() -> None:
@@ -46,7 +47,7 @@ def test_a_failure_of_calculix_is_in_the_opinion(
     (tmp_path / "ccx").write_text("#!/bin/sh\necho '*ERROR in nonsense'\n")
     (tmp_path / "ccx").chmod(0o755)
     monkeypatch.setenv("PATH", f"{tmp_path}:/bin:/usr/bin")
-    peak = Peak("P", "up", "beam", "converged", "", 1e8, 1e6)
+    peak = Peak("P", "up", "beam", "converged", "", 1e8, 1e6, governing=FIRST)
     (opinion,) = second_opinions(STUB, steel, ("start",), (UP,), (peak,), 0.1)
     assert opinion.complaint == "ccx failed: *ERROR in nonsense"
     assert opinion.theirs is None
@@ -59,7 +60,7 @@ def test_a_pin_that_is_not_held_has_no_opinion(cantilever_pin: Pin, steel: Mater
 
 @pytest.fixture
 def stand_in(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(calculix, "run", ccx_stand_in.run)
+    monkeypatch.setattr(calculix, "run", calculix_stand_in.run)
 
 
 @pytest.mark.usefixtures("stand_in")
@@ -68,8 +69,8 @@ def test_another_program_on_our_deck_agrees_on_a_clamped_pin(steel: Material) ->
     instant that is asked for, whichever model answered.
     """
     peaks = (
-        Peak("P", "up", "harmonic", "converged", "", 5e6, 1e6, instant=1),
-        Peak("P", "again", "solid", "converged", "", 5e6, 1e6, instant=0),
+        Peak("P", "up", "harmonic", "converged", "", 5e6, 1e6, governing=UP.at(np.array([1]))),
+        Peak("P", "again", "solid", "converged", "", 5e6, 1e6, governing=FIRST),
     )
     cases = (UP, replace(UP, case="again"))
     opinions = second_opinions(STUB, steel, ("start",), cases, peaks, 0.1)
@@ -88,7 +89,7 @@ def test_another_program_agrees_on_a_pin_that_nothing_holds(steel: Material) -> 
     pin = Pin("P", tuple(Segment(0.005, 0.02, connection=c) for c in "ABC"))
     forces = np.array([[[0.0, 1e3, 0.0], [0.0, -2e3, 0.0], [0.0, 1e3, 0.0]]])
     loads = PinLoads("up", ("A", "B", "C"), forces)
-    peak = Peak("P", "up", "harmonic", "converged", "", 1.5e7, 1e6)
+    peak = Peak("P", "up", "harmonic", "converged", "", 1.5e7, 1e6, governing=loads)
     (one,) = second_opinions(pin, steel, (), (loads,), (peak,), 0.1)
     assert one.displacement is not None
     assert one.displacement < 2e-6
@@ -114,24 +115,24 @@ def test_what_no_longer_is_a_body_of_revolution_is_read_on_its_surface(steel: Ma
 
 def test_nodes_that_are_missing_are_told(steel: Material, monkeypatch: pytest.MonkeyPatch) -> None:
     def short(folder: Path) -> str:
-        ccx_stand_in.write(folder, np.zeros((5, 3)), np.zeros((5, 6)))
+        calculix_stand_in.write(folder, np.zeros((5, 3)), np.zeros((5, 6)))
         return "Total CalculiX Time: 0.5\n"
 
     monkeypatch.setattr(calculix, "run", short)
-    peak = Peak("P", "up", "harmonic", "converged", "", 1e8, 1e6)
+    peak = Peak("P", "up", "harmonic", "converged", "", 1e8, 1e6, governing=FIRST)
     (one,) = second_opinions(STUB, steel, ("start",), (UP,), (peak,), 0.1)
-    assert one.complaint.startswith("ccx did not write all ")
+    assert one.complaint.startswith("ccx did not write results for all ")
 
 
 @pytest.mark.peers
 def test_calculix_agrees_on_a_clamped_pin(cantilever_pin: Pin, steel: Material) -> None:
     """At the governing instant, the second."""
     (solved,) = solve_pin(cantilever_pin, steel, ("start",), (UP,), Asked(0.05, "harmonic"))
-    assert solved.peak.instant == 1
+    assert solved.instant == 1
     (opinion,) = second_opinions(cantilever_pin, steel, ("start",), (UP,), (solved.peak,), 0.1)
     assert opinion.complaint == ""
     assert opinion.ours == pytest.approx(opinion.theirs, rel=1e-4)
-    other = replace(solved.peak, instant=0)
+    other = replace(solved.peak, governing=FIRST)
     (opinion,) = second_opinions(cantilever_pin, steel, ("start",), (UP,), (other,), 0.1)
     assert "its maximum is -5" in opinion.complaint  # half the force
 

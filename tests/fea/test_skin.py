@@ -9,17 +9,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fea.material import Material
-from fea.outline import Outline
-from fea.pin_loads import Floats
-from fea.section import Section
-from fea.skin import Skin, skin
+from fea.core.material import Material
+from fea.core.pin_loads import Floats
+from fea.harmonic.assembly import Section
+from fea.harmonic.boundary import Outline
+from fea.harmonic.surface_stress import Skin, skin
 from geometry import Pin, Segment
-from geometry.meridian_mesh import SectionSize, meridian_mesh
-from tests.fea.exact import Exact, edge_tractions
-from tests.fea.polynomials import manufactured, polynomial
-from tests.fea.rectangles import rectangle
-from tests.fea.saint_venant import bending, tension, torsion
+from geometry.mesh.section_mesh import SectionSize, meridian_mesh
+from tests.support.exact_fields import Exact, edge_tractions
+from tests.support.polynomial_fields import manufactured, polynomial
+from tests.support.saint_venant import bending, tension, torsion
+from tests.support.section_grid import rectangle
 
 TUBE = rectangle(0.5, 1.0, 2.0, 3, 7)
 
@@ -62,7 +62,7 @@ def test_quadratic_displacements(n: int, steel: Material) -> None:
 
 @pytest.mark.parametrize("state", [tension, torsion, bending])
 def test_on_a_face_that_reaches_the_axis(state: type, steel: Material) -> None:
-    """Up to the axis; at r = 0 itself fea.section_stress takes the stress from inside."""
+    """Up to the axis; at r = 0 itself fea.harmonic.stress_recovery takes the stress from inside."""
     exact: Exact = state(steel)
     space = Section(rectangle(0.0, 1.0, 2.0, 3, 6))
     found = found_by(space, steel, exact, edge_tractions(space, Outline(space), exact))
@@ -101,8 +101,8 @@ def test_a_jump_of_traction_is_seen_from_its_own_side(steel: Material) -> None:
     def stress(r: Floats, z: Floats) -> Floats:
         lam, mu = steel.lame
         e = np.where(z < 1.0, 1.0, 1.0 + 2.0 * (z - 1.0))
-        nought = 0.0 * r
-        return np.stack([lam * e, lam * e, (lam + 2.0 * mu) * e, nought, nought, nought], axis=-1)
+        zero = 0.0 * r
+        return np.stack([lam * e, lam * e, (lam + 2.0 * mu) * e, zero, zero, zero], axis=-1)
 
     exact = Exact(0, displacement, stress)
     space = Section(rectangle(0.5, 1.0, 2.0, 3, 8))

@@ -7,14 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fea.envelope import envelope
-from fea.material import Material
-from fea.pin_loads import PinLoads
-from fea.solid import SolidModel, UnitFields
-from fea.tensor import von_mises
+from fea.core.material import Material
+from fea.core.pin_loads import PinLoads
+from fea.core.voigt import von_mises
+from fea.solid.model import SolidModel, UnitFields
+from fea.solid.superposition import envelope
 from geometry import Pin, Segment
-from geometry.solid_mesh import MeshSize, solid_mesh
-from tests.fea.unit_loads import forces as forces_on
+from geometry.mesh.solid_mesh import MeshSize, solid_mesh
+from tests.support.unit_loads import forces as forces_on
 
 
 @pytest.mark.parametrize(

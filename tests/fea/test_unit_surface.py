@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fea import unit_surface as shown_by
-from fea.answer import Answer
-from fea.ladder import Asked, Model, solve_pin
-from fea.material import Material
-from fea.pin_loads import Floats, PinLoads
-from fea.tensor import von_mises
-from fea.unit_surface import Mask, UnitSurface, amounts, excluded, largest_there, unit_surface
+from fea import surface_fields as shown_by
+from fea.core.material import Material
+from fea.core.pin_loads import Floats, PinLoads
+from fea.core.solution import Answer
+from fea.core.voigt import von_mises
+from fea.solve_pin import Asked, Model, solve_pin
+from fea.surface_fields import Mask, UnitSurface, amounts, excluded, largest_there, unit_surface
 from geometry import Pin
 
 INSTANT = 1
@@ -116,7 +116,9 @@ def test_solid_superposes_to_the_picture(cantilever_pin: Pin, steel: Material) -
 def test_a_fine_mesh_is_shown_by_its_corners(
     cantilever_pin: Pin, steel: Material, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A quarter of the triangles, between vertices alone, with the numbers they had."""
+    """A quarter of the triangles, between vertices alone, with the numbers they had, but for the
+    round-off of sums of six terms, whose order may depend on how many points there are.
+    """
     answer = solved(cantilever_pin, steel, "solid", loads("uniform"))
     every = unit_surface(answer)
     monkeypatch.setattr(shown_by, "MOST_NODES", 100)
@@ -128,7 +130,8 @@ def test_a_fine_mesh_is_shown_by_its_corners(
     row = {tuple(p): k for k, p in enumerate(every.points.tolist())}
     same = [row[tuple(p)] for p in corners.points.tolist()]
     assert len(same) < 0.3 * len(every.points)
-    assert np.array_equal(corners.stress, every.stress[same])
+    largest = np.abs(every.stress).max()
+    np.testing.assert_allclose(corners.stress, every.stress[same], rtol=0.0, atol=1e-14 * largest)
     assert np.array_equal(excluded(answer), near_places(corners.points))
 
 

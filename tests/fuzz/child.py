@@ -11,15 +11,18 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from pinstress import check, write  # imported once, before the forks
-from pinstress.cli import run_command_line
+from pinstress.cli import check
+from pinstress.cli import run as write  # imported once, before the forks
+from pinstress.cli.commands import run_command_line
 
 __all__ = ["End", "check", "run", "write"]
 
 SECONDS = 60  # of processor time: the machine may have other things to do
-OUT_OF_TIME = f"signal {int(signal.SIGXCPU)} "  # as a worker's end is told
+OUT_OF_TIME = f"signal {int(signal.SIGXCPU)} "  # as a worker's end is reported
 MEMORY = 4 * 2**30  # bytes of address space
-SIGNS = re.compile(r"Traceback|Warning|Exception ignored|\w+Error\b(?!:? the numerics)|<class ")
+SIGNS = re.compile(
+    r"Traceback|\w+Warning\b|Exception ignored|\w+Error\b(?!:? the numerics)|<class "
+)
 
 
 @dataclass(frozen=True)

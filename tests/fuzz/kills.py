@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -12,8 +13,9 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
+from pinstress.cli import manifest
 from tests.conftest import ROOT
-from tests.process_group import alive
+from tests.support.process_group import alive, heard
 
 SIGNALS = (signal.SIGKILL, signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
 PATIENCE = 30.0  # s for the last process to be gone, on a machine with other work
@@ -77,10 +79,9 @@ def kill(seed: int, folder: Path, jobs: int, longest: float) -> Killed:
     after, sent = rng.uniform(0.0, longest), rng.choice(SIGNALS)
     out = folder / f"out{seed}"
     if seed % 2:
-        out.mkdir()
-        for path in (folder / "whole").iterdir():
-            (out / path.name).symlink_to(path)
+        shutil.copytree(folder / "whole", out)
         (out / "old").touch()
+        manifest.complete(out)
     process = _run(folder, out.name, jobs)
     with process:
         try:
@@ -97,7 +98,7 @@ def kill(seed: int, folder: Path, jobs: int, longest: float) -> Killed:
 
 def _run(folder: Path, out: str, jobs: int) -> subprocess.Popen[bytes]:
     command = "run", "study.toml", "--out", out, "--no-pictures", "--no-cache", "--jobs", str(jobs)
-    with (folder / f"{out}.err").open("wb") as messages:
+    with (folder / f"{out}.err").open("wb") as messages, heard():
         return subprocess.Popen(
             [sys.executable, "-X", "faulthandler", "-m", "pinstress", *command],
             cwd=folder,
@@ -114,7 +115,6 @@ def _found(out: Path, whole: Path) -> str:
         return "absent"
     names, wanted = ({str(p.relative_to(f)) for p in f.rglob("*")} for f in (out, whole))
     if "old" in names:
-        wanted = {p.name for p in whole.iterdir()}
         return "old" if names >= wanted else "half"
     ends = (out / "report.html").is_file() and "</html>" in (out / "report.html").read_text()
     try:

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pinstress.units import DIMENSIONS, SYSTEMS, UNIT_NEEDED, to_si
+from pinstress.schema.units import DIMENSIONS, SYSTEMS, UNIT_NEEDED, to_si
 from tests.fuzz.kills import kill, whole_run
 
 ROOT = Path(__file__).parents[2]
@@ -28,6 +28,16 @@ def test_broken_input_ends_with_a_message_or_a_result(kind: str, first: int) -> 
     done = subprocess.run(
         [*command, "--runs", "20"], cwd=ROOT, capture_output=True, text=True, timeout=1200
     )
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
+
+
+@pytest.mark.slow
+def test_valid_studies_have_results() -> None:
+    """Drawn by a grammar; `python -m tests.fuzz grammar` draws others. What is refused or fails
+    must be so for a reason that is listed there.
+    """
+    command = [sys.executable, "-m", "tests.fuzz", "grammar", "--count", "16", "--seed", "1"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=1200)
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from skfem import ElementTetP2, MeshTet1
 
-from geometry.inverted import distortion, folded
-from geometry.quadratic import quadratic
+from geometry.mesh.quality import distortion, folded
+from geometry.mesh.tet10 import quadratic
 
 ONE = np.arange(10)[None]
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from fea.outline import Outline
-from fea.section import Section
+from fea.harmonic.assembly import Section
+from fea.harmonic.boundary import Outline
 from geometry import Pin, Segment
-from geometry.meridian_mesh import SectionSize, Spot, meridian_mesh
+from geometry.mesh.section_mesh import SectionSize, Spot, meridian_mesh
 
 
 def test_reaches_that_meet_leave_no_edge_of_nought() -> None:

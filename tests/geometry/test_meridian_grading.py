@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from geometry import Pin, Segment, vertices
-from geometry.grading import size_at
-from geometry.meridian_mesh import MeridianMesh, SectionSize, Spot, meridian_mesh
-from tests.geometry.sections import PINS, Floats, nodes
+from geometry.mesh.section_mesh import MeridianMesh, SectionSize, Spot, meridian_mesh
+from geometry.mesh.sizing import size_at
+from tests.support.section_pins import PINS, Floats, nodes
 
 
 def sizes(found: MeridianMesh) -> tuple[Floats, Floats]:

@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from geometry import Arc, GeometryError, Pin, Segment, meridian, sharp_corners
+from tests.support.errors import raises
 
 
 def integrated_volume(pin: Pin) -> float:
@@ -84,28 +85,29 @@ def test_a_segments_own_fillet_overrides_the_pins() -> None:
 def test_surfaces_go_by_connection_name_or_number() -> None:
     pin = Pin("P", (Segment(1, 2, name="root", connection="B"), Segment(1, 3, name="head")))
     assert [pin.surface(n) for n in ("B", "root", "head", "start")] == ["B", "B", "head", "start"]
-    with pytest.raises(GeometryError, match="no surface 'tail'; it has start, end, B, head"):
+    with raises(GeometryError, "unknown-surface", "'tail'", "start, end, B, head"):
         pin.surface("tail")
 
 
 @pytest.mark.parametrize(
-    ("segments", "fillet", "message"),
+    ("segments", "fillet", "code", "at"),
     [
-        ((), 0.0, "no segments"),
-        ((Segment(0.0, 1.0),), 0.0, "segment 1: its length must be positive"),
-        ((Segment(1.0, -1.0),), 0.0, "its diameter must be positive"),
-        ((Segment(1.0, np.inf),), 0.0, "its diameter must be positive"),
-        ((Segment(1.0, 1.0, bore=1.0),), 0.0, "its bore must be smaller"),
-        ((Segment(1.0, 2.0), Segment(1.0, 3.0)), 0.6, "does not fit between segments 1 and 2"),
-        ((Segment(1, 3), Segment(0.5, 2), Segment(1, 3)), 0.3, "take its whole length"),
-        ((Segment(1, 2), Segment(1, 3)), -0.1, "must not be negative"),
-        ((Segment(1, 3, bore=2.5), Segment(1, 2)), 0.0, "separates segment 1 from segment 2"),
-        ((Segment(1, 3, name="a"), Segment(1, 2, connection="a")), 0.0, "called 'a'"),
-        ((Segment(1, 3, name="start"),), 0.0, "called 'start'"),
+        ((), 0.0, "no-segments", ()),
+        ((Segment(0.0, 1.0),), 0.0, "not-positive", ("segment", 1)),
+        ((Segment(1.0, -1.0),), 0.0, "not-positive", ("segment", 1)),
+        ((Segment(1.0, np.inf),), 0.0, "not-positive", ("segment", 1)),
+        ((Segment(1.0, 1.0, bore=1.0),), 0.0, "bore-too-large", ("segment", 1)),
+        ((Segment(1.0, 2.0), Segment(1.0, 3.0)), 0.6, "fillet-too-large", ("segment", 1)),
+        ((Segment(1, 3), Segment(0.5, 2), Segment(1, 3)), 0.3, "fillets-overlap", ("segment", 2)),
+        ((Segment(1, 2), Segment(1, 3)), -0.1, "negative", ()),
+        ((Segment(1, 3, bore=2.5), Segment(1, 2)), 0.0, "segments-separate", ("segment", 1)),
+        ((Segment(1, 3, name="a"), Segment(1, 2, connection="a")), 0.0, "duplicate-name", ()),
+        ((Segment(1, 3, name="start"),), 0.0, "duplicate-name", ()),
     ],
 )
 def test_impossible_shapes_are_refused(
-    segments: tuple[Segment, ...], fillet: float, message: str
+    segments: tuple[Segment, ...], fillet: float, code: str, at: tuple[str | int, ...]
 ) -> None:
-    with pytest.raises(GeometryError, match=message):
+    with raises(GeometryError, code, "pin P") as error:
         Pin("P", segments, fillet)
+    assert error.value.at == at

@@ -7,6 +7,7 @@ import math
 import pytest
 
 from geometry import CutPin, Flat, GeometryError, Hole, Pin, PinLike, Segment
+from tests.support.errors import raises
 
 TURNED = Pin(
     "P",
@@ -17,6 +18,7 @@ TURNED = Pin(
     ),
     fillet=0.004,
 )
+
 CUT = CutPin(TURNED, (Hole(0.03, 0.003),), (Flat(0.045, 0.05, 0.009),))
 
 
@@ -31,7 +33,7 @@ def test_both_have_one_face(pin: PinLike) -> None:
     assert (band.length, band.middle) == pytest.approx((0.026, 0.037))
     assert band.area == pytest.approx(2.0 * math.pi * 0.01 * 0.026)
     assert [pin.surface(n) for n in ("start", "root", "tip")] == ["start", "root", "P2"]
-    with pytest.raises(GeometryError, match="no surface 'P3'; it has start, end, root, P1, P2"):
+    with raises(GeometryError, "unknown-surface", "'P3'", "start, end, root, P1, P2"):
         pin.surface("P3")
 
 
@@ -63,7 +65,7 @@ def test_weight_and_bore() -> None:
 
 
 def test_nothing_is_no_pin() -> None:
-    with pytest.raises(GeometryError, match="the profile has no segments"):
+    with raises(GeometryError, "no-segments"):
         Pin("P", ())
-    with pytest.raises(GeometryError, match="segment 1: its fillet must not be negative"):
+    with raises(GeometryError, "negative", "segment 1"):
         Pin("P", (Segment(0.02, 0.03, fillet=-0.001),))

@@ -10,18 +10,19 @@ import meshio
 import numpy as np
 import pytest
 
-from fea.elasticity import Discretisation
-from fea.surface import Patch, surface
+from fea.solid.assembly import Discretisation
+from fea.solid.boundary import Patch, surface
 from geometry import CutPin, GeometryError, Hole, Pin, Segment
-from geometry import cad_mesh as cad
-from geometry.body_file import BodyFile, Place
-from geometry.elements import with_element
-from geometry.gmsh_session import gmsh_model
+from geometry.imported import cad_mesh as cad
+from geometry.imported.body_file import BodyFile, Place
+from geometry.imported.imported_pin import SolidBody
+from geometry.mesh.elements import with_element
+from geometry.mesh.gmsh_session import gmsh_model
+from geometry.mesh.solid_mesh import MeshError, MeshSize, SolidMesh, solid_mesh
+from geometry.mesh.tet10 import refined
 from geometry.meshing import solid_mesh as any_mesh
-from geometry.quadratic import refined
-from geometry.solid_body import SolidBody
-from geometry.solid_mesh import MeshError, MeshSize, SolidMesh, solid_mesh
-from tests.geometry.files import MM, write_mesh, write_step
+from tests.support.errors import raises
+from tests.support.pin_files import MM, write_mesh, write_step
 
 SHAFT = (Segment(20.0, 30.0), Segment(40.0, 20.0))
 STEPPED = Pin("P", SHAFT, fillet=4.0)  # in mm
@@ -30,6 +31,7 @@ IN_METRES = Pin(
     (Segment(0.02, 0.03), Segment(0.02, 0.02), Segment(0.02, 0.02, connection="B")),
     fillet=0.004,
 )
+
 BAND = Place("B", (0.04, 0.06))
 
 
@@ -81,17 +83,21 @@ def test_surfaces_of_a_step_file_have_its_names(step: Path, tmp_path: Path) -> N
     assert (band.z0, band.z1) == pytest.approx((0.02, 0.024))
     assert 0.01 < band.radius < 0.014
     assert set(found.mesh(MeshSize(across=3.0)).mesh.boundaries) == {*faces, "B", "end"}
-    with pytest.raises(
-        GeometryError, match=r"no surface 'nack'; it has start, head|has no surface"
-    ):
+    with raises(GeometryError, "unknown-surface", "'nack'", "head"):
         body(named, Place("B", surface="nack"))
+
+
+@pytest.fixture(scope="module")
+def solid() -> SolidMesh:
+    return solid_mesh(IN_METRES, MeshSize(), (0.04, 0.06))
 
 
 @pytest.mark.parametrize("ending", ["vtk", "msh", "inp"])
 @pytest.mark.parametrize("linear", [False, True])
-def test_a_mesh_is_taken_as_it_is(ending: str, linear: bool, tmp_path: Path) -> None:
+def test_a_mesh_is_taken_as_it_is(
+    ending: str, linear: bool, solid: SolidMesh, tmp_path: Path
+) -> None:
     """And halved: eight times the elements, the same volume. Straight sides cut 2 % off it."""
-    solid = solid_mesh(IN_METRES, MeshSize(), (0.04, 0.06))
     path = write_mesh(solid, tmp_path / f"pin.{ending}", linear)
     found = body(path)
     assert found.meshed
@@ -187,62 +193,59 @@ def test_meshes_that_are_no_pin(tmp_path: Path) -> None:
     whole = meshio.read(write_mesh(solid_mesh(IN_METRES, MeshSize(across=2.0)), tmp_path / "a.vtk"))
     points, cells, path = whole.points, whole.cells[0].data, tmp_path / "bad.vtk"
 
-    def refuse(message: str, x: np.ndarray, t: np.ndarray) -> None:
+    def refuse(code: str, x: np.ndarray, t: np.ndarray) -> None:
         meshio.write(path, meshio.Mesh(x, [("tetra10", t)]))
-        with pytest.raises(GeometryError, match=message):
+        with raises(GeometryError, code, "bad.vtk"):
             body(path)
 
     two = np.concatenate([points, points + np.array([0.0, 0.0, 60.0])])
-    refuse("in 2 pieces that share no facet", two, np.concatenate([cells, cells + len(points)]))
-    refuse("names nodes that it does not have", points, np.where(cells == 5, 10**6, cells))
-    refuse("names nodes that it does not have", points, np.where(cells == 5, -3, cells))
+    refuse("several-pieces", two, np.concatenate([cells, cells + len(points)]))
+    refuse("unknown-nodes", points, np.where(cells == 5, 10**6, cells))
+    refuse("unknown-nodes", points, np.where(cells == 5, -3, cells))
     for wrong in (np.nan, np.inf, 1e308):
-        refuse("no finite numbers or further than", np.where(points > 59.0, wrong, points), cells)
+        refuse("bad-nodes", np.where(points > 59.0, wrong, points), cells)
     for ending in ("msh", "inp", "vtk", "vtu", "med", "bdf", "mesh", "xdmf", "doc"):
         for junk in (b"", b"\0" * 1000, bytes(range(256)) * 20, "Stöße\n".encode("latin-1") * 50):
             (tmp_path / f"junk.{ending}").write_bytes(junk)
-            with pytest.raises(GeometryError, match=r"is no geometry that can be read|no volume"):
+            with pytest.raises(GeometryError) as error:
                 body(tmp_path / f"junk.{ending}")
+            assert error.value.code in ("unreadable-geometry", "no-volume")
 
 
 def test_bad_files(tmp_path: Path, step: Path) -> None:
-    def refuse(path: Path, message: str, *places: Place) -> None:
-        with pytest.raises(GeometryError, match=message):
+    def refuse(path: Path, code: str, *places: Place, named: str = "") -> None:
+        with raises(GeometryError, code, path.name if not places else "band B", named):
             body(path, *places)
 
-    refuse(tmp_path / "gone.step", "there is no file")
+    refuse(tmp_path / "gone.step", "no-such-file")
     for ending in ("step", "msh", "vtk", "doc"):
         (tmp_path / f"text.{ending}").write_text("Dear pin,\n")
-        refuse(tmp_path / f"text.{ending}", "is no geometry")
+        refuse(tmp_path / f"text.{ending}", "unreadable-geometry")
     sheet = tmp_path / "sheet.step"
     with gmsh_model("sheet") as gmsh:
         gmsh.model.occ.addRectangle(0, 0, 0, 1, 1)
         gmsh.model.occ.synchronize()
         gmsh.write(str(sheet))
-    refuse(sheet, "there is no volume in sheet.step")
+    refuse(sheet, "no-volume")
     pair = tmp_path / "pair.step"
     with gmsh_model("pair") as gmsh:
         for x in (0, 5):
             gmsh.model.occ.addBox(x, 0, 0, 1, 1, 1)
         gmsh.model.occ.synchronize()
         gmsh.write(str(pair))
-    refuse(pair, "pair.step holds 2 solids; a pin is one")
+    refuse(pair, "several-pieces", named="2 solids")
     square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=float)
     meshio.write(tmp_path / "s.stl", meshio.Mesh(square, [("triangle", [[0, 1, 2], [0, 2, 3]])]))
-    refuse(tmp_path / "s.stl", "there is no volume in it: it has no tetrahedra, but triangle")
+    refuse(tmp_path / "s.stl", "no-volume", named="triangle")
     cube = np.concatenate([square, square + np.array([0.0, 0.0, 1.0])])
     meshio.write(tmp_path / "h.vtk", meshio.Mesh(cube, [("hexahedron", [list(range(8))])]))
-    refuse(tmp_path / "h.vtk", "no tetrahedra, but hexahedron")
-    refuse(
-        step,
-        r"no outer surface between z = 70 and 80 .* from z = 0 to 60",
-        Place("B", (0.07, 0.08)),
-    )
-    refuse(step, "needs a below b", Place("B", (0.02, 0.01)))
+    refuse(tmp_path / "h.vtk", "no-volume", named="hexahedron")
+    refuse(step, "band-not-found", Place("B", (0.07, 0.08)), named="from z = 0 to 60")
+    refuse(step, "z-reversed", Place("B", (0.02, 0.01)))
     found = body(step)
-    with pytest.raises(GeometryError, match="no surface 'Q'; it has"):
+    with raises(GeometryError, "unknown-surface", "'Q'"):
         found.surface("Q")
-    with pytest.raises(GeometryError, match="no surface 'Q'; it has"):
+    with raises(GeometryError, "unknown-surface", "'Q'"):
         found.band("Q")
 
 
@@ -251,24 +254,24 @@ TETRAHEDRON = ("tetra", [[0, 1, 2, 4]])
 
 
 @pytest.mark.parametrize(
-    ("cells", "error", "message"),
+    ("cells", "error", "code"),
     [
         ([TETRAHEDRON, ("hexahedron", [[0, 1, 3, 2, 4, 5, 7, 6]])], GeometryError,
-         "only tetrahedra can be used, and it also has hexahedron"),
+         "unsupported-elements"),
         ([TETRAHEDRON, ("tetra10", [[0, 1, 2, 4, 3, 5, 6, 7, 1, 2]])], GeometryError,
-         "it mixes linear and quadratic tetrahedra"),
+         "mixed-elements"),
         ([("tetra10", [[0, 3, 5, 6, 7, 4, 2, 1, 0, 3]])], MeshError,
-         "it has inverted elements, 1 bent inside out"),
+         "inverted-elements"),
         ([("tetra", [[0, 1, 2, 4], [0, 1, 2, 7]])], MeshError,
-         "it has inverted elements: at 1 facets one lies over its neighbour"),
+         "overlapping-elements"),
     ],
 )  # fmt: skip
 def test_bad_meshes(
-    cells: list[tuple[str, list[list[int]]]], error: type[Exception], message: str, tmp_path: Path
+    cells: list[tuple[str, list[list[int]]]], error: type[Exception], code: str, tmp_path: Path
 ) -> None:
     path = tmp_path / "bad.vtk"
     meshio.write(path, meshio.Mesh(CUBE, cells))
-    with pytest.raises(error, match=f"pin P: bad.vtk: {message}"):
+    with raises(error, code, "pin P: bad.vtk: "):
         body(path, Place("B", (0.0, 1e-3)))
 
 
@@ -302,7 +305,7 @@ def test_a_file_that_gives_slivers_is_tried_thrice(
     monkeypatch.setattr(cad, "_mesh", meshed)
     assert cad.cad_mesh(file, MeshSize()).jacobian == 0.5
     found = iter([-0.3, 0.02, 0.05])
-    with pytest.raises(MeshError, match=r"at three sizes \(min/max Jacobian -0\.3, 0\.02, 0\.05\)"):
+    with raises(MeshError, "bad-elements", "-0.3, 0.02, 0.05"):
         cad.cad_mesh(file, MeshSize())
     assert tried == pytest.approx([1.0, 1.15, 1.0, 1.15, 1.35])
 
@@ -318,7 +321,7 @@ def test_what_gmsh_cannot_mesh_is_told(step: Path, monkeypatch: pytest.MonkeyPat
         monkeypatch.setattr(cad, "repair", repair)
         cad.cad_mesh(file, MeshSize(across=2.0))
 
-    with pytest.raises(MeshError, match=r"gmsh could not mesh pin\.step \(no luck\)"):
+    with raises(MeshError, "gmsh-failed", "pin.step", "no luck"):
         fails(Exception("no luck"))
     with pytest.raises(KeyError):
         fails(KeyError("ours"))

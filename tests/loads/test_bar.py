@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from loads.bar import flat_bar, round_bar
+from loads.mass_properties import flat_bar, round_bar
 
 LENGTH, DENSITY = 0.4, 7850.0
 _X, _W = np.polynomial.legendre.leggauss(8)

@@ -15,21 +15,23 @@ from pathlib import Path
 
 import pytest
 
-from fea.look import Look
-from fea.rungs import Rung
+from fea.core.mesh_result import MeshResult
+from fea.single_mesh import Rung
 from fea.verdict import NOISE
 from pinstress import load_study
-from pinstress.chart import Plan, chart, prepare
-from pinstress.cli import run_command_line
-from pinstress.own_process import Job, Limits, Measured, measure
-from pinstress.write_chart import _tell_not_reached
-from reports.chart import Chart, ChartPoint, write_chart_csv
-from reports.chart_summary import cost, failures, reference_line, staying, summary
-from reports.plot_chart import chart_plot
+from pinstress.chart.chart import ChartPlan, chart, plan_chart
+from pinstress.chart.measured_process import Measured, MeasureJob, MeasureLimits, measure
+from pinstress.cli.chart import _report_missed
+from pinstress.cli.commands import run_command_line
+from reports.data.chart import Chart, ChartPoint
+from reports.plots.chart import chart_plot
+from reports.tables.chart import write_chart_csv
+from reports.text.chart_summary import cost, failures, reference_line, staying, summary
+from tests.support.command_line import ONE_PIN, pinstress
+from tests.support.process_group import started
 
 ROOT = Path(__file__).parent.parent.parent
 STUDY = ROOT / "studies" / "one_pin.toml"
-ONE_PIN = STUDY.read_text()
 CONTRACT = [
     "model", "element", "dofs", "seconds", "peak_memory_mb", "max_von_mises", "relative_error",
 ]  # fmt: skip
@@ -44,16 +46,6 @@ CURVED, STRAIGHT, LINEAR = (
 )  # fmt: skip
 
 
-def pinstress(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "pinstress", *arguments],
-        cwd=cwd,
-        capture_output=True,
-        text=True,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-    )
-
-
 @dataclass
 class MadeUp:
     """Models whose errors and costs are powers of how fine they are: harmonic 0.02 / 2^level at
@@ -62,7 +54,7 @@ class MadeUp:
 
     fails: dict[tuple[str, str], str]
 
-    def __call__(self, job: Job) -> Measured:
+    def __call__(self, job: MeasureJob) -> Measured:
         rung = job.rung
         if reason := self.fails.get((rung.model, rung.element if rung.model == "solid" else "")):
             return Measured(None, failed=reason, over="limit" in reason)
@@ -72,17 +64,17 @@ class MadeUp:
             "harmonic": (0.02 * 0.5**rung.level, 2.0**rung.level, 0.01 * 2.0**rung.level, 10.0),
             "solid": (0.08 * part * 0.5**rung.level, 4.0**rung.level, 4.0**rung.level, 400.0),
         }[rung.model]
-        look = Look(round(1000 * unknowns), EXACT * (1.0 - error), 0, (0.0, 0.0, 0.0))
-        return Measured(look, spent, memory, 100.0)
+        result = MeshResult(round(1000 * unknowns), EXACT * (1.0 - error), 0, (0.0, 0.0, 0.0))
+        return Measured(result, spent, memory, 100.0)
 
 
 @pytest.fixture(scope="module")
-def plan() -> Plan:
-    return prepare(load_study(STUDY), "B", "landing")
+def plan() -> ChartPlan:
+    return plan_chart(load_study(STUDY), "B", "landing")
 
 
 @pytest.fixture
-def made_up(plan: Plan) -> Chart:
+def made_up(plan: ChartPlan) -> Chart:
     return chart(plan, MadeUp({}))
 
 
@@ -110,7 +102,7 @@ def test_the_reference_is_an_order_finer_and_its_error_is_stated(made_up: Chart)
     assert "Reference: harmonic model" in reference_line(made_up)
 
 
-def test_the_mesh_on_which_auto_ends_is_marked(plan: Plan) -> None:
+def test_the_mesh_on_which_auto_ends_is_marked(plan: ChartPlan) -> None:
     """Errors of second order on meshes finer by the root of 2 are known to 1.25 times themselves
     from the third on, where that is 0.63 %, so auto ends there for 5 %; for 0.2 % on the fifth, to
     which the ladder is made longer.
@@ -149,7 +141,7 @@ def test_an_error_that_is_small_by_chance_does_not_count(made_up: Chart) -> None
     assert found.seconds == pytest.approx(curve[3].seconds, rel=1e-2)
 
 
-def test_the_sentence_names_the_cheapest_and_the_ratio(plan: Plan) -> None:
+def test_the_sentence_names_the_cheapest_and_the_ratio(plan: ChartPlan) -> None:
     """At 5 % the solid model takes (0.08 / 0.05)^2 = 2.56 s and the harmonic one 0.004 s, 640 times
     less; 4 % is the best of the solid model's meshes, 4 s beside 0.005 s.
     """
@@ -159,10 +151,10 @@ def test_the_sentence_names_the_cheapest_and_the_ratio(plan: Plan) -> None:
     times = int(told.split(" takes ")[1].split(" times")[0])
     assert times == pytest.approx(640, rel=2e-2)
     assert "40 times the memory" in told
-    assert "never stays" not in told
+    assert "does not stay" not in told
     strict = replace(plan, asked=replace(plan.asked, tolerance=0.01))
     told = summary(chart(strict, MadeUp({})))
-    assert "The solid model never stays within 1 % on these meshes; its best is 4 %." in told
+    assert "does not stay within 1 % on these meshes; its smallest error is 4 %." in told
     times = int(told.split(" takes ")[1].split(" times")[0])
     assert times == pytest.approx(800, rel=2e-2)
 
@@ -171,10 +163,12 @@ def test_a_beam_that_is_right_by_chance_is_told_from_one_that_knows(made_up: Cha
     points = (replace(made_up.points[0], error=0.01), *made_up.points[1:])
     told = summary(replace(made_up, points=points, beam_error=0.34))
     assert "Cheapest within 5 %: beam, 1.0 ms" in told
-    assert "auto does not rely on it: the error that a beam can vouch for here is 34 %" in told
+    assert "auto does not use it: the estimated error of the beam is 34 %" in told
 
 
-def test_what_failed_is_shown_with_its_reason(plan: Plan, made_up: Chart, tmp_path: Path) -> None:
+def test_what_failed_is_shown_with_its_reason(
+    plan: ChartPlan, made_up: Chart, tmp_path: Path
+) -> None:
     """One that passes a limit ends its ladder; any other failure is a point among others."""
     fails = {("solid", "linear"): "passed the limit of 9 s", ("solid", "straight"): "no mesh"}
     found = chart(plan, MadeUp(fails))
@@ -198,12 +192,12 @@ def test_what_failed_is_shown_with_its_reason(plan: Plan, made_up: Chart, tmp_pa
 def test_without_any_point_inside_the_status_is_1(
     made_up: Chart, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert _tell_not_reached(made_up) == 0
-    assert _tell_not_reached(replace(made_up, tolerance=1e-3)) == 1
-    assert "nothing charted is within" in capsys.readouterr().err
+    assert _report_missed(made_up) == 0
+    assert _report_missed(replace(made_up, tolerance=1e-3)) == 1
+    assert "no mesh is within the tolerance" in capsys.readouterr().err
     vague = replace(made_up.reference, error=0.06)
-    assert _tell_not_reached(replace(made_up, reference=vague)) == 1
-    assert "the reference is known to 6 % only" in capsys.readouterr().err
+    assert _report_missed(replace(made_up, reference=vague)) == 1
+    assert "the reference itself has an error of 6 %" in capsys.readouterr().err
 
 
 def test_the_chart_is_the_same_bytes_every_time(made_up: Chart, tmp_path: Path) -> None:
@@ -215,12 +209,12 @@ def test_the_chart_is_the_same_bytes_every_time(made_up: Chart, tmp_path: Path) 
         assert (one / name).read_bytes() == (two / name).read_bytes()
 
 
-def test_a_point_in_its_own_process(plan: Plan) -> None:
+def test_a_point_in_its_own_process(plan: ChartPlan) -> None:
     """What it says is the same every time; its time and memory are its own."""
     rung = Rung("harmonic", level=0)
-    one, two = (measure(Job(plan.problem, rung, runs=n), Limits()) for n in (1, 2))
-    assert one.look is not None
-    assert one.look == two.look
+    one, two = (measure(MeasureJob(plan.problem, rung, runs=n), MeasureLimits()) for n in (1, 2))
+    assert one.result is not None
+    assert one.result == two.result
     assert 0.0 < one.seconds < 60.0
     assert 1.0 < one.memory < 200.0
     assert 30.0 < one.bare < 500.0
@@ -229,17 +223,17 @@ def test_a_point_in_its_own_process(plan: Plan) -> None:
 @pytest.mark.parametrize(
     ("rung", "limits", "reason"),
     [
-        (Rung("solid", level=2), Limits(seconds=0.5), "passed the limit of 0.5 s"),
-        (Rung("solid", level=2), Limits(memory=20.0), "passed the limit of 20 MB"),
-        (Rung("solid", level=40), Limits(), "it would take"),
+        (Rung("solid", level=2), MeasureLimits(seconds=0.5), "passed the limit of 0.5 s"),
+        (Rung("solid", level=2), MeasureLimits(memory=20.0), "passed the limit of 20 MB"),
+        (Rung("solid", level=40), MeasureLimits(), "elements, because the thinnest part"),
     ],
 )
 def test_a_point_that_passes_a_limit_or_cannot_be_fails(
-    plan: Plan, rung: Rung, limits: Limits, reason: str
+    plan: ChartPlan, rung: Rung, limits: MeasureLimits, reason: str
 ) -> None:
     start = time.monotonic()
-    found = measure(Job(plan.problem, rung), limits)
-    assert found.look is None
+    found = measure(MeasureJob(plan.problem, rung), limits)
+    assert found.result is None
     assert reason in found.failed
     assert time.monotonic() - start < 60.0
 
@@ -248,8 +242,8 @@ def test_a_pin_that_is_no_body_of_revolution(tmp_path: Path) -> None:
     """Its reference is the solid model itself, on finer meshes than are charted."""
     text = ONE_PIN.replace("fillet = 0.4", "hole = [{ z = 2.5, diameter = 0.5 }]\nfillet = 0.4")
     (tmp_path / "study.toml").write_text(text)
-    found = chart(prepare(load_study(tmp_path / "study.toml"), "B", "landing"), MadeUp({}))
-    assert [p.failed for p in found.points[:2]] == ["pin B is no body of revolution"] * 2
+    found = chart(plan_chart(load_study(tmp_path / "study.toml"), "B", "landing"), MadeUp({}))
+    assert all(p.failed and "pin B" in p.failed for p in found.points[:2])
     assert found.reference.model == "solid"
     assert found.reference.dofs >= 8 * max(p.dofs or 0 for p in found.curves["solid", CURVED])
     assert math.isfinite(found.reference.error)
@@ -259,7 +253,7 @@ def test_a_pin_that_is_no_body_of_revolution(tmp_path: Path) -> None:
 def test_where_no_maximum_exists_the_chart_says_so(tmp_path: Path) -> None:
     text = ONE_PIN.replace("fillet = 0.4", "fillet = 0")
     (tmp_path / "study.toml").write_text(text)
-    found = chart(prepare(load_study(tmp_path / "study.toml"), "B", "landing"), MadeUp({}))
+    found = chart(plan_chart(load_study(tmp_path / "study.toml"), "B", "landing"), MadeUp({}))
     assert found.note.startswith("No maximum exists: at a sharp corner")
     assert "the same" not in found.note
     assert "one rule for all models" in found.note
@@ -320,19 +314,19 @@ def test_results_of_a_run_are_not_replaced_by_a_chart(
 
 
 def test_an_interrupt_leaves_nothing_behind(tmp_path: Path) -> None:
-    process = subprocess.Popen(
+    with started(
         [sys.executable, "-m", "pinstress", "chart", str(STUDY), "--pin", "B", "--case", "landing"],
         cwd=tmp_path,
         stderr=subprocess.PIPE,
         stdout=subprocess.PIPE,
-        text=True,
         env={**os.environ, "PYTHONPATH": str(ROOT), "TMPDIR": str(tmp_path)},
-    )
-    deadline = time.monotonic() + 60.0
-    while not list(tmp_path.glob("pinstress-*/bare")) and time.monotonic() < deadline:
-        time.sleep(0.02)  # until the first point's process is at work
-    os.kill(process.pid, signal.SIGINT)
-    _, stderr = process.communicate(timeout=60)
+    ) as process:
+        deadline = time.monotonic() + 60.0
+        while not list(tmp_path.glob("pinstress-*/bare")):
+            assert time.monotonic() < deadline  # until the first point's process is at work
+            time.sleep(0.02)
+        process.send_signal(signal.SIGINT)
+        _, stderr = process.communicate(timeout=60)
     assert process.returncode == 130, stderr
     assert "Interrupted; nothing was written" in stderr
     assert list(tmp_path.iterdir()) == []
@@ -349,7 +343,12 @@ def test_the_command(tmp_path: Path) -> None:
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     folder = tmp_path / "out" / "one_pin-chart.B.landing"
-    assert sorted(p.name for p in folder.iterdir()) == ["chart.csv", "chart.png", "chart.svg"]
+    assert sorted(p.name for p in folder.iterdir()) == [
+        ".pinstress.json",
+        "chart.csv",
+        "chart.png",
+        "chart.svg",
+    ]
     rows = list(csv.DictReader((folder / "chart.csv").read_text().splitlines()))
     assert list(rows[0])[: len(CONTRACT)] == CONTRACT
     assert {r["model"] for r in rows} == {"beam", "harmonic", "solid"}

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 import pinstress
-from pinstress.found import Found
-from reports.numbers import engineering
+from pinstress.analysis.results import Found
+from reports.format.numbers import engineering
 from tests.conftest import ROOT
 
 
@@ -106,19 +106,23 @@ def test_a_table_that_is_not_there(found: Found) -> None:
 
 
 def test_mesh_and_picture(found: Found) -> None:
-    mesh = found.mesh("B", "landing")
+    mesh = found.to_pyvista("B", "landing")
     largest = float(np.max(mesh.point_data["von Mises [psi]"]))
     assert largest == pytest.approx(found.pins[0].max_von_mises, rel=2e-3)  # of 60 meridians
     assert found.picture("B", "landing")._repr_png_()[:8] == b"\x89PNG\r\n\x1a\n"
     with pytest.raises(ValueError, match="there are B in landing"):
-        found.mesh("B", "taxi")
+        found.to_pyvista("B", "taxi")
 
 
-def test_fields_are_kept_when_asked(found: Found) -> None:
+def test_a_field_that_was_not_kept_is_solved_for(found: Found) -> None:
     from dataclasses import replace
 
-    with pytest.raises(ValueError, match="fields=True"):
-        replace(found, fields={}).picture("B", "landing")
+    without = replace(found, fields={})
+    mesh, kept = without.to_pyvista("B", "landing"), found.to_pyvista("B", "landing")
+    assert np.array_equal(mesh.point_data["von Mises [psi]"], kept.point_data["von Mises [psi]"])
+    assert list(without.fields) == [("B", "landing")]
+    with pytest.raises(ValueError, match="there are none"):
+        replace(found, fields={}, plan=None).to_pyvista("B", "landing")
 
 
 def test_the_tutorial_runs(

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from pinstress.cli import run_command_line
+from pinstress.cli.commands import run_command_line
 from tests.conftest import ROOT
 
 ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()

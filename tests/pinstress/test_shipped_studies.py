@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from pinstress.cli import run_command_line
+from pinstress.cli.commands import run_command_line
 from tests.conftest import ROOT
 
 STUDIES = ROOT / "studies"
@@ -51,7 +51,7 @@ def test_loads_alone(tmp_path: Path, study: str, capsys: pytest.CaptureFixture[s
     command = ["loads", str(STUDIES / f"{study}.toml"), "--out", str(out), "--no-pictures"]
     assert run_command_line(command) == 0
     printed = capsys.readouterr().out
-    assert "powers balance" in printed
+    assert "power balance" in printed
     rows = list(csv.DictReader((out / "reactions.csv").read_text().splitlines()))
     turned = list(csv.DictReader((out / "reactions_pin_axes.csv").read_text().splitlines()))
     assert len(rows) == len(turned) > 0

@@ -6,10 +6,12 @@ from pathlib import Path
 
 import pytest
 
+from loads import LoadsArgumentError
 from pinstress import InputError, load_study
-from pinstress.pins import pin as pin_of
-from pinstress.units import DIMENSIONS, SYSTEMS, USUAL, _by_pint, to_si
+from pinstress.model.pins import pin as pin_of
+from pinstress.schema.units import DIMENSIONS, SYSTEMS, USUAL, _by_pint, to_si
 from tests.conftest import INCH, LBF, PSI, ROOT
+from tests.support.errors import raises
 
 ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()
 
@@ -60,20 +62,22 @@ def test_the_examples_in_messages_are_right(dimension: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("value", "message"),
+    ("value", "code", "named"),
     [
-        ("2 inn", "unknown unit 'inn' in '2 inn'; did you mean 'in'"),
-        ("2 ksi", "'2 ksi' is not a length; write for instance '2 in'"),
-        ("two", "does not begin with a number"),
-        ("2 in**", "cannot read the unit"),
-        (True, "True is not a length"),
-        ([1], "is not a length"),
-        (float("nan"), "not finite"),
-        ("1e400 m", "not finite"),
+        ("2 inn", "unknown-unit", "'in'"),
+        ("2 MM", "unknown-unit", "'mm'"),
+        ("2 ksi", "wrong-dimension", "'2 ksi'"),
+        ("two", "not-a-number", "'two'"),
+        ("2 in**", "unreadable-unit", "'2 in**'"),
+        ("2,5 in", "decimal-comma", "'2,5 in'"),
+        (True, "not-a-quantity", "true"),
+        ([1], "not-a-quantity", "a list"),
+        (float("nan"), "not-finite", "nan"),
+        ("1e400 m", "not-finite", "'1e400 m'"),
     ],
 )
-def test_bad_quantities(value: object, message: str) -> None:
-    with pytest.raises(ValueError, match=message.replace("*", r"\*")):
+def test_bad_quantities(value: object, code: str, named: str) -> None:
+    with raises(LoadsArgumentError, code, named):
         to_si(value, "length", SYSTEMS["in-lbf-s"])
 
 
@@ -95,69 +99,53 @@ def test_values_carry_their_provenance() -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "message"),
+    ("old", "new", "code", "named"),
     [
-        (
-            "diameter = 2.0,",
-            "diametre = 2.0,",
-            r"profile\[2\]: unknown key 'diametre'; did you mean",
-        ),
-        ("title =", "titel =", "unknown key 'titel'; did you mean 'title'"),
-        ("[analysis]", "[analyses]", "unknown key 'analyses'; did you mean 'analysis'"),
-        ('units = "in-lbf-s"', 'units = "inch"', "units: input should be 'in-lbf-s', 'mm-N-s'"),
-        ('units = "in-lbf-s" ', "", "units: is missing"),
-        ("poisson_ratio = 0.30", "poisson_ratio = 0.5", "poisson_ratio: input should be less than"),
-        ("length = 2.0", "length = -2.0", r"profile\[2\].length: must be positive"),
-        ("length = 2.0", "length = 1e300", r"profile\[2\].length: 1e\+300 is too large"),
-        (
-            "length = 2.0",
-            "length = 1e9",
-            r"profile\[2\].length: must lie between 1e-6 m and 1000 m",
-        ),
-        ("length = 2.0", "length = nan", r"profile\[2\].length: nan is not finite"),
-        ('"28400 ksi"', '"28400 s"', "youngs_modulus: '28400 s' is not a stress"),
-        ("fillet = 0.4", "fillet = 1.1", "fillet of 1.1 times the step does not fit"),
-        (
-            'clamp = ["start"]',
-            'clamp = ["strat"]',
-            "no surface 'strat'; it has start, end, root, B",
-        ),
-        ('material = "AISI 4340"', 'material = "AISI 430"', "did you mean 'AISI 4340'"),
-        ("forces = { B =", "forces = { D =", "no pin has a connection 'D'"),
-        ("-988.86]", "-988.86, 0, 0]", "forces.B: list should have at most 3 items"),
-        ("-988.86]", "inf]", "forces.B.2.: inf is not finite"),
-        ("forces = { B =", "moments = { D =", "case.landing.moments: no pin has a connection 'D'"),
-        ("forces = { B = [0.0,", "moments = { B = ['1 N',", r"moments.B.1.: '1 N' is not a moment"),
-        ("forces = { B = [0.0, -988.86] }", "moments = {}", "moments names no connection"),
-        ("forces = { B = [0.0, -988.86] }", "", "give forces = .*, moments = .* or both, or else"),
-        (
-            "forces =",
-            "table = 't.csv'\nmoments =",
-            "give forces = .*, moments = .* or both, or else",
-        ),
-        ('kind = "given"', 'kind = "motion"', "unknown key 'forces'"),
-        ('kind = "given"', 'kind = "gven"', "case.landing.kind: .*'given', 'motion', 'static'"),
-        ("tolerance = 0.05", "tolerance = 2", "tolerance: input should be less than 1, not 2"),
-        ("[pin.B]", '[pin."a/b"]', "'a/b' cannot be part of a file name"),
-        ("title =", "title = = ", "not valid TOML"),
+        ("diameter = 2.0,", "diametre = 2.0,", "unknown-key", "profile[2]: unknown key 'diametre'"),
+        ("title =", "titel =", "unknown-key", "did you mean 'title'?"),
+        ("[analysis]", "[analyses]", "unknown-key", "did you mean 'analysis'?"),
+        ('units = "in-lbf-s"', 'units = "inch"', "not-a-choice", "units: "),
+        ('units = "in-lbf-s" ', "", "missing-key", "units: "),
+        ("poisson_ratio = 0.30", "poisson_ratio = 0.5", "out-of-range", "poisson_ratio: "),
+        ("length = 2.0", "length = -2.0", "not-positive", "profile[2].length: "),
+        ("length = 2.0", "length = 1e300", "too-large", "profile[2].length: 1e+300"),
+        ("length = 2.0", "length = 1e9", "out-of-range", "profile[2].length: "),
+        ("length = 2.0", "length = nan", "not-finite", "profile[2].length: "),
+        ('"28400 ksi"', '"28400 s"', "wrong-dimension", "youngs_modulus: '28400 s'"),
+        ("fillet = 0.4", "fillet = 1.1", "fillet-too-large", "pin B: "),
+        ('clamp = ["start"]', 'clamp = ["strat"]', "unknown-surface", "start, end, root, B"),
+        ('material = "AISI 4340"', 'material = "AISI 430"', "unknown-material", "'AISI 4340'"),
+        ("forces = { B =", "forces = { D =", "unknown-connection", "'D'"),
+        ("-988.86]", "-988.86, 0, 0]", "list-too-long", "forces.B: "),
+        ("-988.86]", "inf]", "not-finite", "forces.B[2]: "),
+        ("forces = { B =", "moments = { D =", "unknown-connection", "case.landing.moments: "),
+        ("forces = { B = [0.0,", "moments = { B = ['1 N',", "wrong-dimension", "moments.B[1]: "),
+        ("forces = { B = [0.0, -988.86] }", "moments = {}", "empty", "moments"),
+        ("forces = { B = [0.0, -988.86] }", "", "give-one", "case.landing: "),
+        ("forces =", "table = 't.csv'\nmoments =", "give-one", "case.landing: "),
+        ('kind = "given"', 'kind = "motion"', "unknown-key", "'forces'"),
+        ('kind = "given"', 'kind = "gven"', "not-a-choice", "case.landing.kind: "),
+        ("tolerance = 0.05", "tolerance = 2", "out-of-range", "tolerance: "),
+        ("[pin.B]", '[pin."a/b"]', "unusable-name", "'a/b'"),
+        ("title =", "title = = ", "not-toml", ":"),
         (
             "fillet = 0.4",
             "fillet = { value = 0.4, provenance = 'guess' }",
-            "fillet: provenance must",
+            "not-a-choice",
+            "fillet: ",
         ),
     ],
 )
-def test_each_mistake_is_told(tmp_path: Path, old: str, new: str, message: str) -> None:
+def test_each_mistake_is_told(tmp_path: Path, old: str, new: str, code: str, named: str) -> None:
     assert old in ONE_PIN
     path = write(tmp_path, ONE_PIN.replace(old, new))
-    with pytest.raises(InputError, match=message) as caught:
+    with raises(InputError, code, str(path), named):
         pin_of(load_study(path), "B")
-    assert str(path) in str(caught.value)
 
 
 def test_moments_go_to_the_pin_with_the_forces(tmp_path: Path) -> None:
     """Stated, or in a table, in the study's units; at a clamped band they are left out."""
-    from pinstress.pipeline import prepare
+    from pinstress.analysis.plan import prepare
 
     text = ONE_PIN.replace('name = "root"', 'connection = "R"').replace('["start"]', '["R"]')
     stated = 'forces = { R = [7, 8] }\nmoments = { R = [1, 2, 3], B = ["0 N m", 500.0] }'
@@ -173,7 +161,7 @@ def test_moments_go_to_the_pin_with_the_forces(tmp_path: Path) -> None:
 
 
 def test_a_beam_check_is_for_forces_alone(tmp_path: Path) -> None:
-    from pinstress.pipeline import prepare
+    from pinstress.analysis.plan import prepare
 
     text = ONE_PIN.replace("forces =", "moments = { B = [0, 1] }\nforces =")
     text += '\n[beam_check]\npin = "B"\ncase = "landing"\naxis_bore = 0.1\n'
@@ -183,14 +171,15 @@ def test_a_beam_check_is_for_forces_alone(tmp_path: Path) -> None:
 
 def test_all_mistakes_are_told_at_once(tmp_path: Path) -> None:
     text = ONE_PIN.replace("diameter = 2.0", "diameter = -2.0").replace("0.30", "0.7")
-    with pytest.raises(InputError, match="2 errors") as caught:
+    with pytest.raises(InputError) as caught:
         load_study(write(tmp_path, text))
-    assert "poisson_ratio" in str(caught.value)
-    assert "diameter" in str(caught.value)
+    assert caught.value.codes == ("out-of-range", "not-positive")
+    assert "poisson_ratio: " in caught.value.told[0]
+    assert "diameter: " in caught.value.told[1]
 
 
 def test_a_missing_file_is_named(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"gone\.toml: no such file"):
+    with raises(InputError, "no-such-file", "gone.toml"):
         load_study(tmp_path / "gone.toml")
 
 
@@ -202,49 +191,49 @@ GEAR = (
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "message"),
+    ("old", "new", "code", "named"),
     [
-        ('A = "AE" }', 'A = "AF" }', "joint.A.connections.A: no body 'AF'; there are"),
-        ('joints = ["H", "G"]', 'joints = ["H", "K"]', "slider.HG.joints: no joint 'K'"),
-        ('slider = "HG"', 'slider = "GH"', "no slider 'GH'; there are HG"),
-        ('body = "tyre"', 'body = "tire"', "no body 'tire'; did you mean 'tyre'"),
-        ('connections = ["G1", "G3"]', 'connections = ["G1", "G4"]', "names connection 'G4'"),
-        ('connections = ["G1", "G3"]', 'connections = ["E1", "E2"]', "does not determine them"),
+        ('A = "AE" }', 'A = "AF" }', "unknown-body", "joint.A.connections.A: no body 'AF'"),
+        ('joints = ["H", "G"]', 'joints = ["H", "K"]', "unknown-joint", "slider.HG.joints: "),
+        ('slider = "HG"', 'slider = "GH"', "unknown-slider", "there are HG"),
+        ('body = "tyre"', 'body = "tire"', "unknown-body", "did you mean 'tyre'?"),
+        ('connections = ["G1", "G3"]', 'connections = ["G1", "G4"]', "unknown-connection", "'G4'"),
         (
-            "value = 41.96,",
-            "value = 44.0,",
-            r"dead point at HG = 43.2.* in \(wanted: HG = 44 in; drawn",
+            'connections = ["G1", "G3"]',
+            'connections = ["E1", "E2"]',
+            "sharing-idle",
+            "D1, D2, G1, G3",
         ),
-        (
-            'connections = { B = "BC" }',
-            'connections = { BB = "BC" }',
-            "'B' is not in the mechanism",
-        ),
-        (
-            'fixed_in = "EBJ"',
-            'fixed_in = "EJB"',
-            "joint.B.fixed_in: no body 'EJB'; did you mean 'EBJ'",
-        ),
-        ('pivot = "D"', 'pivot = "C"', "C is not fixed in the ground"),
+        ("value = 41.96,", "value = 44.0,", "dead-point", "HG = 44 in"),
+        ('connections = { B = "BC" }', 'connections = { BB = "BC" }', "unknown-connection", "'B'"),
+        ('fixed_in = "EBJ"', 'fixed_in = "EJB"', "unknown-body", "joint.B.fixed_in: no body 'EJB'"),
     ],
 )
 def test_each_mistake_in_a_mechanism_is_told(
-    tmp_path: Path, old: str, new: str, message: str
+    tmp_path: Path, old: str, new: str, code: str, named: str
 ) -> None:
-    from pinstress.pipeline import prepare
+    from pinstress.analysis.plan import prepare
 
     assert old in GEAR
     path = write(tmp_path, GEAR.replace(old, new, 1))
-    with pytest.raises(InputError, match=message):
+    with raises(InputError, code, named):
         prepare(load_study(path))
 
 
+def test_the_pivot_of_a_motion_check_must_be_fixed(tmp_path: Path) -> None:
+    from pinstress.analysis.plan import prepare
+
+    study = load_study(write(tmp_path, GEAR.replace('pivot = "D"', 'pivot = "C"', 1)))
+    with pytest.raises(InputError, match=r": motion_check\.pivot: C "):
+        prepare(study)
+
+
 def test_without_a_sharing_rule_the_connections_are_named(tmp_path: Path) -> None:
-    from pinstress.check import describe
-    from pinstress.pipeline import all_loads
+    from pinstress.analysis.plan import all_loads
+    from pinstress.cli.check import describe
 
     start, end = GEAR.index("[[mechanism.sharing]]"), GEAR.index("[mechanism.joint.A]")
     study = load_study(write(tmp_path, GEAR[:start] + GEAR[end:]))
     for ask in (lambda: all_loads(study, ["landing"]), lambda: describe(study)):
-        with pytest.raises(InputError, match="D1, D2, G1, G3 are not determined"):
+        with raises(InputError, "statically-indeterminate", "D1, D2, G1, G3"):
             ask()

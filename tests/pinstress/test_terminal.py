@@ -9,6 +9,8 @@ import pty
 import re
 import subprocess
 import sys
+from functools import partial
+from io import FileIO
 from pathlib import Path
 from typing import Any
 
@@ -17,14 +19,13 @@ import pytest
 import pyvista
 
 from pinstress import load_study
-from pinstress.cli import run_command_line
-from pinstress.gather_fields import STILLS, instants
-from pinstress.pins import pin
-from tests.conftest import INCH, ROOT
+from pinstress.analysis.gather_fields import STILLS, instants
+from pinstress.cli.commands import run_command_line
+from pinstress.model.pins import pin
+from tests.conftest import INCH
+from tests.support.command_line import QUICK
+from tests.support.process_group import started
 
-QUICK = (
-    (ROOT / "studies" / "one_pin.toml").read_text().replace("tolerance = 0.05", "tolerance = 0.3")
-)
 SWEEP = QUICK.replace("forces = { B = [0.0, -988.86] }", 'table = "sweep.csv"')
 # largest in the middle, at 2 s
 TABLE = "connection,fx,fy,time\nB,0,-100,0\nB,300,-900,2\nB,200,0,5\n"
@@ -35,27 +36,27 @@ def on_terminal(*arguments: str, cwd: Path, **environment: str) -> str:
     """What a command prints on a terminal of its own."""
     master, slave = pty.openpty()
     plain = {k: v for k, v in os.environ.items() if k not in ("NO_COLOR", "FORCE_COLOR")}
-    process = subprocess.Popen(
+    with started(
         [sys.executable, "-m", "pinstress", *arguments],
         cwd=cwd,
         stdin=slave,
         stdout=slave,
         stderr=slave,
         env={**plain, "TERM": "xterm-256color", "COLUMNS": "120", **environment},
-    )
-    os.close(slave)
-    said = b""
-    while True:
-        try:
-            part = os.read(master, 4096)
-        except OSError:  # the other end is closed
-            break
-        if not part:
-            break
-        said += part
-    os.close(master)
-    assert process.wait() == 0, said
+    ) as process:
+        os.close(slave)
+        with open(master, "rb", buffering=0) as terminal:
+            said = b"".join(iter(partial(_read, terminal), b""))
+        assert process.wait() == 0, said
     return said.decode()
+
+
+def _read(terminal: FileIO) -> bytes:
+    """What comes next, nothing when the other end is closed."""
+    try:
+        return terminal.read(4096) or b""
+    except OSError:
+        return b""
 
 
 @pytest.fixture(scope="module")
@@ -83,7 +84,7 @@ def test_colour_and_progress_on_a_terminal_unless_they_are_not_wanted(tmp_path: 
     assert "Report: " in bright
     plain = on_terminal(*command, "--quiet", cwd=tmp_path, NO_COLOR="1")
     assert not COLOUR.search(plain)
-    assert "meets" in plain
+    assert "safe" in plain
     assert "mesh" not in plain
     assert "Report: " not in plain
 
@@ -107,7 +108,7 @@ def test_quiet_still_says_what_was_not_reached(
     monkeypatch.chdir(tmp_path)
     Path("study.toml").write_text(QUICK.replace('clamp = ["start"]', "clamp = []"))
     assert run_command_line(["run", "study.toml", "--no-pictures", "--quiet"]) == 1
-    assert capsys.readouterr().err.startswith("Not reached: B (landing)")
+    assert capsys.readouterr().err.startswith("Not decided, rigid: B (landing)")
 
 
 def test_fields_agree_with_results(swept: Path) -> None:
@@ -181,6 +182,22 @@ def test_view_draws_the_run(swept: Path, tmp_path: Path) -> None:
     assert len(np.unique(pixels, axis=0)) > 500
 
 
+def test_view_overwrites_no_file_unasked(
+    swept: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With --force it does, and replaces a link by the picture."""
+    mine, link = tmp_path / "mine.png", tmp_path / "link.png"
+    mine.write_text("mine")
+    link.symlink_to(mine)
+    for path in (mine, link):
+        assert run_command_line(["view", str(swept), "--screenshot", str(path)]) == 2
+        assert f"{path} exists already; name another file, or" in capsys.readouterr().err
+    assert run_command_line(["view", str(swept), "--screenshot", str(link), "--force"]) == 0
+    assert link.read_bytes().startswith(b"\x89PNG")
+    assert not link.is_symlink()
+    assert mine.read_text() == "mine"
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
@@ -209,6 +226,10 @@ def test_view_of_no_results(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     (tmp_path / "results.json").write_text("{}")
     assert run_command_line(["view", str(tmp_path)]) == 2
     assert "not one of pinstress" in capsys.readouterr().err
+    (tmp_path / "results.json").unlink()
+    os.mkfifo(tmp_path / "results.json")
+    assert run_command_line(["view", str(tmp_path)]) == 2
+    assert "its results.json is a pipe or a device" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
@@ -252,4 +273,4 @@ def test_the_report_is_opened_only_when_asked(
     assert opened == []
     assert run_command_line(["run", "study.toml", "--no-pictures", "--open"]) == 0
     assert opened == [(tmp_path / "out/study/report.html").resolve().as_uri()]
-    assert "No browser was found" in capsys.readouterr().err
+    assert "No browser found" in capsys.readouterr().err

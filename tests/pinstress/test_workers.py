@@ -13,8 +13,8 @@ from functools import partial
 
 import pytest
 
-from pinstress.errors import InputError
-from pinstress.workers import Died, Job, Tell, cores, processes, side_by_side
+from pinstress.processes.pool import Died, Job, Tell, cores, processes, side_by_side
+from pinstress.study.errors import InputError
 
 
 def child_processes() -> list[int]:
@@ -50,16 +50,21 @@ def test_answers_come_in_the_order_of_the_jobs(most: int) -> None:
     assert multiprocessing.active_children() == []
 
 
-def test_there_are_as_many_processes_as_jobs_at_a_time_and_none_beside_this_one_for_one() -> None:
-    def where(_: Tell) -> int:
-        time.sleep(0.05)
-        return os.getpid()
+def where(_: Tell) -> int:
+    time.sleep(0.05)
+    return os.getpid()
 
+
+def test_there_are_as_many_processes_as_jobs_at_a_time_and_none_beside_this_one_for_one() -> None:
     work = [Job("pid", where)] * 6
     assert side_by_side(work, 1) == [os.getpid()] * 6
     apart = side_by_side(work, 2)
     assert len(set(map(str, apart))) == 2
     assert os.getpid() not in apart
+
+
+def name(called: str, _: Tell) -> str:
+    return called
 
 
 def crash(_: Tell) -> int:
@@ -71,19 +76,21 @@ def crash(_: Tell) -> int:
 def test_a_process_that_dies_costs_the_job_it_was_doing_alone(most: int) -> None:
     """Also when all processes have died before the last job."""
     names = "a!b!!!c!"
-    work = [Job(n, crash if n == "!" else (lambda _, n=n: n)) for n in names]  # type: ignore[misc]
+    work = [Job[object](n, crash if n == "!" else partial(name, n)) for n in names]
     found = side_by_side(work, most)
     assert ["!" if isinstance(f, Died) else f for f in found] == list(names)
     assert all("signal 9" in f.reason for f in found if isinstance(f, Died))
 
 
+def wrong(_: Tell) -> None:
+    raise InputError("no such thing")
+
+
+def sleep(_: Tell) -> None:
+    time.sleep(60.0)
+
+
 def test_an_exception_is_raised_with_the_jobs_name_and_ends_the_others() -> None:
-    def wrong(_: Tell) -> None:
-        raise InputError("no such thing")
-
-    def sleep(_: Tell) -> None:
-        time.sleep(60.0)
-
     before = child_processes()
     with pytest.raises(InputError, match="no such thing") as caught:
         side_by_side([Job("long", sleep), Job("pin Q", wrong)], 2)
@@ -93,21 +100,23 @@ def test_an_exception_is_raised_with_the_jobs_name_and_ends_the_others() -> None
     assert child_processes() == before
 
 
-def test_what_cannot_be_sent_is_told_all_the_same() -> None:
-    def wrong(_: Tell) -> None:
-        raise ValueError(lambda: 1)
+def unsent(_: Tell) -> None:
+    raise ValueError(lambda: 1)
 
+
+def test_what_cannot_be_sent_is_told_all_the_same() -> None:
     with pytest.raises(RuntimeError, match=r"pin Q, in its own process"):
-        side_by_side([Job("pin Q", wrong)] * 2, 2)
+        side_by_side([Job("pin Q", unsent)] * 2, 2)
+
+
+def deaf(tell: Tell) -> None:
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    tell("deaf")
+    time.sleep(60.0)
 
 
 def test_an_interrupt_ends_processes_that_do_not_listen() -> None:
     """As those inside a mesher's own code, which hear of no signal."""
-
-    def deaf(tell: Tell) -> None:
-        signal.signal(signal.SIGTERM, signal.SIG_IGN)
-        tell("deaf")
-        time.sleep(60.0)
 
     def interrupt(message: str, _: float) -> None:
         if "deaf" in message:
@@ -123,6 +132,7 @@ def test_there_is_a_core() -> None:
     assert 1 <= cores() <= (os.cpu_count() or 1)
 
 
+@pytest.mark.linux
 def test_no_forks_beside_other_threads() -> None:
     """They would leave locks held in the child: gmsh then waits for ever."""
     stop = threading.Event()
@@ -136,6 +146,6 @@ def test_no_forks_beside_other_threads() -> None:
 
 
 def test_as_many_processes_as_asked_for_where_none_runs() -> None:
-    code = "from pinstress.workers import processes; print(processes(3), processes(None))"
+    code = "from pinstress.processes.pool import processes; print(processes(3), processes(None))"
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert said.stdout.split() == ["3", str(cores())]

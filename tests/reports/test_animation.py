@@ -13,14 +13,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from reports.animation import render_animation, write_animations
-from reports.animation_data import speeds
-from reports.animation_frames import MOST, frames, nice
-from reports.animation_strip import ticks
-from reports.fixed import Fixed
-from reports.label_places import label_offsets
-from reports.results import Results, Units
-from tests.reports.four_bar import COUPLER, CRANK, ROCKER, chain, four_bar, linkage
+from reports.animation.frames import MOST, frames, nice
+from reports.animation.page import render_animation, write_animations
+from reports.animation.player_data import speeds
+from reports.animation.strip_chart import ticks
+from reports.data.results import Results, Units
+from reports.format.fixed_decimals import Fixed
+from reports.format.svg_labels import label_offsets
+from tests.support.four_bar_results import COUPLER, CRANK, ROCKER, chain, four_bar, linkage
 
 EVIL = "</script><i onload='x'>&quot;\"\\u003c{{ 1 }}<!--"
 
@@ -114,7 +114,7 @@ def test_the_picture_stands_without_the_script(moving: Results) -> None:
     crank = page.tags[[("data-link" in a) for _, a in page.tags].index(True) + 1][1]["d"]
     ends = np.array(re.findall(r"-?[\d.]+", crank), dtype=float)
     assert ends == pytest.approx([*data["xy"][0][:2], *data["xy"][1][:2]])
-    assert "Scripts are off" in page.text
+    assert "Scripts are disabled" in page.text
     assert [a["hidden"] for _, a in page.tags if "controls" in a.get("class", "")] == ["", ""]
 
 

@@ -6,30 +6,14 @@ import csv
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from reports.landing import landing_table, landing_tables, write_landing
-from reports.page import write_page
-from reports.plot_landing import landing_plot
-from reports.published_values import published_values_table, write_published_values
-from reports.results import LandingRange, PublishedValue, Results
-
-
-def ranged(pin: str, verdict: str = "converged", factor: float = 4.0) -> LandingRange:
-    times, speeds = (x.ravel() for x in np.meshgrid([0.1, 0.2], [10.0, 25.0]))
-    force = speeds / times
-    return LandingRange(
-        pin=pin,
-        case="landing",
-        impulse_time=times,
-        velocity_change=speeds,
-        force=force,
-        max_von_mises=10.0 * force,
-        safety_factor=factor * 100.0 / force,
-        nominal=(0.1, 10.0),
-        verdict=verdict,
-    )
+from reports.data.results import PublishedValue, Results
+from reports.page.page import write_page
+from reports.plots.landing import landing_plot
+from reports.tables.landing import landing_table, landing_tables, write_landing
+from reports.tables.published_values import published_values_table, write_published_values
+from tests.support.made_up_run import ranged
 
 
 def test_every_pair_is_a_row(results: Results, tmp_path: Path) -> None:

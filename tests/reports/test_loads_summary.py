@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reports.loads_summary import write_loads_summary
-from reports.results import Results
-from reports.write import write_loads
-from tests.reports.four_bar import four_bar
+from reports.data.results import Results
+from reports.files import write_loads
+from reports.text.loads_summary import write_loads_summary
+from tests.support.four_bar_results import four_bar
 
 
 @pytest.fixture(scope="module")
@@ -59,9 +59,9 @@ def test_summary_has_peaks_drives_and_checks(turning: Results, tmp_path: Path) -
     # 100 + 50 sin: its mean over a turn is 100, its RMS sqrt(100^2 + 50^2 / 2).
     assert "100.0" in drive
     assert "106.1" in drive
-    assert "Powers balance to 0.0e+00" in text
-    assert "Smallest transmission angle: 60.0°, coupler at C at 0 s." in text
-    assert "Largest condition number: 2.00" in text
+    assert "relative to the largest power: 0.0e+00" in text
+    assert "Minimum transmission angle: 60.0°, coupler at C at 0 s." in text
+    assert "Maximum condition number: 2.00" in text
 
 
 def test_summary_warns_of_poor_transmission(turning: Results, tmp_path: Path) -> None:

@@ -5,9 +5,9 @@ import math
 
 import pytest
 
-from reports.numbers import engineering, like, ratio, short
-from reports.plot_names import plot_name
-from reports.spread import rows, spread
+from reports.format.file_names import plot_name
+from reports.format.numbers import engineering, like, ratio, short
+from reports.format.spread import rows, spread
 
 
 @pytest.mark.parametrize(

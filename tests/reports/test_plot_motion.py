@@ -8,9 +8,13 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from reports import plot_curves, plot_drive, plot_linkage, plot_motion, style
-from reports.plot_reactions import along
-from reports.results import LinkageMotion, Results
+from reports.data.results import LinkageMotion, Results
+from reports.format import style
+from reports.plots import curves as plot_curves
+from reports.plots import drive as plot_drive
+from reports.plots import linkage as plot_linkage
+from reports.plots import motion as plot_motion
+from reports.plots.reactions import along
 
 ODD = ("$x_1^2$", "<b>&", "a.b/../c", "_hidden", "µ " + 60 * "long ")
 
@@ -114,7 +118,7 @@ def test_one_instant_gives_one_figure(drawn: dict[str, Figure]) -> None:
 
 def test_only_bodies_that_turn_are_drawn(drawn: dict[str, Figure]) -> None:
     found = texts(drawn["bodies.retract"])
-    assert found[0] == "retract: bodies that turn\n(coupler, roller: not turning)"
+    assert found[0] == "retract: rotating bodies\n(not rotating: coupler, roller)"
     # Crank and rocker turn as one.
     assert found.count("crank, rocker") == 3
     assert {"angle [deg]", "angular velocity\n[rad/s]", "time [s]"} <= set(found)
@@ -124,13 +128,13 @@ def test_many_bodies_take_several_figures(results: Results, seen: dict[str, Figu
     draw(many(results.motion[0], 16), results)
     names = [name for name in seen if name.startswith("bodies")]
     assert names == ["bodies.retract", "bodies-2.retract", "bodies-3.retract"]
-    assert "bodies that turn, 3 of 3" in texts(seen["bodies-3.retract"])[0]
+    assert "rotating bodies, 3 of 3" in texts(seen["bodies-3.retract"])[0]
     assert texts(seen["bodies-3.retract"]).count("body 15") == 3
 
 
 def test_guidance_and_condition(drawn: dict[str, Figure]) -> None:
     figure = drawn["transmission.retract"]
-    assert "under 40 deg" in figure.get_suptitle()
+    assert "below 40 deg" in figure.get_suptitle()
     angles, condition = figure.axes
     assert any(np.all(line.get_ydata() == 40.0) for line in angles.lines)
     assert condition.get_yscale() == "log"

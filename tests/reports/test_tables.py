@@ -10,20 +10,24 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from reports.csv_files import cell, harmless
-from reports.json_results import to_json, write_json
-from reports.motion_tables import (
+from reports.data.results import Results
+from reports.format.csv import cell, harmless
+from reports.tables.json_results import to_json, write_json
+from reports.tables.motion import (
     beam_check_table,
     drive_table,
     motion_check_table,
     reactions_table,
 )
-from reports.published import published_reactions_table, write_published_reactions
-from reports.results import Results
-from reports.summary import summary
-from reports.table import Table
-from reports.tables import safety_factor_rows, safety_factors_table, write_safety_factors
-from reports.terminal import print_safety_factors
+from reports.tables.published_reactions import published_reactions_table, write_published_reactions
+from reports.tables.safety_factors import (
+    safety_factor_rows,
+    safety_factors_table,
+    write_safety_factors,
+)
+from reports.tables.table import Table
+from reports.text.safety_factors import print_safety_factors
+from reports.text.summary import summary
 
 SAFETY_FACTORS = [
     "pin",
@@ -83,7 +87,10 @@ def test_json_holds_the_contract(results: Results) -> None:
         "case",
         "model",
         "max_von_mises",
+        "max_von_mises_interval",
         "error_estimate",
+        "error_parts",
+        "safety_factor_interval",
         "verdict",
         "note",
         "why",
@@ -242,7 +249,7 @@ def test_terminal_table_fits(results: Results, width: int) -> None:
     assert "…" not in text
     assert "[psi]" in text
     assert "unconverged" in text
-    assert "misses" in text
+    assert "fails" in text
 
 
 def test_terminal_shows_published_only_if_any(results: Results) -> None:
@@ -256,8 +263,8 @@ def test_terminal_shows_published_only_if_any(results: Results) -> None:
 
 def test_summary_counts_pins(results: Results) -> None:
     text = summary(results)
-    assert text.startswith("3 of 9 pins meet the required safety factor 1.5 in every case")
-    assert "pins E, F, G, H, J miss it" in text
-    assert "pin D is undecided" in text
-    assert "2 peaks of 18 did not converge and are no values" in text
-    assert "1 of 18 could not be solved" in text
+    assert text.startswith("3 of 9 pins are safe in all cases (required factor 1.5)")
+    assert "fails: E, F, G, H, J;" in text
+    assert "not decided: D (not converged)" in text
+    assert "2 of 18 rows did not converge" in text
+    assert "1 of 18 rows could not be solved" in text

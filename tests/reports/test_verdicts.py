@@ -6,20 +6,22 @@ import csv
 from dataclasses import replace
 from io import StringIO
 from pathlib import Path
+from typing import get_args
 
 import pytest
 from rich.console import Console
 
-from reports.json_results import to_json
-from reports.landing import landing_table, write_landing
-from reports.plot_landing import landing_plot
-from reports.results import Results
-from reports.summary import summary
-from reports.tables import safety_factors_table, write_safety_factors
-from reports.terminal import print_safety_factors
-from reports.words import MEANING, WORDS, outcome, verdict_words
-from tests.reports.judged import judged, row
-from tests.reports.test_landing import ranged
+from fea.core.peak import Verdict
+from reports.data.results import Results
+from reports.format.words import MEANING, RESULTS, outcome, verdict_words
+from reports.plots.landing import landing_plot
+from reports.tables.json_results import to_json
+from reports.tables.landing import landing_table, write_landing
+from reports.tables.safety_factors import safety_factors_table, write_safety_factors
+from reports.text.safety_factors import print_safety_factors
+from reports.text.summary import summary
+from tests.support.judged_results import judged, row
+from tests.support.made_up_run import ranged
 
 
 @pytest.fixture(scope="module")
@@ -30,18 +32,18 @@ def found() -> Results:
 @pytest.mark.parametrize(
     ("verdict", "factor", "meets", "expected"),
     [
-        ("converged", 3.0, True, "meets"),
-        ("converged", 1.2, False, "misses"),
-        ("converged", 3.0, None, "holds"),
+        ("converged", 3.0, True, "safe"),
+        ("converged", 1.2, False, "fails"),
+        ("converged", 3.0, None, "below yield"),
         ("converged", 0.9, None, "yields"),
-        ("singular", 3.0, None, "no value"),
-        ("singular", 3.0, True, "no value"),
-        ("singular", 1.2, False, "misses"),
+        ("singular", 3.0, None, "not decided"),
+        ("singular", 3.0, True, "not decided"),
+        ("singular", 1.2, False, "fails"),
         ("singular", 0.9, None, "yields"),
-        ("unconverged", 3.0, None, "no value"),
-        ("unconverged", 0.5, False, "misses"),
-        ("unconverged", 3.0, True, "meets"),
-        ("rigid", 3.0, None, "no value"),
+        ("unconverged", 3.0, None, "not decided"),
+        ("unconverged", 0.5, False, "fails"),
+        ("unconverged", 3.0, True, "safe"),
+        ("rigid", 3.0, None, "not decided"),
     ],
 )
 def test_outcome(verdict: str, factor: float, meets: bool | None, expected: str) -> None:
@@ -49,11 +51,15 @@ def test_outcome(verdict: str, factor: float, meets: bool | None, expected: str)
 
 
 def test_every_verdict_has_a_sentence() -> None:
-    assert set(MEANING) == {*WORDS.values(), "beyond yield"}
-    assert all(text.endswith(".") and text.count(". ") == 0 for text in MEANING.values())
-    assert "does not exist" in MEANING["singular"]
+    assert set(MEANING) == {*get_args(Verdict), "beyond yield"}
+    assert all(
+        text.endswith(".") and text.count(". ") == 0
+        for text in (*MEANING.values(), *RESULTS.values())
+    )
+    assert "there is no maximum" in MEANING["singular"]
     assert "outside the excluded zones" in MEANING["singular"]
-    assert verdict_words("rigid", None) == "not solved"
+    assert verdict_words("rigid", None) == "rigid"
+    assert verdict_words("singular", True) == "singular, beyond yield"
 
 
 def test_json_of_zones_and_checks(found: Results) -> None:
@@ -70,6 +76,9 @@ def test_json_of_zones_and_checks(found: Results) -> None:
         "excluded_radius": 0.1,
         "governs": True,
         "max_von_mises": 7654.321,
+        "strength": None,
+        "strength_exponent": None,
+        "notch_stress_intensity": None,
         "advice": "a fillet of at least 0.1 x the smaller diameter here",
     }
     assert sharp["singular_at"][1]["exponent"] is None
@@ -94,7 +103,7 @@ def test_tables_say_the_verdict_and_yield(found: Results, tmp_path: Path) -> Non
     assert " no " not in shown["sharp"]
     assert " yes " not in shown["sharp"]
     assert " no " in shown["weak"]
-    assert any(line.startswith("- singular: where stress is largest") for line in lines)
+    assert any(line.startswith("- singular: ") for line in lines)
     assert "- A, sharp: known to 0.5%; harmonic: a beam is never known to 2.0%" in lines
 
 
@@ -109,37 +118,37 @@ def test_terminal_has_the_verdict_beside_the_factor(found: Results, width: int) 
     assert max(map(len, lines)) <= width
     assert "…" not in text
     said = {name: _words(lines, name) for name in ("fine", "sharp", "weak", "flows", "beyond")}
-    assert said["fine"] == ["meets"]
-    assert said["sharp"] == ["singular"]
-    assert said["weak"] == ["singular,", "misses"]
-    assert said["flows"] == ["singular,", "misses,", "yields"]
-    assert said["beyond"] == ["misses,", "yields"]
+    assert said["fine"] == ["converged", "safe"]
+    assert said["sharp"] == ["singular", "not", "decided"]
+    assert said["weak"] == ["singular", "fails"]
+    assert said["flows"] == ["singular", "fails", "yields"]
+    assert said["beyond"] == ["converged", "fails", "yields"]
 
 
 def _words(lines: list[str], case: str) -> list[str]:
-    """What stands under "verdict" in a row and in the lines that continue it."""
+    """What is under "verdict" and "result" in a row and in the lines that continue it."""
     start = next(i for i, line in enumerate(lines) if line.startswith(f"A   {case}"))
     end = next(i for i in range(start + 1, len(lines)) if lines[i][:1] != " ")
-    known = {"meets", "misses", "misses,", "singular", "singular,", "yields", "converged"}
+    known = {"safe", "fails", "not", "decided", "singular", "yields", "converged"}
     words = [w for line in lines[start:end] for w in line.split()]
     return [w for w in words if w in known]
 
 
 def test_summary(found: Results) -> None:
     text = summary(found)
-    assert "0 of 1 pin meets the required safety factor 1.5 in every case; pin A misses it." in text
+    assert "0 of 1 pin is safe in all cases (required factor 1.5); fails: A." in text
     assert "Lowest converged factor: 0.9000, pin A, case beyond." in text
-    lower = "Lowest factor of a singular row, outside its zones: 0.8000, pin A, case flows."
+    lower = "Lowest factor outside the excluded zones: 0.8000, pin A, case flows."
     assert lower in text
-    assert "Beyond yield, where linear elasticity has ended: pin A." in text
-    assert "3 rows of 6 are singular: the true maximum does not exist." in text
-    assert "1 peak of 6 did not converge and is no value." in text
+    assert "Beyond yield, where linear elasticity is not valid: pin A." in text
+    assert "3 of 6 rows are singular: no maximum exists." in text
+    assert "1 of 6 rows did not converge." in text
 
 
 def test_summary_of_one_singular_row(found: Results) -> None:
     text = summary(replace(found, pins=(found.pins[1],)))
-    assert "pin A is undecided" in text
-    assert "1 row of 1 is singular" in text
+    assert "not decided: A (singular)" in text
+    assert "1 of 1 row is singular" in text
     assert "converged" not in text
 
 

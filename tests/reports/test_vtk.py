@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 import pyvista
 
-from reports import renderer
-from reports.results import BandLoad, Field, Still, Units
-from reports.vtk import render_pin, renderer_problem, surface, write_pin, write_vtu
-from tests.reports.judged import tube
+from reports.data.results import BandLoad, Field, Still, Units
+from reports.vtk import renderer
+from reports.vtk.fields import render_pin, renderer_problem, surface, write_pin, write_vtu
+from tests.support.judged_results import tube
 
 UNITS = Units("in", "lbf", "psi", "s")
 SEVEN = 1e-7  # digits of a float32
@@ -126,9 +126,11 @@ def test_the_renderer_that_works_is_kept(monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 def test_importing_reports_loads_nothing_heavy() -> None:
-    names = "results json_results tables terminal vtk page write plot_names"
+    names = "data.results tables.json_results tables.safety_factors text.safety_factors vtk.fields"
+    names += " page.page files format.file_names"
     code = (
-        f"import sys; [__import__('reports.' + n) for n in '{names}'.split()]; "
+        "import sys; from importlib import import_module; "
+        f"[import_module('reports.' + n) for n in '{names}'.split()]; "
         "print({'matplotlib', 'pyvista', 'vtk', 'vtkmodules', 'meshio', 'jinja2', 'rich', "
         "'pinstress'} & set(sys.modules))"
     )

@@ -11,10 +11,10 @@ from xml.etree import ElementTree
 
 import pytest
 
-from reports.all_tables import load_tables, stress_tables
-from reports.results import Results
-from reports.table import Table
-from reports.workbook import write_workbook
+from reports.data.results import Results
+from reports.tables.all import load_tables, stress_tables
+from reports.tables.table import Table
+from reports.tables.workbook import write_workbook
 
 NAMES = {"": "http://schemas.openxmlformats.org/spreadsheetml/2006/main"}
 Sheet = list[dict[str, str | float]]  # by row: cells by their column's letters

@@ -4,7 +4,7 @@ beam_beside_solid.csv: `segments_mm` length x diameter x bore and the surface's 
 `loads_N_Nm` force and moment on each band, `solid_MPa` the solid's largest von Mises stress further
 than 0.1 diameters from edges of clamps, on one mesh (MeshSize(4, arc=2.5)): finer ones moved six of
 them by up to 7 %.
-The numbers of fea.beam_error were chosen on the set "fit"; the set "fresh" was made afterwards.
+The numbers of fea.beam.error_model were chosen on the set "fit"; the set "fresh" was made later.
 
 No publication, but the reference is outside of what is tested. The error must hold the solid in all
 pins, which is what an error is for; how good beams are of each kind is the table of docs/method.md,
@@ -21,17 +21,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fea.beam_error import BeamEstimate, beam_estimate
-from fea.beam_stress import beam_stress
-from fea.line_load import acting
-from fea.material import Material
-from fea.pin_loads import PinLoads
-from fea.solid import SolidModel
-from fea.solid import acting as acting_on_solid
-from fea.tensor import von_mises
-from fea.zones import clamp_rims
+from fea.beam.error_model import BeamEstimate, beam_estimate
+from fea.beam.line_load import acting
+from fea.beam.stress import beam_stress
+from fea.core.material import Material
+from fea.core.pin_loads import PinLoads
+from fea.core.voigt import von_mises
+from fea.singular.singularities import clamp_rims
+from fea.solid.model import SolidModel
+from fea.solid.model import acting as acting_on_solid
 from geometry import Pin, Segment
-from geometry.solid_mesh import MeshSize, solid_mesh
+from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 
 STEEL = Material("steel", 2.0e11, 0.3, 7850.0, 1.0e9)
 SAME_MESH = 0.03

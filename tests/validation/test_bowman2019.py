@@ -23,10 +23,11 @@ import numpy as np
 import pytest
 
 from loads import Dynamics, ledger, mobility
-from loads.four_bar import four_bar
-from pinstress import build, load_study
-from pinstress.mechanism import linkage
-from pinstress.study import Study
+from loads.closed_form.four_bar import four_bar
+from pinstress import load_study
+from pinstress.model import cases as build
+from pinstress.model.linkage import linkage
+from pinstress.study.file import Study
 from tests.conftest import INCH, LBF
 
 STUDIES = Path(__file__).parents[2] / "studies"
@@ -73,7 +74,7 @@ def test_mobility_and_class(study: Study) -> None:
 
 
 def test_the_bars_weigh_what_table_9_says() -> None:
-    from loads.bar import round_bar
+    from loads.mass_properties import round_bar
 
     pound = 0.45359237
     for length, mass in ((12, 42.8), (30, 107.1), (26, 92.8)):
@@ -94,7 +95,7 @@ def test_angles_and_rates_of_the_snapshot(snapshot: Dynamics) -> None:
 
 def test_the_snapshot_is_on_the_drives_way(study: Study) -> None:
     """The printed rates are those of the cycloid where it passes 315 degrees."""
-    from pinstress.mechanism import laws
+    from pinstress.model.linkage import laws
 
     (law,) = laws(study)
     times = np.linspace(0.0, 5.0, 500001)

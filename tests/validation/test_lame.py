@@ -14,17 +14,17 @@ from typing import Any
 
 import numpy as np
 
-from fea.harmonic import HarmonicModel
-from fea.material import Material
-from fea.outline import shapes
-from fea.pin_loads import Floats
-from fea.section_stress import reading
-from fea.skin import AT
+from fea.core.material import Material
+from fea.core.pin_loads import Floats
+from fea.harmonic.boundary import shapes
+from fea.harmonic.model import HarmonicModel
+from fea.harmonic.stress_recovery import reading
+from fea.harmonic.surface_stress import AT
 from geometry import Pin, Segment
-from geometry.gmsh_session import gmsh_model
-from tests.fea.exact import Exact, boundary_forces, displacements_of, edge_tractions
-from tests.fea.rectangles import rectangle
-from tests.validation.anchors import Solved, meshed, solve
+from geometry.mesh.gmsh_session import gmsh_model
+from tests.support.exact_fields import Exact, boundary_forces, displacements_of, edge_tractions
+from tests.support.section_grid import rectangle
+from tests.support.solid_under_pressure import Solved, meshed, solve
 
 A, B, LENGTH, P = 0.01, 0.02, 0.01, 1e8
 K = P * A**2 / (B**2 - A**2)
@@ -47,13 +47,13 @@ def plane(steel: Material) -> Exact:
     """The whole field, as one of harmonic 0."""
 
     def displacement(r: Floats, z: Floats) -> Floats:
-        nought = np.zeros_like(r)
-        return np.stack([widening(r, steel), nought, nought], axis=-1)
+        zero = np.zeros_like(r)
+        return np.stack([widening(r, steel), zero, zero], axis=-1)
 
     def stress(r: Floats, z: Floats) -> Floats:
-        nought = np.zeros_like(r)
-        along = nought + 2.0 * steel.poisson_ratio * K
-        return np.stack([radial(r), hoop(r), along, nought, nought, nought], axis=-1)
+        zero = np.zeros_like(r)
+        along = zero + 2.0 * steel.poisson_ratio * K
+        return np.stack([radial(r), hoop(r), along, zero, zero, zero], axis=-1)
 
     return Exact(0, displacement, stress)
 
@@ -66,7 +66,7 @@ def by_harmonic(steel: Material, across: int) -> tuple[float, float]:
     model = HarmonicModel(pin, rectangle(A, B, LENGTH, across, across), steel, ())
     exact = plane(steel)
     forces = boundary_forces(model.space, model.outline, exact)
-    u = displacements_of(model._displace(0, forces[:, None])[:, 0])
+    u = displacements_of(model.displace(0, forces[:, None])[:, 0])
     tractions = edge_tractions(model.space, model.outline, exact)
     _, stress = reading(model.space, model.outline, steel).of(0, u, tractions)
     edges = model.space.nodes[model.outline.nodes]

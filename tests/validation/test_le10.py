@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fea.material import Material
-from geometry.gmsh_session import gmsh_model
-from tests.validation.anchors import Solved, meshed, solve
+from fea.core.material import Material
+from geometry.mesh.gmsh_session import gmsh_model
+from tests.support.solid_under_pressure import Solved, meshed, solve
 
 PLATE = Material("plate", 210e9, 0.3)
 PRESSURE, HALF = 1e6, 0.3

@@ -19,9 +19,10 @@ import numpy as np
 import pytest
 
 from loads import Dynamics, Linkage, ledger
-from pinstress import build, load_study
-from pinstress.mechanism import linkage
-from pinstress.study import Study
+from pinstress import load_study
+from pinstress.model import cases as build
+from pinstress.model.linkage import linkage
+from pinstress.study.file import Study
 
 ROOT = Path(__file__).parents[2]
 PRINTED = {
@@ -89,7 +90,7 @@ def test_from_motion_alone_the_forces_agree_as_far_as_the_accelerations_do(
 
 
 def test_bars_have_the_printed_masses() -> None:
-    from loads.bar import flat_bar
+    from loads.mass_properties import flat_bar
 
     for length, mass, inertia in ((8, 0.248, 1.405), (12, 0.372, 4.588), (11, 0.341, 3.552)):
         m, j = flat_bar(0.01 * length, 0.02, 0.02, 7750.0)

@@ -1,7 +1,7 @@
 """Saint-Venant's problems for round bars and tubes, to 1e-6.
 
 Reference: Timoshenko & Goodier, Theory of Elasticity, 3rd ed., McGraw-Hill 1970, secs. 99 to
-102 and 119 to 121, as written out in `tests.fea.saint_venant`.
+102 and 119 to 121, as written out in `tests.support.saint_venant`.
 
 The ends carry the exact tractions and nothing is clamped, so the solution is exact everywhere but
 for a rigid motion. Quadratic elements hold tension, torsion and bending: one coarse mesh, 1e-10 (of
@@ -18,12 +18,12 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from fea.harmonic import HarmonicModel, rigid_motions
-from fea.material import Material
-from fea.pin_loads import Floats
-from fea.section_stress import reading
+from fea.core.material import Material
+from fea.core.pin_loads import Floats
+from fea.harmonic.model import HarmonicModel, rigid_motions
+from fea.harmonic.stress_recovery import reading
 from geometry import Pin, Segment
-from tests.fea.exact import (
+from tests.support.exact_fields import (
     Exact,
     boundary_forces,
     displacements_of,
@@ -31,8 +31,8 @@ from tests.fea.exact import (
     errors,
     unknowns_of,
 )
-from tests.fea.rectangles import rectangle
-from tests.fea.saint_venant import bending, end_force, flexure, tension, torsion
+from tests.support.saint_venant import bending, end_force, flexure, tension, torsion
+from tests.support.section_grid import rectangle
 
 A, L = 0.01, 0.04
 INNER = pytest.mark.parametrize("b", [0.0, 0.004], ids=["bar", "tube"])
@@ -57,7 +57,7 @@ def solved(exact: Exact, material: Material, b: float, fine: int) -> Solved:
     model = HarmonicModel(pin, rectangle(b, A, L, 4 * fine, 8 * fine), material, ())
     space, outline = model.space, model.outline
     forces = boundary_forces(space, outline, exact)
-    x = model._displace(exact.n, forces[:, None])[:, 0]
+    x = model.displace(exact.n, forces[:, None])[:, 0]
     truth = unknowns_of(exact.at_nodes(space)[..., 0])
     modes = rigid_motions(space.nodes, exact.n)
     rigid = modes @ np.linalg.lstsq(modes, x - truth, rcond=None)[0]
@@ -127,7 +127,9 @@ def test_flexure_has_the_force_it_should(steel: Material, b: float) -> None:
         assert abs(rim[4]) < 1e-14 * abs(rim[3])
 
 
-@pytest.mark.parametrize("state", [tension, torsion, bending, None], ids=str)
+@pytest.mark.parametrize(
+    "state", [tension, torsion, bending, None], ids=lambda s: getattr(s, "__name__", "none")
+)
 def test_no_spurious_stress_on_the_axis(state: type | None, steel: Material) -> None:
     """At r = 0 and on the rows of nodes next to it a mesh is no worse than elsewhere (but for
     round-off, 1e-9 of the largest stress: measured 2e-10 at the corner on the axis).

@@ -10,7 +10,7 @@ from __future__ import annotations
 import pytest
 
 from benchmarks.shoulders import KINDS, run, shoulder
-from geometry.meridian_mesh import SectionSize
+from geometry.mesh.section_mesh import SectionSize
 
 # CalculiX 2.20, CAX6, 71,000 and 82,000 unknowns: `python -m benchmarks tension`.
 # D/d, r/d, largest principal and von Mises stress over the nominal stress
@@ -21,7 +21,7 @@ CALCULIX = [(1.25, 0.0125, 3.9634, 3.5601), (3.0, 0.1, 2.2832, 2.0472)]
 def test_factors_are_those_of_calculix(
     ratio: float, radius: float, principal: float, mises: float
 ) -> None:
-    """Within 0.3 %; Peterson's chart is 21 % and 11 % below (fea.notch)."""
+    """Within 0.3 %; Peterson's chart is 21 % and 11 % below (fea.beam.stress_concentration)."""
     found = run(shoulder(ratio, radius), SectionSize(6.0, 14.0, 0.3))
     tension = KINDS.index("tension")
     assert found.principal[tension] == pytest.approx(principal, rel=0.003)

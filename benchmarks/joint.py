@@ -1,0 +1,126 @@
+"""Contact of pins with their lugs: against three-dimensional contact, and what it takes."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from functools import partial
+from statistics import median
+from typing import TypeVar
+
+import numpy as np
+
+from benchmarks.timing import table
+from fea.core.material import Material
+from fea.core.pin_loads import Floats, PinLoads
+from fea.harmonic.evaluate import HarmonicAnswer
+from fea.harmonic.superposition import Circumference
+from fea.joint.lug import Lug
+from fea.joint.solve_joint import Cells, JointModel
+from fea.solve_pin import Asked, solve_pin
+from geometry import Pin, Segment
+
+T = TypeVar("T")
+
+E, NU, D, EYE, ARM, FORCE = 210e9, 0.3, 0.02, 0.05, 0.04, 50e3
+STEEL = Material("steel", E, NU)
+NAMES = "L", "M", "R"
+SHARE = np.array([-0.5, 1.0, -0.5])
+# Inner and outer lug, gap, diametral clearance, mm; bending moment over F/2 (t_o/2 + g + t_i/4) and
+# von Mises stress of the tension fibre at mid-span, MPa, by frictionless contact in three
+# dimensions with two programs (eyes of 50 with a shank of 50 that is clamped 50 away).
+TRUTH = (
+    (20, 10, 1, 0.0, 0.8418, 306.3),
+    (20, 10, 1, 0.02, 0.8433, 303.8),
+    (20, 10, 1, 0.05, 0.8476, 304.8),
+    (20, 10, 1, 0.1, 0.8574, 308.6),
+    (10, 5, 0.5, 0.0, 0.9483, 196.2),
+    (10, 5, 0.5, 0.05, 0.9500, 196.3),
+    (40, 20, 2, 0.0, 0.3845, 279.3),
+    (40, 20, 2, 0.05, 0.4197, 304.0),
+)
+INSTANTS = 201
+USUAL, FINE = Cells(), Cells(10, 48, 16)
+
+
+def joint() -> str:
+    """Two tables."""
+    return f"{_accuracy()}\n\n{_times()}"
+
+
+def _model(
+    inner: float, outer: float, gap: float, clearance: float, cells: Cells = USUAL
+) -> JointModel:
+    """A clevis, mm."""
+    over, apart = Segment(0.002, D), Segment(gap / 1e3, D)
+    left, middle, right = (
+        Segment(t / 1e3, D, connection=name)
+        for t, name in zip((outer, inner, outer), NAMES, strict=True)
+    )
+    pin = Pin("P", (over, left, apart, middle, apart, right, over))
+    shank = E * EYE * (outer / 1e3) ** 3 / (12.0 * ARM)
+    tilt = dict(zip(NAMES, (shank, math.inf, shank), strict=True))
+    lugs = [Lug(name, EYE, STEEL, clearance / 1e3, tilt=k) for name, k in tilt.items()]
+    return JointModel(pin, STEEL, lugs, cells)
+
+
+def _pull(angle: Floats) -> PinLoads:
+    """One instant for each angle (rad) of the load."""
+    along = np.stack([np.cos(angle), np.sin(angle), 0.0 * angle], axis=1)
+    return PinLoads("pull", NAMES, FORCE * SHARE[None, :, None] * along[:, None, :])
+
+
+def _accuracy() -> str:
+    rows = []
+    for inner, outer, gap, clearance, moment, stress in TRUTH:
+        model = _model(inner, outer, gap, clearance)
+        found = model.solve(_pull(np.zeros(1)))
+        middle = (2.0 + outer + gap + inner / 2.0) / 1e3
+        bending = abs(found.bending_moment(np.array([middle]))[0, 0, 0])
+        nominal = FORCE / 2.0 * (outer / 2.0 + gap + inner / 4.0) / 1e3
+        asked = Asked(model="harmonic", meshes=2)
+        (solution,) = solve_pin(found.pin, STEEL, (), (found.loads,), asked)
+        assert isinstance(solution.answer, HarmonicAnswer)
+        fields = solution.answer.fields
+        near = np.hypot(fields.points[:, 0] - D / 2.0, fields.points[:, 1] - middle)
+        square = Circumference(fields, found.loads).squares(np.array([near.argmin()]), 0.0)
+        ours = math.sqrt(float(square[0, 0])) / 1e6
+        rows.append(
+            (
+                f"{inner:g} / {outer:g}+{outer:g}, gap {gap:g}",
+                f"{clearance:g}",
+                f"{bending / nominal:.4f}",
+                f"{moment:.4f}",
+                f"{ours:.1f}",
+                f"{stress:.1f}",
+                f"{100.0 * (ours / stress - 1.0):+.1f}",
+            )
+        )
+    head = ("lugs [mm]", "clearance [mm]", "M / M0", "3D", "mid-span [MPa]", "3D", "off [%]")
+    return table(head, rows)
+
+
+def _times() -> str:
+    """Of the first clevis; seconds, the median of three."""
+    rows = []
+    for cells in (USUAL, FINE):
+        first, model = _timed(partial(_model, 20, 10, 1, 0.05, cells))
+        one, _ = _timed(partial(model.solve, _pull(np.zeros(1))))
+        many, found = _timed(partial(model.solve, _pull(np.linspace(0.0, np.pi, INSTANTS))))
+        steps = np.mean([c.steps for c in found.contact])
+        each = 1e3 * (many - one) / (INSTANTS - 1)
+        about = f"{cells.rings} rings, {cells.sectors} sectors, n to {cells.highest}"
+        numbers = f"{first:.2f}", f"{one:.2f}", f"{each:.1f}", f"{many:.2f}", f"{steps:.1f}"
+        rows.append((about, *numbers))
+    head = ("cells of each band", "flexibilities [s]", "one instant [s]", "each further [ms]")
+    return table((*head, f"{INSTANTS} instants [s]", "steps of the active set"), rows)
+
+
+def _timed(work: Callable[[], T]) -> tuple[float, T]:
+    spent = []
+    for _ in range(3):
+        start = time.perf_counter()
+        found = work()
+        spent.append(time.perf_counter() - start)
+    return median(spent), found

@@ -1,0 +1,82 @@
+"""What is requested of a pin, when it is answered, and why by which model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+from fea.beam.error_model import PLAIN
+from fea.core.material import Material
+from fea.core.peak import Note
+from fea.verdict import FEWEST, Seen
+
+Model = Literal["auto", "beam", "harmonic", "solid"]
+Goal = Literal["value", "decide"]
+
+DECIDED = "its error does not affect whether the required factor is reached"
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is wanted: the maximum to a `tolerance`, or (goal "decide") only on which side of the
+    `required` factor of safety it is. distance: of the local diameter, that is excluded at corners
+    and edges of clamps. meshes: at most so many, as the model has it by default. memory: MB that a
+    mesh may take, by default most of what is free.
+    """
+
+    tolerance: float = 0.02
+    model: Model = "auto"
+    goal: Goal = "value"
+    required: float | None = None
+    distance: float = 0.1
+    meshes: int | None = None
+    memory: float | None = None
+
+
+def decided(asked: Asked, material: Material, low: float, high: float) -> bool:
+    """Whether a maximum between two stresses (Pa) decides if the required factor is reached."""
+    strength, required = material.yield_strength, asked.required
+    if asked.goal != "decide" or strength is None or required is None:
+        return False
+    limit = strength / required
+    return high < limit or low > limit
+
+
+def enough(asked: Asked, material: Material, seen: Seen) -> bool:
+    """Whether these meshes are accurate enough, or decide the required factor."""
+    if len(seen.results) < FEWEST:
+        return False
+    return seen.known(asked.tolerance) or decided(asked, material, *seen.range)
+
+
+def reasons(asked: Asked, material: Material, model: str) -> Callable[[Seen], Note]:
+    """Why this model answered, and why its meshes were enough or were all there are."""
+
+    def why(seen: Seen) -> Note:
+        if seen.known(asked.tolerance):
+            meshes = f"its error is within the tolerance on {len(seen.results)} meshes"
+            return chosen + Note(f"; {meshes}", ("mesh-converged",))
+        if decided(asked, material, *seen.range):
+            return chosen + Note(f"; {DECIDED}", ("mesh-decides",))
+        limit = "the tolerance is not reached on the finest mesh allowed"
+        return chosen + Note(f"; {limit}", ("mesh-limit",))
+
+    chosen = _chosen(asked, model)
+    return why
+
+
+def _chosen(asked: Asked, model: str) -> Note:
+    """Why this model and no smaller one."""
+    if asked.model == model:
+        return Note(f"{model}: requested", ("requested",))
+    if model == "solid":
+        return Note("solid: the pin is not a body of revolution", ("not-axisymmetric",))
+    if asked.goal == "decide":
+        text = "its error leaves open whether the required factor is reached"
+        return Note(f"harmonic: beam rejected: {text}", ("beam-open",))
+    if asked.tolerance < PLAIN:
+        text = f"its error, at least {PLAIN:.0%}, exceeds the tolerance of {asked.tolerance:.1%}"
+    else:
+        text = f"its error exceeds the tolerance of {asked.tolerance:.1%}"
+    return Note(f"harmonic: beam rejected: {text}", ("beam-inaccurate",))

@@ -1,0 +1,126 @@
+"""Unit loads as loads per length of a beam: across (n = 1), along and about the axis (n = 0).
+
+Between stations a load per length is w0 + w1 s, s from the left station. Harmonics n >= 2 and a
+pressure of n = 0 have no resultant in any section, so they are zero here.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+
+from fea.beam.round_section import Circle
+from fea.core.material import Material
+from fea.core.pin_loads import AnyLoads, Floats, UnitLoad
+from fea.core.tractions import Traction, closing_tractions, traction
+from geometry import ArgumentError, Pin
+
+
+def loads_sections(load: UnitLoad) -> bool:
+    """Whether a unit load has a resultant in any section."""
+    return load.n < 2 and not (load.kind == "pressure" and load.n == 0)
+
+
+def acting(loads: AnyLoads) -> tuple[UnitLoad, ...]:
+    """The unit loads of which a beam notices anything."""
+    return tuple(u for u in loads.coefficients() if loads_sections(u))
+
+
+def shares(units: tuple[UnitLoad, ...], loads: AnyLoads) -> Floats:
+    """How much of each of K unit loads acts, (T, 2, K) by phase; zero of those that no section
+    notices.
+
+    Raises: ValueError when a part of the loads is not among the units.
+    """
+    found = loads.coefficients()
+    missing = set(acting(loads)) - set(units)
+    if missing:
+        raise ArgumentError(
+            f"case {loads.case}: no unit fields were solved for {sorted(missing)}", "missing-fields"
+        )
+    out = np.zeros((len(loads), 2, len(units)))
+    for k, unit in enumerate(units):
+        if unit in found and loads_sections(unit):
+            out[:, :, k] = found[unit]
+    return out
+
+
+def line_loads(
+    pin: Pin,
+    material: Material,
+    stations: Floats,
+    sections: tuple[Circle, ...],
+    loads: tuple[UnitLoad, ...],
+    closed: bool,
+) -> Floats:
+    """Loads per length (C, 2, K), w0 (N/m, or N m/m about the axis) and w1 (per m) of K unit loads
+    between stations (C + 1,) in m, at which all bands end; `closed`: with what balances each load.
+
+    Raises: ValueError for the weight of a material without density, or a balance without bands.
+    """
+    out = np.zeros((len(sections), 2, len(loads)))
+    for k, load in enumerate(loads):
+        if load.kind == "body":
+            if material.density is None:
+                raise ArgumentError(
+                    f"material {material.name} has no density, which weight and inertia need",
+                    "no-density",
+                )
+            out[:, 0, k] = [material.density * section.area for section in sections]
+        elif loads_sections(load):
+            out[..., k] = _spread(pin, stations, (traction(pin, load),), load.n, load.phases[0])
+    if closed:
+        _close(pin, stations, loads, out)
+    return out
+
+
+def per_length(radius: float, amplitudes: Floats, n: int, phase: int) -> Floats:
+    """Load per length (...) of tractions (..., 3), Pa, on a cylinder of `radius` (m)."""
+    r, t, z = np.moveaxis(amplitudes, -1, 0)
+    if n == 1:
+        return np.asarray(math.pi * radius * (r - t))
+    return np.asarray(2.0 * math.pi * radius * (-radius * t if phase else z))
+
+
+def _spread(
+    pin: Pin, stations: Floats, tractions: Iterable[Traction], n: int, phase: int
+) -> Floats:
+    """Load per length (C, 2) of tractions on bands."""
+    out = np.zeros((len(stations) - 1, 2))
+    middles = 0.5 * (stations[1:] + stations[:-1])
+    for t in tractions:
+        band = pin.band(t.surface)
+        on = (middles > band.z0) & (middles < band.z1)
+        out[on, 0] += per_length(band.radius, t.at(stations[:-1][on]), n, phase)
+        out[on, 1] += per_length(band.radius, t.slope, n, phase)
+    return out
+
+
+def resultants(stations: Floats, w: Floats) -> tuple[Floats, Floats]:
+    """Of loads per length (C, 2, ...): the sum (...) in N, and the moment (...) about z = 0."""
+    h = np.diff(stations).reshape(-1, *[1] * (w.ndim - 2))
+    z = stations[:-1].reshape(h.shape)
+    force = w[:, 0] * h + w[:, 1] * h**2 / 2.0
+    moment = w[:, 0] * h**2 / 2.0 + w[:, 1] * h**3 / 3.0 + z * force
+    return force.sum(axis=0), moment.sum(axis=0)
+
+
+def _close(pin: Pin, stations: Floats, loads: tuple[UnitLoad, ...], w: Floats) -> None:
+    """Subtract from each load what closes its balance."""
+    if not pin.connections:
+        raise ArgumentError(
+            f"pin {pin.name}: it is not clamped and no connection bears on it; add either",
+            "unconstrained",
+        )
+    for n, phase in ((1, 0), (0, 0), (0, 1)):
+        columns = [k for k, u in enumerate(loads) if u.n == n and (n or u.phases[0] == phase)]
+        if not columns:
+            continue
+        closing = [_spread(pin, stations, c, n, phase) for c in closing_tractions(pin, n, phase)]
+        basis = np.stack(closing, axis=-1)
+        rows = slice(None) if n else slice(1)  # moments across count for n = 1 alone
+        of_basis = np.stack(resultants(stations, basis))[rows]
+        of_loads = np.stack(resultants(stations, w[..., columns]))[rows]
+        w[..., columns] -= basis @ np.linalg.solve(of_basis, of_loads)

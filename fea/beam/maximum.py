@@ -1,0 +1,89 @@
+"""The largest von Mises stress of a beam over all instants, all points and over the circumference.
+
+At a point the stress of an instant is s(theta) = a + b cos theta + c sin theta, so von Mises
+squared is a trigonometric polynomial of degree 2: sampled, then polished by Newton's method.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea.beam.line_load import shares
+from fea.beam.stress import BeamStress
+from fea.core.pin_loads import AnyLoads, Floats
+from fea.core.voigt import VON_MISES
+
+ANGLES = 48
+_THETA = 2.0 * np.pi * np.arange(ANGLES) / ANGLES
+_ODD = np.array([3, 5])  # tz, rt go with sin psi
+_NEGLIGIBLE = 1e-9
+
+
+@dataclass(frozen=True)
+class Highest:
+    """von_mises: (S, T) Pa, each the maximum over the circumference at a point and an instant;
+    theta: where (rad).
+    """
+
+    von_mises: Floats
+    theta: Floats
+
+    @property
+    def place(self) -> tuple[int, int]:
+        """Point and instant of the largest of all."""
+        point, instant = np.unravel_index(self.von_mises.argmax(), self.von_mises.shape)
+        return int(point), int(instant)
+
+
+def harmonics(beam: BeamStress, loads: AnyLoads) -> Floats:
+    """Stress (3, S, 6, T) in Pa: constant, times cos theta, times sin theta."""
+    c = shares(beam.loads, loads)
+    across = np.array([load.n == 1 for load in beam.loads], dtype=bool)
+    first, second = (np.einsum("sik,tk->sit", beam.stress, c[:, p] * across) for p in (0, 1))
+    even, odd = (np.einsum("sik,tk->sit", beam.stress, c[:, p] * ~across) for p in (0, 1))
+    a, b, s = even, first.copy(), second.copy()
+    a[:, _ODD], b[:, _ODD], s[:, _ODD] = -odd[:, _ODD], -second[:, _ODD], first[:, _ODD]
+    return np.stack([a, b, s])
+
+
+def highest(stress: Floats) -> Highest:
+    """Largest von Mises stress over the circumference of stresses (3, S, 6, T) as from
+    `harmonics`.
+    """
+    weighted = np.einsum("ij,bsjt->bsit", VON_MISES, stress)
+
+    def form(a: int, b: int) -> Floats:
+        return np.asarray(np.einsum("sit,sit->st", stress[a], weighted[b]))
+
+    square, cosine, sine = form(0, 0), form(1, 1), form(2, 2)
+    # f = q0 + q1 cos + q2 sin + q3 cos 2 + q4 sin 2
+    q = [
+        square + 0.5 * (cosine + sine),
+        2.0 * form(0, 1),
+        2.0 * form(0, 2),
+        0.5 * (cosine - sine),
+        form(1, 2),
+    ]
+
+    def once(t: Floats | float) -> Floats:
+        return np.asarray(q[1] * np.cos(t) + q[2] * np.sin(t))
+
+    def twice(t: Floats | float) -> Floats:
+        return np.asarray(q[3] * np.cos(2.0 * t) + q[4] * np.sin(2.0 * t))
+
+    best, at = np.full_like(q[0], -np.inf), np.zeros_like(q[0])
+    for theta in _THETA:
+        value = q[0] + once(theta) + twice(theta)
+        at = np.where(value > best, theta, at)
+        best = np.maximum(value, best)
+    t, quarter = at, 0.5 * np.pi
+    for _ in range(4):
+        slope = once(t + quarter) + 2.0 * twice(t + 0.5 * quarter)
+        bend = -once(t) - 4.0 * twice(t)
+        downwards = bend < -_NEGLIGIBLE * best
+        t = np.where(downwards, t - slope / np.where(downwards, bend, 1.0), t)
+    value = q[0] + once(t) + twice(t)
+    at, best = np.where(value > best, t, at), np.maximum(value, best)
+    return Highest(np.sqrt(np.maximum(best, 0.0)), at)

@@ -1,0 +1,94 @@
+"""The beam model's answer for one case, in the form that the other models have."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import cached_property
+
+import numpy as np
+
+from fea.beam.error_model import BeamEstimate, beam_estimate
+from fea.beam.line_load import acting
+from fea.beam.maximum import harmonics, highest
+from fea.beam.stress import BeamStress, beam_stress
+from fea.core.material import Material
+from fea.core.mesh_result import MeshResult
+from fea.core.peak import ErrorParts, Note, Peak, Refinement
+from fea.core.pin_loads import AnyLoads, Floats, PinLoads
+from fea.core.solution import Picture
+from fea.singular.singularities import Singularity, outside
+from fea.verdict import accuracy
+from geometry import Pin
+
+
+class BeamAnswer:
+    """A pin as a beam, with the unit loads of a case."""
+
+    def __init__(
+        self, pin: Pin, material: Material, clamps: tuple[str, ...], case: PinLoads
+    ) -> None:
+        self.pin, self.case, self.clamps = pin, case, clamps
+        self._beam: BeamStress = beam_stress(pin, material, acting(case), clamps)
+
+    @cached_property
+    def estimate(self) -> BeamEstimate:
+        """Of the largest stress of the case."""
+        return beam_estimate(self._beam, self.case, self.clamps)
+
+    def maxima(self, loads: PinLoads) -> Floats:
+        """Largest von Mises stress (T,) Pa at every instant."""
+        return np.asarray(highest(harmonics(self._beam, loads)).von_mises.max(axis=0))
+
+    def largest(self, loads: AnyLoads) -> tuple[float, int]:
+        """The largest of these (Pa), and the index of its instant."""
+        found = highest(harmonics(self._beam, loads))
+        point, instant = found.place
+        return float(found.von_mises[point, instant]), instant
+
+    def result(self, singularities: Sequence[Singularity]) -> MeshResult:
+        """The largest stress outside the singular zones, as for the other models."""
+        found = highest(harmonics(self._beam, self.case))
+        r, z = self._beam.points.T
+        value = np.where(outside(singularities, r, z)[:, None], found.von_mises, 0.0)
+        point, instant = (int(i) for i in np.unravel_index(value.argmax(), value.shape))
+        at, theta = float(r[point]), float(found.theta[point, instant])
+        location = (at * math.cos(theta), at * math.sin(theta), float(z[point]))
+        return MeshResult(0, float(value[point, instant]), instant, location)
+
+    def picture(self, loads: PinLoads, instant: int) -> Picture | None:
+        """None: a beam has no field over its surface."""
+        return None
+
+    def peak(self, tolerance: float, seconds: float, note: Note, rise: float = 0.0) -> Peak:
+        """The peak with the beam's own error; where it has none, an error of the whole value. rise:
+        by how much the maximum may be higher between instants, Pa.
+        """
+        found = self.estimate
+        r, z = found.place
+        whole = found.maximum if found.error is None else found.error
+        parts = ErrorParts(mesh=0.0, time=rise, model=whole)
+        error = parts.total
+        relative = error / found.maximum if found.maximum else 0.0
+        known = found.error is not None and relative <= tolerance
+        own = accuracy(relative, tolerance, known)
+        if found.without_factor:
+            notches = ", ".join(found.without_factor)
+            own = Note(
+                f"no notch factor is available for {notches}, so the stress there is not included",
+                ("no-notch-factor",),
+            )
+        own = own + Note(f". {found.leaves_out.rstrip('.')}") + note
+        return Peak(
+            pin=self.pin.name,
+            case=self.case.case,
+            model="beam",
+            verdict="converged" if known else "unconverged",
+            note=own.text,
+            max_von_mises=found.maximum,
+            error_estimate=error,
+            location=(r * math.cos(found.theta), r * math.sin(found.theta), z),
+            history=(Refinement(0, found.maximum, seconds),),
+            parts=parts,
+            reasons=own.codes,
+        )

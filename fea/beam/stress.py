@@ -1,0 +1,116 @@
+"""Stresses of a stepped beam at points of its surface, its axis or bore, and its notches.
+
+The face of all models: points in the meridian plane and amplitudes of the stress of unit loads
+there. With psi = n theta - p pi / 2, p the phase, the components rr, tt, zz, rz go with cos psi and
+tz, rt with sin psi. So a shear V along x, which on the axis is s_xz = tau all over, is rz = tau and
+tz = -tau, and a torque, n = 0 with p = 1, where sin psi = -1, is tz = -T r / J.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.beam.round_section import Circle
+from fea.beam.stress_concentration import Notch, notches
+from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, stepped_beam
+from fea.core.material import Material
+from fea.core.pin_loads import Floats, UnitLoad
+from geometry import Pin
+
+ZZ, TZ, RZ = 2, 3, 4
+PER_CELL = 33  # points in a cell, besides where a moment is largest
+
+
+@dataclass(frozen=True)
+class BeamStress:
+    """points: (S, 2) r, z in m. stress: (S, 6, K) Pa per unit of K loads, order rr, tt, zz, tz, rz,
+    rt. The last points are those of the `notches` that the thinner shaft reaches free of a clamp,
+    in order, with their factors where there are any, otherwise nominal.
+    """
+
+    pin: Pin
+    material: Material
+    forces: InternalForces
+    notches: tuple[Notch, ...]
+    points: Floats
+    stress: Floats
+
+    @property
+    def loads(self) -> tuple[UnitLoad, ...]:
+        """Of the K columns."""
+        return self.forces.loads
+
+
+def beam_stress(
+    pin: Pin, material: Material, loads: tuple[UnitLoad, ...], clamps: tuple[str, ...] = ()
+) -> BeamStress:
+    """Stresses of unit loads on a pin clamped at `clamps`, or balanced (fea.beam.timoshenko).
+
+    Raises: as `stepped_beam`.
+    """
+    forces = stepped_beam(pin, material, loads, clamps)
+    cells, z = sample(forces)
+    inside = forces.inside(cells, z)
+    sections = [forces.sections[c] for c in cells]
+    nu = material.poisson_ratio
+    points, stress = [], []
+    for radius in ("outer", "inner"):
+        r = np.array([getattr(s, radius) for s in sections])
+        points.append(np.stack([r, z], axis=1))
+        per_force = [_section_stress(s, a, nu) for s, a in zip(sections, r, strict=True)]
+        stress.append(np.einsum("siq,sqk->sik", per_force, inside))
+    found = [(n, c) for n in notches(pin) if (c := _thin_cell(pin, forces, n)) is not None]
+    for notch, c in found:
+        section = forces.sections[c]
+        nominal = _section_stress(section, section.outer, nu)
+        nominal[ZZ, MOMENT] *= notch.bending or 1.0
+        nominal[ZZ, AXIAL] *= notch.tension or 1.0
+        nominal[TZ, TORQUE] *= notch.torsion or 1.0
+        here = forces.inside(np.array([c]), np.array([notch.z]))
+        points.append(np.array([[section.outer, notch.z]]))
+        stress.append(np.einsum("iq,sqk->sik", nominal, here))
+    return BeamStress(
+        pin,
+        material,
+        forces,
+        tuple(n for n, _ in found),
+        np.concatenate(points),
+        np.concatenate(stress),
+    )
+
+
+def sample(forces: InternalForces) -> tuple[NDArray[np.intp], Floats]:
+    """Cells (S,) and z (S,) in m: densely in all cells outside the clamps, both sides of every
+    station, and where the moment of any unit load is largest.
+    """
+    cells, z = [], []
+    for c in forces.free:
+        a, b = forces.stations[c : c + 2]
+        here = set(np.linspace(a, b, PER_CELL).tolist())
+        for shear in forces.coefficients[c, :3, SHEAR].T:
+            roots = a + np.polynomial.Polynomial(shear).trim().roots()
+            here |= {float(x.real) for x in roots if abs(x.imag) == 0.0 and a < x.real < b}
+        z += sorted(here)
+        cells += [c] * len(here)
+    return np.array(cells, dtype=np.intp), np.array(z)
+
+
+def _section_stress(section: Circle, r: float, nu: float) -> Floats:
+    """Amplitudes (6, 4) in Pa at r (m) per V, M, N, T."""
+    out = np.zeros((6, 4))
+    out[RZ, SHEAR], out[TZ, SHEAR] = section.flexure(r, nu)
+    out[ZZ, MOMENT] = -r / section.inertia
+    out[ZZ, AXIAL] = 1.0 / section.area
+    out[TZ, TORQUE] = -r / section.polar
+    return out
+
+
+def _thin_cell(pin: Pin, forces: InternalForces, notch: Notch) -> int | None:
+    """The cell of the thinner shaft in which a notch is, or ends; None within a clamp."""
+    middle = 0.5 * (pin.stations[notch.on] + pin.stations[notch.on + 1])
+    inwards = notch.z + 1e-9 * (middle - notch.z)
+    c = int(np.searchsorted(forces.stations, inwards)) - 1
+    return c if c in forces.free else None

@@ -1,0 +1,170 @@
+"""A pin as a stepped Timoshenko beam: its internal forces, exactly, under unit loads.
+
+With w the load per length along x, q along z and t about z, the part beyond z exerts on the rest
+
+    V' = -w    M' = -V    N' = -q    T' = -t
+
+the shear V along x and the bending moment M about y, the axial force N and the torque T. So
+between stations they are polynomials, found by marching along the pin from the left end of each
+free span. What they start from: nothing at a free end; after a clamp, whatever makes the free right
+end free, or, between two clamps, what makes the sections at both stay as they are (Castigliano: the
+complementary energy's derivatives by the four redundant forces vanish). All is linear and exact.
+
+Source: S. P. Timoshenko, Phil. Mag. 41 (1921) 744, for the beam; the shear coefficients in
+fea.beam.round_section.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.beam.line_load import line_loads
+from fea.beam.round_section import Circle, circle
+from fea.core.material import Material
+from fea.core.pin_loads import Floats, UnitLoad
+from geometry import Pin
+
+SHEAR, MOMENT, AXIAL, TORQUE = range(4)
+_GAUSS, _WEIGHT = np.polynomial.legendre.leggauss(4)  # exact for products of our cubics
+
+
+@dataclass(frozen=True)
+class Span:
+    """Cells first to last - 1 between clamps or free ends; `left`, `right`: whether clamped
+    there.
+    """
+
+    first: int
+    last: int
+    left: bool
+    right: bool
+
+
+@dataclass(frozen=True)
+class InternalForces:
+    """V (N), M (N m), N (N), T (N m) of K unit loads between stations (C + 1,), m.
+
+    coefficients: (C, 4, 4, K) of the powers 0 to 3 of the distance (m) from the cell's left end, of
+    V, M, N, T. sections: of the C cells. spans: the cells outside the clamps.
+    """
+
+    stations: Floats
+    sections: tuple[Circle, ...]
+    spans: tuple[Span, ...]
+    loads: tuple[UnitLoad, ...]
+    coefficients: Floats
+
+    @property
+    def free(self) -> tuple[int, ...]:
+        """Cells outside the clamps."""
+        return tuple(c for s in self.spans for c in range(s.first, s.last))
+
+    def inside(self, cells: NDArray[np.intp], z: Floats) -> Floats:
+        """V, M, N, T (S, 4, K) at z (S,) in m, each as seen from the cell (S,) it is in."""
+        s = z - self.stations[cells]
+        powers = s[:, None] ** np.arange(4)
+        return np.asarray(np.einsum("sp,spqk->sqk", powers, self.coefficients[cells]))
+
+    def at(self, z: Floats) -> Floats:
+        """V, M, N, T (S, 4, K) at z (S,) in m; at a station as seen from the right."""
+        cells = np.searchsorted(self.stations[1:-1], z, side="right")
+        return self.inside(cells, z)
+
+
+def stepped_beam(
+    pin: Pin, material: Material, loads: tuple[UnitLoad, ...], clamps: tuple[str, ...] = ()
+) -> InternalForces:
+    """Internal forces of a pin clamped at `clamps` (names as in `pin.surface`): a face's section
+    stays where it is, a band is rigid. Without clamps each load is balanced by the closing
+    tractions on all connections (fea.core.tractions).
+
+    Raises: GeometryError for a clamp that is not there; ValueError as fea.beam.line_load.
+    """
+    held = [_held(pin, pin.surface(name)) for name in clamps]
+    stations = _stations(pin, held)
+    middles = 0.5 * (stations[1:] + stations[:-1])
+    segments = np.searchsorted(pin.stations[1:-1], middles, side="right")
+    sections = tuple(circle(pin.segments[i]) for i in segments)
+    w = line_loads(pin, material, stations, sections, loads, closed=not clamps)
+    q = np.zeros((len(sections), 2, 4, len(loads)))  # by the force whose slope it makes
+    for k, load in enumerate(loads):
+        q[:, :, SHEAR if load.n else (AXIAL, TORQUE)[load.phases[0]], k] = w[:, :, k]
+    out = np.zeros((len(sections), 4, 4, len(loads)))
+    spans = _spans(stations, held)
+    lengths, soft = np.diff(stations), np.array([compliances(s, material) for s in sections])
+    for span in spans:
+        here = slice(span.first, span.last)
+        out[here] = _span(span, lengths[here], soft[here], q[here])
+    return InternalForces(stations, sections, spans, loads, out)
+
+
+def compliances(section: Circle, material: Material) -> Floats:
+    """1 / (kappa G A), 1 / (E I), 1 / (E A), 1 / (G J)."""
+    E, G = material.youngs_modulus, material.lame[1]
+    shear = section.shear_coefficient(material.poisson_ratio) * G * section.area
+    return 1.0 / np.array([shear, E * section.inertia, E * section.area, G * section.polar])
+
+
+def _held(pin: Pin, surface: str) -> tuple[float, float]:
+    """Start and end (m) of a clamp."""
+    if surface == "start":
+        return 0.0, 0.0
+    if surface == "end":
+        return pin.length, pin.length
+    band = pin.band(surface)
+    return band.z0, band.z1
+
+
+def _stations(pin: Pin, held: list[tuple[float, float]]) -> Floats:
+    z = np.sort([*pin.stations, *(e for b in pin.bands for e in (b.z0, b.z1)), *np.ravel(held)])
+    return np.asarray(z[np.r_[True, np.diff(z) > 1e-12 * pin.length]])
+
+
+def _spans(stations: Floats, held: list[tuple[float, float]]) -> tuple[Span, ...]:
+    near = 1e-12 * stations[-1]
+    spans, z, left = [], 0.0, False
+    ends = [*((a, b, True) for a, b in sorted(held)), (stations[-1], stations[-1], False)]
+    for a, b, right in ends:
+        if a - z > near:
+            first, last = (int(np.abs(stations - x).argmin()) for x in (z, a))
+            spans.append(Span(first, last, left, right))
+        left, z = left or right, max(z, b)
+    return tuple(spans)
+
+
+def _span(span: Span, lengths: Floats, soft: Floats, q: Floats) -> Floats:
+    """Coefficients (C, 4, 4, K) of the internal forces in one span, loads q (C, 2, 4, K)."""
+    loaded = _march(lengths, q, np.zeros(q.shape[2:]))
+    if not span.left:  # a free end, or all is in balance
+        return loaded
+    unit = _march(lengths, np.zeros((*q.shape[:3], 4)), np.eye(4))
+    if span.right:
+        s = lengths[:, None] * 0.5 * (1.0 + _GAUSS)  # (C, G)
+        powers = s[..., None] ** np.arange(4)
+        m, f = (np.einsum("cgp,cpqk->cgqk", powers, x) for x in (unit, loaded))
+        scaled = np.einsum("c,g,cq,cgqi->cgqi", lengths / 2.0, _WEIGHT, soft, m)
+        flexibility = np.einsum("cgqi,cgqj->ij", scaled, m)
+        start = np.linalg.solve(flexibility, -np.einsum("cgqi,cgqk->ik", scaled, f))
+    else:
+        powers = lengths[-1] ** np.arange(4)
+        ends = (np.einsum("p,pqk->qk", powers, x[-1]) for x in (unit, loaded))
+        at_end, wanted = ends
+        start = np.linalg.solve(at_end, -wanted)
+    return _march(lengths, q, start)
+
+
+def _march(lengths: Floats, q: Floats, start: Floats) -> Floats:
+    """Coefficients (C, 4, 4, K) from loads per length q (C, 2, 4, K) and V, M, N, T at the start
+    (4, K).
+    """
+    out = np.zeros((len(lengths), 4, *q.shape[2:]))
+    for c, h in enumerate(lengths):
+        out[c, 0] = start
+        out[c, 1] = -q[c, 0]
+        out[c, 2] = -q[c, 1] / 2.0
+        out[c, 1:, MOMENT] = -out[c, :3, SHEAR] / np.array([1.0, 2.0, 3.0])[:, None]
+        start = np.einsum("p,pqk->qk", h ** np.arange(4), out[c])
+    return out

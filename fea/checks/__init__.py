@@ -1,0 +1,1 @@
+"""Comparisons with the answers: hand formulas, beam theory, CalculiX."""

@@ -1,0 +1,1 @@
+"""What all models of a pin share: material, loads, linear solver, equilibrium, results."""

@@ -1,0 +1,29 @@
+"""Dimensions of numbers in SI, as annotations of fields: reports.data.in_units converts by them."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+
+Length = Annotated[float, "length"]
+Stress = Annotated[float, "stress"]
+Force = Annotated[float, "force"]
+Time = Annotated[float, "time"]
+Velocity = Annotated[float, "velocity"]
+Acceleration = Annotated[float, "acceleration"]
+Point = tuple[Length, Length, Length]
+
+Lengths = Annotated[Floats, "length"]
+Stresses = Annotated[Floats, "stress"]
+Forces = Annotated[Floats, "force"]
+Moments = Annotated[Floats, "moment"]
+Energies = Annotated[Floats, "energy"]
+Powers = Annotated[Floats, "power"]
+Times = Annotated[Floats, "time"]
+Velocities = Annotated[Floats, "velocity"]
+Accelerations = Annotated[Floats, "acceleration"]

@@ -1,0 +1,68 @@
+"""From values at samples inside elements to values at nodes."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+Floats = NDArray[np.float64]
+
+NEIGHBOURS = 24  # samples whose stress a quadratic polynomial is fitted to; it has six terms
+_LITTLE = 1e-10  # added where samples leave slope or curvature open, of their number
+
+
+def extension(elements: NDArray[np.int64], samples: Floats, singularities: Floats) -> sp.csr_matrix:
+    """Matrix (N, M Q) from values at Q samples of each element to values at nodes: each element's
+    extended linearly, and averaged.
+
+    elements: (M, k) node numbers. samples (d, Q), places (d, k): where samples and nodes are in the
+    element. Q = d + 1, or 1 where values are the same all over an element.
+    """
+    if samples.shape[1] == 1:
+        extend = np.ones((singularities.shape[1], 1))
+    else:
+        at, nodes = (np.vstack([np.ones(x.shape[1]), x]) for x in (samples, singularities))
+        extend = np.linalg.solve(at, nodes).T  # (k, Q)
+    m, (k, q) = len(elements), extend.shape
+    row = np.repeat(elements.ravel(), q)
+    column = (q * np.arange(m)[:, None, None] + np.arange(q)).repeat(k, axis=1).ravel()
+    count = np.bincount(elements.ravel())
+    value = np.tile(extend.ravel(), m) / count[row]
+    return sp.csr_matrix((value, (row, column)), shape=(len(count), q * m))
+
+
+def continuation(samples: Floats, points: Floats) -> sp.csr_matrix:
+    """Matrix (P, S) from values at samples (S, 2) to those at points (P, 2): of the quadratic
+    polynomial that fits those at the nearest samples best; the nearer, the more they count, down to
+    nothing for the last, so that it does not matter which of several at its distance that is.
+
+    Source: Zienkiewicz & Zhu, Int. J. Numer. Meth. Engng 33 (1992) 1331, whose patches are the
+    elements round a node instead.
+    """
+    if not len(points):
+        return sp.csr_matrix((0, len(samples)))
+    count = min(NEIGHBOURS, len(samples))
+    distance, near = (np.asarray(x) for x in cKDTree(samples).query(points, count))
+    confidence = 1.0 - (distance / distance[:, -1:]) ** 2
+    weights = at_one_place(samples[near] - points[:, None], confidence)
+    row = np.arange(len(points)).repeat(count)
+    shape = (len(points), len(samples))
+    return sp.csr_matrix((weights.ravel(), (row, near.ravel())), shape=shape)
+
+
+def at_one_place(offsets: Floats, confidence: Floats) -> Floats:
+    """Weights (..., S) of samples at `offsets` (..., S, 2) from a place in the value there of the
+    quadratic polynomial that fits them best; where several do (long thin elements have their
+    nearest samples in a row), of that with the least slope and curvature.
+    """
+    x, y = np.moveaxis(offsets / np.abs(offsets).max(axis=(-2, -1), keepdims=True), -1, 0)
+    terms = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=-2)
+    terms *= confidence[..., None, :]
+    form = terms @ terms.swapaxes(-2, -1)
+    definite = form + _LITTLE * form[..., :1, :1] * np.diag([0.0, 1, 1, 1, 1, 1])
+    one = np.broadcast_to(np.eye(6)[:, :1], (*form.shape[:-1], 1))
+    value = np.linalg.solve(definite, one)
+    value += np.linalg.solve(definite, one - form @ value)  # as if nothing had been added
+    return np.asarray((value.swapaxes(-2, -1) @ terms)[..., 0, :] * confidence)

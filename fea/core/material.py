@@ -1,0 +1,49 @@
+"""An isotropic linear-elastic material."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry import ArgumentError
+
+
+@dataclass(frozen=True)
+class Material:
+    """youngs_modulus and yield_strength in Pa, density in kg/m^3.
+
+    Raises: ArgumentError outside -1 < poisson_ratio < 0.5 or for a modulus that is not positive.
+    """
+
+    name: str
+    youngs_modulus: float
+    poisson_ratio: float
+    density: float | None = None
+    yield_strength: float | None = None
+
+    def __post_init__(self) -> None:
+        if not self.youngs_modulus > 0.0:
+            raise ArgumentError(
+                f"material {self.name}: Young's modulus must be positive", "not-positive"
+            )
+        if not -1.0 < self.poisson_ratio < 0.5:
+            raise ArgumentError(
+                f"material {self.name}: Poisson's ratio must be between -1 and 0.5, not "
+                f"{self.poisson_ratio:g}",
+                "out-of-range",
+            )
+
+    @property
+    def lame(self) -> tuple[float, float]:
+        """Lame's lambda and mu (the shear modulus), Pa."""
+        E, nu = self.youngs_modulus, self.poisson_ratio
+        return E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), E / (2.0 * (1.0 + nu))
+
+    def stress(self, strain: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Stress (..., 6) in Pa from strain (..., 6): xx, yy, zz, yz, xz, xy with tensor shears."""
+        lam, mu = self.lame
+        stress = 2.0 * mu * strain
+        stress[..., :3] += lam * strain[..., :3].sum(axis=-1, keepdims=True)
+        return stress

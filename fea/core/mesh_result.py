@@ -1,0 +1,75 @@
+"""What one mesh says of one case: the noun between the models and the verdict."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+Point = tuple[float, float, float]
+
+FELT = 0.1  # of a feature: a singularity governs if the stress at this distance is the largest
+
+
+@dataclass(frozen=True)
+class Strength:
+    """Of a singularity, by which notches are judged: von Mises stress along the free surface is
+    `along` * distance^-exponent close to it, Pa m^exponent, with the exponent of theory. notch: the
+    notch stress intensity factor, of a corner between free surfaces (fea.singular.williams).
+    """
+
+    along: Annotated[float, "strength"]
+    exponent: float
+    notch: Annotated[float, "strength"] | None = None
+
+    @property
+    def instead(self) -> dict[str, str]:
+        """The dimension of a strength (reports.data.in_units)."""
+        return {"strength": f"stress length^{self.exponent!r}"}
+
+
+@dataclass(frozen=True)
+class AtSingularity:
+    """Of a singularity: the largest von Mises stress in it (Pa), which only says how fine the
+    mesh is, where (x, y, z in m); felt: the largest farther away than FELT of its feature; and the
+    exponent with which stress was seen to grow, None where that could not be measured. acts: false
+    where only other cases of the pin load the singularity, so that stress has a bound there.
+    strength: of the singularity, where the exponent was measured.
+    """
+
+    maximum: float
+    felt: float
+    location: Point
+    exponent: float | None = None
+    acts: bool = True
+    strength: Strength | None = None
+
+
+@dataclass(frozen=True)
+class MeshResult:
+    """maximum: largest von Mises stress (Pa) outside all singularities, at `location` (m) at the
+    governing `instant`. singularities: what is inside of each.
+
+    scatter: of the maximum by the mesh alone, where it was seen, Pa. left_out: by how much the
+    harmonics of a bearing pressure that are not taken may change the maximum, Pa. between: by how
+    much it may be higher between two instants, Pa. high: points (r, z) of a section, m, where a
+    finer mesh may find the maximum. quiet: fillets, as numbers of corners, where none will
+    (fea.harmonic.quiet_corners). interval: the maximum if half and twice the distance is left out
+    of what governs, Pa; None where no singularity governs.
+    """
+
+    unknowns: int
+    maximum: float
+    instant: int
+    location: Point
+    singularities: tuple[AtSingularity, ...] = ()
+    scatter: float = 0.0
+    left_out: float = 0.0
+    high: tuple[tuple[float, float], ...] = ()
+    quiet: tuple[int, ...] = ()
+    between: float = 0.0
+    interval: tuple[float, float] | None = None
+
+    @property
+    def singular(self) -> bool:
+        """Whether stress is felt to be larger inside of a singularity."""
+        return any(inside.acts and inside.felt > self.maximum for inside in self.singularities)

@@ -1,0 +1,83 @@
+"""The largest stress over a motion, not only over the instants at which its loads are known.
+
+Stress is linear in the amounts of unit loads and von Mises stress is a norm. So between two
+instants it exceeds the larger of both by no more than the von Mises stress of what the amounts
+differ from their chord there: a bound that unit fields give at once for all intervals. Instants are
+added until it is small; about the one that governs, until the maximum stands.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from fea.core.pin_loads import Amounts, Floats, PinLoads, off_chord
+from fea.core.solution import Answer
+
+Between = Callable[[Floats], PinLoads]  # a motion's loads at any times (T,) s
+
+ENOUGH = 0.05  # of the tolerance: what the time may add to the error
+MOST = 4096  # instants
+FACTOR = 1.25  # what differs from a chord most, over that in the middle of it
+JUMP = 1e-5  # of the whole time: in a shorter interval there is a jump or nothing
+WORST = 0.25  # of what differs most, of any load: from there on an interval is halved
+POINTS = 9  # in the interval about the maximum, which becomes a quarter each time
+SAME = 1e-12  # relative: so little more is nothing, a crest being flat
+STANDS = 2  # times that nothing was gained
+
+
+def rise_between(answer: Answer, loads: PinLoads, between: Between) -> float:
+    """By how much the maximum between instants may exceed that at instants, Pa."""
+    return FACTOR * answer.largest(_off_chord(loads, between))[0] if len(loads) > 1 else 0.0
+
+
+def _off_chord(loads: PinLoads, between: Between) -> Amounts:
+    """What the loads amid each two instants differ from their chord. Where they jump (friction that
+    reverses), what lies between is on the chord.
+    """
+    times = _times(loads)
+    middle = between(0.5 * (times[1:] + times[:-1]))
+    long = np.diff(times) > JUMP * np.ptp(times)
+    off = off_chord(loads, middle)
+    return replace(off, acting={u: both * long[:, None] for u, both in off.acting.items()})
+
+
+def through_time(answer: Answer, loads: PinLoads, between: Between, tolerance: float) -> PinLoads:
+    """The loads with more instants, so many that what is between them is small compared with a
+    `tolerance`, relative, of the maximum; the governing one among them.
+    """
+    while len(loads) < MOST:
+        off = _off_chord(loads, between)
+        if FACTOR * answer.largest(off)[0] <= ENOUGH * tolerance * answer.largest(loads)[0]:
+            break
+        parts = [
+            np.abs(both).max(axis=1) / (np.abs(both).max() or 1.0) for both in off.acting.values()
+        ]
+        worst = np.flatnonzero(np.max(parts, axis=0) >= WORST)
+        times = _times(loads)
+        loads = loads.merged(between(0.5 * (times[worst] + times[worst + 1])))
+    return with_crest(answer, loads, between)
+
+
+def with_crest(answer: Answer, loads: PinLoads, between: Between) -> PinLoads:
+    """The loads with the instant at which the maximum is, if it is higher there."""
+    times = _times(loads)
+    value, k = answer.largest(loads)
+    low, high = times[max(k - 1, 0)], times[min(k + 1, len(times) - 1)]
+    best, stands = loads.at(np.array([k])), 0
+    while stands < STANDS:
+        near = np.linspace(low, high, POINTS)
+        here = between(near)
+        top, i = answer.largest(here)
+        stands += top <= value * (1.0 + SAME)
+        if top > value:
+            value, best = top, here.at(np.array([i]))
+        low, high = near[max(i - 1, 0)], near[min(i + 1, POINTS - 1)]
+    return loads.merged(best)
+
+
+def _times(loads: PinLoads) -> Floats:
+    assert loads.times is not None
+    return loads.times

@@ -1,0 +1,187 @@
+"""A pin's maximum von Mises stress in one case: its value, its error and a verdict."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from fea.core.dimensions import Length, Point, Stress
+from fea.core.mesh_result import Strength
+from fea.core.pin_loads import PinLoads
+
+Verdict = Literal["converged", "unconverged", "singular", "rigid", "failed"]
+
+
+@dataclass(frozen=True)
+class Note:
+    """Text for people, and the reasons that it states by their codes, for programs."""
+
+    text: str = ""
+    codes: tuple[str, ...] = ()
+
+    def __add__(self, other: Note) -> Note:
+        return Note(self.text + other.text, self.codes + other.codes)
+
+
+NOTHING = Note()
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """One mesh of the sequence: unknowns, maximum (Pa), and solution time (s)."""
+
+    dofs: int
+    max_von_mises: Stress
+    seconds: float
+
+
+@dataclass(frozen=True)
+class SingularZone:
+    """A circle near which stress is unbounded.
+
+    location: (x, y, z), m, of the point on it where stress is largest. kind: its cause, as text.
+    between: the surfaces that meet there. exponent: stress grows as distance^-exponent, as
+    measured, None where it was not; exponent_theory: 0 for a logarithm. excluded: distance (m)
+    within which stress is excluded. governs: whether the stress inside (max_von_mises, Pa, which
+    depends on the mesh) exceeds that outside of all zones. advice: what to do about it. strength:
+    of the singularity, where the exponent was measured.
+    """
+
+    location: Point
+    kind: str
+    between: tuple[str, str]
+    exponent: float | None
+    exponent_theory: float | None
+    excluded: Length
+    governs: bool
+    max_von_mises: Stress
+    advice: str
+    strength: Strength | None = None
+
+
+@dataclass(frozen=True)
+class ErrorParts:
+    """The parts of an error, Pa: from the mesh; from the time between instants; from the truncated
+    harmonics of a bearing pressure; from the beam model. None includes the modelling of the joint.
+    """
+
+    mesh: float
+    time: float = 0.0
+    series: float = 0.0
+    model: float = 0.0
+
+    @property
+    def total(self) -> float:
+        """Their sum, Pa."""
+        return self.mesh + self.time + self.series + self.model
+
+
+@dataclass(frozen=True)
+class Peak:
+    """max_von_mises and error_estimate in Pa, None when the pin is `rigid` or its numerics
+    `failed`.
+
+    location: (x, y, z) in the pin's axes, m. governing: the loads at the governing instant. note:
+    one sentence on the verdict, for people. why: the model used and the reason, for people.
+    reasons: the codes of everything that note and why state. singular_at: zones of unbounded
+    stress; where one governs (`singular`) the maximum is that outside all of them, which depends on
+    the excluded distance: `interval` is the maximum over half and twice that distance with its
+    error, Pa, and error_estimate covers both of its ends. parts: of the error on the meshes and
+    instants. imbalance: of an unconstrained pin, what its bands react: the force over the largest
+    load, and the couple over that load times the length.
+    """
+
+    pin: str
+    case: str
+    model: str
+    verdict: Verdict
+    note: str
+    max_von_mises: float | None = None
+    error_estimate: float | None = None
+    location: tuple[float, float, float] | None = None
+    governing: PinLoads | None = None
+    history: tuple[Refinement, ...] = ()
+    singular_at: tuple[SingularZone, ...] = ()
+    why: str = ""
+    interval: tuple[float, float] | None = None
+    parts: ErrorParts | None = None
+    reasons: tuple[str, ...] = ()
+    imbalance: tuple[float, float] | None = None
+
+    @property
+    def time(self) -> float | None:
+        """Of the governing instant, s; None without a motion."""
+        if self.governing is None or self.governing.times is None:
+            return None
+        return float(self.governing.times[0])
+
+    @property
+    def own_error(self) -> float | None:
+        """On meshes and between instants, Pa, without the effect of the excluded distance."""
+        return self.error_estimate if self.parts is None else self.parts.total
+
+    @property
+    def dofs(self) -> int:
+        """Unknowns of the finest mesh."""
+        return self.history[-1].dofs if self.history else 0
+
+    @property
+    def seconds(self) -> float:
+        """Solution time of all meshes, s."""
+        return sum(step.seconds for step in self.history)
+
+    def safety_factor(self, yield_strength: float | None) -> float | None:
+        """Yield strength (Pa) over the maximum; None without either."""
+        if not self.max_von_mises or yield_strength is None:
+            return None
+        return yield_strength / self.max_von_mises
+
+
+def decides(peak: Peak, limit: float) -> bool | None:
+    """Whether the maximum stays below a limit (Pa); None if not decided.
+
+    A converged maximum is compared as it is, an unconverged one with its error. A singular one
+    exceeds the limit if its whole interval does; it never stays below, since stress at the
+    singularity itself is unbounded.
+    """
+    stress, error = peak.max_von_mises, peak.error_estimate
+    if stress is None or error is None:
+        return None
+    if peak.verdict == "converged":
+        return stress <= limit
+    low, high = peak.interval or (stress - error, stress + error)
+    if low > limit:
+        return False
+    return True if high <= limit and peak.verdict == "unconverged" else None
+
+
+def discretisation_error(
+    history: tuple[Refinement, ...], ratio: float, scatter: float = 0.0, least_order: float = 0.5
+) -> float:
+    """Estimated error (Pa) of the last of at least two meshes, each `ratio` times finer.
+
+    Roache's grid convergence index, Fs e / (ratio^p - 1), with the observed order p and Fs = 1.25.
+    On unstructured meshes two values can agree by chance, so the last change e counts as at least
+    what the change before it would leave at p = 2, the order of the recovered stress. Where the
+    changes hardly shrink (p < 0.5) Fs = 3, and p is the `least_order` that the model can have; but
+    changes of alternating sign, or within twice the `scatter` (Pa) of the mesh, are no trend, and
+    then p = 2. Two meshes: p = 2 and Fs = 3, a rough estimate. Never less than the scatter.
+
+    Source: Roache, J. Fluids Eng. 116 (1994) 405.
+    """
+    values = [step.max_von_mises for step in history]
+    change = abs(values[-1] - values[-2])
+    formal = max(3.0 * change / (ratio * ratio - 1.0), scatter)
+    if len(values) == 2:
+        return formal
+    before = abs(values[-2] - values[-3])
+    least = max(change, before / (ratio * ratio))
+    if least == 0.0:
+        return scatter
+    p = math.log(before / least) / math.log(ratio) if before else -math.inf
+    if p >= 0.5:
+        return max(1.25 * least / math.expm1(p * math.log(ratio)), scatter)
+    if change <= 2.0 * scatter or (values[-1] - values[-2]) * (values[-2] - values[-3]) < 0.0:
+        return formal
+    return 3.0 * change / math.expm1(least_order * math.log(ratio))

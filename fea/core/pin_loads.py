@@ -1,0 +1,176 @@
+"""Loads on a pin, and the unit loads of which they are made.
+
+Everything is a Fourier harmonic about the pin's axis. A load of harmonic n and phase p has, with
+psi = n theta - p pi / 2, the components (R cos psi, T sin psi, Z cos psi) along r, theta and z,
+whose amplitudes R, T, Z depend on z alone:
+
+    force x, y           n = 1, p = 0, 1    a traction of constant direction: R = -T
+    force z              n = 0, p = 0
+    moment about y, x    n = 1, p = 0, 1    as the forces, but linear in z about the band's middle
+    moment about z       n = 0, p = 1       tangential
+    bearing pressure     n = 0, 1, 2, 4, .. the series of a cosine on the loaded half
+    weight and inertia   n = 1 and 0        a force per mass, the same everywhere
+
+So a unit load of harmonic n serves all directions: phases differ by a turn about the axis.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Kind = Literal["force", "moment", "pressure", "body"]
+Distribution = Literal["uniform", "cosine"]
+
+BODY = ""  # the `surface` of a load on the whole pin
+
+
+class UnitLoad(NamedTuple):
+    """A load of one harmonic on a surface (by name): per N, N m, or (kind "body") m/s^2."""
+
+    surface: str
+    kind: Kind
+    n: int
+
+    @property
+    def shears(self) -> bool:
+        """Whether its traction has a shear that jumps at the band's edge."""
+        return self.kind in ("force", "moment")
+
+    @property
+    def phases(self) -> tuple[int, ...]:
+        """Which there are: two, but along the axis and for n = 0 pressure only 0, about it 1."""
+        if self.n:
+            return (0, 1)
+        return (1,) if self.kind == "moment" else (0,)
+
+
+@dataclass(frozen=True)
+class PinLoads:
+    """Loads on one pin in one case, in the pin's axes: at each surface (by name) a force at its
+    middle, forces (T, C, 3) N, and moments (T, C, 3) N m, or what broadcasts to that shape.
+
+    distribution: of transverse forces over their bands: "uniform" (a traction of constant
+    direction) or "cosine" (a bearing pressure on the loaded half, of which harmonics up to
+    `terms` are taken). body: (T, 3) m/s^2 or what broadcasts to it, gravity less the pin's own
+    acceleration. times: (T,) s, rising, of a motion.
+    """
+
+    case: str
+    surfaces: tuple[str, ...]
+    forces: Floats
+    moments: Floats = field(default_factory=lambda: np.zeros(3))
+    distribution: Distribution = "uniform"
+    body: Floats = field(default_factory=lambda: np.zeros(3))
+    terms: int = 6
+    times: Floats | None = None
+
+    def __post_init__(self) -> None:
+        moments = np.broadcast_to(self.moments, self.forces.shape)
+        object.__setattr__(self, "moments", moments)
+        body = np.broadcast_to(self.body, (len(self.forces), 3))
+        object.__setattr__(self, "body", body)
+
+    def __len__(self) -> int:
+        return len(self.forces)
+
+    @property
+    def pressures(self) -> tuple[int, ...]:
+        """Harmonics of a bearing pressure that are taken."""
+        return (0, 1, *range(2, self.terms + 1, 2))
+
+    def coefficients(self) -> dict[UnitLoad, Floats]:
+        """How much of each unit load acts, (T, 2) by phase; only of those that ever act."""
+        out: dict[UnitLoad, Floats] = {}
+
+        def add(load: UnitLoad, first: Floats, second: Floats) -> None:
+            both = np.stack([first, second], axis=1)
+            if both.any():
+                out[load] = both
+
+        zero = np.zeros(len(self))
+        for c, name in enumerate(self.surfaces):
+            (x, y, z), (mx, my, mz) = self.forces[:, c].T, self.moments[:, c].T
+            if self.distribution == "uniform":
+                add(UnitLoad(name, "force", 1), x, y)
+            else:
+                size, angle = np.hypot(x, y), np.arctan2(y, x)
+                for n in self.pressures:
+                    turned = (size * np.cos(n * angle), size * np.sin(n * angle))
+                    add(UnitLoad(name, "pressure", n), *turned)
+            add(UnitLoad(name, "force", 0), z, zero)
+            add(UnitLoad(name, "moment", 1), my, -mx)
+            add(UnitLoad(name, "moment", 0), zero, mz)
+        add(UnitLoad(BODY, "body", 1), *self.body[:, :2].T)
+        add(UnitLoad(BODY, "body", 0), self.body[:, 2], zero)
+        return out
+
+    def turned(self, angle: float) -> PinLoads:
+        """The same loads, all turned about the pin's axis by `angle` (rad)."""
+        c, s = np.cos(angle), np.sin(angle)
+        about_z = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+        forces, moments, body = (x @ about_z for x in (self.forces, self.moments, self.body))
+        return replace(self, forces=forces, moments=moments, body=body)
+
+    def at(self, instants: NDArray[np.int64]) -> PinLoads:
+        """The loads at some of the instants, by their numbers."""
+        times = None if self.times is None else self.times[instants]
+        forces, moments, body = (x[instants] for x in (self.forces, self.moments, self.body))
+        return replace(self, forces=forces, moments=moments, body=body, times=times)
+
+    def merged(self, other: PinLoads) -> PinLoads:
+        """With the instants of other loads of the same motion, in the order of time."""
+        assert self.times is not None
+        assert other.times is not None
+        times, first = np.unique(np.concatenate([self.times, other.times]), return_index=True)
+        forces, moments, body = (
+            np.concatenate([a, b])[first]
+            for a, b in (
+                (self.forces, other.forces),
+                (self.moments, other.moments),
+                (self.body, other.body),
+            )
+        )
+        return replace(self, forces=forces, moments=moments, body=body, times=times)
+
+
+@dataclass(frozen=True)
+class Amounts:
+    """Amounts (T, 2) of unit loads, by phase, that need not be those of any forces."""
+
+    case: str
+    acting: dict[UnitLoad, Floats]
+    count: int
+
+    def __len__(self) -> int:
+        return self.count
+
+    def coefficients(self) -> dict[UnitLoad, Floats]:
+        """How much of each unit load acts, (T, 2) by phase."""
+        return self.acting
+
+    def turned(self, angle: float) -> Amounts:
+        """The same, all turned about the pin's axis by `angle` (rad)."""
+        acting = {}
+        for load, both in self.acting.items():
+            c, s = np.cos(load.n * angle), np.sin(load.n * angle)
+            acting[load] = both @ np.array([[c, s], [-s, c]])
+        return Amounts(self.case, acting, self.count)
+
+
+AnyLoads = PinLoads | Amounts
+
+
+def off_chord(loads: PinLoads, middle: PinLoads) -> Amounts:
+    """By how much loads (T - 1) amid each two instants differ from the mean of both."""
+    ends, amid = loads.coefficients(), middle.coefficients()
+    none = np.zeros((len(loads), 2))
+    acting = {}
+    for load in dict.fromkeys([*ends, *amid]):
+        c = ends.get(load, none)
+        acting[load] = amid.get(load, none[1:]) - 0.5 * (c[1:] + c[:-1])
+    return Amounts(loads.case, acting, len(loads) - 1)

@@ -1,0 +1,42 @@
+"""The face that all models show to whoever draws or tabulates what they found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.core.pin_loads import AnyLoads, Floats, PinLoads
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A mesh with results at its N nodes at one instant: points (N, 3) m; cells (M, 10), in VTK's
+    order of "tetra10", or (M, 4), "quad"; displacement (N, 3) m; stress (N, 6) Pa: xx, yy, zz, yz,
+    xz, xy; envelope (N,): the largest von Mises stress over all instants, Pa, NaN inside the body.
+    """
+
+    points: Floats
+    cells: NDArray[np.int64]
+    cell_type: str
+    displacement: Floats
+    stress: Floats
+    envelope: Floats
+
+
+class Answer(Protocol):
+    """What a model found for a pin, for any loads made of the same unit loads."""
+
+    def maxima(self, loads: PinLoads) -> Floats:
+        """Largest von Mises stress (T,) Pa at every instant outside all singularities."""
+        ...
+
+    def largest(self, loads: AnyLoads) -> tuple[float, int]:
+        """The largest of these (Pa), and the number of its instant."""
+        ...
+
+    def picture(self, loads: PinLoads, instant: int) -> Picture | None:
+        """The pin at one instant, with its envelope over all; None for a model without fields."""
+        ...

@@ -1,0 +1,95 @@
+"""The tractions of unit loads on the bands of a pin.
+
+A bearing pressure p0 cos(a) on the loaded half of a band, a = theta - phi - pi for a force
+along phi, has the resultant pi r L p0 / 2 = F, so p0 = 2 F / (pi r L), and the series
+
+    p0 / pi + p0 / 2 cos a + sum over even n of (2 p0 / pi) (-1)^(n/2 + 1) / (n^2 - 1) cos n a
+
+which ends in a remainder of at most (2 p0 / pi) / (2 N + 2) after harmonic N.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea.core.pin_loads import Floats, UnitLoad
+from geometry import Band, PinLike
+
+
+@dataclass(frozen=True)
+class Traction:
+    """Amplitudes along r, theta and z on a surface: `mean` + `slope` (z - middle), (3,) each; Pa
+    and Pa/m per unit of load.
+    """
+
+    surface: str
+    middle: float
+    mean: Floats
+    slope: Floats
+
+    def at(self, z: Floats) -> Floats:
+        """Amplitudes (..., 3), Pa, at z (...) in m."""
+        return np.asarray(self.mean + self.slope * (z[..., None] - self.middle))
+
+
+ALONG_X = np.array([1.0, -1.0, 0.0])  # amplitudes of a traction of constant direction, n = 1
+PUSHING = np.array([2.0, 0.0, 0.0])  # amplitudes of a pressure with the same resultant
+ALONG_Z = np.array([0.0, 0.0, 1.0])
+ABOUT_Z = np.array([0.0, -1.0, 0.0])  # at phase 1
+INWARDS = np.array([-1.0, 0.0, 0.0])
+_NONE = np.zeros(3)
+
+
+def traction(pin: PinLike, load: UnitLoad) -> Traction:
+    """The traction of a unit load on a band."""
+    band = pin.band(load.surface)
+    mean, slope = _NONE, _NONE
+    if load.kind == "force":
+        mean = (ALONG_X if load.n else ALONG_Z) / band.area
+    elif load.kind == "moment" and load.n:
+        slope = 12.0 * ALONG_X / (band.area * band.length**2)
+    elif load.kind == "moment":
+        mean = ABOUT_Z / (band.area * band.radius)
+    else:
+        mean = pressure_amplitude(load.n, band) * INWARDS
+    return Traction(load.surface, band.middle, mean, slope)
+
+
+def pressure_amplitude(n: int, band: Band) -> float:
+    """Pressure (Pa) of harmonic n of a bearing pressure of one newton, on the side it comes from
+    at a = 0 for n = 1, and seen from the direction of the force otherwise.
+    """
+    highest = 2.0 / (math.pi * band.radius * band.length)
+    if n == 0:
+        return highest / math.pi
+    if n == 1:
+        return -highest / 2.0
+    return float(2.0 * highest / math.pi * (-1.0) ** (n // 2 + 1) / (n * n - 1.0))
+
+
+def closing_tractions(
+    pin: PinLike, n: int, phase: int, pressure: bool = False
+) -> tuple[tuple[Traction, ...], ...]:
+    """The tractions that react the imbalance of an unconstrained pin, each on all its bands: for
+    n = 1 a constant and one that grows with z from each band's own middle, so that a couple is
+    taken up by couples and leaves the bands their forces; for n = 0 along the axis, or about it at
+    phase 1.
+
+    Of all tractions with a given resultant that leave the bands the forces of their links but for
+    what is left over of these, the ones with the least mean square; of all pressures, those for
+    `pressure`, which have no shear that would jump at a band's edge.
+    """
+    bands = [pin.band(name) for name in pin.connections]
+
+    def everywhere(mean: Floats, slope: Floats) -> tuple[Traction, ...]:
+        return tuple(Traction(b.name, b.middle, mean, slope) for b in bands)
+
+    if n == 1:
+        across = PUSHING if pressure else ALONG_X
+        return everywhere(across, _NONE), everywhere(_NONE, across / pin.length)
+    if phase == 0:
+        return (everywhere(ALONG_Z, _NONE),)
+    return (tuple(Traction(b.name, 0.0, ABOUT_Z * b.radius, _NONE) for b in bands),)

@@ -1,0 +1,164 @@
+"""Harmonic elasticity on the meridian section of a body of revolution: its stiffness matrices.
+
+Displacements of harmonic n are u_r = U cos psi, u_theta = V sin psi, u_z = W cos psi, strains
+
+    e_rr = U,r    e_tt = (U + n V) / r    e_zz = W,z    2 e_rz = U,z + W,r
+    2 e_rt = V,r - (n U + V) / r          2 e_tz = V,z - n W / r
+
+the first four times cos psi, the last two times sin psi. The unknowns are p = (U + V) / 2,
+m = (U - V) / 2 and w = W, in which all conditions on the axis are that some of them vanish. With
+a, b, c = N,r N,z N / r of the shape functions N, strains are linear in these with coefficients that
+depend on n alone. So the integrals of all their products, (3, 3) for each pair of nodes, are taken
+once and give the stiffness of any n.
+
+Source: Zienkiewicz & Taylor, The Finite Element Method, ch. on semi-analytical processes.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+from skfem import Basis, ElementTriP2
+from skfem.quadrature import get_quadrature
+from skfem.refdom import RefTri
+
+from fea.core.material import Material
+from fea.core.sparsity import Pattern
+from geometry.mesh.section_mesh import MeridianMesh
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+class Section:
+    """Quadratic triangles on a section (m). Unknown 3 k + c belongs to node k: p, m or w."""
+
+    def __init__(self, section: MeridianMesh) -> None:
+        self.section = section
+        self._samples = get_quadrature(RefTri, 2)[0]  # three, where strains are most exact
+        X, W = get_quadrature(RefTri, 4)
+        points = np.hstack([X, self._samples]), np.append(W, np.zeros(self._samples.shape[1]))
+        self.basis = Basis(section.mesh, ElementTriP2(), quadrature=points)
+        self._quadrature, self._sampled = slice(0, len(W)), slice(len(W), None)
+
+    @property
+    def unknowns(self) -> int:
+        """Number of unknowns, constrained ones included."""
+        return 3 * int(self.basis.N)
+
+    @cached_property
+    def nodes(self) -> Floats:
+        """Node coordinates (N, 2): r, z in m."""
+        return np.ascontiguousarray(self.section.mesh.doflocs.T)
+
+    @cached_property
+    def elements(self) -> Ints:
+        """Node numbers (M, 6)."""
+        return np.ascontiguousarray(self.basis.element_dofs.T).astype(np.int64)
+
+    @cached_property
+    def _gradients(self) -> Floats:
+        """N,r N,z and N / r at all points of the basis, (M, Q, 3, 6), 1/m."""
+        return gradients(self.basis, self._singularities[0])
+
+    @cached_property
+    def _singularities(self) -> Floats:
+        """r and z of all points of the basis, (2, M, Q), m."""
+        return np.asarray(self.basis.global_coordinates())
+
+    @cached_property
+    def _weights(self) -> Floats:
+        """Areas times r at all points of the basis (M, Q), m^3."""
+        return np.asarray(self.basis.dx * self._singularities[0])
+
+    @cached_property
+    def _pattern(self) -> Pattern:
+        return Pattern(self.elements, int(self.basis.N))
+
+    def stiffness(self, material: Material, n: int) -> sp.csr_matrix:
+        """Stiffness matrix of harmonic n, for displacements as above and around the whole axis. All
+        have the same pattern.
+        """
+        E = strain_map(n)
+        by = np.einsum("sca,st,tdb->abcd", E, around(n) * elasticity(material), E)
+        return self._pattern.matrix((self._products @ by.reshape(9, 9)).reshape(-1, 3, 3))
+
+    @cached_property
+    def _products(self) -> Floats:
+        """Integrals (P, 9) of the products of a, b, c of one node with those of the other, for the
+        pairs of nodes, per radian.
+        """
+        root = np.sqrt(self._weights[:, self._quadrature])
+        parts = self._gradients[:, self._quadrature] * root[..., None, None]
+        x = parts.reshape(len(parts), -1, 3, 6).transpose(0, 3, 2, 1).reshape(len(parts), 18, -1)
+        products = (x @ x.swapaxes(1, 2)).reshape(-1, 6, 3, 6, 3).swapaxes(2, 3)
+        return self._pattern.sums(products).reshape(-1, 9)
+
+    @cached_property
+    def integrals(self) -> Floats:
+        """Of the shape functions times r over the section, (N,), m^3."""
+        value = np.stack([np.asarray(self.basis.basis[i][0])[0] for i in range(6)], axis=-1)
+        found = self._weights @ value
+        count = len(self.nodes)
+        return np.bincount(self.elements.ravel(), found.ravel(), count).astype(np.float64)
+
+    def sampled_strains(self, n: Ints | int, u: Floats) -> Floats:
+        """Strains (M, 3, 6, K), shears doubled, of displacements (N, 3, K) of harmonics n, one or
+        (K,), at three points of each element, where they are most exact.
+        """
+        U, V, W = (u[self.elements, a] for a in range(3))
+        unknowns = np.stack([(U + V) / 2.0, (U - V) / 2.0, W], axis=2)  # (M, 6, 3, K)
+        m, _, _, k = unknowns.shape
+        there = self._gradients[:, self._sampled].reshape(m, -1, 6) @ unknowns.reshape(m, 6, -1)
+        at_0, at_1 = (strain_map(n).transpose(0, 2, 1).reshape(6, 9) for n in (0, 1))
+        parts = there.reshape(m, -1, 9, k)
+        return np.asarray(at_0 @ parts + n * ((at_1 - at_0) @ parts))  # linear in n
+
+    @cached_property
+    def samples(self) -> Floats:
+        """Where those are, (3 M, 2): r, z in m, element by element."""
+        return np.ascontiguousarray(self._singularities[:, :, self._sampled].reshape(2, -1).T)
+
+
+def around(n: int) -> float:
+    """Integral of cos^2 psi about the axis, and where n > 0 of sin^2 psi."""
+    return math.pi if n else 2.0 * math.pi
+
+
+def elasticity(material: Material) -> Floats:
+    """Stress from strain, (6, 6) in Pa: rr, tt, zz, tz, rz, rt, the shears of strain doubled."""
+    lam, mu = material.lame
+    D = np.diag([2.0 * mu] * 3 + [mu] * 3)
+    D[:3, :3] += lam
+    return D
+
+
+def gradients(basis: Basis, r: Floats) -> Floats:
+    """N,r N,z and N / r of the shape functions at a basis' points, which are at r (M, Q), m;
+    (M, Q, 3, 6), 1/m.
+    """
+    parts = [
+        (*basis.basis[i][0].grad, np.asarray(basis.basis[i][0]) / r) for i in range(basis.Nbfun)
+    ]
+    return np.stack([np.stack(part, axis=-1) for part in parts], axis=-1)
+
+
+def strain_map(n: int) -> Floats:
+    """What the part a, b or c of an unknown p, m or w adds to each strain (rr, tt, zz, 2 tz, 2 rz,
+    2 rt) of harmonic n, (6, 3, 3).
+    """
+    out = np.zeros((6, 3, 3))
+    p, m, w = range(3)
+    a, b, c = range(3)
+    out[0, [p, m], a] = 1.0
+    out[1, p, c], out[1, m, c] = 1.0 + n, 1.0 - n
+    out[2, w, b] = 1.0
+    out[3, p, b], out[3, m, b], out[3, w, c] = 1.0, -1.0, -n
+    out[4, [p, m], b] = out[4, w, a] = 1.0
+    out[5, p, a], out[5, m, a] = 1.0, -1.0
+    out[5, p, c], out[5, m, c] = -1.0 - n, 1.0 - n
+    return out

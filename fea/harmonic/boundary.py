@@ -1,0 +1,80 @@
+"""The outline of a section's mesh, and loads on it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fea.core.tractions import Traction
+from fea.harmonic.assembly import Floats, Ints, Section, around
+
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+
+
+def shapes(x: Floats) -> Floats:
+    """Quadratic functions of an edge (ends, middle) at x (Q,) from -1 to 1, (Q, 3)."""
+    return np.stack([x * (x - 1.0) / 2.0, x * (x + 1.0) / 2.0, 1.0 - x * x], axis=1)
+
+
+def slopes(x: Floats) -> Floats:
+    """Their derivatives, (Q, 3)."""
+    return np.stack([x - 0.5, x + 0.5, -2.0 * x], axis=1)
+
+
+class Outline:
+    """All edges of the outline off the axis: nodes (E, 3), ends and middle, each counter-clockwise;
+    after: (E,) which edge follows each, -1 at the axis.
+    """
+
+    def __init__(self, space: Section) -> None:
+        edges = space.section.edges
+        self._nodes = space.nodes
+        self._kept: dict[str, tuple[Floats, Floats]] = {}
+        self.nodes: Ints = np.concatenate(list(edges.values()))
+        self.after = _after(self.nodes)
+        ends = np.cumsum([len(found) for found in edges.values()])
+        self.rows = {
+            name: np.arange(end - len(found), end)
+            for (name, found), end in zip(edges.items(), ends, strict=True)
+        }
+
+    def held(self, surfaces: tuple[str, ...]) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+        """(E,) which edges are on one of the surfaces."""
+        out = np.zeros(len(self.nodes), dtype=bool)
+        for name in surfaces:
+            out[self.rows[name]] = True
+        return out
+
+    def traction(self, parts: tuple[Traction, ...]) -> Floats:
+        """Amplitudes at the nodes of all edges, (E, 3, 3)."""
+        out = np.zeros((*self.nodes.shape, 3))
+        for part in parts:
+            rows = self.rows[part.surface]
+            out[rows] += part.at(self._nodes[self.nodes[rows], 1])
+        return out
+
+    def forces(self, parts: tuple[Traction, ...], n: int) -> Floats:
+        """Nodal forces (N, 3) along r, theta and z of tractions of harmonic n."""
+        out = np.zeros((len(self._nodes), 3))
+        for part in parts:
+            z, weight = self._quadrature(part.surface)
+            found = around(n) * np.einsum("eqi,eqa->eia", weight, part.at(z))
+            np.add.at(out, self.nodes[self.rows[part.surface]], found)
+        return out
+
+    def _quadrature(self, surface: str) -> tuple[Floats, Floats]:
+        """On the edges of a surface: z (E, Q), m, and the weights (E, Q, 3) of its nodes' values in
+        an integral over length times r, m^2.
+        """
+        if surface not in self._kept:
+            x, values = self._nodes[self.nodes[self.rows[surface]]], shapes(_POINTS)
+            at = np.einsum("qi,eia->eqa", values, x)
+            length = np.linalg.norm(np.einsum("qi,eia->eqa", slopes(_POINTS), x), axis=2)
+            weight = (_WEIGHTS * length * at[..., 0])[..., None] * values
+            self._kept[surface] = at[..., 1], weight
+        return self._kept[surface]
+
+
+def _after(edges: Ints) -> Ints:
+    starts = np.full(int(edges.max()) + 1, -1)
+    starts[edges[:, 0]] = np.arange(len(edges))
+    return np.asarray(starts[edges[:, 1]])

@@ -1,0 +1,233 @@
+"""What the harmonic model says of a pin's cases on one mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from fea.core.material import Material
+from fea.core.mesh_result import FELT, MeshResult, Point
+from fea.core.pin_loads import AnyLoads, Floats, PinLoads, UnitLoad
+from fea.core.solution import Picture
+from fea.harmonic.fields import MeridianFields
+from fea.harmonic.model import HarmonicModel
+from fea.harmonic.near_singularities import CLOSE, inside, interval
+from fea.harmonic.quiet_corners import crowd, quiet_corners
+from fea.harmonic.revolve import revolve
+from fea.harmonic.stress_recovery import NOWHERE
+from fea.harmonic.superposition import Circumference, Mask, Top
+from fea.singular.probes import rim
+from fea.singular.singularities import VARIED, Singularity, smooth_edges
+from geometry import Pin
+from geometry.mesh.section_mesh import meridian_mesh
+from geometry.mesh.sizing import Grade, SectionSize, Spot, size_at
+
+SIZE = SectionSize()  # of the first mesh
+EDGE = 0.04  # element at the edge of any band, of the diameter
+LOGARITHM = 0.2  # element at a load's edge, of the excluded distance
+MATTERS = 0.5  # of the maximum elsewhere
+REST = 0.6  # of a pressure's last harmonic, at most what follows it: terms go as +-1/(n^2 - 1)
+ELSEWHERE = 0.5  # power of the refinement where stresses are low
+HIGH, APART, MOST_HIGH = 0.95, 0.1, 3  # places where they are: of the maximum, of r apart, so many
+PATCH = 2.0  # elements of the first mesh about such a place, in which all are refined
+
+
+@dataclass(frozen=True)
+class HarmonicSolution:
+    """Fields on one mesh, how fine (of the diameter) that mesh is at each singularity, and
+    Poisson's ratio. quiet: fillets where the mesh is coarse (fea.harmonic.quiet_corners).
+    """
+
+    fields: MeridianFields
+    close: tuple[float, ...]
+    nu: float
+    quiet: tuple[int, ...] = ()
+
+
+def harmonic_solution(
+    pin: Pin,
+    material: Material,
+    clamps: tuple[str, ...],
+    cases: tuple[PinLoads, ...],
+    singularities: tuple[Singularity, ...],
+    level: int,
+    ratio: float,
+    before: Collection[MeshResult] = (),
+) -> HarmonicSolution:
+    """All unit loads of the cases on mesh number `level`, each `ratio` times finer than the one
+    before, from which the mesh results `before` are: where these have high stresses, that is, and
+    elsewhere by the root of that; all over, without mesh results before.
+
+    Raises: MeshError, SolveError.
+    """
+    close = tuple(
+        CLOSE[min(level, len(CLOSE) - 1) if _matters(k, before) else 0]
+        for k in range(len(singularities))
+    )
+    spots = partial(_spots, pin, cases, singularities, close)
+    high = dict.fromkeys(singularity for result in before for singularity in result.high)
+    finer = []
+    for singularity in high:
+        first = size_at(pin, SIZE, spots(1.0), singularity)
+        now = size_at(pin, SIZE.finer(ratio**level), spots(ratio**level), singularity)
+        finer.append(Grade((singularity,), now, PATCH * first, SIZE.growth))
+    factor = ratio ** (level * ELSEWHERE if high else level)
+
+    def solved(size: SectionSize, grades: list[Grade], quiet: tuple[int, ...]) -> MeridianFields:
+        section = meridian_mesh(pin, size, spots(factor), grades, quiet)
+        return _solved(HarmonicModel(pin, section, material, clamps), cases, singularities)
+
+    quiet = crowd(pin)
+    if quiet:
+        known = [result.quiet for result in before]
+        quiet = (
+            known[0] if known else quiet_corners(pin, solved(SIZE, [], quiet), cases, singularities)
+        )
+    fields = solved(SIZE.finer(factor), finer, quiet)
+    return HarmonicSolution(fields, close, material.poisson_ratio, quiet)
+
+
+def _solved(
+    model: HarmonicModel, cases: tuple[PinLoads, ...], singularities: tuple[Singularity, ...]
+) -> MeridianFields:
+    loads = tuple(dict.fromkeys(load for case in cases for load in case.coefficients()))
+    loads = loads or (UnitLoad(cases[0].surfaces[0], "force", 1),)  # whose coefficient is zero
+    read = [rim(model.pin, p, d) for p in singularities for d in _distances(p)]
+    rims = np.concatenate([NOWHERE, *read])
+    return model.solve(loads, rims, _ends(model.pin, model.clamps, loads))
+
+
+def _distances(singularity: Singularity) -> tuple[float, ...]:
+    """From a singularity, m, at which stress is read on a circle about it."""
+    return (*(times * singularity.radius for times in (1.0, *VARIED)), FELT * singularity.feature)
+
+
+def _ends(
+    pin: Pin, clamps: tuple[str, ...], loads: tuple[UnitLoad, ...]
+) -> tuple[tuple[float, float], ...]:
+    """Where a pressure ends on a smooth surface, (r, z) in m."""
+    pushed = {load.surface for load in loads if load.kind == "pressure"}
+    if not clamps and any(load.n <= 1 and not load.shears for load in loads):
+        pushed |= set(pin.connections)  # which react the imbalance
+    return smooth_edges(pin, pushed, clamps)
+
+
+def _spots(
+    pin: Pin,
+    cases: tuple[PinLoads, ...],
+    singularities: tuple[Singularity, ...],
+    close: tuple[float, ...],
+    factor: float,
+) -> list[Spot]:
+    """At singularities, with elements `close` (of the diameter), and at edges of bands, `factor`
+    times finer than on the first mesh.
+    """
+    spots = [
+        Spot(p.r, p.z, near * 2.0 * p.r * p.feature / p.radius, p.radius)
+        if p.kind != "edge of a load"
+        else Spot(p.r, p.z, LOGARITHM * p.radius / factor, p.radius)
+        for p, near in zip(singularities, close, strict=True)
+    ]
+    taken = {(s.r, s.z) for s in spots}
+    for name in dict.fromkeys(name for case in cases for name in case.surfaces):
+        band = pin.band(name)
+        for at in {(band.radius, band.z0), (band.radius, band.z1)} - taken:
+            d = 2.0 * band.radius
+            spots.append(Spot(*at, EDGE * d / factor, 4.0 * EDGE * d))
+    return sorted(spots)
+
+
+def _matters(singularity: int, before: Collection[MeshResult]) -> bool:
+    """Whether stress in a singularity is so large that it may govern, so that its growth is
+    measured.
+    """
+    return any(
+        result.singularities[singularity].felt >= MATTERS * result.maximum for result in before
+    )
+
+
+class HarmonicAnswer:
+    """What a solution says of any loads made of its unit loads (fea.core.solution)."""
+
+    def __init__(self, solution: HarmonicSolution, singularities: tuple[Singularity, ...]) -> None:
+        self.fields, self.singularities = solution.fields, singularities
+
+    def maxima(self, loads: PinLoads) -> Floats:
+        """Largest von Mises stress (T,) Pa at every instant outside the singularities."""
+        return Circumference(self.fields, loads).largest(self.fields.outside(self.singularities))[0]
+
+    def largest(self, loads: AnyLoads) -> tuple[float, int]:
+        """The largest of these (Pa), and the number of its instant."""
+        top = Circumference(self.fields, loads).top(self.fields.outside(self.singularities))
+        return top.value, top.instant
+
+    def picture(self, loads: PinLoads, instant: int) -> Picture:
+        """The surface at one instant, with its envelope over all."""
+        return revolve(self.fields, loads, instant)
+
+
+def harmonic_result(
+    solution: HarmonicSolution,
+    singularities: tuple[Singularity, ...],
+    loads: PinLoads,
+    own: Collection[Singularity] | None = None,
+) -> MeshResult:
+    """Maximum outside the singularities, and what is inside them. own: those of this case, where
+    others have more; all by default.
+    """
+    fields = solution.fields
+    around = Circumference(fields, loads)
+    mine = singularities if own is None else own
+    among = fields.outside(mine)
+    top = around.top(among)
+    result = MeshResult(
+        unknowns=fields.unknowns,
+        maximum=top.value,
+        instant=top.instant,
+        location=_location(fields.points[top.point], top.angle),
+        singularities=tuple(
+            replace(inside(fields, around, p, close, solution.nu), acts=p in mine)
+            for p, close in zip(singularities, solution.close, strict=True)
+        ),
+        left_out=_left_out(around, loads, top),
+        high=_high(around, fields.points, among, top),
+        quiet=solution.quiet,
+    )
+    return replace(result, interval=interval(fields, around, mine)) if result.singular else result
+
+
+def _high(
+    around: Circumference, points: Floats, among: Mask, top: Top
+) -> tuple[tuple[float, float], ...]:
+    """Points (r, z) where stress is nearly the maximum, the highest first, well apart."""
+    rows = np.flatnonzero(among)
+    now = slice(top.instant, top.instant + 1)
+    for bound in (around.reach, around.bound):
+        rows = rows[bound(rows, now)[:, 0] >= HIGH * top.value]
+    value, _ = around.round(rows, np.full(len(rows), top.instant))
+    found: list[Floats] = []
+    for k in np.argsort(-value, kind="stable"):
+        if value[k] < HIGH * top.value or len(found) == MOST_HIGH:
+            break
+        at = points[rows[k]]
+        if all(np.hypot(*(at - other)) > APART * at[0] for other in found):
+            found.append(at)
+    return tuple((float(r), float(z)) for r, z in found)
+
+
+def _left_out(around: Circumference, loads: PinLoads, top: Top) -> float:
+    """Of a bearing pressure's series, by its last harmonic at the maximum (a thin tube that becomes
+    oval feels more of it than a solid pin).
+    """
+    n, largest = around.last(np.array([top.point]))
+    if loads.distribution != "cosine" or n != loads.terms:
+        return 0.0
+    return REST * float(largest[0, top.instant])
+
+
+def _location(point: Floats, angle: float) -> Point:
+    r, z = (float(x) for x in point)
+    return (r * float(np.cos(angle)), r * float(np.sin(angle)), z)

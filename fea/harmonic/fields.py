@@ -1,0 +1,42 @@
+"""Stress on the meridian section under unit loads: the face that beam and harmonic models share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.core.pin_loads import Floats, UnitLoad
+from fea.singular.singularities import Singularity, outside
+
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class MeridianFields:
+    """Amplitudes per unit of K loads at points (S, 2): r, z in m; stress (S, 6, K) in Pa.
+
+    Components are rr, tt, zz, tz, rz, rt; under a load of harmonic n and phase p the first three
+    and rz go as cos psi, the others as sin psi, psi = n theta - p pi / 2. displacement (D, 3, K)
+    in m, of the first D points: r and z as cos psi, theta as sin psi. skin: how many of the points,
+    the first ones, follow the outline counter-clockwise. unknowns: of the system that was solved.
+    triangles: (M, 3) of points, which fill the section, if the model has such. unread: points whose
+    stress is too rough to look for a maximum among (fea.harmonic.pressure_edge).
+    """
+
+    points: Floats
+    loads: tuple[UnitLoad, ...]
+    stress: Floats
+    displacement: Floats
+    skin: int
+    unknowns: int
+    triangles: Ints = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int64))
+    unread: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+
+    def outside(self, singularities: Iterable[Singularity]) -> NDArray[np.bool_]:
+        """Which of the points may have the maximum: read, and in none of the singularities."""
+        out = outside(singularities, *self.points.T)
+        out[self.unread] = False
+        return out

@@ -1,0 +1,210 @@
+"""The harmonic model: all of three-dimensional elasticity for a body of revolution, in its section.
+
+One factorisation per mesh and harmonic, one right-hand side per unit load; both phases, hence all
+directions, share it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+import scipy.sparse as sp
+
+from fea.core.linear_solver import Analysis, SolveError
+from fea.core.material import Material
+from fea.core.pin_loads import Floats, UnitLoad
+from fea.core.tractions import ALONG_X, ALONG_Z, Traction, closing_tractions, traction
+from fea.harmonic.assembly import Ints, Section, around
+from fea.harmonic.boundary import Outline
+from fea.harmonic.fields import MeridianFields
+from fea.harmonic.pressure_edge import unread
+from fea.harmonic.stress_recovery import NOWHERE, reading
+from geometry import Pin
+from geometry.mesh.section_mesh import MeridianMesh
+
+
+class HarmonicModel:
+    """A pin on one mesh of its section, clamped at surfaces (by name).
+
+    Without any, the loads' balance is closed by tractions on the bands (fea.core.tractions), and as
+    many unknowns are constrained as there are rigid motions, about `pivot` (0 to 1, of the
+    length), which changes nothing but the motion.
+
+    Leaves out: plasticity, contact and clearance (loads are tractions).
+    """
+
+    def __init__(
+        self,
+        pin: Pin,
+        section: MeridianMesh,
+        material: Material,
+        clamps: tuple[str, ...],
+        pivot: float = 0.0,
+    ) -> None:
+        self.pin, self.material, self.pivot = pin, material, pivot
+        self.clamps = tuple(pin.surface(name) for name in clamps)
+        self.space = Section(section)
+        self.outline = Outline(self.space)
+        # one for all harmonics: constrained unknowns stay in it
+        self._system: _System | None = None
+
+    def solve(
+        self,
+        loads: tuple[UnitLoad, ...],
+        extra: Floats = NOWHERE,
+        ends: Iterable[tuple[float, float]] = (),
+    ) -> MeridianFields:
+        """Unit fields, at `extra` points (P, 2) inside the section too, and close to the `ends` of
+        pressures on its outline, (r, z) in m.
+
+        Raises: SolveError when the pin is not constrained or a check fails.
+        """
+        read = reading(self.space, self.outline, self.material, self.clamps, extra, ends)
+        harmonics = np.array([load.n for load in loads])
+        u = np.zeros((len(self.space.nodes), 3, len(loads)))
+        tractions = np.zeros((*self.outline.nodes.shape, 3, len(loads)))
+        for n in sorted(set(harmonics.tolist())):
+            here = np.flatnonzero(harmonics == n)
+            forces, tractions[..., here] = self._applied(n, [loads[k] for k in here])
+            u[:, :, here] = _polar(self.displace(n, forces))
+        displacement, stress = read.of(harmonics, u, tractions)
+        return MeridianFields(
+            read.points,
+            loads,
+            stress,
+            displacement,
+            read.skin,
+            self.space.unknowns,
+            read.triangles,
+            unread(read.jumps, read.points, read.skin),
+        )
+
+    def _applied(self, n: int, loads: list[UnitLoad]) -> tuple[Floats, Floats]:
+        """Nodal forces (unknowns, K) and tractions at the outline's nodes (E, 3, 3, K)."""
+        parts: list[tuple[Traction, ...]] = [
+            () if load.kind == "body" else (traction(self.pin, load),) for load in loads
+        ]
+        forces, tractions = self._forces(n, parts)
+        for k, load in enumerate(loads):
+            if load.kind == "body":
+                forces[:, k] = self._body_force(n)
+        if self.clamps or n > 1:
+            return forces, tractions
+        modes = rigid_motions(self.space.nodes, n)
+        for shears in (True, False):
+            here = [k for k, load in enumerate(loads) if load.shears == shears]
+            phases = (0,) if n else (0, 1)
+            closing = [c for p in phases for c in closing_tractions(self.pin, n, p, not shears)]
+            against, spread = self._forces(n, closing)
+            share = -np.linalg.solve(modes.T @ against, modes.T @ forces[:, here])
+            forces[:, here] += against @ share
+            tractions[..., here] += spread @ share
+        return forces, tractions
+
+    def forces(self, n: int, parts: Sequence[tuple[Traction, ...]]) -> Floats:
+        """Forces on the unknowns (unknowns, K) of K sums of tractions of harmonic n."""
+        return np.stack([_generalised(self.outline.forces(part, n)) for part in parts], axis=1)
+
+    def _forces(self, n: int, parts: Sequence[tuple[Traction, ...]]) -> tuple[Floats, Floats]:
+        return self.forces(n, parts), np.stack([self.outline.traction(p) for p in parts], axis=3)
+
+    def _body_force(self, n: int) -> Floats:
+        """Of the pin's mass in a field of 1 m/s^2 along x, or along z where n = 0."""
+        if self.material.density is None:
+            raise SolveError(
+                f"material {self.material.name} has no density, which weight and inertia need",
+                "no-density",
+            )
+        amplitude = self.material.density * (ALONG_X if n else ALONG_Z)
+        return _generalised(around(n) * self.space.integrals[:, None] * amplitude)
+
+    def displace(self, n: int, forces: Floats) -> Floats:
+        """Unknowns (unknowns, K) of harmonic n under forces on them."""
+        fixed = np.concatenate([self._on_axis(n), self._held(n)])
+        K = self.space.stiffness(self.material, n)
+        if n < 2:
+            self._require_equilibrium(K, n)
+        free = np.ones(K.shape[0])
+        free[fixed] = 0.0
+        if self._system is None:
+            self._system = _System(K)
+        return self._system.solve(K, free, forces)
+
+    def _require_equilibrium(self, K: sp.csr_matrix, n: int) -> None:
+        """A section that moves as a whole takes no force, so that whatever its displacements are,
+        the forces of its supports answer its loads.
+        """
+        modes = rigid_motions(self.space.nodes, n)
+        lost = np.abs(K @ modes).max(axis=0) / (np.abs(K.data).max() * np.abs(modes).max(axis=0))
+        if not lost.max() < 1e-9:
+            raise SolveError(
+                f"pin {self.pin.name}: the stiffness against rigid-body motion is {lost.max():.1e} "
+                "of the pin's, not zero, so the solution would not be in equilibrium",
+                "no-equilibrium",
+            )
+
+    def _on_axis(self, n: int) -> Ints:
+        """Unknowns that vanish on the axis, so that displacements are smooth there."""
+        axis = 3 * self.space.section.axis
+        p, m, w = axis, axis + 1, axis + 2
+        return np.concatenate({0: [p, m], 1: [p, w]}.get(n, [p, m, w]))
+
+    def _held(self, n: int) -> Ints:
+        if self.clamps:
+            edges = self.outline.nodes[self.outline.held(self.clamps)]
+            return (3 * np.unique(edges)[:, None] + np.arange(3)).ravel()
+        if n > 1:
+            return np.zeros(0, dtype=np.int64)
+        r, z = self.space.nodes.T
+        place = np.abs(z - self.pivot * self.pin.length)
+        if n == 0:  # shift along the axis, spin about it
+            outer = int(np.lexsort((place, -r))[0])
+            return np.array([3 * int(place.argmin()) + 2, 3 * outer])
+        innermost = np.flatnonzero(r <= r.min() * (1.0 + 1e-9))
+        near = int(innermost[place[innermost].argmin()])
+        far = int(innermost[np.abs(z[innermost] - z[near]).argmax()])
+        return np.array([3 * near + 1, 3 * far + 1])
+
+
+class _System:
+    """Linear systems whose matrices have their entries in the same places."""
+
+    def __init__(self, K: sp.csr_matrix) -> None:
+        self._row = np.repeat(np.arange(K.shape[0]), np.diff(K.indptr))
+        self._diagonal = np.flatnonzero(K.indices == self._row)
+        self._analysis = Analysis(K)
+
+    def solve(self, K: sp.csr_matrix, free: Floats, forces: Floats) -> Floats:
+        """Unknowns (n, K) under forces, zero where `free` (n,) is 0 and not 1; K is changed."""
+        held = self._diagonal[free == 0.0]
+        largest = K.data.max()
+        K.data *= free[self._row]
+        K.data *= free[K.indices]
+        K.data[held] = largest  # of no effect
+        return self._analysis.factorize(K)(forces * free[:, None])
+
+
+def _generalised(forces: Floats) -> Floats:
+    """Forces on the unknowns p, m, w of nodal forces (N, 3) along r, theta and z."""
+    R, T, Z = forces.T
+    return np.stack([R + T, R - T, Z], axis=1).ravel()
+
+
+def _polar(u: Floats) -> Floats:
+    """Amplitudes U, V, W, (N, 3, K), of unknowns p, m, w."""
+    p, m, w = (u[c::3] for c in range(3))
+    return np.stack([p + m, p - m, w], axis=1)
+
+
+def rigid_motions(nodes: Floats, n: int) -> Floats:
+    """Unknowns of the rigid motions of harmonic 1 (shift along x, turn about y) or 0 (shift along
+    z, spin), (3 N, 2); a load's work on them is its resultant.
+    """
+    r, z = nodes.T
+    zero = np.zeros_like(r)
+    if n == 1:
+        modes = ([zero, zero + 1.0, zero], [zero, z, -r])
+    else:
+        modes = ([zero, zero, zero + 1.0], [r / 2.0, -r / 2.0, zero])
+    return np.stack([np.stack(mode, axis=1).ravel() for mode in modes], axis=1)

@@ -1,0 +1,87 @@
+"""What one mesh of the harmonic model says of a singularity: how stress grows towards it, how
+strongly, and how much the maximum outside depends on the distance that is left out.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection
+from dataclasses import replace
+
+import numpy as np
+
+from fea.core.mesh_result import FELT, AtSingularity, Strength
+from fea.core.pin_loads import Floats
+from fea.harmonic.fields import MeridianFields
+from fea.harmonic.superposition import Circumference
+from fea.singular.fit_exponent import growth_exponent, strength
+from fea.singular.singularities import VARIED, Singularity
+from fea.singular.williams import notch_factor
+
+CLOSE = (1e-2, 1e-3, 1e-4)  # element at a corner or clamp's edge, of the diameter, mesh by mesh
+READ = (4.0, 0.01)  # exponents: from so many elements to so much of the diameter
+
+
+def inside(
+    fields: MeridianFields, around: Circumference, singularity: Singularity, close: float, nu: float
+) -> AtSingularity:
+    """What is inside of a singularity. close: its element, of the diameter, before it is scaled to
+    a small feature; nu: Poisson's ratio.
+    """
+    r, z = fields.points.T
+    distance = np.hypot(r - singularity.r, z - singularity.z)
+    within = distance <= singularity.radius
+    top = around.top(within)
+    felt = around.top(within & (distance >= FELT * singularity.feature * (1.0 - 1e-9))).value
+    c, s = math.cos(top.angle), math.sin(top.angle)
+    found = AtSingularity(top.value, felt, (singularity.r * c, singularity.r * s, singularity.z))
+    if singularity.kind == "edge of a load" or close != CLOSE[-1]:
+        return found
+    exponent, how_strong = _growth(fields, around, singularity, distance, top.instant, nu)
+    return replace(found, exponent=exponent, strength=how_strong)
+
+
+def _growth(
+    fields: MeridianFields,
+    around: Circumference,
+    singularity: Singularity,
+    distance: Floats,
+    instant: int,
+    nu: float,
+) -> tuple[float | None, Strength | None]:
+    """Exponent and strength from the side of the singularity on which stress is larger."""
+    skin = distance[: fields.skin]
+    d = skin / (2.0 * singularity.r * singularity.feature / singularity.radius)
+    near = np.flatnonzero((d >= READ[0] * CLOSE[-1]) & (d <= READ[1]))
+    if not len(near):
+        return None, None
+    value, _ = around.round(near, np.full(len(near), instant))
+    first = int(np.argmin(skin))
+    sides = [near < first, near > first]
+    side = max(sides, key=lambda s: float(np.median(value[s])) if s.any() else 0.0)
+    following = singularity.following_torsion if around.twists else singularity.following
+    exponent = growth_exponent(d[near[side]], value[side], following)
+    theory = singularity.torsion_theory if around.twists else singularity.theory
+    if exponent is None or not theory:
+        return exponent, None
+    along = strength(skin[near[side]], value[side], theory, following)
+    if singularity.kind != "sharp corner":
+        return exponent, Strength(along, theory)
+    return exponent, Strength(
+        along, theory, along * notch_factor(singularity.angle, nu, around.twists)
+    )
+
+
+def interval(
+    fields: MeridianFields, around: Circumference, singularities: Collection[Singularity]
+) -> tuple[float, float]:
+    """The least and the largest maximum (Pa) outside the singularities, if half and twice as far
+    from them is left out.
+    """
+    found = []
+    for times in VARIED:
+        varied = [
+            replace(singularity, radius=times * singularity.radius) for singularity in singularities
+        ]
+        found.append(around.top(fields.outside(varied)).value)
+    return min(found), max(found)

@@ -1,0 +1,113 @@
+"""A section's fields revolved into space: its outer skin as a surface, or all of it as a solid."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fea.core.pin_loads import Floats, PinLoads
+from fea.core.solution import Picture
+from fea.core.voigt import ENTRIES, TENSOR
+from fea.harmonic.fields import MeridianFields
+from fea.harmonic.superposition import Circumference, Ints
+
+SECTORS = 60
+CLOSE = 1e-9  # of the length: points that are one
+
+
+def revolve(fields: MeridianFields, loads: PinLoads, instant: int) -> Picture:
+    """Skin and loads as they are at an instant."""
+    rows = _skin(fields)
+    around = Circumference(fields, loads)
+    points, displacement, stress = _turned(fields, around, loads, rows, instant)
+    return Picture(
+        points=points,
+        cells=_quads(len(rows)),
+        cell_type="quad",
+        displacement=displacement,
+        stress=stress,
+        envelope=_envelope(around, rows, _angles()),
+    )
+
+
+def revolve_solid(fields: MeridianFields, loads: PinLoads, instant: int) -> Picture:
+    """The whole body as wedges, straight between the corners of the section's triangles; without an
+    envelope.
+    """
+    rows, numbers = np.unique(fields.triangles, return_inverse=True)
+    around = Circumference(fields, loads)
+    points, displacement, stress = _turned(fields, around, loads, rows, instant)
+    here = numbers.reshape(-1, 3)[:, None] * SECTORS + np.arange(SECTORS)[:, None]
+    there = numbers.reshape(-1, 3)[:, None] * SECTORS + (np.arange(SECTORS)[:, None] + 1) % SECTORS
+    return Picture(
+        points=points,
+        cells=np.concatenate([there, here], axis=2).reshape(-1, 6),
+        cell_type="wedge",
+        displacement=displacement,
+        stress=stress,
+        envelope=np.full(len(points), np.nan),
+    )
+
+
+def _angles() -> Floats:
+    return np.asarray(np.arange(SECTORS) * 2.0 * np.pi / SECTORS)
+
+
+def _turned(
+    fields: MeridianFields, around: Circumference, loads: PinLoads, rows: Ints, instant: int
+) -> tuple[Floats, Floats, Floats]:
+    """Of every point on all meridians: x, y, z (P, 3), displacement (P, 3), stress (P, 6)."""
+    r, z = fields.points[rows].T
+    everywhere = np.repeat(np.arange(len(rows)), SECTORS)
+    angle = np.tile(_angles(), len(rows))
+    at = rows[everywhere]
+    stress = around.stress(at, np.full(len(at), instant), angle)
+    turn = np.zeros((len(angle), 3, 3))  # columns: unit vectors along r, theta, z
+    turn[:, 0, 0], turn[:, 1, 0] = np.cos(angle), np.sin(angle)
+    turn[:, 0, 1], turn[:, 1, 1] = -np.sin(angle), np.cos(angle)
+    turn[:, 2, 2] = 1.0
+    tensor = turn @ stress[:, TENSOR] @ turn.transpose(0, 2, 1)
+    x, y = r[everywhere] * np.cos(angle), r[everywhere] * np.sin(angle)
+    return (
+        np.stack([x, y, z[everywhere]], axis=1),
+        np.einsum("pab,pb->pa", turn, _moved(fields, loads, at, instant, angle)),
+        np.stack([tensor[:, a, b] for a, b in ENTRIES], axis=1),
+    )
+
+
+def _skin(fields: MeridianFields) -> Ints:
+    """Points of the skin in order, those that coincide once, if neither is a corner's."""
+    x = fields.points[: fields.skin]
+    step = np.linalg.norm(np.diff(x, axis=0), axis=1)
+    return np.flatnonzero(np.concatenate([[True], step > CLOSE * np.ptp(x[:, 1])]))
+
+
+def _quads(count: int) -> Ints:
+    i = np.arange(count - 1)[:, None] * SECTORS
+    j = np.arange(SECTORS)[None]
+    k = (j + 1) % SECTORS
+    return np.stack([i + j, i + k, i + SECTORS + k, i + SECTORS + j], axis=2).reshape(-1, 4)
+
+
+def _moved(
+    fields: MeridianFields,
+    loads: PinLoads,
+    rows: Ints,
+    instant: int,
+    angle: Floats,
+) -> Floats:
+    """Displacement along r, theta, z (P, 3) at points and angles."""
+    out = np.zeros((len(rows), 3))
+    for load, both in loads.coefficients().items():
+        u = fields.displacement[rows, :, fields.loads.index(load)]
+        for phase, amount in enumerate(both[instant]):
+            psi = load.n * angle - phase * np.pi / 2.0
+            c, s = np.cos(psi), np.sin(psi)
+            out += amount * u * np.stack([c, s, c], axis=1)
+    return out
+
+
+def _envelope(around: Circumference, rows: Ints, theta: Floats) -> Floats:
+    """Largest von Mises stress over all instants at rows x angles, flat."""
+    turn = len(theta) // 2 if around.odd else len(theta)  # odd harmonics: half a turn says it all
+    found = np.stack([around.squares(rows, float(a)).max(axis=1) for a in theta[:turn]], axis=1)
+    return np.tile(np.sqrt(np.maximum(found, 0.0)), len(theta) // turn).ravel()

@@ -1,0 +1,109 @@
+"""Stress and displacement on a section from the unknowns of one harmonic: its skin, its inside."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from fea.core.local_fit import continuation
+from fea.core.material import Material
+from fea.harmonic.assembly import Floats, Ints, Section, elasticity
+from fea.harmonic.boundary import Outline, shapes
+from fea.harmonic.pressure_edge import DIRECTIONS, Jump, jumps
+from fea.harmonic.surface_stress import AT, skin
+
+NOWHERE = np.zeros((0, 2))
+AXIS = 1e-9  # r on it at most, of the largest
+
+
+@dataclass(frozen=True)
+class Reading:
+    """Where stress is read on a mesh, the same in all harmonics: points (S, 2), r and z in m, of
+    which the first, `skin`, are five to each edge of the outline, the next those of `inner` nodes,
+    and the others, where stress alone is read, I inside the section and those of the jumps.
+
+    held: (E, 5) which points of the skin have their stress from inside, at `rough` nodes, because
+    the surface is clamped and its traction unknown, or on the axis. continued: takes values at
+    samples in the elements to inner nodes, rough nodes and the I points
+    (fea.core.local_fit.continuation).
+    """
+
+    space: Section
+    outline: Outline
+    material: Material
+    points: Floats
+    skin: int
+    inner: Ints
+    held: NDArray[np.bool_]
+    rough: Ints
+    continued: sp.csr_matrix
+    jumps: tuple[Jump, ...]
+
+    def of(self, n: Ints | int, u: Floats, traction: Floats) -> tuple[Floats, Floats]:
+        """Displacement (D, 3, K) in m and stress (S, 6, K) in Pa, amplitudes, of displacements u
+        (N, 3, K) of harmonics n, one or (K,), under tractions (E, 3, 3, K), Pa, at the nodes of the
+        outline's edges.
+        """
+        K = u.shape[2]
+        stress = elasticity(self.material) @ self.space.sampled_strains(n, u)  # (M, 3, 6, K)
+        sampled = stress.reshape(-1, 6, K)
+        fitted = np.asarray(self.continued @ sampled.reshape(len(sampled), -1)).reshape(-1, 6, K)
+        inner, rough, inside = np.split(fitted, np.cumsum([len(self.inner), len(self.rough)]))
+        at_nodes = np.zeros((len(self.space.nodes), 6, K))
+        at_nodes[self.rough] = rough
+        from_inside = np.einsum("qi,eiak->eqak", shapes(AT), at_nodes[self.outline.nodes])
+        found = skin(self.space, self.outline, self.material, n, u, traction)
+        on_skin = np.where(self.held[..., None, None], from_inside, found.stress)
+        displacements = [found.displacement.reshape(-1, 3, K), u[self.inner]]
+        stresses = [on_skin.reshape(-1, 6, K), inner, inside]
+        stresses.extend(jump.stress(sampled, traction) for jump in self.jumps)
+        return np.concatenate(displacements), np.concatenate(stresses)
+
+    @property
+    def triangles(self) -> Ints:
+        """(M, 3) of the points, which fill the section."""
+        row = np.zeros(len(self.space.nodes), dtype=np.int64)  # of every node that is a corner
+        row[self.inner] = self.skin + np.arange(len(self.inner))
+        first = len(AT) * np.arange(len(self.outline.nodes))
+        row[self.outline.nodes[:, 1]], row[self.outline.nodes[:, 0]] = first + len(AT) - 1, first
+        return np.asarray(row[self.space.elements[:, :3]])
+
+
+def reading(
+    space: Section,
+    outline: Outline,
+    material: Material,
+    clamps: tuple[str, ...] = (),
+    inside: Floats = NOWHERE,
+    ends: Iterable[tuple[float, float]] = (),
+) -> Reading:
+    """clamps: surfaces that are clamped. inside: points (I, 2), m. ends: places on the outline
+    where a pressure ends.
+    """
+    found = jumps(space, outline, material, ends)
+    on_jumps = np.array([[j.r, j.z] for j in found]).reshape(-1, 2).repeat(DIRECTIONS, axis=0)
+    skin_at = np.einsum("qi,eia->eqa", shapes(AT), space.nodes[outline.nodes])
+    inner = np.setdiff1d(np.arange(len(space.nodes)), outline.nodes)
+    held = outline.held(clamps)
+    on_axis = AXIS * space.nodes[:, 0].max()
+    axis = outline.nodes[space.nodes[outline.nodes, 0] < on_axis]
+    rough = np.union1d(outline.nodes[held], axis)
+    points = [skin_at.reshape(-1, 2), space.nodes[inner], inside, on_jumps]
+    there = np.concatenate([space.nodes[inner], space.nodes[rough], inside])
+    continued = continuation(space.samples, there)
+    return Reading(
+        space,
+        outline,
+        material,
+        np.concatenate(points),
+        len(points[0]),
+        inner,
+        held[:, None] | (skin_at[..., 0] < on_axis),
+        rough,
+        continued,
+        found,
+    )

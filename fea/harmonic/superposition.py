@@ -1,0 +1,300 @@
+"""The largest von Mises stress over the circumference, by superposing unit fields of several
+harmonics.
+
+In a metric of von Mises a stress is five numbers whose squares sum to his equivalent squared; over
+the circumference three of them go as cos psi and two as sin psi. With one harmonic alone the square
+is a quadratic form of (cos n theta, sin n theta) with entries A, B, C, so that its maximum is
+closed:
+
+    (A + C) / 2 + sqrt(((A - C) / 2)^2 + B^2)
+
+With several, von Mises being a seminorm, the sum of these maxima is a bound from above; only points
+whose bound exceeds what has been found elsewhere are sampled; von Mises squared is a trigonometric
+polynomial, so samples give its highest crest (fea.harmonic.trigonometric_maximum). What each unit
+load can do at a point at most is a coarser bound, which says in what order points are looked at and
+when to stop.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.core.pin_loads import AnyLoads, Floats
+from fea.harmonic.fields import MeridianFields
+from fea.harmonic.trigonometric_maximum import highest_crest
+from geometry import ArgumentError
+
+Ints = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+
+SAMPLES_PER_WAVE = 5  # of von Mises squared
+FIRST = 16  # pairs of points and instants that are sampled to begin with
+CHUNK = 4096  # pairs sampled at once
+POINTS = 64  # points looked at together
+EVERY = slice(None)
+EVEN = 3  # so many of the five numbers go as cos psi, the others as sin psi
+_EVEN, _ODD = slice(0, EVEN), slice(EVEN, None)
+METRIC = np.zeros((5, 6))  # METRIC^T METRIC is tensor.VON_MISES
+METRIC[0, :3] = np.array([1.0, -1.0, 0.0]) * np.sqrt(0.75)
+METRIC[1, :3] = [-0.5, -0.5, 1.0]
+METRIC[[2, 3, 4], [4, 3, 5]] = np.sqrt(3.0)
+_BACK = np.array([True, True, True, False, True, False])  # stresses that go as cos psi
+
+
+@dataclass(frozen=True)
+class Top:
+    """The largest von Mises stress (Pa), at a point (its number), an instant and an angle (rad)."""
+
+    value: float
+    point: int
+    instant: int
+    angle: float
+
+
+class Circumference:
+    """A case on the section's points."""
+
+    def __init__(self, fields: MeridianFields, loads: AnyLoads) -> None:
+        acting = loads.coefficients()
+        missing = set(acting) - set(fields.loads)
+        if missing:
+            raise ArgumentError(
+                f"case {loads.case}: no unit fields were solved for {sorted(missing)}",
+                "missing-fields",
+            )
+        units = sorted(acting, key=lambda load: load.n)
+        by_phase = np.zeros((len(loads), len(units), 2))
+        for k, load in enumerate(units):
+            by_phase[:, k] = acting[load]
+        self.count = len(loads)
+        self.points = len(fields.points)
+        self._first, self._second = by_phase[..., 0], by_phase[..., 1]  # (T, K)
+        self._stress = fields.stress[:, :, [fields.loads.index(load) for load in units]]
+        self._five = METRIC @ self._stress  # (S, 5, K)
+        self._n = np.array([load.n for load in units], dtype=np.int64)
+        starts = np.flatnonzero(np.diff(self._n, prepend=-1))
+        self._kept: dict[int, tuple[Floats, Floats, Floats]] = {}
+        self._waves = [slice(*ends) for ends in itertools.pairwise([*starts, len(units)])]
+
+    @property
+    def twists(self) -> bool:
+        """Whether nothing acts but torsion."""
+        return not self._n.any() and not self._first.any()
+
+    @property
+    def odd(self) -> bool:
+        """Whether only odd harmonics act, so that half a turn changes the signs of stresses."""
+        return bool((self._n % 2 == 1).all())
+
+    def bound(self, points: Ints, instants: slice = EVERY) -> Floats:
+        """At least the largest von Mises stress over the circumference, (J, T) Pa, at points (J,)
+        and instants; exactly it where only one harmonic acts.
+        """
+        out = np.zeros((len(points), len(self._first[instants])))
+        for wave in self._waves:
+            out += self._alone(points, wave, instants)
+        return out
+
+    def last(self, points: Ints) -> tuple[int, Floats]:
+        """The highest harmonic that acts, and its largest stress by itself, (J, T) Pa."""
+        if not self._waves:
+            return 0, np.zeros((len(points), self.count))
+        wave = self._waves[-1]
+        return int(self._n[wave.start]), self._alone(points, wave)
+
+    def _alone(self, points: Ints, wave: slice, instants: slice = EVERY) -> Floats:
+        first, second, mixed = (x[instants] for x in self._products(wave))
+        five = self._five[points, :, wave]
+        even, odd = (x.swapaxes(1, 2) @ x for x in (five[:, _EVEN], five[:, _ODD]))
+        if self._n[wave.start] == 0:
+            square = _forms(even, first) + _forms(odd, second)
+        else:
+            apart = even - odd
+            total = _forms(even + odd, first + second)
+            square = _closed(total, _forms(apart, first - second), _forms(apart, mixed))
+        return np.sqrt(np.maximum(square, 0.0, out=square), out=square)
+
+    def _products(self, wave: slice) -> tuple[Floats, Floats, Floats]:
+        """Of two loads' amounts at an instant: of the first phases, the second ones, one of each;
+        (T, K, K).
+        """
+        if wave.start not in self._kept:
+            a, b = self._first[:, wave], self._second[:, wave]
+            aa, bb, ab = (x[:, :, None] * y[:, None, :] for x, y in ((a, a), (b, b), (a, b)))
+            self._kept[wave.start] = aa, bb, ab
+        return self._kept[wave.start]
+
+    def largest(self, among: Mask) -> tuple[Floats, Ints, Floats]:
+        """Over the points of a mask (S,), at every instant: maximum (T,) Pa, point, angle."""
+        value, point = self._search(among, together=False)
+        return value, point, self.round(point, np.arange(self.count))[1]
+
+    def top(self, among: Mask) -> Top:
+        """Over the points of a mask (S,) and all instants."""
+        value, point = self._search(among, together=True)
+        instant = int(value.argmax())
+        angle = self.round(point[[instant]], np.array([instant]))[1]
+        return Top(float(value[instant]), int(point[instant]), instant, float(angle[0]))
+
+    def _search(self, among: Mask, together: bool) -> tuple[Floats, Ints]:
+        """At every instant the maximum (T,) Pa and its point (T,); `together`: the largest of all
+        is right, those of other instants need not be.
+
+        Points are looked at in the order of what they can reach at most.
+        """
+        rows, reach = self._in_order(np.flatnonzero(among))
+        best = np.zeros(self.count)
+        point = np.full(self.count, rows[0] if len(rows) else 0)
+        for k in range(0, len(rows), POINTS):
+            if reach[k] <= (best.max() if together else best.min()):
+                break
+            here = rows[k : k + POINTS]
+            bound = self.bound(here)
+            if len(self._waves) < 2:  # the bound is the maximum
+                highest = bound.argmax(axis=0)
+                value = bound[highest, np.arange(self.count)]
+                more = value > best
+                best[more], point[more] = value[more], here[highest[more]]
+                continue
+            for i, t in self._worth(bound, best, together):
+                beat = np.full(len(t), best.max()) if together else best[t]
+                value = self.round(here[i], t, beat)[0]
+                bound[i, t] = -1.0
+                order = np.argsort(value, kind="stable")
+                i, t, value = i[order], t[order], value[order]
+                more = value > best[t]
+                best[t[more]], point[t[more]] = value[more], here[i[more]]  # the last one stays
+        return best, point
+
+    def _in_order(self, rows: Ints) -> tuple[Ints, Floats]:
+        """Points, those first that can reach most, and how much, Pa."""
+        reach = np.zeros(len(rows))
+        for k in range(0, len(rows), CHUNK):
+            reach[k : k + CHUNK] = self.reach(rows[k : k + CHUNK]).max(axis=1, initial=0.0)
+        order = np.argsort(-reach, kind="stable")
+        return rows[order], reach[order]
+
+    def reach(self, points: Ints, instants: slice = EVERY) -> Floats:
+        """A bound that is sooner found: the sum over unit loads of what each can do by itself."""
+        most = np.hypot(self._first[instants], self._second[instants]).T
+        return np.asarray((self._each[points] @ most) * (1.0 + 1e-12))
+
+    @cached_property
+    def _each(self) -> Floats:
+        """The most that each unit load does at each point, (S, K) Pa."""
+        even, odd = (np.square(self._five[:, part]).sum(axis=1) for part in (_EVEN, _ODD))
+        return np.asarray(np.sqrt(np.maximum(even, odd)))
+
+    def _worth(self, bound: Floats, best: Floats, together: bool) -> Iterator[tuple[Ints, Ints]]:
+        """Pairs of points and instants whose bound (J, T) exceeds the best so far, both of which
+        change meanwhile: the highest ones first, then more and more.
+        """
+        batch = FIRST if together else max(FIRST, self.count)
+        while True:
+            i, t = np.nonzero(bound > (best.max() if together else best))
+            if not len(i):
+                return
+            if len(i) > batch:
+                ahead = bound[i, t] if together else bound[i, t] - best[t]
+                few = np.argpartition(-ahead, batch)[:batch]
+                i, t = i[few], t[few]
+            yield i, t
+            batch *= 4
+
+    def round(
+        self, points: Ints, instants: Ints, beat: Floats | None = None
+    ) -> tuple[Floats, Floats]:
+        """Largest von Mises stress (J,) Pa over the circumference at pairs of points and instants,
+        and the angle (rad) where it is. beat: (J,) Pa, of pairs that cannot exceed it any value
+        below it.
+        """
+        beat = np.zeros(len(points)) if beat is None else beat
+        value, angle = np.zeros(len(points)), np.zeros(len(points))
+        for k in range(0, len(points), CHUNK):
+            here = slice(k, k + CHUNK)
+            value[here], angle[here] = self._round(points[here], instants[here], beat[here])
+        return value, angle
+
+    def _round(self, points: Ints, instants: Ints, beat: Floats) -> tuple[Floats, Floats]:
+        n = self._n[[wave.start for wave in self._waves]]
+        back, forth = self._parts(points, instants)  # (J, 5, W)
+        if len(n) < 2:
+            return _one_wave(n, back, forth)
+        degree = 2 * int(n[-1])  # of von Mises squared
+        even = n[:, None] * np.linspace(0.0, 2.0 * np.pi, SAMPLES_PER_WAVE * degree, endpoint=False)
+        found = np.concatenate([back, forth], axis=2) @ np.concatenate([np.cos(even), np.sin(even)])
+        angle = highest_crest(np.square(found).sum(axis=1), degree, beat**2)
+        there = n * angle[:, None]
+        found = np.einsum("jiw,jw->ji", back, np.cos(there))
+        found += np.einsum("jiw,jw->ji", forth, np.sin(there))
+        return np.linalg.norm(found, axis=1), angle
+
+    def _parts(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
+        """Of pairs of points and instants what goes as cos n theta and as sin n theta, by wave,
+        (J, 5, W) each.
+        """
+        five = self._five[points]
+        back, forth = (np.empty((len(points), 5, len(self._waves))) for _ in range(2))
+        for w, wave in enumerate(self._waves):
+            a, b = (
+                np.einsum("jik,jk->ji", five[:, :, wave], x[instants, wave])
+                for x in (self._first, self._second)
+            )
+            back[:, :EVEN, w], back[:, EVEN:, w] = a[:, :EVEN], -b[:, EVEN:]
+            forth[:, :EVEN, w], forth[:, EVEN:, w] = b[:, :EVEN], a[:, EVEN:]
+        return back, forth
+
+    def squares(self, points: Ints, angle: float) -> Floats:
+        """Von Mises squared (J, T) at points (J,) at an angle (rad) and every instant, Pa^2."""
+        back, forth = self._amounts(angle)
+        five = self._five[points]
+        rows, waves = len(points), len(self._n)  # no -1 for rows: there are no waves of no load
+        even = five[:, :EVEN].reshape(rows * EVEN, waves) @ back.T
+        odd = five[:, EVEN:].reshape(rows * (5 - EVEN), waves) @ forth.T
+        shape = (len(points), -1, self.count)
+        return np.asarray(
+            np.square(even).reshape(shape).sum(axis=1) + np.square(odd).reshape(shape).sum(axis=1)
+        )
+
+    def stress(self, points: Ints, instants: Ints, angle: Floats) -> Floats:
+        """Stress (J, 6) in Pa at pairs of points and instants and angles (J,): rr, tt, zz, tz, rz,
+        rt.
+        """
+        first, second, stress = self._first[instants], self._second[instants], self._stress[points]
+        c, s = np.cos(self._n * angle[:, None]), np.sin(self._n * angle[:, None])
+        back = np.einsum("jik,jk->ji", stress, c * first + s * second)
+        forth = np.einsum("jik,jk->ji", stress, s * first - c * second)
+        return np.asarray(np.where(_BACK, back, forth))
+
+    def _amounts(self, angle: float) -> tuple[Floats, Floats]:
+        """How much of each unit load's parts there is at an angle, (T, K) each: of those that go
+        as cos psi, and of the others.
+        """
+        c, s = np.cos(self._n * angle), np.sin(self._n * angle)
+        return c * self._first + s * self._second, s * self._first - c * self._second
+
+
+def _forms(form: Floats, products: Floats) -> Floats:
+    """Quadratic forms (J, K, K) of T pairs of vectors, whose products are (T, K, K); (J, T)."""
+    return np.asarray(form.reshape(len(form), -1) @ products.reshape(len(products), -1).T)
+
+
+def _closed(total: Floats, apart: Floats, mixed: Floats) -> Floats:
+    """Largest of A cos^2 + 2 B cos sin + C sin^2: total A + C, apart A - C, mixed B."""
+    return np.asarray(total / 2.0 + np.sqrt(apart * apart / 4.0 + mixed * mixed))
+
+
+def _one_wave(n: Ints, back: Floats, forth: Floats) -> tuple[Floats, Floats]:
+    """Largest von Mises stress and its angle, (J,) each, of no wave or of one of harmonic n."""
+    A, B, C = ((x * y).sum(axis=(1, 2)) for x, y in ((back, back), (back, forth), (forth, forth)))
+    if not n.any():
+        return np.sqrt(A), np.zeros(len(A))
+    largest = np.maximum(_closed(A + C, A - C, B), 0.0)
+    angle = 0.5 * np.arctan2(2.0 * B, A - C) / n[0]
+    return np.sqrt(largest), np.asarray(angle)

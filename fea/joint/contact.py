@@ -1,0 +1,227 @@
+"""Frictionless contact of a pin with its lugs, on cells: rings of the bands times sectors.
+
+With pressure p >= 0 on the cells, the gap to the bore is, on the average of a cell,
+
+    g = clearance / 2 + edge rounding + C p + (shift of the lug + z turn of the pin) . e_r >= 0
+
+and p g = 0. C is the flexibility of pin and lugs together, harmonic by harmonic, the half-plane's
+beyond, under pressures that are even on every cell, and averaged over cells, so that it is
+symmetric. A lug whose tilt is elastic adds the tilt that the pressures' couple makes. Shifts and
+turn are the multipliers of what equilibrium asks: the resultant on every band is the force of its
+link, and the couples on the pin are in balance. It is a linear complementarity problem with a
+positive definite matrix; a primal-dual active set solves it, from any start, in few steps.
+
+Sources: Hintermueller, Ito & Kunisch, SIAM J. Optim. 13 (2002) 865 (the active set); Ciavarella &
+Decuzzi, Int. J. Solids Struct. 38 (2001) 4507 (the plane problem that tests compare with).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import cho_factor, cho_solve
+
+from fea.core.linear_solver import SolveError
+from fea.core.pin_loads import Floats
+
+Mask = NDArray[np.bool_]
+
+MOST_STEPS = 60
+BALANCE = 1e-9  # of the largest force
+CLOSE = 1e-12  # of the largest pressure or gap: what is round-off
+SOFT = 1e-13  # of the stiffness of the cells: holds a lug that has lost all contact
+WAVES = 40  # times the sectors: harmonics of the half-plane that are summed
+
+
+@dataclass(frozen=True)
+class Bands:
+    """The rings (R,) of all bands, in their order: z of the middle and length, m; radius, m; band:
+    the number of each ring's band; gap: clearance and rounding of the edge, on the radius, m.
+    """
+
+    z: Floats
+    length: Floats
+    radius: Floats
+    band: NDArray[np.int64]
+    gap: Floats
+
+    def __len__(self) -> int:
+        return int(self.band.max()) + 1
+
+    @cached_property
+    def middles(self) -> Floats:
+        """z of the bands' middles, (B,) m."""
+        ends = [
+            (self.z - self.length / 2.0)[self.band == b].min()
+            + (self.z + self.length / 2.0)[self.band == b].max()
+            for b in range(len(self))
+        ]
+        return 0.5 * np.array(ends)
+
+
+@dataclass(frozen=True)
+class Pressed:
+    """Pressure (R, M) in Pa and gap (R, M) in m on the cells; shift (B, 2) m of the lugs against
+    the pin along x and y; turn (2,): slopes dx / dz and dy / dz. steps: of the active set.
+    """
+
+    pressure: Floats
+    gap: Floats
+    shift: Floats
+    turn: Floats
+    steps: int
+
+    @property
+    def active(self) -> Mask:
+        """Which cells are in contact."""
+        return self.gap <= 0.0
+
+
+class ContactProblem:
+    """One pin in its lugs, ready for any loads.
+
+    flexibility: (N + 1, R, R) m/Pa by harmonic, of pin and lugs together, on means over rings;
+    tail: n u_n / p_n of both together for higher ones, m/Pa, (R,). tilt: (B,) N m/rad of the lugs'
+    tilt, inf where guided, 0 where free. sectors: M, of equal angles, the first about x.
+    """
+
+    def __init__(
+        self, bands: Bands, flexibility: Floats, tail: Floats, tilt: Sequence[float], sectors: int
+    ) -> None:
+        self.bands, self.sectors = bands, sectors
+        self.angles = 2.0 * np.pi * np.arange(sectors) / sectors
+        self.area = np.repeat(bands.length * bands.radius, sectors) * 2.0 * np.pi / sectors
+        mean = np.sinc(1.0 / sectors)  # of cos and sin over a sector
+        e_r = mean * np.stack([np.cos(self.angles), np.sin(self.angles)], axis=1)
+        self._e_r = np.tile(e_r, (len(bands.z), 1))  # (U, 2)
+        self._z = np.repeat(bands.z, sectors)
+        self._band = np.repeat(bands.band, sectors)
+        self._open = np.repeat(bands.gap, sectors)
+        self._compliance = self._of_cells(flexibility, tail)
+        self._motions = self._rigid(np.asarray(tilt, dtype=float))
+
+    def _of_cells(self, flexibility: Floats, tail: Floats) -> Floats:
+        """Mean displacement of cells under forces on cells, (U, U) m/N."""
+        M, n = self.sectors, np.arange(len(flexibility))
+        factors = np.where(n == 0, 1.0, 2.0) / M * np.sinc(n / M) ** 2
+        waves = np.cos(np.outer(n, self.angles)) * factors[:, None]  # (N + 1, M)
+        apart = np.einsum("nd,nij->ijd", waves, flexibility)
+        high = np.arange(len(flexibility), WAVES * M)
+        weights = np.bincount(high % M, 2.0 / M * np.sinc(high / M) ** 2 / high, M)
+        near = weights @ np.cos(np.outer(np.arange(M), self.angles))  # the same a turn further on
+        apart[np.arange(len(tail)), np.arange(len(tail))] += tail[:, None] * near
+        turn = (np.arange(M)[:, None] - np.arange(M)) % M
+        rings = len(tail)
+        full = apart[:, :, turn].transpose(0, 2, 1, 3).reshape(rings * M, rings * M)
+        return np.asarray(full / self.area)
+
+    def _rigid(self, tilt: Floats) -> Floats:
+        """Changes of the gap by what has no stiffness, (U, Y): shifts of the lugs, turn of the pin,
+        tilts of the lugs that are free. Those with stiffness go into the compliance.
+        """
+        columns = [self._e_r * (self._band == b)[:, None] for b in range(len(self.bands))]
+        middle = 0.5 * (self._z.min() + self._z.max())
+        columns.append(self._e_r * (self._z - middle)[:, None])
+        for b, stiffness in enumerate(tilt.tolist()):
+            arm = (self._z - self.bands.middles[b]) * (self._band == b)
+            column = self._e_r * arm[:, None]
+            if stiffness == 0.0:
+                columns.append(column)
+            elif np.isfinite(stiffness):
+                self._compliance += column @ column.T / stiffness
+        return np.hstack(columns)
+
+    def solve(
+        self, forces: Floats, couple: tuple[float, float] = (0.0, 0.0), start: Mask | None = None
+    ) -> Pressed:
+        """Under forces (B, 2) N of the links on the pin, along x and y, at the bands' middles.
+
+        couple: N m, along x and y, on the pin by anything but forces across at the bands, moments
+        of links included. start: cells (R, M) in contact, of a neighbouring instant.
+
+        Raises: SolveError where the active set does not settle.
+        """
+        C, G = self._compliance, self._motions
+        asked = self._asked(np.asarray(forces, dtype=float), couple)
+        active = self._facing(forces) if start is None else start.ravel().copy()
+        soft = SOFT / np.abs(C).max()
+        seen: set[bytes] = set()
+        for step in range(1, MOST_STEPS + 1):
+            force, motion = self._with(active, asked, soft)
+            gap = self._open + C @ force + G @ motion
+            gap[active] = 0.0
+            wrong_force = active & (force < -CLOSE * np.abs(force).max(initial=0.0))
+            wrong_gap = ~active & (gap < -CLOSE * np.abs(gap).max(initial=0.0))
+            if not (wrong_force | wrong_gap).any():
+                self._require_balance(force, asked)
+                return self._found(force, gap, motion, step)
+            key = active.tobytes()
+            if key in seen:  # it goes in circles: one cell at a time, the first that is wrong
+                first = int(np.flatnonzero(wrong_force | wrong_gap)[0])
+                active[first] = not active[first]
+            else:
+                active = (active & ~wrong_force) | wrong_gap
+            seen.add(key)
+        raise SolveError(f"contact does not settle in {MOST_STEPS} steps", "contact-unsettled")
+
+    def _with(self, active: Mask, asked: Floats, soft: float) -> tuple[Floats, Floats]:
+        """Forces (U,) N and rigid motions (Y,) with given cells in contact."""
+        rows = np.flatnonzero(active)
+        G = self._motions[rows]
+        force = np.zeros(len(active))
+        if not len(rows):
+            return force, -asked / soft
+        factor = cho_factor(self._compliance[np.ix_(rows, rows)], lower=True, check_finite=False)
+        solved = cho_solve(factor, np.column_stack([G, -self._open[rows]]), check_finite=False)
+        rigid, opened = solved[:, :-1], solved[:, -1]
+        system = G.T @ rigid + soft * self._scale
+        found = np.linalg.lstsq(system, G.T @ opened - asked)[0]  # what moves nothing is zero
+        motion = np.asarray(found, dtype=np.float64)
+        force[rows] = opened - rigid @ motion
+        return force, motion
+
+    @cached_property
+    def _scale(self) -> Floats:
+        """Of the motions, (Y, Y): a turn counts as the shift at the far end."""
+        return np.diag(np.square(self._motions).max(axis=0))
+
+    def _asked(self, forces: Floats, couple: tuple[float, float]) -> Floats:
+        """What the cells' forces must add up to on each of the rigid motions, (Y,): they push the
+        pin against e_r.
+        """
+        out = np.zeros(self._motions.shape[1])
+        count = len(self.bands)
+        out[: 2 * count] = -forces.ravel()
+        mx, my = couple  # x: by forces along -y at z, y: by forces along x at z
+        out[2 * count : 2 * count + 2] = my, -mx
+        return out
+
+    def _require_balance(self, force: Floats, asked: Floats) -> None:
+        """Raises: SolveError where the cells' forces are not what equilibrium asks."""
+        arm = np.sqrt(np.diag(self._scale))  # of each motion
+        lost = np.abs(self._motions.T @ force - asked) / np.where(arm > 0.0, arm, 1.0)
+        if lost.max(initial=0.0) > BALANCE * np.abs(asked).max(initial=force.max(initial=0.0)):
+            raise SolveError(
+                "the links leave a couple on the pin that no lug reacts", "couple-not-reacted"
+            )
+
+    def _facing(self, forces: Floats) -> Mask:
+        """The cells that face the load of their band."""
+        towards = -np.einsum("ua,ua->u", self._e_r, np.asarray(forces)[self._band])
+        size = np.linalg.norm(forces, axis=1)[self._band]
+        return np.asarray((towards > 0.3 * size) & (size > 0.0))
+
+    def _found(self, force: Floats, gap: Floats, motion: Floats, steps: int) -> Pressed:
+        shape = (len(self.bands.z), self.sectors)
+        count = len(self.bands)
+        return Pressed(
+            np.maximum(force / self.area, 0.0).reshape(shape),
+            np.maximum(gap, 0.0).reshape(shape),
+            motion[: 2 * count].reshape(count, 2),
+            motion[2 * count : 2 * count + 2],
+            steps,
+        )

@@ -1,0 +1,63 @@
+"""What surrounds a band of a pin: the eye of a link."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea.core.material import Material
+from fea.core.pin_loads import Floats
+
+
+@dataclass(frozen=True)
+class Lug:
+    """The eye of the link at a connection, as an annulus; m.
+
+    clearance: of the diameters, negative for interference. edge_radius: of the bore's edges. tilt:
+    N m/rad, of the link against the others about any axis across the pin; inf: guided, 0: free.
+
+    Raises: ValueError for what cannot be.
+    """
+
+    connection: str
+    outer_diameter: float
+    material: Material
+    clearance: float = 0.0
+    edge_radius: float = 0.0
+    tilt: float = math.inf
+
+    def __post_init__(self) -> None:
+        what = f"lug {self.connection}"
+        if not (math.isfinite(self.outer_diameter) and self.outer_diameter > 0.0):
+            raise ValueError(f"{what}: its outer diameter must be positive")
+        if not math.isfinite(self.clearance):
+            raise ValueError(f"{what}: its clearance must be a number")
+        if not (math.isfinite(self.edge_radius) and self.edge_radius >= 0.0):
+            raise ValueError(f"{what}: its edge radius must not be negative")
+        if not self.tilt >= 0.0:
+            raise ValueError(f"{what}: the stiffness of its tilt must not be negative")
+
+    def gap(self, ends: Floats) -> Floats:
+        """Gap on the radius, (R,) m, on the mean over each ring with `ends` (R + 1,) m along z,
+        before anything moves: half of the clearance, and what the edges are rounded by.
+        """
+        return 0.5 * self.clearance + np.diff(self._rounded(ends)) / np.diff(ends)
+
+    def _rounded(self, z: Floats) -> Floats:
+        """Integral of what the rounding of both edges takes from the bore, from its start to z."""
+        first, last = z[0], z[-1]
+        return _segment(self.edge_radius, z - first) - _segment(self.edge_radius, last - z)
+
+
+def _segment(radius: float, x: Floats) -> Floats:
+    """Integral from 0 to x of the depth r - sqrt(r^2 - (r - t)^2) of a quarter round at t < r from
+    the edge, m^2.
+    """
+    if radius == 0.0:
+        return np.zeros_like(x)
+    s = 1.0 - np.minimum(x / radius, 1.0)  # of the way that is left
+    total = 1.0 - np.pi / 4.0
+    rest = s - 0.5 * (s * np.sqrt(1.0 - s * s) + np.arcsin(s))
+    return np.asarray(radius**2 * (total - rest))

@@ -1,0 +1,1 @@
+"""Stress singularities: where they are, how strong by theory, and as measured."""

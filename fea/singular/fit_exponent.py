@@ -1,0 +1,49 @@
+"""How stress grows towards a singularity, measured on a mesh that is graded towards it.
+
+Along the free surface the stress is A d^-s + B d^q at small distances d: s is what is looked for,
+and q that of the next term, 0 where it is not known to be another. The sum of squares of relative
+differences is smallest at s; A and B follow from s by linear least squares.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from fea.core.pin_loads import Floats
+
+FEWEST = 8  # points in the range
+SPAN = 5.0  # the range must cover this ratio of distances
+WORST = 0.05  # rms of relative differences: more is no power
+LIMITS = (0.01, 0.95)
+
+
+def growth_exponent(distance: Floats, stress: Floats, following: float = 0.0) -> float | None:
+    """s from stresses (J,) at distances (J,), q = `following`; None if they show no such growth."""
+    if (
+        len(distance) < FEWEST
+        or np.ptp(np.log(distance)) < np.log(SPAN)
+        or not np.all(stress > 0.0)
+    ):
+        return None
+    d = distance / np.exp(np.log(distance).mean())
+
+    def fitted(s: float) -> tuple[float, float]:
+        terms = np.stack([d**-s, d**following], axis=1) / stress[:, None]
+        parts = np.linalg.lstsq(terms, np.ones(len(d)), rcond=None)[0]
+        return float(np.mean((terms @ parts - 1.0) ** 2)), float(parts[0])
+
+    best = minimize_scalar(lambda s: fitted(s)[0], bounds=LIMITS, method="bounded")
+    square, amplitude = fitted(float(best.x))
+    return float(best.x) if amplitude > 0.0 and square < WORST**2 else None
+
+
+def strength(distance: Floats, stress: Floats, exponent: float, following: float = 0.0) -> float:
+    """A of stress A d^-s + B d^q from stresses (J,) Pa at distances (J,) m, with s known; in
+    Pa m^s. q: `following`.
+    """
+    mean = float(np.exp(np.log(distance).mean()))
+    d = distance / mean
+    terms = np.stack([d**-exponent, d**following], axis=1) / stress[:, None]
+    parts = np.linalg.lstsq(terms, np.ones(len(d)), rcond=None)[0]
+    return float(parts[0] * mean**exponent)

@@ -1,0 +1,69 @@
+"""Where stress is read near the surface: on circles about singularities, inside the body.
+
+A maximum outside of a singularity is often on its rim, and not where a mesh happens to have a node.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+from skfem import Element, ElementTetP1, ElementTetP2
+
+from fea.singular.singularities import Singularity
+from geometry import Pin
+
+Floats = NDArray[np.float64]
+
+RIM = 32  # points round a singularity in the section
+ROUND = 36  # points about the axis
+NEAREST = 12  # elements by their middles, among which the one round a point is looked for
+
+_ELEMENTS: dict[int, Element] = {4: ElementTetP1(), 10: ElementTetP2()}
+
+
+def rim(pin: Pin, singularity: Singularity, distance: float) -> Floats:
+    """Points (P, 2), r and z in m, inside the pin at a `distance` (m) from a singularity."""
+    angle = 2.0 * np.pi * (np.arange(RIM) + 0.5) / RIM
+    x = distance * np.stack([np.cos(angle), np.sin(angle)], axis=1) + [singularity.r, singularity.z]
+    at = np.clip(np.searchsorted(pin.stations, x[:, 1]) - 1, 0, len(pin.segments) - 1)
+    outer = np.array([s.diameter / 2.0 for s in pin.segments])[at]
+    inner = np.array([s.bore / 2.0 for s in pin.segments])[at]
+    little = min(1e-3 * singularity.radius, 1e-2 * distance)
+    inside = (x[:, 0] > inner + little) & (x[:, 0] < outer - little)
+    found: Floats = x[inside & (x[:, 1] > little) & (x[:, 1] < pin.length - little)]
+    return found
+
+
+def all_round(points: Floats) -> Floats:
+    """Points (P, 2) of a section turned about the axis: (ROUND P, 3), x, y, z in m."""
+    angle = 2.0 * np.pi * np.arange(ROUND)[:, None] / ROUND
+    r, z = points.T
+    x = np.stack([r * np.cos(angle), r * np.sin(angle), z + 0.0 * angle], axis=2)
+    return np.asarray(x.reshape(-1, 3))
+
+
+def interpolation(nodes: Floats, elements: NDArray[np.int64], points: Floats) -> sp.csr_matrix:
+    """Matrix (P, N) from values at nodes (N, d) to those at points (P, d) inside the body, by the
+    shape functions of the element (M, k) round each point, as if it had straight sides.
+    """
+    if not len(points):
+        return sp.csr_matrix((0, len(nodes)))  # a tree of all elements takes a while
+    d = nodes.shape[1]
+    kind = _ELEMENTS[elements.shape[1]]
+    corners = nodes[elements[:, : d + 1]]
+    count = min(NEAREST, len(corners))
+    near = np.asarray(cKDTree(corners.mean(axis=1)).query(points, count)[1])
+    near = near.reshape(len(points), count)
+    origin = corners[near, 0]
+    edges = np.stack([corners[near, k] - origin for k in range(1, d + 1)], axis=-1)
+    x = np.linalg.solve(edges, (points[:, None] - origin)[..., None])[..., 0]
+    depth = np.minimum(x.min(axis=2), 1.0 - x.sum(axis=2))  # how deep in the element
+    best = depth.argmax(axis=1)
+    every = np.arange(len(points))
+    column = elements[near[every, best]]
+    values = [kind.lbasis(x[every, best].T, i)[0] for i in range(column.shape[1])]
+    row = every.repeat(column.shape[1])
+    entries = np.stack([v + np.zeros(len(points)) for v in values], axis=1).ravel()
+    return sp.csr_matrix((entries, (row, column.ravel())), shape=(len(points), len(nodes)))

@@ -1,0 +1,152 @@
+"""How strongly stress grows at a corner: like d^-s at the distance d.
+
+At a corner of interior angle w the plane strain displacements go like r^L, so s = 1 - Re L for the
+root L with the least real part in 0 < Re L < 1 (Williams), k = 3 - 4 nu:
+
+    free - free         sin^2 Lw = L^2 sin^2 w
+    clamped - clamped   k^2 sin^2 Lw = L^2 sin^2 w
+    clamped - free      4 k sin^2 Lw = (k + 1)^2 - 4 L^2 sin^2 w
+
+Real and imaginary parts apart say where that root lies, so that it is bracketed, not searched for.
+
+Equal sides, x = Lw: sin x = q x or sin x = -q x, q = |sin w| / w, over k if clamped. For complex x,
+tan a / a = tanh b / b < 1 (a, b the parts of x) forbids Re x < pi, and so does sin x = -q x for
+real x. What is left is the real root of sin x = q x, in (0, pi]; it is below w only for w > pi.
+
+Different sides, z = 2 Lw: F = cos z + A - B z^2 = 0, A = (k + 1/k) / 2, B = (sin w / w)^2 / (2 k).
+For complex z = a + ib, Im F = 0 is sin a / a = -2 B b / sinh b, so a > pi. F falls on (0, pi]: a
+real root there is the one. Otherwise only w > pi/2 matters, and then F' = 0 has real roots a0 < a1
+only in Re z < 2 pi; F falls to a0, and is monotonic along the curve Im F = 0 that leaves a0 towards
+a = pi, b = infinity, where F < 0. So the root is real in (pi, a0] if F(a0) <= 0, and else the one
+on that curve.
+
+Wider is not always stronger: with different sides the least root turns back before it meets the
+next and both become complex (nu = 0.3: s falls from 0.388 at 131 degrees to 0.34 at 142).
+
+Source: M. L. Williams, J. Appl. Mech. 19 (1952) 526, for the equations.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Literal
+
+from scipy.optimize import brentq
+
+from geometry import ArgumentError
+
+Side = Literal["free", "clamped"]
+
+STEEPEST = 4.493409457909064  # tan a = a: sin a / a is least
+FAR = 5.0  # of b: 0.217 cosh b > A + B b^2 there for all -1 < nu < 0.5
+ROUNDING = 1e-12  # exponents below are those of no singularity
+
+
+def plane_exponent(omega: float, nu: float, first: Side, second: Side) -> float:
+    """Exponent s of stress ~ d^-s in plane strain at a corner; 0 where stress stays finite.
+
+    omega: angle (rad) of the material, 0 to 2 pi. nu: Poisson's ratio. first, second: its sides.
+
+    Raises: ValueError outside 0 < omega <= 2 pi or -1 < nu < 0.5.
+    Source: as the module.
+    """
+    return _positive(1.0 - plane_eigenvalue(omega, nu, first, second).real)
+
+
+def plane_eigenvalue(omega: float, nu: float, first: Side, second: Side) -> complex:
+    """The least L of displacement ~ r^L, of a pair the one above the real axis; 1 where stress
+    stays finite. A complex one makes the stress change sign ever faster towards the corner.
+
+    Arguments and Raises: as `plane_exponent`. Source: as the module.
+    """
+    _require(omega)
+    if not -1.0 < nu < 0.5:
+        raise ArgumentError(
+            f"Poisson's ratio must be between -1 and 0.5, not {nu:g}", "out-of-range"
+        )
+    kappa = 3.0 - 4.0 * nu
+    if first == second:
+        if omega <= math.pi:
+            return 1.0 + 0.0j
+        return complex(_equal_sides(omega, kappa if first == "clamped" else 1.0) / omega)
+    root = _different_sides(omega, kappa) / (2.0 * omega)
+    return root if root.real < 1.0 else 1.0 + 0.0j
+
+
+def antiplane_exponent(omega: float, first: Side, second: Side) -> float:
+    """Exponent s of stress ~ d^-s in torsion at a corner; 0 where stress stays finite.
+
+    omega: angle (rad) of the material, 0 to 2 pi. first, second: its sides.
+
+    Raises: ValueError outside 0 < omega <= 2 pi.
+    Source: the displacement is harmonic: r^L cos L theta, L = pi / omega, or half that if the sides
+    differ.
+    """
+    _require(omega)
+    return _positive(1.0 - math.pi / ((1.0 if first == second else 2.0) * omega))
+
+
+def notch_factor(omega: float, nu: float, torsion: bool = False) -> float:
+    """Notch stress intensity factor over the strength C of von Mises stress C d^-s along a free
+    side, where plane strain (opening; K1) or torsion (K3) governs; sides free, omega > pi.
+
+    K1 = sqrt(2 pi) lim d^s sigma_theta on the bisector, K3 the same of the shear stress.
+    Source: P. Lazzarin, R. Tovo, Int. J. Fract. 78 (1996) 3, for the ratio of the stress along the
+    side to that on the bisector.
+    """
+    root = math.sqrt(2.0 * math.pi)
+    if torsion:
+        return root / math.sqrt(3.0)
+    eigenvalue, half = plane_eigenvalue(omega, nu, "free", "free").real, omega / 2.0
+    less, more = (1.0 - eigenvalue) * half, (1.0 + eigenvalue) * half
+    chi = (1.0 - eigenvalue) * -math.sin(less) / math.sin(more)
+    along = (3.0 - eigenvalue) * math.cos(less) - chi * math.cos(more)
+    across = 1.0 + eigenvalue + chi
+    return root * across / along / math.sqrt(1.0 - nu + nu * nu)
+
+
+def _equal_sides(omega: float, kappa: float) -> float:
+    """x = L omega, for omega > pi; kappa is 1 for free sides."""
+    q = abs(math.sin(omega)) / (kappa * omega)
+    return _root(lambda x: math.sin(x) - q * x, math.pi / 2.0, math.pi + 1e-9)
+
+
+def _different_sides(omega: float, kappa: float) -> complex:
+    """z = 2 L omega; infinite when its real part would be above 2 omega anyway."""
+    A = (kappa + 1.0 / kappa) / 2.0
+    B = (math.sin(omega) / omega) ** 2 / (2.0 * kappa)
+
+    def F(a: float, b: float = 0.0) -> float:
+        """Real part; on the curve below also the whole."""
+        return math.cos(a) * math.cosh(b) + A - B * (a * a - b * b)
+
+    def on_curve(b: float) -> float:
+        """a for b, from Im F = 0."""
+        slope = 2.0 * B * (b / math.sinh(b) if b else 1.0)
+        return _root(lambda a: math.sin(a) + slope * a, math.pi, STEEPEST)
+
+    if F(math.pi) <= 0.0:
+        return complex(_root(F, 0.0, math.pi))
+    if omega <= math.pi / 2.0:
+        return complex(math.inf)
+    a0 = on_curve(0.0)
+    if F(a0) <= 0.0:
+        return complex(_root(F, math.pi, a0))
+    b = _root(lambda b: F(on_curve(b), b), 0.0, FAR)
+    return complex(on_curve(b), b)
+
+
+def _root(function: Callable[[float], float], low: float, high: float) -> float:
+    return float(brentq(function, low, high, xtol=1e-15, rtol=1e-15))
+
+
+def _positive(exponent: float) -> float:
+    return exponent if exponent > ROUNDING else 0.0
+
+
+def _require(omega: float) -> None:
+    if not 0.0 < omega <= 2.0 * math.pi * (1.0 + 1e-12):
+        raise ArgumentError(
+            f"the angle of a corner must be between 0 and 2 pi, not {omega:g}", "out-of-range"
+        )

@@ -1,0 +1,143 @@
+"""The boundary of a solid mesh: its curved facets, their nodes and normals, and loads on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from skfem.quadrature import get_quadrature
+from skfem.refdom import RefTri
+
+from fea.solid.assembly import Discretisation
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_PLANE = 1e-6  # difference of unit normals on a plane facet, by round-off and gmsh's
+SMOOTH = 0.97  # cosine between a node's normals below which it sits on an edge of the body
+
+_NODES = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]])
+
+
+def _shapes(x: Floats, y: Floats, nodes: int) -> Floats:
+    """The six quadratic functions on the triangle (corners, edges 01, 12, 02), or the three linear
+    ones, (Q, K).
+    """
+    w = 1.0 - x - y
+    if nodes == 3:
+        return np.stack([w, x, y], 1)
+    return np.stack(
+        [w * (2 * w - 1), x * (2 * x - 1), y * (2 * y - 1), 4 * w * x, 4 * x * y, 4 * w * y], 1
+    )
+
+
+def _slopes(x: Floats, y: Floats, nodes: int) -> Floats:
+    """Their derivatives by x and y, (Q, K, 2)."""
+    w, zero = 1.0 - x - y, 0.0 * x
+    if nodes == 3:
+        one = zero + 1.0
+        return np.stack([np.stack([-one, one, zero], 1), np.stack([-one, zero, one], 1)], 2)
+    by_x = [1 - 4 * w, 4 * x - 1, zero, 4 * (w - x), 4 * y, -4 * y]
+    by_y = [1 - 4 * w, zero, 4 * y - 1, -4 * x, 4 * x, 4 * (w - y)]
+    return np.stack([np.stack(by_x, 1), np.stack(by_y, 1)], 2)
+
+
+@dataclass(frozen=True)
+class SurfaceMesh:
+    """nodes: (S,) node numbers on the boundary. facets: (F,) facet numbers. corners: (F, K) node
+    numbers, K = 6, or 3 on linear elements. normals: (F, K, 3) outward unit vectors at those nodes.
+    """
+
+    nodes: Ints
+    facets: Ints
+    corners: Ints
+    normals: Floats
+
+    @property
+    def curved(self) -> bool:
+        """Whether any facet is."""
+        return not np.allclose(self.normals, self.normals[:, :1], atol=_PLANE)
+
+
+def surface(space: Discretisation) -> SurfaceMesh:
+    """The whole boundary of the mesh."""
+    mesh = space.mesh
+    facets = np.asarray(mesh.boundary_facets())
+    corners = vertices = mesh.facets[:, facets].T
+    if space.quadratic:
+        corners = np.concatenate([vertices, mesh.nvertices + mesh.f2e[:, facets].T], axis=1)
+    x = space.nodes[corners]
+    normals = _area_vectors(x, *_NODES[: corners.shape[1]].T)
+    normals /= np.linalg.norm(normals, axis=2, keepdims=True)
+    middle = space.nodes[space.elements[mesh.f2t[0, facets]][:, :4]].mean(axis=1)
+    # by the plane between the corners: a curved facet may bulge past the middle of its element
+    plane = np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0])
+    inward = np.sum(plane * (middle - x[:, 0]), axis=1) > 0.0
+    normals[inward] *= -1.0
+    return SurfaceMesh(np.unique(corners), facets, corners, normals)
+
+
+def held_nodes(space: Discretisation, surfaces: tuple[str, ...]) -> Ints:
+    """Nodes on the named surfaces."""
+    found = [space.basis.get_dofs(space.mesh.boundaries[s]).flatten() for s in surfaces]
+    return np.unique(np.concatenate(found)).astype(np.int64)
+
+
+class Patch:
+    """One named surface and the tractions that load it.
+
+    rows: (P,) its facets among the boundary's. area: m^2. Tractions (P, K, 3, L) are values at the
+    nodes of its facets, in Pa for each unit of load, and quadratic between them.
+    """
+
+    def __init__(self, space: Discretisation, boundary: SurfaceMesh, name: str) -> None:
+        self.rows = np.flatnonzero(np.isin(boundary.facets, space.mesh.boundaries[name]))
+        self._corners = boundary.corners[self.rows]
+        self._nodes = space.nodes
+        (x, y), weight = get_quadrature(RefTri, 4)
+        size = np.linalg.norm(_area_vectors(space.nodes[self._corners], x, y), axis=2) * weight
+        shapes = _shapes(x, y, self._corners.shape[1])
+        self._mass = np.einsum("pq,qi,qj->pij", size, shapes, shapes)
+        self.area = float(size.sum())
+
+    def nodal_forces(self, traction: Floats) -> Floats:
+        """Consistent nodal forces (N, 3, L) of a traction."""
+        out = np.zeros((len(self._nodes), *traction.shape[2:]))
+        np.add.at(out, self._corners, np.einsum("pij,pjal->pial", self._mass, traction))
+        return out
+
+    @property
+    def points(self) -> Floats:
+        """Nodes of its facets, (P, K, 3), m."""
+        return np.asarray(self._nodes[self._corners])
+
+    def exactly(self, traction: Floats, target: Floats, middle: float) -> Floats:
+        """The traction (P, K, 3, L) with the resultants `target` (6, L): force and moment about
+        (0, 0, middle), N and N m.
+
+        The mesh's surface is not quite round, and holes may be cut into it, so a traction has
+        resultants slightly different from those intended; small parts of uniform tractions, of
+        such that grow along z and of one tangential about z make up for that.
+        """
+        x = self.points - [0.0, 0.0, middle]
+        trial = np.zeros((*x.shape, 6))
+        trial[..., :3] = np.eye(3)
+        trial[..., 1, 3], trial[..., 0, 4] = -x[..., 2], x[..., 2]
+        r = np.hypot(x[..., 0], x[..., 1])
+        trial[..., 0, 5], trial[..., 1, 5] = -x[..., 1] / r, x[..., 0] / r
+        has = resultants(self._nodes, self.nodal_forces(trial), middle)
+        short = target - resultants(self._nodes, self.nodal_forces(traction), middle)
+        return np.asarray(traction + trial @ np.linalg.solve(has, short))
+
+
+def resultants(nodes: Floats, forces: Floats, z: float = 0.0) -> Floats:
+    """Force and moment (6, L), in N and N m, of nodal forces (N, 3, L) about (0, 0, z)."""
+    moments = np.cross((nodes - [0.0, 0.0, z])[:, :, None], forces, axisa=1, axisb=1, axisc=1)
+    return np.concatenate([forces.sum(axis=0), moments.sum(axis=0)])
+
+
+def _area_vectors(x: Floats, at_x: Floats, at_y: Floats) -> Floats:
+    """Cross products of the tangents of facets with nodes x (F, K, 3) at Q points, (F, Q, 3)."""
+    tangents = np.einsum("qfc,tfa->tqca", _slopes(at_x, at_y, x.shape[1]), x)
+    return np.cross(tangents[:, :, 0], tangents[:, :, 1])

@@ -1,0 +1,197 @@
+"""The solid model: a pin in tetrahedra, quadratic ones by default, under unit loads.
+
+One factorisation per mesh; each unit load that acts has a field per phase, of which the stress at
+any instant of any case is a linear combination.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+import scipy.linalg
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from fea.core.linear_solver import SolveError, factorize
+from fea.core.material import Material
+from fea.core.pin_loads import AnyLoads, PinLoads
+from fea.singular.probes import interpolation
+from fea.solid.assembly import Discretisation
+from fea.solid.boundary import SurfaceMesh, held_nodes, resultants, surface
+from fea.solid.nodal_loads import Unit, closed, nodal_loads, part
+from fea.solid.stress_recovery import nodal_stress, with_known_traction
+from geometry import ArgumentError, PinLike
+from geometry.mesh.solid_mesh import SolidMesh
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_NOWHERE = np.zeros((0, 3))
+
+
+@dataclass(frozen=True)
+class UnitFields:
+    """Fields of L unit loads, each in one phase: displacement (N, 3, L) in m, stress (N, 6, L) in
+    Pa, both per unit of load, and the nodal forces (N, 3, L) in N that they came from.
+
+    extra: further points (P, 3) inside the body where stress is read, m. fixed: displacement
+    components that were constrained, 3 n + c for component c of node n. support:
+    (6, L) force and moment of the clamps about (0, 0, 0), from the residual of the system; minus
+    those of the load when all is well. revolved: whether the pin is the same all round.
+    """
+
+    space: Discretisation
+    surface: SurfaceMesh
+    loads: tuple[Unit, ...]
+    displacement: Floats
+    stress: Floats
+    forces: Floats
+    fixed: Ints
+    support: Floats
+    revolved: bool = True
+    extra: Floats = field(default_factory=lambda: np.zeros((0, 3)))
+
+    @property
+    def points(self) -> Floats:
+        """Where stress is read, (S + P, 3) m: at nodes of the surface, then at the extra points."""
+        return np.concatenate([self.space.nodes[self.surface.nodes], self.extra])
+
+    @cached_property
+    def read(self) -> Floats:
+        """The stress there, (S + P, 6, L) Pa."""
+        there = interpolation(self.space.nodes, self.space.elements, self.extra)
+        inside = there @ self.stress.reshape(len(self.stress), -1)
+        shape = len(self.extra), *self.stress.shape[1:]
+        return np.concatenate([self.stress[self.surface.nodes], inside.reshape(shape)])
+
+    def coefficients(self, loads: AnyLoads) -> Floats:
+        """How much of each unit load acts at each instant, (T, L).
+
+        Raises: ValueError when there is no field for a part of the loads.
+        """
+        acts = loads.coefficients()
+        missing = set(acts) - {load for load, _ in self.loads}
+        if missing:
+            raise ArgumentError(
+                f"case {loads.case}: no unit fields were solved for {sorted(missing)}",
+                "missing-fields",
+            )
+        out = np.zeros((len(loads), len(self.loads)))
+        for k, (load, phase) in enumerate(self.loads):
+            if load in acts:
+                out[:, k] = acts[load][:, phase]
+        return out
+
+
+def acting(cases: Iterable[PinLoads]) -> tuple[Unit, ...]:
+    """Unit loads of which the cases are made, whichever way they are turned about the axis."""
+    loads = dict.fromkeys(load for case in cases for load in case.coefficients())
+    return tuple((load, phase) for load in loads for phase in load.phases)
+
+
+class SolidModel:
+    """A pin on one mesh, clamped at surfaces (by name).
+
+    Without any, the resultants of every load are taken up by closing tractions on the bands of all
+    connections, which cancel where loads are in balance, and six unknowns are constrained against
+    rigid motions.
+
+    Leaves out: plasticity, contact and clearance (loads are tractions).
+    """
+
+    def __init__(
+        self, pin: PinLike, solid: SolidMesh, material: Material, clamps: tuple[str, ...]
+    ) -> None:
+        self.pin, self.material, self.clamps = pin, material, clamps
+        self.space = Discretisation(solid.mesh)
+
+    @property
+    def unknowns(self) -> int:
+        """Displacement components, constrained ones included."""
+        return self.space.unknowns
+
+    @cached_property
+    def stiffness(self) -> sp.csr_matrix:
+        """N/m."""
+        return self.space.stiffness(self.material)
+
+    @cached_property
+    def fixed(self) -> Ints:
+        """Held unknowns."""
+        if self.clamps:
+            nodes = held_nodes(self.space, self.clamps)
+            return (3 * nodes[:, None] + np.arange(3)).ravel()
+        return _isostatic(self.space.nodes)
+
+    def solve(self, units: tuple[Unit, ...], extra: Floats = _NOWHERE) -> UnitFields:
+        """Unit fields of loads in their phases, at `extra` points (P, 3) inside the body too; on
+        surfaces that are no bands, forces only.
+
+        Raises: SolveError when the pin is not constrained or a check fails.
+        """
+        boundary = surface(self.space)
+        loads = nodal_loads(self.pin, self.material, self.space, boundary, units)
+        if not self.clamps:
+            pressing = np.array([not load.shears for load, _ in units])
+            loads = closed(self.pin, self.space, boundary, loads, pressing)
+        displacement, support = self._displace(loads.forces)
+        held = np.zeros(len(boundary.facets), dtype=bool)
+        for name in self.clamps:
+            held |= np.isin(boundary.facets, self.space.mesh.boundaries[name])
+        stress = nodal_stress(self.space, self.material, displacement)
+        stress = with_known_traction(stress, boundary, loads.traction, held)
+        return UnitFields(
+            self.space,
+            boundary,
+            units,
+            displacement,
+            stress,
+            loads.forces,
+            self.fixed,
+            support,
+            self.pin.revolved,
+            extra,
+        )
+
+    def _displace(self, F: Floats) -> tuple[Floats, Floats]:
+        """Displacements (N, 3, L) under nodal forces F (N, 3, L), and the clamps' force and moment
+        (6, L).
+        """
+        shape, F = F.shape, F.reshape(self.unknowns, -1)
+        free = np.setdiff1d(np.arange(self.unknowns), self.fixed)
+        K = self.stiffness
+        u = np.zeros_like(F)
+        u[free] = factorize(K[free][:, free], free // 3)(F[free])
+        reaction = np.zeros_like(F)
+        reaction[self.fixed] = K[self.fixed] @ u - F[self.fixed]
+        F = F.reshape(shape)
+        support = resultants(self.space.nodes, reaction.reshape(shape))
+        lost = part(self.pin, support + resultants(self.space.nodes, F), F).max()
+        if not lost < 1e-6:
+            raise SolveError(
+                f"pin {self.pin.name}: reactions and loads differ by {lost:.1e} of the load, so "
+                "the solution is not in equilibrium",
+                "no-equilibrium",
+            )
+        return u.reshape(shape), support
+
+
+def rigid_modes(nodes: Floats) -> Floats:
+    """Three translations and three rotations (3 N, 6) about the nodes' centre, lengths scaled."""
+    x = nodes - nodes.mean(axis=0)
+    x = x / np.abs(x).max()
+    modes = np.zeros((len(x), 3, 6))
+    for a in range(3):
+        b, c = (a + 1) % 3, (a + 2) % 3
+        modes[:, a, a] = 1.0
+        modes[:, b, 3 + a], modes[:, c, 3 + a] = -x[:, c], x[:, b]
+    return modes.reshape(-1, 6)
+
+
+def _isostatic(nodes: Floats) -> Ints:
+    """Six unknowns that prevent the rigid motions, chosen well apart by a pivoted QR."""
+    _, _, pivot = scipy.linalg.qr(rigid_modes(nodes).T, mode="economic", pivoting=True)
+    return np.sort(pivot[:6]).astype(np.int64)

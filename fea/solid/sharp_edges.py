@@ -1,0 +1,109 @@
+"""Edges of any solid at which linear elasticity has no finite stress, found on its mesh."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from fea.singular.singularities import INSTEAD_OF_CLAMP, Kind, Singularity
+from fea.solid.assembly import Discretisation
+from fea.solid.boundary import SurfaceMesh
+
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+TURN = np.radians(40.0)  # of an inner corner: less is a facet of a curved wall, or hardly sharp
+SIDES = ((0, 1, 2), (1, 2, 0), (0, 2, 1))  # of a facet: ends and the corner across
+
+
+@dataclass(frozen=True)
+class SharpEdges:
+    """Points (K, 3), m, along inner corners and along edges of clamps, and the body's outer radius
+    (K,), m, at their z.
+    """
+
+    corner: Floats
+    rim: Floats
+    radius: Floats
+
+    def singularities(self, x: Floats, part: float) -> list[tuple[Singularity, Mask]]:
+        """Of points x (S, 3), m: those within `part` of the diameter of any inner corner, and of
+        any clamp's edge, as a singularity each; none where there is nothing of the kind.
+        """
+        first = len(self.corner)
+        kinds: tuple[tuple[Kind, Floats, Floats, str], ...] = (
+            ("sharp corner", self.corner, self.radius[:first], _RADIUS),
+            ("edge of a clamp", self.rim, self.radius[first:], INSTEAD_OF_CLAMP),
+        )
+        found = []
+        for kind, points, radius, advice in kinds:
+            if len(points):
+                distance, nearest = cKDTree(points).query(x)
+                reach = part * 2.0 * radius
+                at = points[0]
+                singularity = Singularity(
+                    r=float(np.hypot(at[0], at[1])),
+                    z=float(at[2]),
+                    kind=kind,
+                    between=("the body", "itself" if kind == "sharp corner" else "its clamp"),
+                    theory=None,
+                    torsion_theory=0.0,
+                    radius=float(reach.max()),
+                    advice=advice,
+                )
+                found.append((singularity, distance <= reach[nearest]))
+        return found
+
+
+_RADIUS = "a radius there would make it finite"
+
+
+def sharp_edges(space: Discretisation, surface: SurfaceMesh, clamps: tuple[str, ...]) -> SharpEdges:
+    """Inner corners that turn by more than TURN, and the rims of the clamped surfaces."""
+    held = np.zeros(len(surface.facets), dtype=bool)
+    for name in clamps:
+        held |= np.isin(surface.facets, space.mesh.boundaries[name])
+    ends = np.sort(np.stack([surface.corners[:, [a, b]] for a, b, _ in SIDES]), axis=2)
+    side_of = ends[..., 0] * np.int64(len(space.nodes)) + ends[..., 1]  # shared by two facets
+    order = np.argsort(side_of.ravel(), kind="stable").reshape(-1, 2)
+    facet, side = (order % len(surface.facets)).T, (order // len(surface.facets)).T
+    nodes = np.array(SIDES)[side[1]]  # of the second facet: ends, across
+    two = surface.corners[facet[1]]
+    a, b, across = (np.take_along_axis(two, nodes[:, [k]], axis=1)[:, 0] for k in range(3))
+    x = space.nodes
+    # of facets made plane: sides that were straightened for the elements' sake kink curved ones
+    normal, other = _plane_normals(x, surface)[facet]
+    into = np.cross(other, x[b] - x[a])
+    into *= np.sign(np.sum(into * (x[across] - (x[a] + x[b]) / 2), axis=1))[:, None]
+    into /= np.linalg.norm(into, axis=1, keepdims=True)
+    turn = np.arctan2(np.sum(normal * into, axis=1), np.sum(normal * other, axis=1))
+    corner = (turn > TURN) & ~(held[facet[0]] & held[facet[1]])
+    rim = held[facet[0]] != held[facet[1]]
+    edge = np.stack([a, b], axis=1)
+    if space.quadratic:
+        edge = np.column_stack([edge, two[np.arange(len(two)), 3 + side[1]]])
+    corners, rims = (x[np.unique(edge[on])] for on in (corner, rim))
+    radius = _outer_radius(space.nodes[surface.nodes], np.concatenate([corners, rims]))
+    return SharpEdges(corners, rims, radius)
+
+
+def _plane_normals(nodes: Floats, surface: SurfaceMesh) -> Floats:
+    """Outward unit normals (F, 3) of the triangles between the facets' corners."""
+    x = nodes[surface.corners[:, :3]]
+    normals = np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0])
+    mean = surface.normals[:, -3:].sum(axis=1)  # amid the sides, where there are nodes
+    normals *= np.sign(np.sum(normals * mean, axis=1))[:, None]
+    return np.asarray(normals / np.linalg.norm(normals, axis=1, keepdims=True))
+
+
+def _outer_radius(nodes: Floats, points: Floats) -> Floats:
+    """Largest distance (K,) of surface nodes from the z-axis near the z of points (K, 3)."""
+    r = np.hypot(nodes[:, 0], nodes[:, 1])
+    order = np.argsort(nodes[:, 2])
+    z, r, near = nodes[order, 2], r[order], 0.1 * r.max()
+    first = np.searchsorted(z, points[:, 2] - near)
+    last = np.searchsorted(z, points[:, 2] + near, side="right")
+    return np.array([r[i:j].max() for i, j in zip(first, last, strict=True)])

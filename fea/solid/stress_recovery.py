@@ -1,0 +1,74 @@
+"""Stress at the nodes of a solid from a displacement field.
+
+Values at the quadrature points are extended linearly to each element's nodes and averaged there;
+on the surface the traction is known, and the stress is corrected to carry exactly that.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from fea.core.local_fit import extension
+from fea.core.material import Material
+from fea.core.voigt import ENTRIES, TENSOR
+from fea.solid.assembly import Discretisation
+from fea.solid.boundary import SMOOTH, SurfaceMesh
+
+Floats = NDArray[np.float64]
+
+
+def recovery(space: Discretisation) -> sp.csr_matrix:
+    """Matrix (N, Q M) from values at the quadrature points to values at the nodes."""
+    return extension(space.elements, space.basis.X, space.basis.elem.doflocs.T)
+
+
+def nodal_stress(space: Discretisation, material: Material, displacement: Floats) -> Floats:
+    """Stress (N, 6, L) in Pa of L displacement fields (N, 3, L) in m."""
+    to_nodes = recovery(space)
+    fields = []
+    for k in range(displacement.shape[2]):
+        stress = material.stress(space.strain(displacement[:, :, k]))
+        fields.append(to_nodes @ stress.reshape(-1, 6))
+    return np.stack(fields, axis=2)
+
+
+def with_known_traction(
+    stress: Floats, surface: SurfaceMesh, traction: Floats, held: NDArray[np.bool_]
+) -> Floats:
+    """Stress (N, 6, L) corrected on the surface to carry the traction (F, .., 3, L) at the nodes of
+    its facets, Pa.
+
+    held: (F,) facets whose traction is unknown. Nodes there and on edges of the body stay as they
+    are; where two tractions meet on a smooth surface their mean is taken.
+    """
+    n_nodes = len(stress)
+    node = surface.corners.ravel()
+    count = np.bincount(node, minlength=n_nodes)
+    on = np.maximum(count, 1)
+    normal: Floats = np.stack(
+        [np.bincount(node, surface.normals[..., a].ravel(), minlength=n_nodes) for a in range(3)], 1
+    )
+    length = np.linalg.norm(normal, axis=1)
+    normal /= np.where(length > 0.0, length, 1.0)[:, None]
+    sharp = np.sum(surface.normals * normal[surface.corners], axis=2) < SMOOTH
+    fixed = np.repeat(held[:, None], surface.corners.shape[1], axis=1)
+    known = (count > 0) & (np.bincount(node, (sharp | fixed).ravel(), minlength=n_nodes) == 0)
+    out = stress.copy()
+    n = normal[known]
+    for k in range(stress.shape[2]):
+        t = np.stack(
+            [
+                np.bincount(node, traction[:, :, a, k].ravel(), minlength=n_nodes) / on
+                for a in range(3)
+            ],
+            axis=1,
+        )[known]
+        s = stress[known, :, k][:, TENSOR]
+        r = t - np.einsum("nab,nb->na", s, n)
+        normal_part = np.sum(r * n, axis=1)[:, None, None]
+        rn = r[:, :, None] * n[:, None, :]
+        s = s + rn + rn.swapaxes(1, 2) - normal_part * n[:, :, None] * n[:, None, :]
+        out[known, :, k] = np.stack([s[:, a, b] for a, b in ENTRIES], axis=1)
+    return out

@@ -1,0 +1,372 @@
+"""The choice of model: the smallest that is accurate enough, on meshes as fine as necessary.
+
+beam      where its error is enough to decide                   (fea.beam.error_model)
+harmonic  any body of revolution                                (fea.harmonic.evaluate)
+solid     any other body, and to check the others               (fea.solid.evaluate)
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from types import MappingProxyType
+from typing import Literal
+
+import numpy as np
+
+from fea.asked import DECIDED, Asked, Goal, Model, decided, enough, reasons
+from fea.beam.error_model import PLAIN
+from fea.beam.model import BeamAnswer
+from fea.core.equilibrium import Balance, out_of_balance
+from fea.core.linear_solver import SolveError
+from fea.core.material import Material
+from fea.core.memory import too_much
+from fea.core.mesh_result import MeshResult
+from fea.core.over_time import Between, rise_between, through_time, with_crest
+from fea.core.peak import NOTHING, Note, Peak
+from fea.core.pin_loads import PinLoads
+from fea.core.solution import Answer
+from fea.harmonic.evaluate import (
+    HarmonicAnswer,
+    HarmonicSolution,
+    harmonic_result,
+    harmonic_solution,
+)
+from fea.singular.singularities import Singularity, find_singularities
+from fea.solid.evaluate import SolidAnswer, solid_result, solid_solution
+from fea.verdict import Seen, judge
+from geometry import ArgumentError, Pin, PinLike
+from geometry.mesh.solid_mesh import MeshError, MeshSize
+
+__all__ = [
+    "Asked", "Goal", "Model", "Solution", "count_loads", "decided", "enough", "ratio_of",
+    "singularities_of", "solve_pin", "unknowns_after",
+]  # fmt: skip
+
+Progress = Callable[[str], None]
+
+STEP = 2.0**0.5  # from one mesh to the next
+HALF = 2.0  # the same where the mesh is given
+MESHES = {"harmonic": 7, "solid": 4}
+MOST_UNKNOWNS = {"harmonic": 400_000, "solid": 300_000}
+GROWTH = {"harmonic": 2.0, "solid": 3.0}  # power of the ratio with which unknowns grow
+AS_USUAL = Asked()
+NO_MOTION: Mapping[str, Between] = MappingProxyType({})
+TELL = 1e-6  # of the largest load: smaller imbalances are not reported
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A peak and the answer behind it, None for an unconstrained pin that cannot be solved. loads:
+    those of the case, with the instants added to find the maximum; instant: index of the governing
+    one.
+    """
+
+    peak: Peak
+    answer: Answer | None
+    loads: PinLoads
+    instant: int = 0
+
+
+def solve_pin(
+    pin: PinLike,
+    material: Material,
+    clamps: tuple[str, ...],
+    cases: tuple[PinLoads, ...],
+    asked: Asked = AS_USUAL,
+    progress: Progress = lambda _: None,
+    between: Mapping[str, Between] = NO_MOTION,
+) -> tuple[Solution, ...]:
+    """Solutions of a pin's cases, one each. clamps: names of the clamped surfaces. between: for the
+    cases that are motions, the loads at any time; in others only the given instants count.
+
+    Raises: ArgumentError for a model that does not apply to this pin; MeshError, SolveError.
+    """
+    if asked.model in ("beam", "harmonic") and not isinstance(pin, Pin):
+        raise ArgumentError(
+            f"pin {pin.name} is not a body of revolution, which the {asked.model} model needs: use "
+            "auto or solid",
+            "not-axisymmetric",
+        )
+    held = tuple(pin.surface(name) for name in clamps)
+    job = _Job(pin, material, held, asked, progress, between)
+    balances = {} if clamps else {c.case: out_of_balance(pin, c, material.density) for c in cases}
+    notes = {case: _reacted(pin, balance) for case, balance in balances.items()}
+    out: dict[str, Solution] = {}
+    for case in cases:
+        if case.case in balances and (refusal := balances[case.case].refusal):
+            codes = (balances[case.case].code,)
+            peak = Peak(pin.name, case.case, asked.model, "rigid", refusal, reasons=codes)
+            out[case.case] = Solution(peak, None, case)
+    live = tuple(c for c in cases if c.case not in out)
+    if isinstance(pin, Pin) and asked.model in ("auto", "beam"):
+        out |= _beam(job, pin, live, notes)
+        live = tuple(c for c in live if c.case not in out)
+    if live:
+        model: Literal["harmonic", "solid"]
+        model = "solid" if asked.model == "solid" or not isinstance(pin, Pin) else "harmonic"
+        try:
+            out |= _refined(job, model, live, notes)
+        except (MeshError, SolveError) as error:
+            if asked.model != "auto" or not isinstance(pin, Pin):
+                raise
+            out |= _instead(job, pin, live, notes, str(error))
+    shares = {case: _imbalance(pin, balance) for case, balance in balances.items()}
+    return tuple(_with_imbalance(out[c.case], shares.get(c.case)) for c in cases)
+
+
+@dataclass(frozen=True)
+class _Job:
+    pin: PinLike
+    material: Material
+    held: tuple[str, ...]
+    asked: Asked
+    progress: Progress
+    between: Mapping[str, Between]
+
+
+def ratio_of(pin: PinLike) -> float:
+    """From one mesh of a pin to the next."""
+    return HALF if pin.meshed else STEP
+
+
+def unknowns_after(pin: PinLike, model: str, unknowns: int) -> float:
+    """Of the mesh that comes after one with so many, roughly."""
+    grown: float = ratio_of(pin) ** GROWTH[model]
+    return unknowns * grown
+
+
+def count_loads(cases: tuple[PinLoads, ...]) -> int:
+    """Unit loads of all the cases, at least one."""
+    return max(1, len({load for case in cases for load in case.coefficients()}))
+
+
+def singularities_of(
+    pin: PinLike,
+    material: Material,
+    clamps: tuple[str, ...],
+    cases: tuple[PinLoads, ...],
+    distance: float = 0.1,
+) -> tuple[Singularity, ...]:
+    """Zones of unbounded stress in any of the cases; for bodies of revolution only."""
+    if not isinstance(pin, Pin):
+        return ()
+    acting = {load for case in cases for load in case.coefficients() if load.shears}
+    loaded = {load.surface for load in acting}
+    if acting and not clamps:  # all bands react the imbalance
+        loaded |= set(pin.connections)
+    nu = material.poisson_ratio
+    return find_singularities(pin, clamps, tuple(sorted(loaded)), nu, distance)
+
+
+def _singularities(job: _Job, cases: tuple[PinLoads, ...]) -> tuple[Singularity, ...]:
+    return singularities_of(job.pin, job.material, job.held, cases, job.asked.distance)
+
+
+def _beam(
+    job: _Job, pin: Pin, cases: tuple[PinLoads, ...], notes: dict[str, Note]
+) -> dict[str, Solution]:
+    """The cases for which a beam is accurate enough; all if the beam model is requested."""
+    asked = job.asked
+    if asked.model == "auto" and asked.goal == "value" and asked.tolerance < PLAIN:
+        return {}  # below the error of any beam
+    out = {}
+    for case in cases:
+        singularities = _singularities(job, (case,)) if asked.model == "auto" else ()
+        if any(p.kind != "edge of a load" for p in singularities):
+            continue  # where a beam cannot see the singularity
+        found, why = _by_beam(job, pin, case, notes), Note("beam: requested", ("requested",))
+        peak = found.peak
+        if asked.model == "auto":
+            assert isinstance(found.answer, BeamAnswer)
+            if found.answer.estimate.error is None:
+                continue
+            value, error = peak.max_von_mises or 0.0, peak.error_estimate or 0.0
+            if decided(asked, job.material, value - error, value + error):
+                why = Note(f"beam: {DECIDED}", ("beam-decides",))
+            elif peak.verdict == "converged":
+                why = Note("beam: its error is within the tolerance", ("beam-within-tolerance",))
+            else:
+                continue
+        out[case.case] = replace(found, peak=_because(peak, why))
+    return out
+
+
+def _because(peak: Peak, why: Note) -> Peak:
+    return replace(peak, why=why.text, reasons=peak.reasons + why.codes)
+
+
+def _by_beam(job: _Job, pin: Pin, case: PinLoads, notes: dict[str, Note]) -> Solution:
+    start, rise = time.perf_counter(), 0.0
+    answer = BeamAnswer(pin, job.material, job.held, case)
+    if between := job.between.get(case.case):
+        case = through_time(answer, case, between, job.asked.tolerance)
+        rise = rise_between(answer, case, between)
+        answer = BeamAnswer(pin, job.material, job.held, case)
+    instant, spent = answer.estimate.instant, time.perf_counter() - start
+    peak = answer.peak(job.asked.tolerance, spent, notes.get(case.case, NOTHING), rise)
+    return Solution(replace(peak, governing=case.at(np.array([instant]))), answer, case, instant)
+
+
+def _instead(
+    job: _Job, pin: Pin, cases: tuple[PinLoads, ...], notes: dict[str, Note], failure: str
+) -> dict[str, Solution]:
+    """Beams, with their own error, where no harmonic mesh could be solved."""
+    out = {}
+    for case in cases:
+        note = notes.get(case.case, NOTHING) + Note(f"; the harmonic model failed: {failure}")
+        found = _by_beam(job, pin, case, {case.case: note})
+        why = Note("beam: the harmonic model failed", ("harmonic-failed",))
+        out[case.case] = replace(found, peak=_because(found.peak, why))
+    return out
+
+
+def _refined(
+    job: _Job,
+    model: Literal["harmonic", "solid"],
+    cases: tuple[PinLoads, ...],
+    notes: dict[str, Note],
+) -> dict[str, Solution]:
+    """Finer and finer meshes until every case is converged or decided, or a limit is reached."""
+    pin, asked = job.pin, job.asked
+    ratio = ratio_of(pin)
+    singularities = _singularities(job, cases)
+    own = {case.case: _singularities(job, (case,)) for case in cases}
+    seen: dict[str, Seen] = {}
+    for level in range(asked.meshes or MESHES[model]):
+        largest = max((s.results[-1].unknowns for s in seen.values()), default=0)
+        finer = unknowns_after(pin, model, largest)
+        if level and finer > MOST_UNKNOWNS[model]:
+            break
+        unit_loads = count_loads(cases) if model == "harmonic" else 0
+        if level and (excess := too_much(finer, asked.memory, unit_loads)):
+            text = f"; on the next mesh {excess}: allow more, or increase --tolerance"
+            limit = Note(text, ("memory-limit",))
+            notes = {case: notes.get(case, NOTHING) + limit for case in own}
+            break
+        job.progress(f"pin {pin.name}, {model} model, mesh {level + 1}")
+        start = time.perf_counter()
+        before = {case: s.results[-1] for case, s in seen.items()}
+        mesh = _mesh(job, model, cases, singularities, own, level, before)
+        if not level:
+            cases = tuple(_through_time(job, mesh, case) for case in cases)
+        for case in cases:
+            now = mesh.result(case)
+            spent = time.perf_counter() - start
+            seen[case.case] = _with(
+                seen.get(case.case), pin.name, case.case, model, now, spent, ratio
+            )
+            start = time.perf_counter()
+        if all(enough(asked, job.material, s) for s in seen.values()):
+            break
+    why, out = reasons(asked, job.material, model), {}
+    for case in cases:
+        case, s = _at_crest(job, mesh, case, seen[case.case])
+        peak = judge(s, mesh.singularities, asked.tolerance, notes.get(case.case, NOTHING))
+        instant = s.results[-1].instant
+        peak = _because(replace(peak, governing=case.at(np.array([instant]))), why(s))
+        out[case.case] = Solution(peak, mesh.answers[case.case], case, instant)
+    return out
+
+
+@dataclass(frozen=True)
+class _Mesh:
+    """One solved mesh: its singular zones, its result for a case, and its answers."""
+
+    singularities: tuple[Singularity, ...]
+    result: Callable[[PinLoads], MeshResult]
+    answers: dict[str, Answer]
+
+
+def _mesh(
+    job: _Job,
+    model: Literal["harmonic", "solid"],
+    cases: tuple[PinLoads, ...],
+    singularities: tuple[Singularity, ...],
+    own: dict[str, tuple[Singularity, ...]],
+    level: int,
+    before: dict[str, MeshResult],
+) -> _Mesh:
+    pin, ratio = job.pin, ratio_of(job.pin)
+    if model == "harmonic":
+        assert isinstance(pin, Pin)
+        section = harmonic_solution(
+            pin, job.material, job.held, cases, singularities, level, ratio, before.values()
+        )
+        answers: dict[str, Answer] = {c: HarmonicAnswer(section, mine) for c, mine in own.items()}
+        return _Mesh(singularities, partial(_own_result, section, singularities, own), answers)
+    size, asked = MeshSize().finer(ratio**level), job.asked
+    solid = solid_solution(
+        pin, job.material, job.held, cases, singularities, size, asked.distance, memory=asked.memory
+    )
+    answers = dict.fromkeys(own, SolidAnswer(solid))
+    return _Mesh(solid.singularities, partial(solid_result, solid, before, ratio), answers)
+
+
+def _through_time(job: _Job, mesh: _Mesh, case: PinLoads) -> PinLoads:
+    """A case's loads with the instants that matter according to the first mesh."""
+    between = job.between.get(case.case)
+    if between is None:
+        return case
+    return through_time(mesh.answers[case.case], case, between, job.asked.tolerance)
+
+
+def _at_crest(job: _Job, mesh: _Mesh, case: PinLoads, seen: Seen) -> tuple[PinLoads, Seen]:
+    """With the instant at which the last mesh has its maximum, and the rise between instants."""
+    between, answer = job.between.get(case.case), mesh.answers[case.case]
+    if between is None:
+        return case, seen
+    more, last = with_crest(answer, case, between), seen.results[-1]
+    if len(more) > len(case):
+        last = mesh.result(more)
+    last = replace(last, between=rise_between(answer, more, between))
+    return more, replace(seen, results=(*seen.results[:-1], last))
+
+
+def _own_result(
+    section: HarmonicSolution,
+    singularities: tuple[Singularity, ...],
+    own: Mapping[str, tuple[Singularity, ...]],
+    case: PinLoads,
+) -> MeshResult:
+    return harmonic_result(section, singularities, case, own[case.case])
+
+
+def _with(
+    seen: Seen | None,
+    pin: str,
+    case: str,
+    model: str,
+    result: MeshResult,
+    spent: float,
+    ratio: float,
+) -> Seen:
+    results, seconds = ((), ()) if seen is None else (seen.results, seen.seconds)
+    return Seen(pin, case, model, (*results, result), (*seconds, spent), ratio)
+
+
+def _imbalance(pin: PinLike, balance: Balance) -> tuple[float, float] | None:
+    """Force and couple that the bands react, relative; None if negligible."""
+    if not balance.largest:
+        return None
+    force = balance.force / balance.largest
+    couple = balance.couple / balance.largest / pin.length
+    return (force, couple) if max(force, couple) >= TELL else None
+
+
+def _with_imbalance(solution: Solution, share: tuple[float, float] | None) -> Solution:
+    return replace(solution, peak=replace(solution.peak, imbalance=share)) if share else solution
+
+
+def _reacted(pin: PinLike, balance: Balance) -> Note:
+    """The imbalance that the bands react, as the end of a note."""
+    if (share := _imbalance(pin, balance)) is None:
+        return NOTHING
+    force, couple = share
+    return Note(
+        f"; the bearing bands react a residual imbalance: a force of {force:.2g} of the largest "
+        f"load and a couple of {couple:.2g} of that load times the length",
+        ("imbalance-reacted",),
+    )

@@ -1,0 +1,1 @@
+"""Pins from CAD and mesh files."""

@@ -1,0 +1,221 @@
+"""A CAD file (STEP, BREP, IGES) as curved quadratic tetrahedra, by gmsh.
+
+The solid is split by planes at the edges of bands, so that these lie on edges of elements.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from geometry.imported.body_file import BodyFile
+from geometry.mesh.cut_solid import near
+from geometry.mesh.gmsh_session import failure, gmsh_model, set_size, silence
+from geometry.mesh.gmsh_tetrahedra import SMALLEST_JACOBIAN, collect, repair
+from geometry.mesh.solid_mesh import MeshError, MeshSize, SolidMesh
+from geometry.shape.pin import GeometryError
+
+FLAT = 1e-9  # curvature times the body's size below which a surface is plane
+
+
+def cad_mesh(file: BodyFile, size: MeshSize) -> SolidMesh:
+    """Mesh the solids of a file; its boundaries are the file's surfaces, by their names or as
+    "face 1" and so on.
+
+    Raises: GeometryError when the file is not geometry or has no solid; MeshError.
+    """
+    tried = []
+    for factor in (1.0, 1.15, 1.35):
+        mesh = _mesh(file, size.finer(factor))
+        if mesh.jacobian > SMALLEST_JACOBIAN:
+            return mesh
+        tried.append(mesh.jacobian)
+    raise MeshError(
+        f"pin {file.name}: gmsh produced inverted or sliver elements from {file.path.name} at "
+        f"three mesh sizes (min/max Jacobian {', '.join(f'{j:.2g}' for j in tried)}); look for "
+        "very small faces and edges in it",
+        "bad-elements",
+    )
+
+
+def cad_volume(file: BodyFile) -> float:
+    """Volume of the solids of a file, m^3. Raises: GeometryError as `cad_mesh`."""
+    with gmsh_model(file.name) as gmsh:
+        solids = _solids(gmsh, file)
+        return float(sum(gmsh.model.occ.getMass(*s) for s in solids)) * file.unit**3
+
+
+def _mesh(file: BodyFile, size: MeshSize) -> SolidMesh:
+    with gmsh_model(file.name) as gmsh:
+        solids = _solids(gmsh, file)
+        z = dict.fromkeys(v for place in file.places if place.z for v in place.z)
+        cuts = [v / file.unit for v in z]
+        try:
+            faces = _split(gmsh, file, solids, cuts)
+            _set_sizes(gmsh, size, cuts)
+            gmsh.model.mesh.generate(3)
+            gmsh.model.mesh.setOrder(2)
+            jacobian, repaired = repair(gmsh)
+            mesh = collect(gmsh, faces)
+        except Exception as error:
+            if type(error) is not Exception:  # gmsh raises bare ones
+                raise
+            raise MeshError(
+                f"pin {file.name}: gmsh could not mesh {file.path.name} ({error})",
+                failure(str(error)),
+            ) from None
+    return SolidMesh(replace(mesh, doflocs=mesh.doflocs * file.unit), jacobian, repaired)
+
+
+def _solids(gmsh: Any, file: BodyFile) -> list[tuple[int, int]]:
+    try:
+        gmsh.option.setNumber("Geometry.OCCImportLabels", 0)
+        with silence():
+            gmsh.model.occ.importShapes(str(file.path))
+        gmsh.model.occ.synchronize()
+    except Exception as error:
+        if type(error) is not Exception:
+            raise
+        raise GeometryError(
+            f"pin {file.name}: {file.path.name} cannot be read as geometry (gmsh: {error}); export "
+            "it as STEP",
+            failure(str(error), "unreadable-geometry"),
+        ) from None
+    solids: list[tuple[int, int]] = gmsh.model.getEntities(3)
+    if not solids:
+        raise GeometryError(
+            f"pin {file.name}: {file.path.name} has no solid, only surfaces or curves; export the "
+            "pin as a solid",
+            "no-volume",
+        )
+    if len(solids) > 1:
+        raise GeometryError(
+            f"pin {file.name}: {file.path.name} contains {len(solids)} solids, but a pin is one: "
+            "export it alone, or unite them",
+            "several-pieces",
+        )
+    return solids
+
+
+def _face_names(file: BodyFile, tags: list[int]) -> dict[int, str]:
+    """Names of a file's faces by gmsh's tags: gmsh numbers them as the shells of a STEP file list
+    them, but does not hand on their names.
+    """
+    names = [f"face {tag}" for tag in tags]
+    if file.path.suffix.lower() in (".step", ".stp"):
+        text = file.path.read_text(encoding="utf-8", errors="replace")
+        told = dict(re.findall(r"(#\d+)\s*=\s*ADVANCED_FACE\s*\(\s*'([^']*)'", text))
+        shells = re.findall(r"CLOSED_SHELL\s*\(\s*'[^']*'\s*,\s*\(([^)]*)\)", text)
+        listed = [told.get(f, "") for s in shells for f in re.findall(r"#\d+", s)]
+        if len(listed) == len(tags):
+            names = [a or b for a, b in zip(listed, names, strict=True)]
+    return dict(zip(tags, names, strict=True))
+
+
+def _split(
+    gmsh: Any, file: BodyFile, solids: list[tuple[int, int]], cuts: Iterable[float]
+) -> dict[str, list[int]]:
+    """Split the solids at z = `cuts`; tags of the boundary's faces by name."""
+    model, occ = gmsh.model, gmsh.model.occ
+    tags = [tag for _, tag in model.getEntities(2)]
+    names = _face_names(file, tags)
+    x0, y0, z0, x1, y1, z1 = model.getBoundingBox(-1, -1)
+    size = max(x1 - x0, y1 - y0, z1 - z0)
+    inner = [z for z in cuts if z0 + 1e-6 * size < z < z1 - 1e-6 * size]
+    if not inner:
+        return _by_name({tag: [tag] for tag in tags}, names)
+    # gmsh reports wrongly here which face becomes which: compare with copies of the whole faces
+    whole = [tag for _, tag in occ.copy([(2, tag) for tag in tags])]
+    extent = (x0 - size, y0 - size), (x1 - x0 + 2 * size, y1 - y0 + 2 * size)
+    planes = [(2, occ.addRectangle(*extent[0], z, *extent[1])) for z in inner]
+    pieces, _ = occ.fragment(solids, planes)
+    occ.synchronize()
+    volumes = [e for e in pieces if e[0] == 3]
+    pieces_of: dict[int, list[int]] = {}
+    for _, face in model.getBoundary(volumes, oriented=False):
+        k = _same_surface(gmsh, face, whole, 1e-5 * size)
+        pieces_of.setdefault(tags[k], []).append(face)
+    kept = {t for _, t in model.getBoundary(volumes, combined=False, oriented=False)}
+    occ.remove([e for e in model.getEntities(2) if e[1] not in kept], recursive=True)
+    occ.synchronize()
+    return _by_name(pieces_of, names)
+
+
+def _by_name(pieces: dict[int, list[int]], names: dict[int, str]) -> dict[str, list[int]]:
+    named: dict[str, list[int]] = {}
+    for tag, faces in pieces.items():
+        named.setdefault(names[tag], []).extend(faces)
+    return named
+
+
+def _same_surface(gmsh: Any, face: int, whole: list[int], slack: float) -> int:
+    """Which of the faces `whole` the face is a part of: within its box, and on it."""
+    model = gmsh.model
+    around = model.getBoundary([(2, face)], combined=False, oriented=False)
+    x = np.concatenate([_on(gmsh, curve) for _, curve in around])
+    off = np.full(len(whole), np.inf)
+    for k, other in enumerate(whole):
+        box = np.array(model.getBoundingBox(2, other)).reshape(2, 3)
+        inside = (x > box[0] - slack).all() and (x < box[1] + slack).all()
+        if inside and model.getType(2, other) == model.getType(2, face):
+            nearest = np.reshape(model.getClosestPoint(2, other, x.ravel())[0], (-1, 3))
+            off[k] = np.abs(nearest - x).max()
+    return int(np.argmin(off))
+
+
+def _set_sizes(gmsh: Any, size: MeshSize, cuts: list[float]) -> None:
+    """By the curvature of every face, and finer at the edges of bands."""
+    model, field = gmsh.model, gmsh.model.mesh.field
+    x0, y0, z0, x1, y1, z1 = model.getBoundingBox(-1, -1)
+    whole = max(x1 - x0, y1 - y0, z1 - z0)
+    far = min(x1 - x0, y1 - y0) / size.across
+    tags = []
+    for _, face in model.getBoundary(model.getEntities(3), oriented=False):
+        radius, coaxial = _curvature(gmsh, face, whole)
+        if radius < math.inf:
+            h = 2.0 * radius / size.across if coaxial else math.pi / 2 * radius / size.arc
+            h = min(h, math.pi * radius / size.across) if not coaxial else h
+            tags.append(near(gmsh, "SurfacesList", [face], min(h, far), size.growth))
+    rims = [c for _, c in model.getEntities(1) if _lies_at(gmsh, c, cuts, 1e-6 * whole)]
+    if rims:
+        thin = min([far, *(2.0 * _reach(gmsh, c) / size.across for c in rims)])
+        tags.append(near(gmsh, "CurvesList", rims, thin / size.corner, size.growth))
+    tags.append(field.add("MathEval"))
+    field.setString(tags[-1], "F", f"{far!r}")
+    set_size(gmsh, tags)
+
+
+def _curvature(gmsh: Any, face: int, whole: float) -> tuple[float, bool]:
+    """Smallest radius of curvature of a face, and whether it is a cylinder about the z-axis."""
+    low, high = gmsh.model.getParametrizationBounds(2, face)
+    u, v = (np.linspace(a, b, 5)[1:-1] for a, b in zip(low, high, strict=True))
+    at = np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)
+    largest = max(np.abs(k).max() for k in gmsh.model.getPrincipalCurvatures(face, at.ravel())[:2])
+    if largest * whole < FLAT:
+        return math.inf, False
+    x = np.reshape(gmsh.model.getValue(2, face, at.ravel()), (-1, 3))
+    r = np.hypot(x[:, 0], x[:, 1])
+    coaxial = gmsh.model.getType(2, face) == "Cylinder" and np.ptp(r) < 1e-6 * whole
+    return float(1.0 / largest), bool(coaxial and abs(r[0] * largest - 1.0) < 1e-6)
+
+
+def _lies_at(gmsh: Any, curve: int, cuts: list[float], slack: float) -> bool:
+    z = _on(gmsh, curve)[:, 2]
+    return any(float(np.abs(z - cut).max()) < slack for cut in cuts)
+
+
+def _reach(gmsh: Any, curve: int) -> float:
+    x = _on(gmsh, curve)
+    return float(np.hypot(x[:, 0], x[:, 1]).max())
+
+
+def _on(gmsh: Any, curve: int) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """Points on a curve, (5, 3)."""
+    low, high = gmsh.model.getParametrizationBounds(1, curve)
+    at = np.linspace(float(low[0]), float(high[0]), 5)
+    return np.reshape(np.asarray(gmsh.model.getValue(1, curve, at), dtype=float), (-1, 3))

@@ -1,0 +1,149 @@
+"""A pin of any shape, from a CAD file or a mesh; the z-axis of the file is the pin's axis."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from geometry.imported.body_file import BodyFile
+from geometry.imported.cad_mesh import cad_mesh, cad_volume
+from geometry.imported.chord_error import cut_off
+from geometry.imported.mesh_file import mesh_from_file
+from geometry.imported.named_bands import measure, with_places
+from geometry.mesh.solid_mesh import MeshSize, SolidMesh
+from geometry.mesh.tet10 import refined
+from geometry.shape.pin import Band, GeometryError
+
+MEASURE = MeshSize(across=3.0, corner=1.0)  # the mesh on which a CAD file is measured
+
+
+def here(work: Callable[..., Any], *arguments: object) -> Any:
+    """Run `work` in this process."""
+    return work(*arguments)
+
+
+@dataclass(frozen=True)
+class SolidBody:
+    """The body in a file, with its bands measured. call: runs `work(file, ...)`, in another process
+    if wanted, since the libraries that read the file crash on some damaged ones.
+
+    Raises: GeometryError when the file is missing or not a solid, or a band is not on it;
+    MeshError when it cannot be meshed.
+    """
+
+    file: BodyFile
+    call: Callable[..., Any] = field(default=here, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        if not self.file.path.is_file():
+            raise GeometryError(
+                f"pin {self.name}: file {self.file.path} does not exist", "no-such-file"
+            )
+        for place in self.file.places:
+            if place.z is not None and not place.z[0] < place.z[1]:
+                raise GeometryError(
+                    f"pin {self.name}: band {place.name}: z = [a, b] requires a < b",
+                    "z-reversed",
+                    ("band", place.name),
+                )
+        self._coarse  # noqa: B018  a file that cannot be used is reported at once
+
+    @cached_property
+    def _coarse(self) -> SolidMesh:
+        return self.mesh(MEASURE)
+
+    def mesh(self, size: MeshSize) -> SolidMesh:
+        """A mesh of this size; the elements of a mesh file are halved once for every factor of two
+        by which `size` is finer than the default.
+        """
+        if not self.meshed:
+            made: SolidMesh = self.call(cad_mesh, self.file, size)
+            return SolidMesh(with_places(made.mesh, self.file), made.jacobian, made.repaired)
+        made = self._read
+        mesh = with_places(made.mesh, self.file)
+        for _ in range(round(np.log2(max(size.across / MeshSize().across, 1.0)))):
+            mesh = refined(mesh)
+        return SolidMesh(mesh, made.jacobian, made.repaired)
+
+    @cached_property
+    def _read(self) -> SolidMesh:
+        found: SolidMesh = self.call(mesh_from_file, self.file)
+        return found
+
+    @property
+    def name(self) -> str:
+        """The pin's."""
+        return self.file.name
+
+    @property
+    def revolved(self) -> bool:
+        """Whether it is known to be axisymmetric: never."""
+        return False
+
+    @property
+    def meshed(self) -> bool:
+        """Whether it comes with a mesh."""
+        return self.file.meshed
+
+    @cached_property
+    def ends(self) -> tuple[float, float]:
+        """Least and greatest z, m."""
+        z = self._coarse.nodes[:, 2]
+        return float(z.min()), float(z.max())
+
+    @property
+    def length(self) -> float:
+        """Overall length, m."""
+        return self.ends[1] - self.ends[0]
+
+    @cached_property
+    def volume(self) -> float:
+        """m^3: of the CAD file's solids, or of the mesh."""
+        if not self.meshed:
+            volume: float = self.call(cad_volume, self.file)
+            return volume
+        from skfem import Basis, ElementTetP2
+
+        return float(Basis(self._coarse.mesh, ElementTetP2(), intorder=3).dx.sum())
+
+    @cached_property
+    def cut_off(self) -> float:
+        """Approximate fraction of the volume by which a file's mesh is wrong, because its elements'
+        sides are straight where the surface is curved.
+        """
+        return cut_off(self._coarse.mesh) / self.volume if self.meshed else 0.0
+
+    @property
+    def connections(self) -> tuple[str, ...]:
+        """Bands on which links bear, by z."""
+        bands = (self.band(p.name) for p in self.file.places if p.connection)
+        return tuple(b.name for b in sorted(bands, key=lambda b: b.middle))
+
+    @cached_property
+    def _bands(self) -> dict[str, Band]:
+        return {p.name: measure(self._coarse.mesh, p) for p in self.file.places}
+
+    def band(self, name: str) -> Band:
+        """A band by name, measured. Raises: GeometryError listing the names there are."""
+        if name not in self._bands:
+            raise self._unknown(name)
+        return self._bands[name]
+
+    def surface(self, name: str) -> str:
+        """The mesh boundary of that name: a band, a surface of the file, "start" or "end".
+
+        Raises: GeometryError listing the names there are.
+        """
+        if name not in self._coarse.mesh.boundaries:
+            raise self._unknown(name)
+        return name
+
+    def _unknown(self, name: str) -> GeometryError:
+        known = ", ".join(self._coarse.mesh.boundaries)
+        return GeometryError(
+            f"pin {self.name} has no surface {name!r}; its surfaces are {known}", "unknown-surface"
+        )

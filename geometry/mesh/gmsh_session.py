@@ -1,0 +1,93 @@
+"""gmsh, quiet and deterministic: one model at a time."""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from geometry.coded import Coded
+from geometry.mesh.signals_kept import signals_kept
+
+# For gmsh, which has one state for all threads of a process, and for whatever else draws random
+# numbers from the C library, whose rand() has one state too: else meshes differ from run to run.
+ONE_AT_A_TIME = threading.RLock()
+
+_open = False
+
+
+class MeshError(Coded, ArithmeticError):
+    """No valid mesh could be generated; the message says what was tried and what may help."""
+
+
+@contextmanager
+def gmsh_model(name: str) -> Iterator[Any]:
+    """The gmsh module with an empty model, for the pin `name`; finalised on the way out. Other
+    threads wait for that.
+
+    Raises: MeshError for whatever gmsh or OpenCASCADE cannot do; RuntimeError within another
+    session of the same thread, which it would end.
+    """
+    import gmsh
+
+    global _open
+    with ONE_AT_A_TIME:
+        if _open:
+            raise RuntimeError(
+                f"gmsh session {name!r} was opened inside another one; close that first"
+            )
+        with signals_kept():
+            gmsh.initialize(readConfigFiles=False, interruptible=False)
+        _open = True
+        try:
+            gmsh.option.setNumber("General.Terminal", 0)
+            gmsh.option.setNumber("General.NumThreads", 1)  # same mesh on any machine
+            gmsh.model.add(name)
+            yield gmsh
+        except Exception as error:
+            if type(error) is not Exception:  # gmsh raises bare ones
+                raise
+            raise MeshError(f"pin {name}: {_reason(str(error))}", failure(str(error))) from None
+        finally:
+            _open = False
+            gmsh.finalize()
+
+
+def failure(said: str, otherwise: str = "gmsh-failed") -> str:
+    """The code for an error of gmsh, which has only a message."""
+    return "out-of-memory" if "bad_alloc" in said else otherwise
+
+
+def _reason(said: str) -> str:
+    return (
+        f"gmsh could not build or mesh the shape (its message: {said.rstrip('.')}); look for a "
+        "dimension that is very small compared with its neighbours, or surfaces that just touch"
+    )
+
+
+def set_size(gmsh: Any, fields: list[int]) -> None:
+    """Element size as the least of fields, and by nothing else."""
+    field = gmsh.model.mesh.field
+    least = field.add("Min")
+    field.setNumbers(least, "FieldsList", fields)
+    if fields:
+        field.setAsBackgroundMesh(least)
+    for option in ("MeshSizeExtendFromBoundary", "MeshSizeFromPoints", "MeshSizeFromCurvature"):
+        gmsh.option.setNumber(f"Mesh.{option}", 0)
+
+
+@contextmanager
+def silence() -> Iterator[None]:
+    """Nothing on standard output, to which OpenCASCADE writes what it makes of a file."""
+    sys.stdout.flush()
+    kept, nowhere = os.dup(1), os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(nowhere, 1)
+        yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
+        os.close(nowhere)

@@ -1,0 +1,30 @@
+"""The unit of length in which gmsh and OpenCASCADE get a pin, since their tolerances are lengths.
+
+They take what is closer than 1e-7 for one, whatever the unit: of a pin of a micrometre they would
+see nothing. A power of two changes no digit of any dimension.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+from geometry.shape.pin import Pin
+
+SMALLEST = 1e-4  # a dimension that their tolerances leave alone
+LARGEST = 100.0  # a diameter of which they find the volume to 1e-6
+
+
+def unit_of(pin: Pin) -> float:
+    """The unit (m) in which a pin's smallest diameter is about 1."""
+    return float(2.0 ** round(math.log2(pin.smallest_diameter)))
+
+
+def unit_of_solid(pin: Pin) -> float:
+    """The same where anything of the pin is too small in metres, or it too large; otherwise 1."""
+    small = [x for s in pin.segments for x in (s.length, s.bore, (s.diameter - s.bore) / 2)]
+    for i, (left, right) in enumerate(pairwise(pin.segments)):
+        step, step_inside = left.diameter - right.diameter, left.bore - right.bore
+        small += [pin.fillet_at(i), abs(step) / 2, abs(step_inside) / 2]
+    fits = min(x for x in small if x) >= SMALLEST and pin.smallest_diameter <= LARGEST
+    return 1.0 if fits else unit_of(pin)

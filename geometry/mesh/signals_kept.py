@@ -1,0 +1,51 @@
+"""The handling of signals kept as it is while gmsh, which takes that of some away, is initialised:
+they would end the process at once.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from geometry.system import bare
+
+NAMES = "SIGFPE", "SIGHUP", "SIGINT", "SIGPIPE", "SIGSEGV", "SIGTERM"
+TAKEN = tuple(getattr(signal, name) for name in NAMES if hasattr(signal, name))
+SIGACTION = 256  # bytes; more than any C library's struct sigaction has
+
+
+@contextmanager
+def signals_kept() -> Iterator[None]:
+    """Signals are handled afterwards as before."""
+    with _by_python() if bare() else _by_sigaction():
+        yield
+
+
+@contextmanager
+def _by_sigaction() -> Iterator[None]:
+    """In any thread, and also handlers that Python does not know (faulthandler's)."""
+    libc = ctypes.CDLL(None)
+    kept = {each: ctypes.create_string_buffer(SIGACTION) for each in TAKEN}
+    for each, handler in kept.items():
+        libc.sigaction(each, None, handler)
+    try:
+        yield
+    finally:
+        for each, handler in kept.items():
+            libc.sigaction(each, handler, None)
+
+
+@contextmanager
+def _by_python() -> Iterator[None]:
+    """In the main thread, the only one in which Python sets handlers."""
+    kept = {each: signal.getsignal(each) for each in TAKEN}
+    try:
+        yield
+    finally:
+        if threading.current_thread() is threading.main_thread():
+            for each, handler in kept.items():
+                if handler is not None:
+                    signal.signal(each, handler)

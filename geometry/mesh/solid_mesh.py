@@ -1,0 +1,194 @@
+"""The solid of a pin as tetrahedra, by gmsh, with every surface named."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from skfem import MeshTet1
+
+from geometry.mesh.cut_pin import CutPin
+from geometry.mesh.cut_solid import cut_solid, grade, name_faces
+from geometry.mesh.elements import Element
+from geometry.mesh.gmsh_session import MeshError, gmsh_model, set_size
+from geometry.mesh.gmsh_tetrahedra import SMALLEST_JACOBIAN, collect, repair
+from geometry.mesh.revolve import revolve
+from geometry.mesh.scale import unit_of_solid
+from geometry.shape.pin import Pin
+from geometry.shape.profile import Edge, meridian, sharp_corners
+
+__all__ = ["MeshError", "MeshSize", "SolidMesh", "solid_mesh"]
+
+MOST_ELEMENTS = 1e6
+
+
+@dataclass(frozen=True)
+class MeshSize:
+    """How fine. across: elements over the smallest diameter. corner: how many times finer at sharp
+    corners and edges of bands. arc: elements along a fillet's quarter circle. growth: increase of
+    the element size per distance from there.
+    """
+
+    across: float = 4.0
+    corner: float = 4.0
+    arc: float = 1.5
+    growth: float = 0.5
+
+    def finer(self, factor: float) -> MeshSize:
+        """The same grading with every size divided by `factor`."""
+        return MeshSize(self.across * factor, self.corner, self.arc * factor, self.growth)
+
+
+@dataclass(frozen=True)
+class SolidMesh:
+    """mesh: tetrahedra, m, quadratic unless others were requested (geometry.mesh.elements); its
+    `boundaries` map surface names to facets.
+
+    jacobian: smallest min/max det J of all elements. repaired: number of elements whose edges were
+    straightened to get there.
+    """
+
+    mesh: MeshTet1
+    jacobian: float
+    repaired: int
+
+    @property
+    def nodes(self) -> NDArray[np.float64]:
+        """Coordinates of all nodes, (N, 3), m."""
+        points: NDArray[np.float64] = self.mesh.doflocs.T
+        return points
+
+
+def solid_mesh(
+    pin: Pin | CutPin, size: MeshSize, edges: tuple[float, ...] = (), element: Element = "curved"
+) -> SolidMesh:
+    """Mesh a pin; `edges` are z (m) of further circles on the surface to refine at.
+
+    Raises: MeshError when elements are still inverted or slivers after repair and on finer meshes.
+    """
+    tried = []
+    for factor in (1.0, 1.15, 1.35):
+        mesh, jacobian, repaired = _mesh(pin, size.finer(factor), edges, element)
+        if jacobian > SMALLEST_JACOBIAN:
+            return SolidMesh(mesh, jacobian, repaired)
+        tried.append(jacobian)
+    raise MeshError(
+        f"pin {pin.name}: gmsh produced inverted or sliver elements at three mesh sizes (min/max "
+        f"Jacobian {', '.join(f'{j:.2g}' for j in tried)}; at least {SMALLEST_JACOBIAN} is "
+        "required), and straightening their edges did not help; look for a fillet or bore that is "
+        "very small compared with its neighbours",
+        "bad-elements",
+    )
+
+
+def _mesh(
+    pin: Pin | CutPin, size: MeshSize, edges: tuple[float, ...], element: Element
+) -> tuple[MeshTet1, float, int]:
+    profile = pin.profile if isinstance(pin, CutPin) else pin
+    _require_reasonable(profile, size)
+    unit = unit_of_solid(profile)
+    pin, profile = pin.scaled(1.0 / unit), profile.scaled(1.0 / unit)
+    edges = tuple(z / unit for z in edges)
+    with gmsh_model(pin.name) as gmsh:
+        more: list[int] = []
+        if isinstance(pin, CutPin):
+            cut_solid(gmsh, pin.profile, pin.holes, pin.flats)
+            surfaces = name_faces(gmsh, pin.profile, pin.holes, pin.flats)
+            far = _far(profile, size)
+            more = grade(gmsh, pin.holes, pin.flats, surfaces, far, size.across, size.growth)
+        else:
+            outline = meridian(pin)
+            revolve(gmsh, outline)
+            surfaces = _name_surfaces(gmsh, pin, outline)
+        _set_sizes(gmsh, profile, size, edges, more)
+        gmsh.model.mesh.generate(3)
+        if element == "linear":
+            return collect(gmsh, surfaces).scaled(unit), 1.0, 0
+        gmsh.option.setNumber("Mesh.SecondOrderLinear", int(element == "straight"))
+        gmsh.model.mesh.setOrder(2)
+        jacobian, repaired = repair(gmsh)
+        return collect(gmsh, surfaces).scaled(unit), jacobian, repaired
+
+
+def _require_reasonable(pin: Pin, size: MeshSize) -> None:
+    """Raises: MeshError when even the coarse part of the mesh would be too large to make."""
+    elements = pin.volume / (0.12 * _far(pin, size) ** 3)  # 0.12 h^3: a regular tetrahedron
+    if elements > MOST_ELEMENTS:
+        raise MeshError(
+            f"pin {pin.name}: the mesh would need {elements:.1e} elements, because the thinnest "
+            "part is very small compared with the whole; model the critical part on its own",
+            "too-many-elements",
+        )
+
+
+def _far(pin: Pin, size: MeshSize) -> float:
+    """Element size (m) away from all features: by the thinnest shaft or wall."""
+    walls = [(s.diameter - s.bore) / 2 for s in pin.segments if s.bore]
+    return min([pin.smallest_diameter / size.across, *walls])
+
+
+def _name_surfaces(gmsh: Any, pin: Pin, outline: tuple[Edge, ...]) -> dict[str, list[int]]:
+    """Surface tags by name, told apart by the end points of the edge that made them."""
+    named: dict[str, list[int]] = {}
+    digits = round(6 - math.log10(pin.smallest_diameter))
+
+    def key(points: list[tuple[float, float]]) -> frozenset[tuple[float, float]]:
+        return frozenset((round(r, digits) + 0.0, round(z, digits) + 0.0) for r, z in points if r)
+
+    names = {key([e.start, e.end]): e.name for e in outline if e.name}
+    for _, tag in gmsh.model.getBoundary(gmsh.model.getEntities(3), oriented=False):
+        ends = gmsh.model.getBoundary([(2, tag)], oriented=False, recursive=True)
+        at = [gmsh.model.getValue(0, point, []) for _, point in ends]
+        name = names.get(key([(math.hypot(x, y), z) for x, y, z in at]))
+        if name is None:
+            raise MeshError(
+                f"pin {pin.name}: surface {tag} of gmsh's solid matches no surface of the profile",
+                "surface-unmatched",
+            )
+        named.setdefault(name, []).append(tag)
+    missing = set(names.values()) - set(named)
+    if missing:
+        raise MeshError(
+            f"pin {pin.name}: gmsh's solid lacks the surfaces {', '.join(sorted(missing))}",
+            "surface-unmatched",
+        )
+    return named
+
+
+def _set_sizes(
+    gmsh: Any, pin: Pin, size: MeshSize, edges: tuple[float, ...], more: list[int]
+) -> None:
+    """Element size as the least of graded fields about every feature circle, and `more` fields."""
+    far = _far(pin, size)
+    near = far / size.corner
+    circles = [(c.r, c.z, near, 0.0) for c in sharp_corners(pin)]
+    for z in edges:
+        radii = {b.radius for b in pin.bands if b.z0 - pin.tolerance <= z <= b.z1 + pin.tolerance}
+        circles += [(r, z, near, 0.0) for r in radii]
+    for i in range(len(pin.segments) - 1):
+        rho = pin.fillet_at(i)
+        if rho > 0.0:
+            thin = min(pin.segments[i].diameter, pin.segments[i + 1].diameter) / 2
+            arc = min(far, rho * math.pi / 2 / size.arc)
+            circles.append((thin, pin.stations[i + 1], arc, 1.3 * rho))
+    field = gmsh.model.mesh.field
+    tags = list(more)
+    for r, z, h, flat in dict.fromkeys(circles):
+        d = f"Sqrt((Sqrt(x*x+y*y)-{r!r})^2+(z-{z!r})^2)-{flat!r}"
+        tags.append(field.add("MathEval"))
+        field.setString(tags[-1], "F", f"{h!r}+{size.growth / 2!r}*(({d})+Fabs({d}))")
+    for i, s in enumerate(pin.segments):
+        if s.bore:
+            h = math.pi * s.bore / (2.0 * size.across)
+            z0, z1 = pin.stations[i], pin.stations[i + 1]
+            d = f"(Sqrt(x*x+y*y)-{s.bore / 2!r})"
+            out = f"(Fabs(z-{(z0 + z1) / 2!r})-{(z1 - z0) / 2!r})"
+            grow = f"{size.growth / 2!r}*({d}+Fabs({d})+{out}+Fabs({out}))"
+            tags.append(field.add("MathEval"))
+            field.setString(tags[-1], "F", f"{h!r}+{grow}")
+    tags.append(field.add("MathEval"))
+    field.setString(tags[-1], "F", f"{far!r}")
+    set_size(gmsh, tags)

@@ -1,0 +1,37 @@
+"""What a model needs to know of a pin, whichever way its shape is given."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from geometry.shape.pin import Band
+
+
+class PinLike(Protocol):
+    """A pin along z between its `ends` (m), with named surfaces and bands; `volume` in m^3.
+
+    revolved: whether it is the same all round its axis. meshed: whether it comes with a mesh, which
+    can only be halved.
+    """
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def length(self) -> float: ...
+    @property
+    def ends(self) -> tuple[float, float]: ...
+    @property
+    def volume(self) -> float: ...
+    @property
+    def revolved(self) -> bool: ...
+    @property
+    def meshed(self) -> bool: ...
+    @property
+    def connections(self) -> tuple[str, ...]: ...
+    def band(self, name: str) -> Band:
+        """A band by name. Raises: GeometryError listing the names there are."""
+        ...
+
+    def surface(self, name: str) -> str:
+        """The mesh boundary for a name in a study. Raises: GeometryError as `band`."""
+        ...

@@ -1,0 +1,70 @@
+"""Whether what a linkage can do as drawn is only so there: a singular position, not its kind."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from loads.linkage import Floats
+from loads.loop_equations import Loops
+
+Singular = Literal["change point", "dead point"]
+
+ASIDE = 0.05  # rad (or length scales) that a coordinate moves away from the drawing
+TRIES = 12  # ways to move away
+FAR = 20.0 * ASIDE  # what goes further is not near the drawing
+RANK = 1e-9  # smallest singular value that counts, of the largest
+CLOSED = 1e-10  # of the length scale: gap of a loop that is closed
+
+
+def rank(matrix: Floats) -> int:
+    """Number of singular values that count."""
+    singular = np.linalg.svd(matrix, compute_uv=False)
+    return int(np.sum(singular > RANK * singular[0])) if len(singular) and singular[0] else 0
+
+
+def singular_as_drawn(loops: Loops) -> Singular | None:
+    """Which singular position the drawing is, if the same linkage has fewer freedoms near it: a
+    change point when its loops do, a dead point when it is the drives that guide it there.
+    """
+    closing, whole = _ranks(loops, np.zeros(loops.columns))
+    beside = [_ranks(loops, q) for q in _beside(loops)]
+    if any(there[0] > closing for there in beside):
+        return "change point"
+    return "dead point" if any(there[1] > whole for there in beside) else None
+
+
+def _ranks(loops: Loops, q: Floats) -> tuple[int, int]:
+    """Of the loop equations without the drives', and of all."""
+    J = loops.jacobian(loops.pose(q[None]))[0]
+    return rank(J[: 2 * len(loops.closing)]), rank(J)
+
+
+def _beside(loops: Loops) -> list[Floats]:
+    """Coordinates (n,) near the drawing at which all loops are closed, drives free."""
+    first = loops.jacobian(loops.pose(np.zeros((1, loops.columns))))[0]
+    closing = first[: 2 * len(loops.closing)]
+    ways = np.linalg.svd(closing)[2][rank(closing) :] if len(closing) else np.eye(loops.columns)
+    random = np.random.default_rng(0)
+    tried = [random.standard_normal(len(ways)) @ ways for _ in range(TRIES if len(ways) else 0)]
+    return [q for way in tried if (q := _closed(loops, way / np.linalg.norm(way))) is not None]
+
+
+def _closed(loops: Loops, way: Floats) -> Floats | None:
+    """Coordinates with closed loops that have gone a given part of a unit way (n,) from the
+    drawing; None where Newton's method finds none.
+    """
+    scale = loops.linkage.length_scale
+    x = ASIDE * scale * way
+    for _ in range(40):
+        pose = loops.pose((x / loops.scale)[None])
+        gap = loops.place(pose, loops.closures)[0]
+        error = np.concatenate([gap.real, gap.imag, [way @ x - ASIDE * scale]])
+        if np.abs(error).max() <= CLOSED * scale:
+            return np.asarray(x / loops.scale)
+        J = np.vstack([loops.jacobian(pose)[0][: len(error) - 1], way])
+        x = x - np.linalg.lstsq(J, error, rcond=1e-12)[0]
+        if not np.abs(x).max() <= FAR * scale:
+            return None
+    return None

@@ -1,0 +1,1 @@
+"""Closed forms, which checks and tests compare with."""

@@ -1,0 +1,323 @@
+"""Newton-Euler for every body and pin, at all instants at once.
+
+By virtual work the few multipliers of the loop and drive equations balance what the bodies need,
+J^T f = partials . (m a - weight - applied); the forces in all members follow from them. With more
+equations than coordinates the forces along the null vectors of J^T are not determined by rigid-body
+statics; the linkage's sharing rule does it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from loads.friction import MOST_CONTACTS, JammingError, contact_forces
+from loads.joint_forces import (
+    closing_points,
+    connection_members,
+    slider_couple,
+    slider_members,
+)
+from loads.linkage import Floats, Linkage, LinkageError, Point, Slider
+from loads.loop_equations import Complex, cross, number, pairs
+from loads.motion import Motion, at_rest
+from loads.reactions import Reactions
+
+STANDS = 1e-13  # of the fastest coordinate of the course: a slider this slow is at rest
+
+
+@dataclass(frozen=True)
+class Applied:
+    """A constant force (N) on a body's point (m, as drawn) and a couple (N m) on the body.
+
+    follows: the force turns with the body (given in axes as drawn); otherwise in world axes.
+    """
+
+    body: str
+    at: Point
+    force: Point = (0.0, 0.0)
+    couple: float = 0.0
+    follows: bool = False
+
+
+@dataclass(frozen=True)
+class SliderForces:
+    """Of the base on the moving body of every slider, (T, S): normal (N, left of the axis), couple
+    (N m) about the slider's end, friction (N, along the axis).
+    """
+
+    normal: Floats
+    couple: Floats
+    friction: Floats
+
+
+@dataclass(frozen=True)
+class Dynamics:
+    """Reactions with what goes along.
+
+    drive: (T, D) N, pushing a slider longer, or N m, turning a body on. needed, couples: (T, items)
+    forces (complex, N) and couples (N m) that joints and drives bring to each item. applied: the
+    loads. shared: connections whose forces follow the sharing rule.
+    """
+
+    reactions: Reactions
+    drive: Floats
+    motion: Motion
+    applied: tuple[Applied, ...]
+    sliders: SliderForces
+    needed: Complex
+    couples: Floats
+    shared: tuple[str, ...]
+
+    @property
+    def power(self) -> Floats:
+        """Power of every drive, (T, D) W."""
+        return self.drive * self.motion.speeds
+
+    def shaking(self, about: Point) -> tuple[Floats, Floats]:
+        """Force (T, 2) N and moment (T,) N m about a point (m) of the linkage on its ground."""
+        centres, _, _ = self.motion.centres
+        moment = self.couples + cross(centres - number(about), self.needed)
+        return -pairs(self.needed.sum(axis=1)), -moment.sum(axis=1)
+
+
+def motion_reactions(
+    case: str, motion: Motion, applied: Sequence[Applied] = (), timed: bool = True
+) -> Dynamics:
+    """Reactions of a driven motion under gravity, applied loads and friction.
+
+    timed: whether its instants follow each other in time. Raises: LinkageError when connections
+    share forces without a rule, JammingError.
+    """
+    return _Balance(motion, tuple(applied)).dynamics(case, timed)
+
+
+def static_reactions(
+    case: str, linkage: Linkage, drives: Sequence[float], applied: Sequence[Applied] = ()
+) -> Dynamics:
+    """Reactions of the linkage at rest, at values of its drives (m or rad), under applied loads."""
+    return motion_reactions(case, at_rest(linkage, drives), applied, timed=False)
+
+
+class _Balance:
+    """The balance of forces of one motion: linear in what the bodies need."""
+
+    def __init__(self, motion: Motion, applied: tuple[Applied, ...]) -> None:
+        self.motion, self.applied, self.loops = motion, applied, motion.loops
+        self.connections = connection_members(self.loops)
+        self.slides = slider_members(self.loops)
+        self.shared = motion.found.shared
+        self.needed, self.couples = self._needs()
+
+    def dynamics(self, case: str, timed: bool) -> Dynamics:
+        linkage = self.motion.linkage
+        f = self._multipliers(self._generalised(), self.needed)
+        rubs = [k for k, s in enumerate(linkage.sliders) if s.friction]
+        friction = np.zeros((len(f), len(linkage.sliders)))
+        if rubs:
+            friction, f = self._with_friction(f, rubs)
+        drive = self._drives(f)
+        normal, couple = self._slider_forces(f, self.needed, self.couples)
+        return Dynamics(
+            reactions=self._reactions(case, f, timed),
+            drive=drive,
+            motion=self.motion,
+            applied=self.applied,
+            sliders=SliderForces(normal, couple, friction),
+            needed=self.needed,
+            couples=self.couples,
+            shared=self.shared,
+        )
+
+    def _needs(self) -> tuple[Complex, Floats]:
+        """m a - weight - applied force, and the couples about the centres, (T, items) each."""
+        motion, linkage = self.motion, self.motion.linkage
+        items = linkage.items
+        mass = np.array([item.mass for item in items])
+        inertia = np.array([item.inertia or 0.0 for item in items])
+        centres, _, acceleration = motion.centres
+        needed = mass * (acceleration - number(linkage.gravity))
+        spin = np.stack([motion.angular_acceleration(item.name) for item in items], axis=1)
+        couples = inertia * spin
+        for load in self.applied:
+            i = linkage.index[load.body]
+            force = np.full(len(motion), number(load.force))
+            if load.follows:
+                force = force * np.exp(1j * motion.angle(load.body))
+            at, _, _ = motion.point(load.body, load.at)
+            arm = at[:, 0] + 1j * at[:, 1] - centres[:, i]
+            needed[:, i] -= force
+            couples[:, i] -= cross(arm, force) + load.couple
+        return needed, couples
+
+    def _generalised(self) -> Floats:
+        """What the bodies need as forces along the coordinates, (T, n) N (N m for angles)."""
+        loops, slopes = self.loops, self.motion.centre_slopes
+        out = np.real(np.conj(slopes) @ self.needed[..., None])[..., 0]
+        for i in range(len(loops.linkage.items)):
+            if f := loops.frame[i]:
+                out[:, f - 1] += self.couples[:, i]
+        return np.asarray(out)
+
+    def _closing(self, f: Floats) -> Complex:
+        k = len(self.loops.closing)
+        return np.asarray(f[:, :k] + 1j * f[:, k : 2 * k])
+
+    def _drives(self, f: Floats) -> Floats:
+        """(T, D) forces and torques of the drives."""
+        D = len(self.loops.linkage.driven)
+        return f[:, f.shape[1] - D :] * [self.loops.drive_scale(k) for k in range(D)]
+
+    def _multipliers(self, generalised: Floats, needed: Complex) -> Floats:
+        """Multipliers (T, rows) that balance forces along the coordinates, shared by the given
+        rules.
+        """
+        factors = self.motion.factors
+        f = factors.solve_transposed(generalised / self.loops.scale)
+        if not self.shared:
+            return f
+        at_connections = self.connections.forces(needed, self._closing(f))
+        null = factors.null
+        nothing = np.zeros((1, needed.shape[1]), dtype=complex)
+        ways = [self._closing(null[:, :, i]) for i in range(null.shape[2])]
+        loose = np.stack([self.connections.forces(nothing, way) for way in ways], axis=2)
+        amounts = _shares(self.loops.linkage, at_connections, loose, self.shared)
+        return f + (null @ amounts[..., None])[..., 0]
+
+    def _slider_forces(self, f: Floats, needed: Complex, couples: Floats) -> tuple[Floats, Floats]:
+        """Normal force and couple at every slider, (T, S)."""
+        loops, pose = self.loops, self.motion.pose
+        sliders = loops.linkage.sliders
+        if not sliders:
+            return np.zeros((len(f), 0)), np.zeros((len(f), 0))
+        closing = self._closing(f)
+        force = self.slides.forces(needed, closing)
+        normal = np.real(np.conj(1j * pose.axis) * force)
+        centres, _, _ = self.motion.centres
+        items, at = closing_points(loops)
+        closing_at = loops.place(pose, loops.points(items, at))
+        torques = self._drives(f)
+        couple = np.stack(
+            [
+                slider_couple(
+                    loops, k, self._end(s), centres, needed, couples, closing_at, closing, torques
+                )
+                for k, s in enumerate(sliders)
+            ],
+            axis=1,
+        )
+        return normal, couple
+
+    def _end(self, slider: Slider) -> Complex:
+        index = self.loops.linkage.index
+        item, at = np.array([index[slider.moving]]), np.array([number(slider.end)])
+        return self.loops.place(self.motion.pose, self.loops.points(item, at))[:, 0]
+
+    def _contacts(self, normal: Floats, couple: Floats, rubs: list[int]) -> Floats:
+        """Forces on the pads of the sliders that rub, (T, K)."""
+        out = []
+        for k in rubs:
+            bearing = self.loops.linkage.sliders[k].bearing
+            if bearing is None:
+                out.append(normal[:, k])
+            else:
+                out += [normal[:, k] / 2 + couple[:, k] / bearing]
+                out += [normal[:, k] / 2 - couple[:, k] / bearing]
+        return np.stack(out, axis=1)
+
+    def _with_friction(self, f: Floats, rubs: list[int]) -> tuple[Floats, Floats]:
+        """Friction (T, S) and the multipliers with it."""
+        motion, loops = self.motion, self.loops
+        sliders, first = loops.linkage.sliders, loops.frames - 1
+        free = self._contacts(*self._slider_forces(f, self.needed, self.couples), rubs)
+        owner = [k for k in rubs for _ in range(1 if sliders[k].bearing is None else 2)]
+        if len(owner) > MOST_CONTACTS:
+            raise LinkageError(
+                f"{len(owner)} contacts have friction; at most {MOST_CONTACTS} can be solved",
+                "too-many-contacts",
+            )
+        speed = motion.v[:, first:]
+        slides = np.abs(speed) > STANDS * motion.pace
+        opposes = np.where(slides, -np.sign(speed), 0.0)
+        nothing, none = np.zeros_like(self.needed), np.zeros_like(self.couples)
+        response, contacts = {}, {}
+        for k in rubs:
+            push = np.zeros_like(motion.q)
+            push[:, first + k] = -1.0
+            response[k] = self._multipliers(push, nothing)
+            contacts[k] = self._contacts(*self._slider_forces(response[k], nothing, none), rubs)
+        feedback = np.stack(
+            [-contacts[k] * (sliders[k].friction * opposes[:, k])[:, None] for k in owner], axis=2
+        )
+        try:
+            n = np.abs(contact_forces(free, feedback))
+        except JammingError as error:
+            raise self._told(error, feedback, owner) from None
+        friction = np.zeros((len(f), len(sliders)))
+        for i, k in enumerate(owner):
+            friction[:, k] += sliders[k].friction * opposes[:, k] * n[:, i]
+        for k in rubs:
+            f = f + friction[:, k, None] * response[k]
+        return friction, f
+
+    def _told(self, error: JammingError, feedback: Floats, owner: list[int]) -> JammingError:
+        """The same with the sliders named and the time."""
+        t = int(error.instants[0])
+        grips = np.abs(np.diagonal(feedback[t]))
+        which = self.loops.linkage.sliders[owner[int(grips.argmax())]]
+        when = f"t = {self.motion.times[t]:.6g} s" if len(self.motion) > 1 else ""
+        return JammingError(error.instants, error.none, error.grip, when, f"slider {which.name}")
+
+    def _reactions(self, case: str, f: Floats, timed: bool) -> Reactions:
+        motion, linkage = self.motion, self.motion.linkage
+        on_body = self.connections.forces(self.needed, self._closing(f))
+        on_pin = np.zeros((*on_body.shape, 3))
+        on_pin[..., 0], on_pin[..., 1] = -on_body.real, -on_body.imag
+        turn = np.stack(
+            [motion.angle(_axes(linkage, j.fixed_in)) for j, _ in linkage.connections], axis=1
+        )
+        return Reactions(
+            case=case,
+            times=motion.times if timed else None,
+            connections=tuple(c.name for _, c in linkage.connections),
+            bodies=tuple(c.body for _, c in linkage.connections),
+            forces=on_pin,
+            moments=np.zeros_like(on_pin),
+            turn=turn,
+        )
+
+
+def _axes(linkage: Linkage, fixed_in: str | None) -> str:
+    """The item whose rotation the pin's own axes follow; a floating pin keeps the world's."""
+    return fixed_in if fixed_in in linkage.index else "ground"
+
+
+def _shares(linkage: Linkage, forces: Complex, loose: Complex, shared: tuple[str, ...]) -> Floats:
+    """Amounts (T, k) of self-equilibrated forces `loose` (T, C, k) that make the sharing
+    connections behave like springs: the sum of force^2 / stiffness over them is least.
+    """
+    names = [c.name for _, c in linkage.connections]
+    open_ = f"rigid-body statics does not determine the forces at {', '.join(shared)}"
+    if not linkage.sharing:
+        raise LinkageError(
+            f"{open_}; state how they share the load: [[mechanism.sharing]] with connections = "
+            "[...] and stiffness = [...], one entry for each degree of redundancy",
+            "statically-indeterminate",
+        )
+    members = [p for s in linkage.sharing for p in zip(s.connections, s.stiffness, strict=True)]
+    which = [names.index(name) for name, _ in members]
+    weight = np.tile([1.0 / stiffness for _, stiffness in members], 2)
+    N = np.concatenate([loose[:, which].real, loose[:, which].imag], axis=1)
+    g = np.concatenate([forces[:, which].real, forces[:, which].imag], axis=1)
+    G = np.swapaxes(N, 1, 2) @ (weight[:, None] * N)
+    if np.linalg.eigvalsh(G).min() < 1e-9 * weight.min():
+        raise LinkageError(
+            f"{open_}, nor does the sharing over {', '.join(name for name, _ in members)}; name "
+            "connections on each redundant path",
+            "sharing-incomplete",
+            ("sharing",),
+        )
+    b = -np.swapaxes(N, 1, 2) @ (weight * g)[..., None]
+    return np.asarray(np.linalg.solve(G, b)[..., 0], dtype=np.float64)

@@ -1,0 +1,111 @@
+"""Forces in every connection and slider, from the forces that bodies need and those at closures.
+
+Cutting one member of the tree splits off the items beyond it: the force through it is what these
+items need, less what closures bring to them. No system is solved.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from loads.linkage import Floats, Turn
+from loads.loop_equations import Complex, Loops, cross, number
+
+
+@dataclass(frozen=True)
+class Members:
+    """Weights (members, items) and (members, closures) of the two contributions."""
+
+    from_items: Floats
+    from_closures: Floats
+
+    def forces(self, needed: Complex, closing: Complex) -> Complex:
+        """(T, members) N, from (T, items) and (T, closures)."""
+        return np.asarray(needed @ self.from_items.T + closing @ self.from_closures.T)
+
+
+def connection_members(loops: Loops) -> Members:
+    """For the force of the pin on the body at every connection."""
+    return _members(loops, slides=False, count=len(loops.linkage.connections))
+
+
+def slider_members(loops: Loops) -> Members:
+    """For the force of the base on the moving body at every slider."""
+    return _members(loops, slides=True, count=len(loops.linkage.sliders))
+
+
+def _members(loops: Loops, slides: bool, count: int) -> Members:
+    linkage = loops.linkage
+    needs = np.zeros((count, len(linkage.items)))
+    brings = np.zeros((count, len(loops.closing)))
+    ends = [_closure_ends(loops, k) for k in range(len(loops.closing))]
+    for edge in loops.tree:
+        if edge.slides is slides:
+            sign = 1.0 if edge.forward else -1.0
+            needs[edge.which, list(edge.away)] = sign
+            for k, (body, carrier) in enumerate(ends):
+                brings[edge.which, k] = -sign * ((body in edge.away) - (carrier in edge.away))
+    for k, (closes, which) in enumerate(loops.closing):
+        if closes is slides:
+            brings[which, k] = 1.0
+    return Members(needs, brings)
+
+
+def _closure_ends(loops: Loops, k: int) -> tuple[int, int]:
+    """Items on which a closure's force acts (the body) and reacts (the carrier)."""
+    linkage = loops.linkage
+    slides, which = loops.closing[k]
+    if slides:
+        s = linkage.sliders[which]
+        return linkage.index[s.moving], linkage.index[s.base]
+    joint, c = linkage.connections[which]
+    return linkage.index[c.body], linkage.index[linkage.carrier(joint)]
+
+
+def slider_couple(
+    loops: Loops,
+    which: int,
+    about: Complex,
+    centres: Complex,
+    needed: Complex,
+    couples: Floats,
+    closing_at: Complex,
+    closing: Complex,
+    torques: Floats,
+) -> Floats:
+    """Couple of the base on the moving body of a slider about points (T,), (T,) N m.
+
+    centres, needed, couples: (T, items) places, forces and couples that the items need. closing_at,
+    closing: (T, closures) places and forces. torques: (T, D) of the drives (0 where they slide). A
+    slider that closes a loop of sliders alone is taken to carry no couple.
+    """
+    edge = next((e for e in loops.tree if e.slides and e.which == which), None)
+    out = np.zeros(len(about))
+    if edge is None:
+        return out
+    away = list(edge.away)
+    p = about[:, None]
+    out += np.sum(couples[:, away] + cross(centres[:, away] - p, needed[:, away]), axis=1)
+    for k in range(len(loops.closing)):
+        body, carrier = _closure_ends(loops, k)
+        side = (body in edge.away) - (carrier in edge.away)
+        out -= side * cross(closing_at[:, k] - about, closing[:, k])
+    for k, drive in enumerate(loops.linkage.drives):
+        if isinstance(drive, Turn):
+            index = loops.linkage.index
+            side = (index[drive.body] in edge.away) - (index[drive.base] in edge.away)
+            out -= side * torques[:, k]
+    return out if edge.forward else -out
+
+
+def closing_points(loops: Loops) -> tuple[np.ndarray, Complex]:
+    """Item and drawn place of the point at which each closure's force acts on its body."""
+    linkage = loops.linkage
+    items = [_closure_ends(loops, k)[0] for k in range(len(loops.closing))]
+    at = [
+        number(linkage.sliders[w].end if slides else linkage.connections[w][0].at)
+        for slides, w in loops.closing
+    ]
+    return np.array(items, dtype=np.int64), np.array(at, dtype=complex)

@@ -1,0 +1,362 @@
+"""The loop equations of a planar linkage, assembled from its data, for all instants at once.
+
+Bodies hang on the ground in a tree of connections and sliders; every connection or slider beyond
+the tree closes a loop. Bodies that slide on each other turn together: they share one frame. With
+u = exp(i angle) of each frame and x = extension of each slider since the drawing, every point of
+the linkage is, in complex numbers, a sum of fixed vectors that turn with frames and slide along
+axes,
+
+    z = sum over frames of u A + sum over sliders of x u_f e B,
+
+so a loop equation is a vanishing sum of the same kind (the vector loop of the textbooks, e.g.
+Norton, Design of Machinery, ch. 4 and 6), and its derivatives are written down at once. The
+coordinates are the frames' angles and the sliders' extensions: a few per linkage, however many
+bodies and pins it has. Angles are scaled by a typical length, so that all columns are lengths.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loads.linkage import GROUND, Floats, Linkage, LinkageError, Point, Slider, Turn
+
+Complex = NDArray[np.complex128]
+Ints = NDArray[np.int64]
+
+
+def number(point: Point) -> complex:
+    """A point or vector as a complex number."""
+    return complex(point[0], point[1])
+
+
+def pairs(z: Complex) -> Floats:
+    """Complex numbers (...) as x, y (..., 2)."""
+    return np.stack([z.real, z.imag], axis=-1)
+
+
+def cross(a: Complex, b: Complex) -> Floats:
+    """Moment of forces b at arms a."""
+    return np.asarray(a.real * b.imag - a.imag * b.real)
+
+
+@dataclass(frozen=True)
+class Points:
+    """N points (or closures) as sums: turning (F, N) complex, m; sliding (S, N), 0 or +-1."""
+
+    turning: Complex
+    sliding: Floats
+
+    def __sub__(self, other: Points) -> Points:
+        return Points(self.turning - other.turning, self.sliding - other.sliding)
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Coordinates at T instants. turn: (T, F) u of every frame, the ground's first. axis: (T, S)
+    directions of the sliders. extension: (T, S) m since the drawing.
+    """
+
+    turn: Complex
+    axis: Complex
+    extension: Floats
+
+    def __getitem__(self, chosen: slice | Ints) -> Pose:
+        return Pose(self.turn[chosen], self.axis[chosen], self.extension[chosen])
+
+
+@dataclass(frozen=True)
+class LoopEdge:
+    """A member of the tree: connection or slider number `which`; `away`: the items on the side
+    away from the ground. forward: whether the connection's body (the slider's moving body) is
+    among them.
+    """
+
+    slides: bool
+    which: int
+    away: frozenset[int]
+    forward: bool
+
+
+class Loops:
+    """The loop and drive equations of one linkage.
+
+    Coordinates q (T, n): angles (rad) of the frames but the ground's, then extensions (m). Rows:
+    two per closure (x, then y, of all closures), then one per drive. The multiplier of a closure
+    is the force of the pin on the body (of the base on the moving body) in N; that of a drive's row
+    is its force, or its torque over the length scale.
+    """
+
+    def __init__(self, linkage: Linkage) -> None:
+        self.linkage = linkage
+        self.frames, self.frame = _frames(linkage)
+        self.tree, self.closing = _tree(linkage)
+        self._root, self._slid = self._chains()
+        self.closures = self._closures()
+        drives = linkage.drives
+        self.drawn_drives = np.array([d.drawn for d in drives])
+        self._drive_rows = np.zeros((len(drives), self.columns))
+        for k, d in enumerate(drives):
+            self._drive_rows[k] = self.along(d)
+
+    @property
+    def columns(self) -> int:
+        """Number of coordinates."""
+        return self.frames - 1 + len(self.linkage.sliders)
+
+    @property
+    def rows(self) -> int:
+        """Number of equations."""
+        return 2 * len(self.closing) + len(self.linkage.driven)
+
+    @cached_property
+    def scale(self) -> Floats:
+        """(n,) length per unit of each coordinate: m for an angle, 1 for an extension."""
+        out = np.ones(self.columns)
+        out[: self.frames - 1] = self.linkage.length_scale
+        return out
+
+    @cached_property
+    def slider_frame(self) -> Ints:
+        """(S,) frame with which each slider turns."""
+        index = self.linkage.index
+        return np.array([self.frame[index[s.base]] for s in self.linkage.sliders], dtype=np.int64)
+
+    def along(self, drive: Slider | Turn) -> Floats:
+        """(n,) how a drive's value depends on the coordinates, angles times the length scale."""
+        row = np.zeros(self.columns)
+        if isinstance(drive, Slider):
+            row[self.frames - 1 + self.linkage.sliders.index(drive)] = 1.0
+            return row
+        for body, sign in ((drive.body, 1.0), (drive.base, -1.0)):
+            f = self.frame[self.linkage.index[body]]
+            if f:
+                row[f - 1] += sign
+        return row
+
+    def drive_scale(self, k: int) -> float:
+        """Length per unit of drive k: 1 for a slider, m per rad for a turn."""
+        slides = isinstance(self.linkage.drives[k], Slider)
+        return 1.0 if slides else self.linkage.length_scale
+
+    def points(self, items: Ints, drawn: Complex) -> Points:
+        """Points of items at their drawn places (N,)."""
+        turning = self._root[:, items].copy()
+        turning[self.frame[items], np.arange(len(items))] += drawn
+        return Points(turning, self._slid[:, items])
+
+    @cached_property
+    def centres(self) -> Points:
+        """Centres of mass of all items."""
+        at = np.array([number(item.centre) for item in self.linkage.items])
+        return self.points(np.arange(len(at)), at)
+
+    # --- kinematics -------------------------------------------------------------------------------
+
+    def pose(self, q: Floats) -> Pose:
+        """The pose of coordinates (T, n)."""
+        angles = self.frames - 1
+        turn = np.ones((len(q), self.frames), dtype=complex)
+        np.exp(1j * q[:, :angles], out=turn[:, 1:])
+        drawn = np.array([number(s.axis) for s in self.linkage.sliders], dtype=complex)
+        return Pose(turn, turn[:, self.slider_frame] * drawn, q[:, angles:])
+
+    def place(self, pose: Pose, points: Points) -> Complex:
+        """Positions (T, N)."""
+        return np.asarray(
+            pose.turn @ points.turning + (pose.axis * pose.extension) @ points.sliding
+        )
+
+    def partials(self, pose: Pose, points: Points) -> Complex:
+        """Derivatives of the positions by the coordinates, (T, n, N)."""
+        angles = self.frames - 1
+        out = np.empty((len(pose.turn), self.columns, points.turning.shape[1]), dtype=complex)
+        out[:, :angles] = pose.turn[:, 1:, None] * (1j * points.turning[1:])
+        out[:, angles:] = pose.axis[:, :, None] * points.sliding
+        for s, f in enumerate(self.slider_frame):
+            if f:
+                out[:, f - 1] += (1j * pose.extension[:, s, None]) * out[:, angles + s]
+        return out
+
+    def bends(self, pose: Pose, rates: Floats, points: Points) -> Complex:
+        """The part of the accelerations that is quadratic in the rates, (T, N)."""
+        angles = self.frames - 1
+        omega = np.zeros((len(rates), self.frames))
+        omega[:, 1:] = rates[:, :angles]
+        spin = omega[:, self.slider_frame]
+        slide = pose.axis * (2j * spin * rates[:, angles:] - spin**2 * pose.extension)
+        return np.asarray(-(omega**2 * pose.turn) @ points.turning + slide @ points.sliding)
+
+    # --- the equations ----------------------------------------------------------------------------
+
+    def residual(self, q: Floats, pose: Pose, drives: Floats) -> Floats:
+        """Violation of every equation, (T, rows), m; drives (T, D) their values."""
+        gap = self.place(pose, self.closures)
+        lag = (q * self.scale) @ self._drive_rows.T
+        for k in range(drives.shape[1]):
+            lag[:, k] -= self.drive_scale(k) * (drives[:, k] - self.drawn_drives[k])
+        return np.concatenate([gap.real, gap.imag, lag], axis=1)
+
+    def jacobian(self, pose: Pose) -> Floats:
+        """Derivative of the residual by the scaled coordinates, (T, rows, n), no unit."""
+        n, k = self.columns, len(self.closing)
+        J = np.empty((len(pose.turn), self.rows, n))
+        slopes = np.swapaxes(self.partials(pose, self.closures), 1, 2) / self.scale
+        J[:, :k], J[:, k : 2 * k] = slopes.real, slopes.imag
+        J[:, 2 * k :] = self._drive_rows
+        return J
+
+    def drive_side(self, values: Floats) -> Floats:
+        """Right-hand side (T, rows) that gives the drives these rates (T, D)."""
+        out = np.zeros((len(values), self.rows))
+        for k in range(values.shape[1]):
+            out[:, 2 * len(self.closing) + k] = self.drive_scale(k) * values[:, k]
+        return out
+
+    def bend_side(self, pose: Pose, rates: Floats) -> Floats:
+        """(T, rows) what accelerations must make up for; nothing in the drives' rows."""
+        bend = self.bends(pose, rates, self.closures)
+        nothing = np.zeros((len(rates), len(self.linkage.driven)))
+        return -np.concatenate([bend.real, bend.imag, nothing], axis=1)
+
+    # --- assembly ---------------------------------------------------------------------------------
+
+    def _chains(self) -> tuple[Complex, Floats]:
+        """Where each item's drawn origin is: turning (F, items + ground), sliding (S, ...)."""
+        linkage = self.linkage
+        count = len(linkage.index)
+        turning = np.zeros((self.frames, count), dtype=complex)
+        sliding = np.zeros((len(linkage.sliders), count))
+        # Edges come from the ground outwards, so each adds to what lies nearer to the ground.
+        for edge in self.tree:
+            inner, outer = _ends(linkage, edge)
+            away = list(edge.away)
+            if edge.slides:
+                sliding[edge.which, away] += 1.0 if edge.forward else -1.0
+                continue
+            at = number(linkage.connections[edge.which][0].at)
+            turning[self.frame[inner], away] += at
+            turning[self.frame[outer], away] -= at
+        return turning, sliding
+
+    def _closures(self) -> Points:
+        linkage, index = self.linkage, self.linkage.index
+        first, second, at, extra = [], [], [], []
+        for slides, which in self.closing:
+            if slides:
+                s = linkage.sliders[which]
+                first.append(index[s.moving])
+                second.append(index[s.base])
+                at.append((number(s.end), number(s.end)))
+            else:
+                joint, c = linkage.connections[which]
+                first.append(index[c.body])
+                second.append(index[linkage.carrier(joint)])
+                at.append((number(joint.at), number(joint.at)))
+            extra.append(which if slides else None)
+        ends = np.array(at, dtype=complex).reshape(-1, 2)
+        gap = self.points(np.array(first, dtype=int), ends[:, 0]) - self.points(
+            np.array(second, dtype=int), ends[:, 1]
+        )
+        for k, s_number in enumerate(extra):
+            if s_number is not None:
+                gap.sliding[s_number, k] -= 1.0
+        return gap
+
+
+def _ends(linkage: Linkage, edge: LoopEdge) -> tuple[int, int]:
+    """The items nearer to and further from the ground that an edge joins."""
+    index = linkage.index
+    if edge.slides:
+        s = linkage.sliders[edge.which]
+        body, other = index[s.moving], index[s.base]
+    else:
+        joint, c = linkage.connections[edge.which]
+        body, other = index[c.body], index[linkage.carrier(joint)]
+    return (other, body) if edge.forward else (body, other)
+
+
+def _frames(linkage: Linkage) -> tuple[int, Ints]:
+    """Number of frames, and the frame of every item: 0 is the ground's.
+
+    Pins and particles have no angle; the ground's frame serves, their chains do not depend on it.
+    """
+    index = linkage.index
+    joined = _Sets(len(index))
+    for s in linkage.sliders:
+        joined.join(index[s.base], index[s.moving])
+    ground = joined.of(index[GROUND])
+    frame = np.zeros(len(index), dtype=np.int64)
+    numbers: dict[int, int] = {ground: 0}
+    for i, item in enumerate(linkage.items):
+        if item.inertia is not None or joined.of(i) == ground:
+            frame[i] = numbers.setdefault(joined.of(i), len(numbers))
+    for i in range(len(linkage.items)):
+        frame[i] = numbers.get(joined.of(i), 0)
+    return len(numbers), frame
+
+
+class _Sets:
+    """Disjoint sets of items."""
+
+    def __init__(self, count: int) -> None:
+        self._parent = list(range(count))
+
+    def of(self, i: int) -> int:
+        while self._parent[i] != i:
+            i = self._parent[i]
+        return i
+
+    def join(self, i: int, j: int) -> bool:
+        """Whether they were apart before."""
+        a, b = self.of(i), self.of(j)
+        self._parent[a] = b
+        return a != b
+
+
+def _tree(linkage: Linkage) -> tuple[tuple[LoopEdge, ...], tuple[tuple[bool, int], ...]]:
+    """Edges of a spanning tree, from the ground outwards, and the (slides, which) that close loops.
+
+    Sliders come first: bodies of one frame then hang together, and no loop turns against itself.
+
+    Raises: LinkageError for bodies that nothing joins to the ground.
+    """
+    index = linkage.index
+    members = [(True, k, index[s.moving], index[s.base]) for k, s in enumerate(linkage.sliders)]
+    members += [
+        (False, k, index[c.body], index[linkage.carrier(j)])
+        for k, (j, c) in enumerate(linkage.connections)
+    ]
+    joined = _Sets(len(index))
+    inside = [m for m in members if joined.join(m[2], m[3])]
+    closing = tuple((m[0], m[1]) for m in members if m not in inside)
+    ground = index[GROUND]
+    adrift = [
+        item.name for i, item in enumerate(linkage.items) if joined.of(i) != joined.of(ground)
+    ]
+    if adrift:
+        raise LinkageError(
+            f"no connection or slider joins {', '.join(adrift)} to the ground; add one",
+            "not-joined",
+        )
+    neighbours: dict[int, list[tuple[tuple[bool, int, int, int], int]]] = {}
+    for m in inside:
+        neighbours.setdefault(m[2], []).append((m, m[3]))
+        neighbours.setdefault(m[3], []).append((m, m[2]))
+    order: list[tuple[tuple[bool, int, int, int], int, int]] = []
+    seen, queue = {ground}, [ground]
+    for inner in queue:
+        for m, outer in neighbours.get(inner, ()):
+            if outer not in seen:
+                seen.add(outer)
+                queue.append(outer)
+                order.append((m, inner, outer))
+    away: dict[int, set[int]] = {outer: {outer} for _, _, outer in order}
+    for _, inner, outer in reversed(order):
+        if inner != ground:
+            away[inner] |= away[outer]
+    edges = tuple(LoopEdge(m[0], m[1], frozenset(away[o]), m[2] == o) for m, _, o in order)
+    return edges, closing

@@ -1,0 +1,259 @@
+"""Extremes, means and work over the time of a motion, resolved between its samples."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from loads.inverse_dynamics import Dynamics
+from loads.linkage import Floats
+from loads.motion import Course, Motion
+from loads.power_balance import ledger
+from loads.reactions import Reactions
+from loads.refine import Resolved, resolved
+from loads.transmission_angles import transmission_angles
+
+NOTHING = 1e-9  # of the largest force, by length and speed: a drive that gives less gives nothing
+ROUNDING = 1e-8  # of the largest: a mean below it is zero
+AGREES = (
+    1e-5  # of a maximum: closer than this to its limit, the value at the instant itself is reported
+)
+
+
+@dataclass(frozen=True)
+class Extreme:
+    """A largest or smallest value over a time and when it is taken, s."""
+
+    value: float
+    time: float
+
+
+@dataclass(frozen=True)
+class Effort:
+    """Force (N) or torque (N m) of a drive over a time: the largest magnitude, the mean and the
+    root of the mean square; work (T,) J done up to each sample.
+    """
+
+    largest: Extreme
+    mean: float
+    rms: float
+    work: Floats
+
+
+@dataclass(frozen=True)
+class PeakForces:
+    """Of every connection its largest force (N) and moment (N m) over a time, and the force (3,)
+    then. unresolved: (J, 2) s, where they are not certain.
+    """
+
+    force: dict[str, Extreme]
+    moment: dict[str, Extreme]
+    vector: dict[str, Floats]
+    unresolved: Floats
+
+
+@dataclass(frozen=True)
+class OverTime:
+    """Results for a motion as a whole.
+
+    drives: in the linkage's order. transmission: smallest angle (rad) by link and joint.
+    condition: largest. violation: of the power ledger, largest at any instant looked at. corners:
+    where something may jump, s.
+    """
+
+    peaks: PeakForces
+    drives: tuple[Effort, ...]
+    transmission: dict[tuple[str, str], Extreme]
+    condition: Extreme
+    violation: float
+    corners: Floats
+
+
+def peak_forces(
+    samples: Floats, at: Callable[[Floats], Reactions], corners: Floats | tuple[float, ...] = ()
+) -> PeakForces:
+    """The largest force and moment of every connection from the first to the last of the samples.
+
+    at: reactions at times (T,) s of the same motion. corners: times at which they may jump, s.
+    """
+    first = at(samples)
+    forces = [(np.abs(first.forces).max() or 1.0), (np.abs(first.moments).max() or 1.0)]
+
+    def columns(times: Floats) -> Floats:
+        found = at(times)
+        parts = (found.forces / forces[0], found.moments / forces[1])
+        return np.concatenate([p.reshape(len(times), -1) for p in parts], axis=1)
+
+    count = len(first.connections)
+    groups = np.repeat(np.arange(2 * count), 3)
+    return _peaks(resolved(samples, columns, corners, groups=groups.tolist()), at, forces)
+
+
+def _peaks(found: Resolved, at: Callable[[Floats], Reactions], unit: list[float]) -> PeakForces:
+    """From columns fx, fy, fz of every connection, then mx, my, mz, over their units."""
+    names = at(found.ends[:1]).connections
+    count = len(names)
+
+    def sizes(values: Floats) -> Floats:
+        return np.asarray(
+            np.linalg.norm(values[:, : 6 * count].reshape(len(values), -1, 3), axis=2)
+        )
+
+    best, when = found.largest(sizes)
+    there = at(when)
+    vectors = np.concatenate([there.forces / unit[0], there.moments / unit[1]], axis=1)
+    rows = np.arange(2 * count)
+    exact = vectors[rows, rows]
+    limit = found.interpolate(when)[:, : 6 * count].reshape(len(when), -1, 3)[rows, rows]
+    size = np.linalg.norm(exact, axis=1)
+    told = np.abs(size - best) <= AGREES * best
+    value = np.where(told, size, best) * np.repeat(unit, count)
+    vector = np.where(told[:, None], exact, limit) * unit[0]
+
+    def named(part: slice) -> dict[str, Extreme]:
+        pairs = zip(names, value[part].tolist(), when[part].tolist(), strict=True)
+        return {name: Extreme(v, t) for name, v, t in pairs}
+
+    return PeakForces(
+        named(slice(count)),
+        named(slice(count, None)),
+        dict(zip(names, vector, strict=False)),
+        found.unresolved,
+    )
+
+
+@dataclass(frozen=True)
+class _Dense:
+    """A motion at instants so dense that the polynomials `found` give the rest. forces (N), effort
+    and power (D,): what forces, drives' forces or torques and their powers are divided by.
+    """
+
+    found: Resolved
+    forces: float
+    effort: Floats
+    power: Floats
+    corners: Floats
+
+
+def require_possible(course: Course, solve: Callable[[Floats], Dynamics], samples: Floats) -> None:
+    """Raises: as `solve`, also where it fails between the samples."""
+    solve(_dense(course, solve, samples).found.times)
+
+
+def over_time(course: Course, solve: Callable[[Floats], Dynamics], samples: Floats) -> OverTime:
+    """Extremes and means of a motion over the time of its samples (T,) s.
+
+    solve: the dynamics at times (T,) s of that course. Raises: as `solve`, also where it fails
+    between the samples.
+    """
+    d = _dense(course, solve, samples)
+    peaks = _peaks(d.found, lambda times: solve(times).reactions, [d.forces, 1.0])
+    dense = solve(d.found.times)
+    angles, condition = _postures(course, dense.motion)
+    return OverTime(
+        peaks,
+        _efforts(d.found, solve, samples, d.effort, d.power),
+        angles,
+        condition,
+        ledger(dense).violation,
+        d.corners,
+    )
+
+
+def _dense(course: Course, solve: Callable[[Floats], Dynamics], samples: Floats) -> _Dense:
+    start = np.unique(np.concatenate([samples, course.path.nodes]))
+    first = solve(start)
+    forces = float(np.abs(first.reactions.forces).max()) or 1.0
+    scale = course.loops.linkage.length_scale
+    effort = np.maximum(np.abs(first.drive).max(axis=0), NOTHING * forces * max(scale, 1.0))
+    power = np.maximum(np.abs(first.power).max(axis=0), NOTHING * forces * course.pace)
+    power = np.where(power > 0.0, power, 1.0)
+    connections, drives = len(first.reactions.connections), len(effort)
+
+    def columns(times: Floats) -> Floats:
+        found = solve(times)
+        r = found.reactions
+        parts = (r.forces / forces, r.moments, found.drive / effort, found.power / power)
+        return np.concatenate([p.reshape(len(times), -1) for p in parts], axis=1)
+
+    groups = np.concatenate(
+        [np.repeat(np.arange(2 * connections), 3), 2 * connections + np.arange(2 * drives)]
+    )
+    corners = np.concatenate([course.corners, _reversals(course, start)])
+    found = resolved(start, columns, corners, groups=groups.tolist())
+    return _Dense(found, forces, effort, power, corners)
+
+
+def _efforts(
+    found: Resolved,
+    solve: Callable[[Floats], Dynamics],
+    samples: Floats,
+    effort: Floats,
+    power: Floats,
+) -> tuple[Effort, ...]:
+    """From the last columns: the drives' forces or torques over `effort`, powers over `power`."""
+    D = len(effort)
+
+    def efforts(values: Floats) -> Floats:
+        return values[:, -2 * D : -D] * effort
+
+    best, when = found.largest(lambda values: np.abs(efforts(values)))
+    exact = np.abs(np.diagonal(solve(when).drive))
+    best = np.where(np.abs(exact - best) <= AGREES * best, exact, best)
+    mean = found.mean(efforts)
+    mean = np.where(np.abs(mean) > ROUNDING * best, mean, 0.0)
+    rms = np.sqrt(found.mean(lambda values: efforts(values) ** 2))
+    work = found.integral(samples, lambda values: values[:, -D:] * power)
+    return tuple(
+        Effort(Extreme(float(best[k]), float(when[k])), float(mean[k]), float(rms[k]), work[:, k])
+        for k in range(D)
+    )
+
+
+def _reversals(course: Course, samples: Floats) -> Floats:
+    """Times (s) at which a slider with friction reverses: its friction jumps there."""
+    linkage = course.loops.linkage
+    first = course.loops.frames - 1
+    rubs = [first + k for k, s in enumerate(linkage.sliders) if s.friction]
+    if not rubs or not course.pace:
+        return np.empty(0)
+
+    def speeds(times: Floats) -> Floats:
+        return course.at(times).v[:, rubs] / course.pace
+
+    found = resolved(samples, speeds, course.corners)
+    low, high = found.times[:-1], found.times[1:]
+    out = []
+    for k in range(len(rubs)):
+        v = found.values[:, k]
+        turns = np.flatnonzero(v[:-1] * v[1:] < 0.0)
+        a, b, sign = low[turns], high[turns], np.sign(v[turns])
+        for _ in range(60):
+            middle = 0.5 * (a + b)
+            same = np.sign(found.interpolate(middle)[:, k]) == sign
+            a, b = np.where(same, middle, a), np.where(same, b, middle)
+        out += [0.5 * (a + b), found.times[v == 0.0]]
+    return np.unique(np.concatenate(out))
+
+
+def _postures(course: Course, dense: Motion) -> tuple[dict[tuple[str, str], Extreme], Extreme]:
+    """Smallest transmission angles, and the largest condition number, over the time of `dense`."""
+    keys = [k for k, v in transmission_angles(dense).items() if np.isfinite(v).any()]
+
+    def columns(motion: Motion) -> Floats:
+        """Squared sines, which have no kinks, and the reciprocal of the condition number."""
+        angles = transmission_angles(motion)
+        none = np.full(len(motion), 0.5 * np.pi)
+        sines = [np.sin(np.nan_to_num(angles.get(k, none), nan=0.5 * np.pi)) ** 2 for k in keys]
+        return np.stack([*sines, 1.0 / motion.condition], axis=1)
+
+    found = resolved(dense.times, lambda times: columns(course.at(times)), course.corners)
+    when = found.largest(np.negative)[1]
+    values = np.diagonal(columns(course.at(when)))
+    angles = {
+        key: Extreme(float(np.arcsin(np.sqrt(min(value, 1.0)))), float(time))
+        for key, value, time in zip(keys, values, when, strict=False)
+    }
+    return angles, Extreme(float(1.0 / values[-1]), float(when[-1]))

@@ -1,0 +1,89 @@
+"""Energies of a linkage, and the ledger of the powers that change them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from loads.inverse_dynamics import Dynamics
+from loads.linkage import Floats
+from loads.loop_equations import number
+from loads.motion import Motion
+
+
+@dataclass(frozen=True)
+class Energy:
+    """Kinetic and potential energy, (T,) J."""
+
+    kinetic: Floats
+    potential: Floats
+
+
+def energy(motion: Motion) -> Energy:
+    """Energies of all items; the potential is zero at the world's origin."""
+    items = motion.linkage.items
+    mass = np.array([item.mass for item in items])
+    spin = np.stack([motion.angular_velocity(item.name) for item in items], axis=1)
+    inertia = np.array([item.inertia or 0.0 for item in items])
+    centres, velocity, _ = motion.centres
+    weight = mass * number(motion.linkage.gravity)
+    return Energy(
+        kinetic=0.5 * (np.abs(velocity) ** 2 @ mass + spin**2 @ inertia),
+        potential=-np.real(centres @ np.conj(weight)),
+    )
+
+
+@dataclass(frozen=True)
+class Ledger:
+    """Powers put in by drives, gravity, applied loads and friction, and the rate of the kinetic
+    energy, (T,) W each.
+    """
+
+    drives: Floats
+    gravity: Floats
+    applied: Floats
+    friction: Floats
+    kinetic_rate: Floats
+
+    @property
+    def violation(self) -> float:
+        """Largest difference between what goes in and the rate, over the largest of the powers."""
+        terms = (self.drives, self.gravity, self.applied, self.friction, self.kinetic_rate)
+        largest = max(float(np.abs(t).max(initial=0.0)) for t in terms)
+        gap = self.drives + self.gravity + self.applied + self.friction - self.kinetic_rate
+        return float(np.abs(gap).max(initial=0.0)) / largest if largest else 0.0
+
+
+def ledger(dynamics: Dynamics) -> Ledger:
+    """The power ledger at every instant."""
+    motion = dynamics.motion
+    items = motion.linkage.items
+    mass = np.array([item.mass for item in items])
+    inertia = np.array([item.inertia or 0.0 for item in items])
+    _, velocity, acceleration = motion.centres
+    spin = np.stack([motion.angular_velocity(item.name) for item in items], axis=1)
+    spin_rate = np.stack([motion.angular_acceleration(item.name) for item in items], axis=1)
+    pull = np.conj(number(motion.linkage.gravity))
+    slides = motion.v[:, motion.loops.frames - 1 :]
+    return Ledger(
+        drives=dynamics.power.sum(axis=1),
+        gravity=np.real(velocity * pull) @ mass,
+        applied=_applied_power(dynamics),
+        friction=np.sum(dynamics.sliders.friction * slides, axis=1),
+        kinetic_rate=np.real(np.conj(velocity) * acceleration) @ mass
+        + (spin * spin_rate) @ inertia,
+    )
+
+
+def _applied_power(dynamics: Dynamics) -> Floats:
+    motion = dynamics.motion
+    out = np.zeros(len(motion))
+    for load in dynamics.applied:
+        _, velocity, _ = motion.point(load.body, load.at)
+        force = np.full(len(motion), number(load.force))
+        if load.follows:
+            force = force * np.exp(1j * motion.angle(load.body))
+        out += velocity[:, 0] * force.real + velocity[:, 1] * force.imag
+        out += load.couple * motion.angular_velocity(load.body)
+    return out

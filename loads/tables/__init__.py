@@ -1,0 +1,1 @@
+"""Files of the user, read strictly: CSV tables, and nothing but regular files."""

@@ -1,0 +1,158 @@
+"""Tables in CSV, read strictly: nothing is guessed."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TextIO
+
+from loads.coded import LoadsError
+from loads.tables.regular_file import MB, FileError, read_regular
+
+LARGEST_TABLE = 64 * MB
+MOST_ROWS = 100_000  # ten seconds at 10 kHz; a million instants take minutes and gigabytes
+MOST_COLUMNS = 1_000
+LONGEST_LINE = 1_000_000  # characters
+SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars"}  # that other programs write
+DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+(?:[eE][-+]?\d+)?")
+LARGEST = 1e18  # the fourth power is still a number; as for quantities of a study
+
+
+class TableError(LoadsError, ValueError):
+    """An unusable table; the message names the file, the line and what would be right."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """Cells of a row by column, without surrounding blanks; where: file and line."""
+
+    where: str
+    cells: dict[str, str]
+
+    def number(self, column: str) -> float:
+        """A cell's number. Raises: TableError unless it is finite and at most LARGEST."""
+        text = self.cells[column]
+        what = f"{self.where}: {column} = {text[:40]}"
+        try:
+            value = float(text)
+        except ValueError:
+            what = f"{self.where}: {column} = {text[:40]!r} is not a number"
+            if DECIMAL_COMMA.fullmatch(text):
+                right = text.replace(",", ".")
+                raise TableError(f"{what}; write {right}, with a point", "decimal-comma") from None
+            raise TableError(what, "not-a-number") from None
+        if not math.isfinite(value):
+            raise TableError(f"{what} is not finite", "not-finite")
+        if abs(value) > LARGEST:
+            raise TableError(f"{what} exceeds the limit of {LARGEST:g}", "too-large")
+        return value
+
+
+def read_table(
+    path: Path, needed: Sequence[str], optional: Sequence[str] | None = None
+) -> Iterator[Row]:
+    """The rows of a table with a header. optional: columns allowed besides those needed; None: any.
+
+    Raises: TableError for a file that is not such a table.
+    """
+    try:
+        text = io.StringIO(read_regular(path, LARGEST_TABLE).decode("utf-8-sig"), newline="")
+        yield from _rows(path, _lines(path, text), needed, optional)
+    except FileNotFoundError:
+        raise TableError(
+            f"{path}: no such file; the paths of tables are relative to the study's folder",
+            "no-such-file",
+        ) from None
+    except UnicodeDecodeError as error:
+        raise TableError(
+            f"{path}: is not UTF-8 text ({error}); save it with this encoding", "not-text"
+        ) from None
+    except FileError as error:
+        raise TableError(f"{path}: {error}", error.code) from None
+    except OSError as error:
+        raise TableError(f"{path}: cannot be read ({error.strerror})", "unreadable") from None
+    except csv.Error as error:
+        raise TableError(
+            f"{path}: is not a table of comma-separated values ({error})", "not-csv"
+        ) from None
+
+
+def _lines(path: Path, file: TextIO) -> Iterator[str]:
+    count = 0
+    while line := file.readline(LONGEST_LINE + 1):
+        count += 1
+        if len(line) > LONGEST_LINE:
+            raise TableError(
+                f"{path}, line {count}: has more than {LONGEST_LINE:,} characters; is it a table?",
+                "not-csv",
+            )
+        yield line
+
+
+def _rows(
+    path: Path, text: Iterable[str], needed: Sequence[str], optional: Sequence[str] | None
+) -> Iterator[Row]:
+    lines = csv.reader(text, skipinitialspace=True)
+    columns = [name.strip() for name in next(lines, [])]
+    _require(path, columns, needed, optional)
+    count = 0
+    for count, cells in enumerate(filter(None, lines), 1):  # blank lines are no rows
+        where = f"{path}, line {lines.line_num}"
+        if len(cells) != len(columns):
+            raise _cell_count(where, cells, columns)
+        if count > MOST_ROWS:
+            raise TableError(
+                f"{where}: the table has more than {MOST_ROWS:,} rows, the limit; give fewer",
+                "too-many-rows",
+            )
+        yield Row(where, {c: cell.strip() for c, cell in zip(columns, cells, strict=True)})
+    if not count:
+        raise TableError(f"{path}: the table has no rows below its header", "no-rows")
+
+
+def _require(
+    path: Path, columns: list[str], needed: Sequence[str], optional: Sequence[str] | None
+) -> None:
+    head = ",".join(needed)
+    told = f"needed: {head}" + (f"; optional: {', '.join(optional)}" if optional else "")
+    if len(columns) > MOST_COLUMNS:
+        raise TableError(
+            f"{path}: has {len(columns):,} columns; the limit is {MOST_COLUMNS:,}",
+            "too-many-columns",
+        )
+    for column in needed:
+        if column not in columns:
+            _require_commas(path, columns, needed)
+            raise TableError(f"{path}: column {column!r} is missing; {told}", "missing-column")
+    for column in columns:
+        if columns.count(column) > 1:
+            raise TableError(
+                f"{path}: column {column[:40]!r} occurs twice; keep one", "duplicate-column"
+            )
+        if optional is not None and column not in (*needed, *optional):
+            raise TableError(f"{path}: unknown column {column[:40]!r}; {told}", "unknown-column")
+
+
+def _require_commas(path: Path, columns: list[str], needed: Sequence[str]) -> None:
+    """Raises: TableError when another separator would give the columns needed."""
+    for separator, name in SEPARATORS.items():
+        found = [each.strip() for column in columns for each in column.split(separator)]
+        if len(found) > len(columns) and set(needed) & set(found):
+            raise TableError(
+                f"{path}: the columns are separated by {name}; separate them by commas, and write "
+                "decimals with a point: 1.5",
+                "wrong-separator",
+            )
+
+
+def _cell_count(where: str, cells: list[str], columns: list[str]) -> TableError:
+    """The error of a row that is longer or shorter than the header."""
+    what = f"{where}: {len(cells)} cells, but the header has {len(columns)}"
+    if len(cells) > len(columns) and sum(map(str.isdigit, cells)) > 1:
+        return TableError(f"{what}; decimals are written with a point: 1.5", "cell-count")
+    return TableError(what, "cell-count")

@@ -1,0 +1,50 @@
+"""Reading files that a user names: regular files up to a size. A pipe would block, a device has no
+end, and a far too large file is not a study or table.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+from pathlib import Path
+
+from loads.coded import LoadsError
+
+MB = 2**20
+# So that nothing waits, and no byte is changed, where the system knows of such a thing.
+FLAGS = "O_NONBLOCK", "O_NOCTTY", "O_CLOEXEC", "O_BINARY", "O_NOINHERIT"
+READ = os.O_RDONLY | sum(getattr(os, name, 0) for name in FLAGS)
+
+
+class FileError(LoadsError, ValueError):
+    """A file that must not be read; the message says why, without its name."""
+
+
+def read_regular(path: Path, most: int) -> bytes:
+    """The content of a file of at most so many bytes. Raises: FileError, OSError."""
+    require_regular(path, most)  # before it is opened: opening alone starts some devices
+    descriptor = os.open(path, READ)
+    with open(descriptor, "rb") as file:
+        _require(os.fstat(descriptor), most)  # it may be another one by now
+        content = file.read(most + 1)
+    if len(content) > most:  # it is growing, or has no size of its own
+        raise _too_large(most)
+    return content
+
+
+def require_regular(path: Path, most: int) -> None:
+    """Raises: FileError when it is no regular file or has more bytes; OSError."""
+    _require(os.stat(path), most)
+
+
+def _require(found: os.stat_result, most: int) -> None:
+    if stat.S_ISDIR(found.st_mode):
+        raise FileError("is a folder; name a file", "folder")
+    if not stat.S_ISREG(found.st_mode):
+        raise FileError("is a pipe or a device; name a regular file", "not-regular")
+    if found.st_size > most:
+        raise _too_large(most)
+
+
+def _too_large(most: int) -> FileError:
+    return FileError(f"is larger than {most // MB:,} MB, the limit for such a file", "too-large")

@@ -1,0 +1,1 @@
+"""Who is solved when: plan, solve, results."""

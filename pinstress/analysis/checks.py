@@ -1,0 +1,88 @@
+"""Checks a study may ask for: a cantilever beside beam theory, a motion beside a closed form."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fea.checks.cantilever import beam_check as compare_with_beam
+from fea.checks.records import BeamCheck
+from geometry import Pin
+from loads import GROUND, Lever, Linkage, Slider
+from pinstress.model.cases import CaseLoads, at_time
+from pinstress.model.tasks import Task
+from pinstress.schema.tables import MotionCheckTable
+from pinstress.study.file import Study
+from pinstress.study.published_tables import Published
+from reports.data import results as plain
+
+
+def require_cantilever(study: Study, task: Task, case: str) -> None:
+    """Raises: InputError if the pin of the beam check is no cantilever with one load."""
+    loads = next(c for c in task.loads if c.case == case)
+    turned = isinstance(task.pin, Pin)
+    if not turned or task.clamps != ("start",) or len(loads.surfaces) != 1 or loads.moments.any():
+        raise study.error(
+            f"beam_check: pin {task.pin.name} must be a plain profile, clamped at "
+            "its start face alone and loaded on one band, by forces alone, to be a cantilever"
+        )
+
+
+def beam_check(study: Study, task: Task) -> BeamCheck:
+    """The beam check of a pin at the instant of its largest force."""
+    check, pin = study.table.beam_check, task.pin
+    assert check is not None
+    assert isinstance(pin, Pin)
+    loads = next(c for c in task.loads if c.case == check.case)
+    return compare_with_beam(pin, task.material, loads, check.axis_bore)
+
+
+def motion_check(
+    study: Study, loads: dict[str, CaseLoads], published: Published
+) -> plain.MotionCheck | None:
+    """A joint's speed and acceleration beside the closed form; None when not asked for."""
+    check = study.table.motion_check
+    case = loads.get(check.case) if check else None
+    if check is None or case is None:
+        return None
+    if case.dynamics is None or case.reactions.times is None:
+        raise study.error(f"motion_check.case: {check.case!r} is not a motion")
+    motion, unit = case.dynamics.motion, study.system.factor
+    lever, radius = _lever(study, check, motion.linkage)
+    _, v, a = motion.joint(check.joint)
+    driven = (motion.drives[:, 0], motion.speeds[:, 0], motion.rates[:, 0])
+    closed_v, closed_a = lever.point(radius, *driven)
+    speed, acceleration = np.linalg.norm(v, axis=1), np.linalg.norm(a, axis=1)
+    rows = []
+    for t, their_v, their_a in published.motion:
+        there = at_time(case, t * unit("time"))
+        if there is None or there.dynamics is None:
+            raise study.error(
+                f"published.motion: time {t:g} {study.system.time} is outside case {check.case}"
+            )
+        _, *rates = there.dynamics.motion.joint(check.joint)
+        at_v, at_a = (float(np.linalg.norm(x)) for x in rates)
+        rows.append((t, their_v, their_a, at_v, at_a))
+    return plain.MotionCheck(
+        joint=check.joint,
+        case=check.case,
+        time=motion.times,
+        speed=speed,
+        acceleration=acceleration,
+        closed_form_speed=closed_v,
+        closed_form_acceleration=closed_a,
+        published=tuple(rows),
+    )
+
+
+def _lever(study: Study, check: MotionCheckTable, linkage: Linkage) -> tuple[Lever, float]:
+    pivot, joint = linkage.joint(check.pivot), linkage.joint(check.joint)
+    if pivot.fixed_in != GROUND:
+        raise study.error(f"motion_check.pivot: {check.pivot} is not fixed in the ground")
+    slider = linkage.drives[0]
+    if len(linkage.drives) != 1 or not isinstance(slider, Slider):
+        raise study.error("motion_check: it needs one drive, of a slider")
+
+    def distance(at: tuple[float, float]) -> float:
+        return float(np.hypot(at[0] - pivot.at[0], at[1] - pivot.at[1]))
+
+    return Lever(distance(slider.start), distance(slider.end)), distance(joint.at)

@@ -1,0 +1,207 @@
+"""From what the rooms found, in SI, to the results that reports are made from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import asdict, replace
+from importlib.metadata import version
+
+import numpy as np
+
+from fea.checks.hand_checks import hand_checks
+from fea.checks.records import BeamCheck, HandCheck
+from fea.core.peak import Peak, decides
+from fea.solve_pin import Solution
+from geometry import CutPin, Pin
+from pinstress.analysis.gather_loads import drive_position, mechanics, position_unit
+from pinstress.analysis.plan import Plan, all_loads
+from pinstress.analysis.stored import Solved
+from pinstress.cache.store import PACKAGES
+from pinstress.model.cases import CaseLoads, at_time
+from pinstress.model.pins import outline, weight
+from pinstress.model.tasks import Task
+from pinstress.study.choices import select
+from pinstress.study.file import Study
+from pinstress.study.published_tables import Published, read_published
+from reports.data import results as plain
+
+
+def results_of(plan: Plan, found: list[Solved]) -> plain.Results:
+    """A plan's results from what was found of its tasks."""
+    study = plan.study
+    pins, cases = list(study.table.pin), list(plan.loads)
+    rows = [
+        (task, peak) for task, made in zip(plan.tasks, found, strict=True) for peak in made.peaks
+    ]
+    rows.sort(key=lambda row: (pins.index(row[1].pin), cases.index(row[1].case)))
+    beam = next((made.beam for made in found if made.beam is not None), None)
+    results = _results(study, plan.loads, rows, beam, plan.published, plan.asked.tolerance)
+    results = replace(
+        results,
+        landing=tuple(r for made in found for r in made.landing),
+        surfaces=tuple(made.surface for made in found if made.surface is not None),
+    )
+    return _in_study_units(results, study)
+
+
+def _in_study_units(results: plain.Results, study: Study) -> plain.Results:
+    s = study.system
+    return results.in_units(plain.Units(s.length, s.force, s.stress, s.time), s.factor)
+
+
+def loads_only(study: Study, cases: Iterable[str] | None = None) -> plain.Results:
+    """The mechanics of a study without stresses. Raises: InputError for bad input."""
+    published = read_published(study)
+    loads = all_loads(study, select(study.table.case, cases, "case"))
+    tolerance = study.table.analysis.tolerance
+    return _in_study_units(_results(study, loads, [], None, published, tolerance), study)
+
+
+def _results(
+    study: Study,
+    loads: dict[str, CaseLoads],
+    rows: list[tuple[Task, Peak]],
+    beam: BeamCheck | None,
+    published: Published,
+    tolerance: float,
+) -> plain.Results:
+    """Everything a run found, in SI. rows: each peak with its task, in the order of the table."""
+    table = study.table
+    tasks = {task.pin.name: task for task, _ in reversed(rows)}
+    return plain.Results(
+        title=table.title,
+        study=study.path.name,
+        study_sha256=study.sha256,
+        units=plain.SI,
+        required_safety_factor=table.analysis.required_safety_factor,
+        tolerance=tolerance,
+        pins=tuple(_pin_result(study, loads, task, peak, published) for task, peak in rows),
+        shapes=tuple(_shape(tasks[name]) for name in table.pin if name in tasks),
+        **mechanics(study, loads, published),
+        beam_check=beam,
+        provenance=tuple(plain.Provenance(s.key, s.kind, s.note) for s in study.provenance),
+        published_source=table.published.source if table.published else "",
+        assumptions=(*table.assumptions, *(f"Hardly meant: {q}" for q in study.questions)),
+        versions={name: version(name) for name in PACKAGES},
+        study_text=study.text,
+    )
+
+
+def _pin_result(
+    study: Study,
+    loads: dict[str, CaseLoads],
+    task: Task,
+    peak: Peak,
+    published: Published,
+) -> plain.PinResult:
+    strength = task.material.yield_strength
+    required = study.table.analysis.required_safety_factor
+    factor = peak.safety_factor(strength)
+    case = loads[peak.case]
+    here = case if peak.time is None else at_time(case, peak.time)
+    assert here is not None
+    positions = drive_position(study, here) if peak.location else None
+    theirs = published.peaks.get((peak.pin, peak.case), (None, None))
+    return plain.PinResult(
+        pin=peak.pin,
+        case=peak.case,
+        model=peak.model,
+        verdict=peak.verdict,
+        note=peak.note,
+        max_von_mises=peak.max_von_mises,
+        error_estimate=peak.error_estimate,
+        location=peak.location,
+        time=peak.time if peak.location else None,
+        position=None if positions is None else float(positions[0]),
+        position_unit=position_unit(study, here),
+        safety_factor=factor,
+        yields=None if factor is None else factor < 1.0,
+        meets_required=_meets(peak, strength, required),
+        dofs=peak.dofs,
+        seconds=peak.seconds,
+        history=peak.history,
+        held=", ".join(task.clamps) or "nothing (loads in balance)",
+        left_out=task.left_out[peak.case],
+        published_max_von_mises=theirs[0],
+        published_safety_factor=theirs[1],
+        why=peak.why,
+        singular_at=peak.singular_at,
+        hand_checks=_hand_checks(task, peak.case),
+        max_von_mises_interval=peak.interval,
+        safety_factor_interval=_factors(peak, strength),
+        error_parts={} if peak.parts is None else asdict(peak.parts),
+        loads=_governing_loads(task, here),
+    )
+
+
+def _factors(peak: Peak, strength: float | None) -> tuple[float, float | None] | None:
+    """Factor of safety over the interval of the maximum; None above, where no stress is left."""
+    if peak.interval is None or strength is None:
+        return None
+    low, high = peak.interval
+    return strength / high, strength / low if low > 0.0 else None
+
+
+def _governing_loads(task: Task, here: CaseLoads) -> tuple[plain.GoverningLoad, ...]:
+    r = here.reactions
+    return tuple(
+        plain.GoverningLoad(name, r.bodies[c], r.forces[0, c], r.moments[0, c])
+        for c, name in enumerate(r.connections)
+        if name in task.pin.connections
+    )
+
+
+def _meets(peak: Peak, strength: float | None, required: float | None) -> bool | None:
+    """Whether the required factor is reached; None where that is open."""
+    if strength is None or required is None:
+        return None
+    return decides(peak, strength / required)
+
+
+def _hand_checks(task: Task, case: str) -> tuple[HandCheck, ...]:
+    """Of a pin with a profile; a pin that is cut is checked as if it were not."""
+    pin = task.pin.profile if isinstance(task.pin, CutPin) else task.pin
+    if not isinstance(pin, Pin):
+        return ()
+    loads = next(x for x in task.loads if x.case == case)
+    return hand_checks(pin, task.material, loads, task.clamps)
+
+
+def _shape(task: Task) -> plain.PinShape:
+    pin, density = task.pin, task.material.density
+    held = {pin.surface(c) for c in task.clamps}
+    segments = tuple(
+        (length, diameter, bore, label, "held" if label in held else kind)
+        for length, diameter, bore, label, kind in outline(pin)
+    )
+    heavy = weight(pin, density) if density else None
+    return plain.PinShape(pin.name, segments, task.material.name, heavy)
+
+
+def landing_range(
+    loads: dict[str, CaseLoads], task: Task, solution: Solution
+) -> plain.LandingRange | None:
+    """A pin over the ranges of its landing's impulse: unit fields superposed, nothing solved."""
+    case, over = solution.peak.case, loads[solution.peak.case].range
+    if over is None or solution.answer is None:
+        return None
+    maxima, strength = solution.answer.maxima(task.ranges[case]), task.material.yield_strength
+    return plain.LandingRange(
+        pin=task.pin.name,
+        case=case,
+        impulse_time=over.times,
+        velocity_change=over.velocities,
+        force=over.forces,
+        max_von_mises=maxima,
+        safety_factor=None if strength is None else strength / maxima,
+        nominal=over.nominal,
+        verdict=solution.peak.verdict,
+        spread=_spread(solution.peak),
+    )
+
+
+def _spread(peak: Peak) -> tuple[float, float] | None:
+    if peak.interval is None or not peak.max_von_mises:
+        return None
+    low, high = peak.interval
+    return peak.max_von_mises / high, peak.max_von_mises / low if low > 0.0 else np.inf

@@ -1,0 +1,125 @@
+"""Fields of pins, as reports show them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+
+from fea.core.peak import Peak
+from fea.core.pin_loads import PinLoads
+from fea.core.solution import Answer
+from fea.core.voigt import von_mises
+from fea.harmonic.evaluate import HarmonicAnswer
+from fea.harmonic.revolve import revolve_solid
+from fea.solve_pin import Solution
+from pinstress.model.cases import CaseLoads
+from pinstress.model.tasks import Task
+from reports.data import results as plain
+
+Also = Literal["motion", "solid"] | None
+STILLS = 50  # of a motion, besides the governing instant
+
+
+def field(task: Task, solution: Solution, case: CaseLoads, also: Also = None) -> plain.Field | None:
+    """A pin's field at its governing instant; None if not solved, or if the model has none.
+
+    also: with the other instants, at most STILLS of them, or with all of a revolved pin.
+    """
+    peak = solution.peak
+    solution = shown_at(solution, case)
+    loads, governing = solution.loads, solution.instant
+    shown = solution.answer.picture(loads, governing) if solution.answer else None
+    if solution.answer is None or shown is None:
+        return None
+    times = loads.times
+    return plain.Field(
+        pin=peak.pin,
+        case=peak.case,
+        points=shown.points,
+        cells=shown.cells,
+        displacement=shown.displacement,
+        stress=shown.stress,
+        von_mises=von_mises(shown.stress),
+        envelope=shown.envelope,
+        cell_type=shown.cell_type,
+        yield_strength=task.material.yield_strength,
+        outside=_outside(peak),
+        verdict=peak.verdict,
+        time=None if times is None else float(times[governing]),
+        loads=_bands(task, loads, governing),
+        stills=()
+        if times is None or also != "motion"
+        else tuple(
+            _still(task, solution.answer, loads, i, float(times[i]))
+            for i in instants(len(loads), governing)
+        ),
+        volume=_volume(solution.answer, loads, governing) if also == "solid" else None,
+    )
+
+
+def _volume(answer: Answer, loads: PinLoads, instant: int) -> plain.Volume | None:
+    """All of a revolved pin; a solid model's field has it already."""
+    if not isinstance(answer, HarmonicAnswer):
+        return None
+    shown = revolve_solid(answer.fields, loads, instant)
+    return plain.Volume(
+        shown.points,
+        shown.cells,
+        shown.cell_type,
+        shown.displacement,
+        shown.stress,
+        von_mises(shown.stress),
+    )
+
+
+def instants(count: int, governing: int) -> list[int]:
+    """At most STILLS of `count` instants, evenly, and the governing one."""
+    even = np.linspace(0, count - 1, min(count, STILLS)).round().astype(int)
+    return sorted({*even.tolist(), governing})
+
+
+def shown_at(solution: Solution, case: CaseLoads) -> Solution:
+    """With its loads at the case's samples and the governing instant alone."""
+    if solution.loads.times is None or case.reactions.times is None:
+        return solution
+    samples = np.flatnonzero(np.isin(solution.loads.times, case.reactions.times))
+    shown = np.union1d(samples, [solution.instant])
+    instant = int(np.searchsorted(shown, solution.instant))
+    return replace(solution, loads=solution.loads.at(shown), instant=instant)
+
+
+def _still(task: Task, answer: Answer, loads: PinLoads, instant: int, time: float) -> plain.Still:
+    shown = answer.picture(
+        loads.at(np.array([instant])), 0
+    )  # whose envelope is then of this instant only
+    assert shown is not None
+    return plain.Still(
+        time,
+        shown.displacement.astype(np.float32),
+        von_mises(shown.stress).astype(np.float32),
+        _bands(task, loads, instant),
+    )
+
+
+def _bands(task: Task, loads: PinLoads, instant: int) -> tuple[plain.BandLoad, ...]:
+    """Every band on which a link bears; those that are held carry no load here."""
+    out = []
+    for name in (*loads.surfaces, *task.left_out[loads.case]):
+        band, held = task.pin.band(name), name not in loads.surfaces
+        force, moment = np.zeros(3), np.zeros(3)
+        if not held:
+            c = loads.surfaces.index(name)
+            force = loads.forces[instant, c]
+            moment = loads.moments[instant, c]
+        ends = (band.z0, band.z1)
+        radius = band.radius
+        out.append(plain.BandLoad(name, ends, radius, force, moment, held))
+    return tuple(out)
+
+
+def _outside(peak: Peak) -> tuple[float, tuple[float, float, float]] | None:
+    if peak.verdict != "singular" or peak.max_von_mises is None or peak.location is None:
+        return None
+    return peak.max_von_mises, peak.location

@@ -1,0 +1,298 @@
+"""From what the loads room found to the results that reports are made from, in SI."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from loads import GROUND, Dynamics, Linkage, OverTime, Slider, energy, ledger
+from loads.linkage import Floats
+from loads.loop_equations import pairs
+from loads.transmission_angles import transmission_angles
+from pinstress.analysis.checks import motion_check
+from pinstress.analysis.published_quantities import published_values
+from pinstress.model.cases import CaseLoads
+from pinstress.model.linkage import ground_joint, offsets
+from pinstress.study.file import Study
+from pinstress.study.published_tables import Published
+from reports.data import results as plain
+
+LEG_VECTORS = {  # of loads.LegDynamics, and what they are
+    "wheel_omega": "omega",
+    "wheel_alpha": "alpha",
+    "v_C": "v",
+    "v_D": "v",
+    "a_C": "a",
+    "a_D": "a",
+    "coriolis_C": "a",
+    "p_leg": "p",
+    "p_leg_rate": "p_rate",
+    "p_wheel": "p",
+    "p_wheel_rate": "p_rate",
+    "L_leg": "L",
+    "L_leg_rate": "L_rate",
+    "L_wheel": "L",
+    "L_wheel_rate": "L_rate",
+    "F_B": "p_rate",
+    "M_B": "L_rate",
+}
+
+
+LEG = {
+    "omega": "rad/s",
+    "alpha": "rad/s^2",
+    "v": "velocity",
+    "a": "acceleration",
+    "p": "force time",
+    "p_rate": "force",
+    "L": "force length time",
+    "L_rate": "energy",
+}
+LEG_SCALARS = ("actuator", "spin_moment", "kinetic_energy")
+
+
+def mechanics(study: Study, loads: dict[str, CaseLoads], published: Published) -> dict[str, Any]:
+    """The parts of plain.Results that need no stresses."""
+    made = {n: c.dynamics for n, c in loads.items() if c.dynamics is not None}
+    timed = {n: d for n, d in made.items() if d.reactions.times is not None}
+    return {
+        "reactions": tuple(_reactions(study, n, c, published) for n, c in loads.items()),
+        "drive": tuple(t for n, d in timed.items() for t in _drives(study, n, d, loads[n].over)),
+        "motion": tuple(_motion(study, n, d, loads[n].over) for n, d in made.items()),
+        "motion_check": motion_check(study, loads, published),
+        "published": published_values(study, loads, published),
+        "legs": tuple(_leg(study, n, c) for n, c in loads.items() if c.leg is not None),
+    }
+
+
+def _drive_positions(study: Study, dynamics: Dynamics) -> Floats:
+    """(T, D) what is shown as positions: lengths less their offsets, angles in degrees."""
+    shown = np.array(dynamics.motion.drives)
+    for k, drive in enumerate(dynamics.motion.linkage.drives):
+        if isinstance(drive, Slider):
+            shown[:, k] = shown[:, k] - offsets(study)[k]
+        else:
+            shown[:, k] = np.degrees(shown[:, k])
+    return shown
+
+
+def drive_position(study: Study, case: CaseLoads) -> Floats | None:
+    """(T,) position of the only drive along a motion; None without one or with several."""
+    dynamics = case.dynamics
+    if dynamics is None or case.reactions.times is None or dynamics.drive.shape[1] != 1:
+        return None
+    return _drive_positions(study, dynamics)[:, 0]
+
+
+def position_unit(study: Study, case: CaseLoads) -> str:
+    """Of what `drive_position` gives: "deg", or empty for a length."""
+    if drive_position(study, case) is None or case.dynamics is None:
+        return ""
+    (drive,) = case.dynamics.motion.linkage.drives
+    return "" if isinstance(drive, Slider) else "deg"
+
+
+def _reactions(
+    study: Study, name: str, case: CaseLoads, published: Published
+) -> plain.ReactionTable:
+    r, dynamics = case.reactions, case.dynamics
+    on = {c: p for p in study.table.pin for c in study.connections(p)}
+    return plain.ReactionTable(
+        case=name,
+        times=r.times,
+        position=drive_position(study, case),
+        connections=r.connections,
+        bodies=r.bodies,
+        pins=tuple(on.get(c, "") for c in r.connections),
+        forces=r.forces,
+        moments=r.moments,
+        shared=dynamics.shared if dynamics else (),
+        published={c: f for (k, c), f in published.reactions.items() if k == name},
+        note=case.note,
+        peaks=_peaks(study, case),
+        turn=r.turn,
+        position_unit=position_unit(study, case),
+        unresolved=_pairs(case.peaks.unresolved) if case.peaks else (),
+    )
+
+
+def _peaks(study: Study, case: CaseLoads) -> tuple[plain.PeakReaction, ...]:
+    if case.peaks is None:
+        return ()
+    found = case.peaks
+    position: list[float | None] = [None] * len(found.force)
+    if drive_position(study, case) is not None and case.solve is not None:
+        there = case.solve(np.array([peak.time for peak in found.force.values()]))
+        position = list(_drive_positions(study, there)[:, 0].tolist())
+    return tuple(
+        plain.PeakReaction(
+            name,
+            peak.value,
+            peak.time,
+            tuple(found.vector[name].tolist()),
+            position[c],
+            found.moment[name].value,
+        )
+        for c, (name, peak) in enumerate(found.force.items())
+    )
+
+
+def _pairs(values: Floats) -> tuple[tuple[float, float], ...]:
+    return tuple((float(low), float(high)) for low, high in values)
+
+
+def _drives(
+    study: Study, name: str, dynamics: Dynamics, over: OverTime | None
+) -> list[plain.DriveTable]:
+    motion = dynamics.motion
+    stored, shown = energy(motion), _drive_positions(study, dynamics)
+    power, tables = dynamics.power, []
+    assert over is not None
+    for k, (drive, effort) in enumerate(zip(motion.linkage.drives, over.drives, strict=True)):
+        slides = isinstance(drive, Slider)
+        tables.append(
+            plain.DriveTable(
+                case=name,
+                name=drive.name,
+                kind="slider" if slides else "rotary",
+                time=motion.times,
+                position=shown[:, k],
+                velocity=motion.speeds[:, k],
+                acceleration=motion.rates[:, k],
+                force=dynamics.drive[:, k],
+                power=power[:, k],
+                work=effort.work,
+                kinetic_energy=stored.kinetic,
+                potential_energy=stored.potential - stored.potential[0],
+                effort=plain.DriveEffort(
+                    effort.largest.value, effort.largest.time, effort.mean, effort.rms
+                ),
+            )
+        )
+    return tables
+
+
+def _extremes(over: OverTime) -> plain.Extremes:
+    return plain.Extremes(
+        {
+            f"{link} at {joint}": (float(np.degrees(low.value)), low.time)
+            for (link, joint), low in over.transmission.items()
+        },
+        (over.condition.value, over.condition.time),
+    )
+
+
+def _motion(
+    study: Study, name: str, dynamics: Dynamics, over: OverTime | None
+) -> plain.LinkageMotion:
+    motion, linkage = dynamics.motion, dynamics.motion.linkage
+    timed = dynamics.reactions.times is not None
+    bodies = [b.name for b in linkage.bodies]
+    centre, velocity, acceleration = (pairs(z[:, : len(bodies)]) for z in motion.centres)
+    joints = [motion.joint(j.name) for j in linkage.joints]
+    at, v, a = (np.stack([j[k] for j in joints], axis=1) for k in range(3))
+    about = ground_joint(linkage)
+    force, moment = dynamics.shaking(linkage.joint(about).at)
+    return plain.LinkageMotion(
+        case=name,
+        time=motion.times if timed else None,
+        bodies=tuple(bodies),
+        links=tuple(_joints_to_draw(linkage, b) for b in bodies),
+        centre=centre,
+        velocity=velocity,
+        acceleration=acceleration,
+        angle=np.stack([_direction(dynamics, b) for b in bodies], axis=1),
+        angular_velocity=np.stack([motion.angular_velocity(b) for b in bodies], axis=1),
+        angular_acceleration=np.stack([motion.angular_acceleration(b) for b in bodies], axis=1),
+        joints=tuple(j.name for j in linkage.joints),
+        ground=tuple(
+            j.name
+            for j in linkage.joints
+            if j.fixed_in == GROUND or any(c.body == GROUND for c in j.connections)
+        ),
+        joint_position=at,
+        joint_velocity=v,
+        joint_acceleration=a,
+        slides={
+            s.name: np.stack(
+                [motion.point(s.base, s.start)[0], motion.point(s.moving, s.end)[0]], axis=1
+            )
+            for s in linkage.sliders
+        },
+        connections=tuple((c.name, c.body, j.name) for j, c in linkage.connections),
+        transmission={
+            f"{link} at {joint}": np.degrees(angle)
+            for (link, joint), angle in transmission_angles(motion).items()
+        },
+        condition=motion.condition,
+        shaking_force=force,
+        shaking_moment=moment,
+        shaking_about=about,
+        ledger=_ledger(dynamics, over),
+        extremes=None if over is None else _extremes(over),
+        slider_forces=_slider_forces(dynamics),
+    )
+
+
+def _ledger(dynamics: Dynamics, over: OverTime | None) -> plain.PowerLedger:
+    powers = ledger(dynamics)
+    return plain.PowerLedger(
+        drives=powers.drives,
+        gravity=powers.gravity,
+        applied=powers.applied,
+        friction=powers.friction,
+        kinetic_rate=powers.kinetic_rate,
+        violation=powers.violation if over is None else over.violation,
+    )
+
+
+def _slider_forces(dynamics: Dynamics) -> dict[str, plain.GuideForces]:
+    found = dynamics.sliders
+    return {
+        s.name: plain.GuideForces(found.normal[:, k], found.couple[:, k], found.friction[:, k])
+        for k, s in enumerate(dynamics.motion.linkage.sliders)
+    }
+
+
+def _leg(study: Study, name: str, case: CaseLoads) -> plain.LegTable:
+    found, times = case.leg, case.reactions.times
+    assert found is not None
+    assert times is not None
+
+    def quantity(key: str, dimension: str) -> plain.Dimensioned:
+        return plain.Dimensioned(getattr(found, key), dimension, study.system.unit(dimension))
+
+    beta = plain.Dimensioned(np.degrees(found.motion.beta), "degrees", "deg")
+    axes = "x' to the aircraft's right, y' ahead, z' up from the slope"
+    return plain.LegTable(
+        name,
+        times,
+        {key: quantity(key, LEG[kind]) for key, kind in LEG_VECTORS.items()},
+        {"beta": beta, **{key: quantity(key, "energy") for key in LEG_SCALARS}},
+        axes,
+    )
+
+
+def _joints_to_draw(linkage: Linkage, body: str) -> tuple[str, ...]:
+    """Joints on a body, around their middle so that lines between them do not cross."""
+    joints = linkage.joints_on(body)
+    at = np.array([complex(*j.at) for j in joints])
+    if len(joints) < 4:
+        return tuple(j.name for j in joints)
+    return tuple(joints[i].name for i in np.argsort(np.angle(at - at.mean()), kind="stable"))
+
+
+def _direction(dynamics: Dynamics, body: str) -> Floats:
+    """(T,) degrees from x of the line from the body's first joint to its second, or with fewer
+    joints of the slider it belongs to; NaN for a particle.
+    """
+    motion, linkage = dynamics.motion, dynamics.motion.linkage
+    joints = linkage.joints_on(body)
+    lines = [s.axis for s in linkage.sliders if body in (s.base, s.moving)]
+    if len(joints) > 1:
+        lines = [(joints[1].at[0] - joints[0].at[0], joints[1].at[1] - joints[0].at[1])]
+    if not lines:
+        return np.full(len(motion), np.nan)
+    x, y = lines[0]
+    return np.asarray(np.degrees(np.arctan2(y, x) + motion.angle(body)))

@@ -1,0 +1,113 @@
+"""What is to be solved of a study, every input read and found usable."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import partial
+
+from fea.core.memory import allowed_memory
+from fea.solve_pin import Asked, Model
+from pinstress.analysis import checks
+from pinstress.analysis.gather_fields import Also
+from pinstress.analysis.published_quantities import published_values
+from pinstress.model.cases import CaseLoads, case_loads
+from pinstress.model.linkage import determined, linkage
+from pinstress.model.pins import pin as pin_of
+from pinstress.model.tasks import Task, tasks
+from pinstress.schema.shown import shown
+from pinstress.study.choices import require_model, require_positive, require_tolerance, select
+from pinstress.study.errors import Errors, InputError
+from pinstress.study.file import Study
+from pinstress.study.published_tables import Published, read_published
+
+
+def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
+    """The reactions of every case, by name. Raises: InputError with what is wrong in any."""
+    mechanism = linkage(study) if study.table.mechanism else None
+    if mechanism is not None:
+        determined(study, mechanism)  # once, not in every case
+    wrong = Errors(study.path)
+    found = {name: wrong.attempt(partial(case_loads, study, name, mechanism)) for name in cases}
+    wrong.tell()
+    return {name: loads for name, loads in found.items() if loads is not None}
+
+
+@dataclass(frozen=True)
+class Plan:
+    """All that is known before anything is solved: every input is read and found usable.
+
+    checked: the task whose pin the beam check compares, if any. also: which fields are wanted
+    beside those of the model at the governing instant.
+    """
+
+    study: Study
+    asked: Asked
+    loads: dict[str, CaseLoads]
+    tasks: list[Task]
+    published: Published
+    checked: Task | None
+    also: Also = None
+
+
+def prepare(
+    study: Study,
+    *,
+    pins: Iterable[str] | None = None,
+    cases: Iterable[str] | None = None,
+    model: Model | None = None,
+    tolerance: float | None = None,
+    memory: float | None = None,
+    also: Also = None,
+) -> Plan:
+    """Find the reactions and lay out what is to be solved.
+
+    pins, cases: names; all by default. model, tolerance: instead of the study's. memory: MB that a
+    solid may take, by default most of what is free now. also: fields along the whole motion, or of
+    all of a revolved pin.
+
+    Raises: InputError for bad input.
+    """
+    if not isinstance(study, Study):
+        raise InputError(f"{shown(study)} is no study; pinstress.load_study reads one from a file")
+    names = select(study.table.pin, pins, "pin")
+    chosen = select(study.table.case, cases, "case")
+    asked = _asked(study, require_model(model), require_tolerance(tolerance), memory)
+    wrong = Errors(study.path)
+    published = wrong.attempt(lambda: read_published(study))
+    loads = wrong.attempt(lambda: all_loads(study, chosen))
+    shapes = {name: wrong.attempt(partial(pin_of, study, name)) for name in names}
+    wrong.tell()
+    assert published is not None
+    assert loads is not None
+    checks.motion_check(study, loads, published)  # mistakes there should not wait for the stresses
+    published_values(study, loads, published)
+    todo = tasks(study, [pin for pin in shapes.values() if pin is not None], loads)
+    check, checked = study.table.beam_check, None
+    if check is not None:
+        choice = (t for t in todo if t.pin.name == check.pin and check.case in t.left_out)
+        checked = next(choice, None)
+        if checked is not None:
+            checks.require_cantilever(study, checked, check.case)
+    for task in todo:
+        if asked.model in ("beam", "harmonic") and not task.pin.revolved:
+            raise study.error(
+                f"pin {task.pin.name} is no body of revolution, which the "
+                f"{asked.model} model needs: use auto or solid",
+                at=f"pin.{task.pin.name}",
+            )
+    return Plan(study, asked, loads, todo, published, checked, also)
+
+
+def _asked(
+    study: Study, model: Model | None, tolerance: float | None, memory: float | None
+) -> Asked:
+    table = study.table.analysis
+    return Asked(
+        tolerance or table.tolerance,
+        model or table.model,
+        table.goal,
+        table.required_safety_factor,
+        table.excluded_distance,
+        memory=allowed_memory(require_positive("memory_limit", memory, endless=True)),
+    )

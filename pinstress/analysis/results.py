@@ -1,0 +1,177 @@
+"""What `pinstress.run` returns: the results that the command writes, with what a notebook wants."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterable
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from fea.solve_pin import Model
+from pinstress.analysis.gather import results_of
+from pinstress.analysis.plan import Plan, prepare
+from pinstress.analysis.solve import keep_none, solve_tasks
+from pinstress.processes.pool import processes
+from pinstress.study.file import Study
+from reports.data.results import Field, Results
+from reports.tables.all import load_tables, stress_tables
+from reports.tables.table import Table
+from reports.text.html import safety_factors_html
+from reports.text.summary import summary
+
+if TYPE_CHECKING:
+    import pandas
+    import polars
+    import pyvista
+
+
+class Png:
+    """A PNG that notebooks show."""
+
+    def __init__(self, png: bytes) -> None:
+        self.png = png
+
+    def _repr_png_(self) -> bytes:
+        return self.png
+
+
+@dataclasses.dataclass(frozen=True, repr=False)
+class Found(Results):
+    """Results in the study's units, with tables, frames, and fields by pin and case.
+
+    fields: those that were kept. plan: to solve a pin again for fields that were not.
+    """
+
+    fields: dict[tuple[str, str], Field] = dataclasses.field(default_factory=dict)
+    plan: Plan | None = None
+
+    def __repr__(self) -> str:
+        return f"<{self.title}: {summary(self)}>"
+
+    def _repr_html_(self) -> str:
+        return safety_factors_html(self)
+
+    @property
+    def tables(self) -> dict[str, Table]:
+        """All tables of the run by name: columns, and rows with every digit."""
+        return {t.name: t for t in (*stress_tables(self), *load_tables(self))}
+
+    def to_pandas(self, table: str = "safety_factors") -> pandas.DataFrame:
+        """A table as a pandas frame. Raises: ImportError without pandas, ValueError."""
+        found, library = self._table(table), _library("pandas")
+        frame: pandas.DataFrame = library.DataFrame(list(found.rows), columns=list(found.columns))
+        return frame
+
+    def to_polars(self, table: str = "safety_factors") -> polars.DataFrame:
+        """A table as a polars frame. Raises: ImportError without polars, ValueError."""
+        found, library = self._table(table), _library("polars")
+        rows, columns = [list(row) for row in found.rows], list(found.columns)
+        frame: polars.DataFrame = library.DataFrame(
+            rows, schema=columns, orient="row", infer_schema_length=None
+        )
+        return frame
+
+    def to_pyvista(self, pin: str, case: str) -> pyvista.UnstructuredGrid:
+        """A pin's mesh with its fields at the governing instant, as its VTU file has them.
+
+        Raises: ValueError when the run kept no such field.
+        """
+        import pyvista
+
+        from reports.vtk.fields import block
+        from reports.vtk.writer import grid
+
+        content = block(self._field(pin, case), self.units)
+        made: pyvista.UnstructuredGrid = pyvista.wrap(grid(content))
+        return made
+
+    mesh = to_pyvista  # its name before
+
+    def picture(self, pin: str, case: str) -> Png:
+        """A pin coloured by its von Mises stress.
+
+        Raises: ValueError as `to_pyvista`, RuntimeError where nothing can be drawn.
+        """
+        import tempfile
+        from pathlib import Path
+
+        from reports.vtk.render import render_pin
+        from reports.vtk.renderer import renderer_problem
+
+        field = self._field(pin, case)
+        problem = renderer_problem()
+        if problem is not None:
+            raise RuntimeError(f"no picture of pin {pin}: {problem}")
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "pin.png"
+            render_pin(field, path, self.units, f"pin {pin}, {case} ({field.verdict})")
+            return Png(path.read_bytes())
+
+    def _table(self, name: str) -> Table:
+        tables = self.tables
+        if name not in tables:
+            raise ValueError(f"this run has no table {name!r}; there are {', '.join(tables)}")
+        return tables[name]
+
+    def _field(self, pin: str, case: str) -> Field:
+        if self.plan is not None and not any(row[0] == pin for row in self.fields):
+            tasks = [task for task in self.plan.tasks if task.pin.name == pin]
+            solve_tasks(dataclasses.replace(self.plan, tasks=tasks), self._keep)
+        if (pin, case) not in self.fields:
+            there = ", ".join(f"{p} in {c}" for p, c in self.fields) or "none"
+            raise ValueError(f"no field of pin {pin} in {case}; there are {there}")
+        return self.fields[pin, case]
+
+    def _keep(self, field: Field) -> None:
+        self.fields[field.pin, field.case] = field
+
+
+def _library(name: str) -> Any:
+    try:
+        return import_module(name)
+    except ImportError:
+        raise ImportError(
+            f"to_{name} needs {name}, which is not installed: pip install {name}", name=name
+        ) from None
+
+
+def run(
+    study: Study,
+    *,
+    pins: Iterable[str] | None = None,
+    cases: Iterable[str] | None = None,
+    model: Model | None = None,
+    tolerance: float | None = None,
+    memory_limit: float | None = None,
+    fields: bool = False,
+    jobs: int | None = 1,
+) -> Found:
+    """Analyse a study.
+
+    pins, cases: names; all by default. model, tolerance: instead of the study's. memory_limit: MB
+    that a solid may take, by default most of what is free. fields: whether to keep every pin's
+    field (some 10 MB each) for `to_pyvista` and `picture`, which solve the pin again otherwise.
+    jobs: pins at a time, each in a process of its own (None: as many as there are cores); 1, in
+    this process, where fields are kept or other threads run. A pin whose numerics fail has the
+    verdict `failed`.
+
+    Raises: InputError for bad input.
+    """
+    most = processes(jobs)
+    plan = prepare(
+        study, pins=pins, cases=cases, model=model, tolerance=tolerance, memory=memory_limit
+    )
+    return solve(plan, fields=fields, jobs=most)
+
+
+def solve(plan: Plan, *, fields: bool = False, jobs: int | None = 1) -> Found:
+    """Solve what `prepare` laid out; fields, jobs: as in `run`."""
+    kept: dict[tuple[str, str], Field] = {}
+
+    def keep(field: Field) -> None:
+        kept[field.pin, field.case] = field
+
+    most = 1 if fields else processes(jobs)
+    results = results_of(plan, solve_tasks(plan, keep if fields else keep_none, jobs=most))
+    plain = {f.name: getattr(results, f.name) for f in dataclasses.fields(Results)}
+    return Found(**plain, fields=kept, plan=plan)

@@ -1,0 +1,146 @@
+"""The tasks of a plan, solved side by side: of each there remains what is small."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+
+from fea.checks.calculix_compare import Opinion
+from fea.core.memory import allowed_memory, solid_memory
+from fea.core.peak import Peak
+from fea.solve_pin import MOST_UNKNOWNS, solve_pin
+from pinstress.analysis import checks, gather, gather_fields
+from pinstress.analysis.gather_surface import surface_of
+from pinstress.analysis.plan import Plan
+from pinstress.analysis.stored import Entry, Solved, lasting, question
+from pinstress.cache.store import Cache
+from pinstress.model.pins import lost_shape
+from pinstress.model.tasks import Task
+from pinstress.processes.pool import Died, Job, Progress, Tell, side_by_side
+from reports.data.in_units import Unit, in_units
+from reports.data.results import Field
+
+Keep = Callable[[Field], None]
+Ask = Callable[[Task, tuple[Peak, ...], Tell], tuple[Opinion, ...]]
+
+
+def keep_none(_: Field) -> None:
+    """Keep no field. Not a lambda: it is sent to processes that are started anew."""
+
+
+def _ask_none(_: Task, __: tuple[Peak, ...], ___: Tell) -> tuple[Opinion, ...]:
+    return ()
+
+
+def solve_tasks(
+    plan: Plan,
+    keep: Keep = keep_none,
+    progress: Progress = lambda _, __: None,
+    ask: Ask = _ask_none,
+    jobs: int = 1,
+    cache: Cache | None = None,
+) -> list[Solved]:
+    """What is found of every task of a plan, in their order, `jobs` of them at a time, each in its
+    own process (pinstress.processes.pool); with 1, in this one. The answers are the same to the
+    last bit.
+
+    keep: called with every field, in the study's units, as soon as it is there. ask: for a second
+    opinion on a task's peaks, with what to report progress to. Both are called in the task's
+    process. progress: called with what is being done and the part of the work that is behind.
+    cache: where tasks that were solved before are found, and the others kept.
+
+    A task whose numerics fail has the verdict `failed`; the others go on.
+    """
+    show = partial(_in_units, plan.study.system.factor, keep)
+    order = sorted(range(len(plan.tasks)), key=lambda i: _effort(plan, plan.tasks[i]), reverse=True)
+    work = [
+        Job(f"pin {task.pin.name}", partial(_attempt, plan, task, show, ask, cache))
+        for task in (plan.tasks[i] for i in order)
+    ]
+    found: dict[int, Solved] = {}
+    for i, made in zip(order, side_by_side(work, _together(plan, jobs), progress), strict=True):
+        found[i] = _failed(plan, plan.tasks[i], made.reason) if isinstance(made, Died) else made
+    return [found[i] for i in range(len(plan.tasks))]
+
+
+def _in_units(unit: Unit, keep: Keep, field: Field) -> None:
+    keep(in_units(field, unit))
+
+
+def _together(plan: Plan, jobs: int) -> int:
+    """So many of the jobs as there is memory for, if they are solids as large as they may get."""
+    if not any(_effort(plan, task)[0] for task in plan.tasks):
+        return jobs
+    room = allowed_memory(plan.asked.memory) / solid_memory(MOST_UNKNOWNS["solid"])
+    return max(1, min(jobs, int(room)))
+
+
+def _effort(plan: Plan, task: Task) -> tuple[bool, int, int]:
+    """What takes longer has more of: tetrahedra, then cases, then instants."""
+    solid = plan.asked.model == "solid" or not task.pin.revolved
+    return solid, len(task.loads), sum(map(len, task.loads))
+
+
+def _attempt(
+    plan: Plan, task: Task, keep: Keep, ask: Ask, cache: Cache | None, tell: Tell
+) -> Solved:
+    try:
+        if cache is None:
+            solved = _solve(plan, task, keep, tell)
+        else:
+            solved = _solve_once(plan, task, keep, cache, tell)
+        return replace(solved, opinions=ask(task, solved.peaks, tell))
+    except MemoryError:
+        return _failed(plan, task, "out of memory; a larger tolerance needs less")
+    except ArithmeticError as error:  # MeshError, SolveError and what numpy raises
+        return _failed(plan, task, str(error))
+
+
+def _solve_once(plan: Plan, task: Task, keep: Keep, cache: Cache, tell: Tell) -> Solved:
+    """From the cache; else solved, and kept there."""
+    key = cache.key(question(plan, task))
+    entry = cache.read(key, Entry)
+    if entry is not None and entry.answers(task):
+        tell(f"pin {task.pin.name}, as solved before")
+        for field in entry.fields:
+            keep(field)
+        return replace(entry.solved, before=True)
+    fields: list[Field] = []
+
+    def keep_both(field: Field) -> None:
+        keep(field)
+        fields.append(field)
+
+    solved = _solve(plan, task, keep_both, tell)
+    if lasting(plan, task, solved.peaks):
+        cache.write(key, Entry(solved, tuple(fields)))
+    return solved
+
+
+def _failed(plan: Plan, task: Task, reason: str) -> Solved:
+    return Solved(
+        tuple(Peak(task.pin.name, c.case, plan.asked.model, "failed", reason) for c in task.loads)
+    )
+
+
+def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
+    study = plan.study
+    found = solve_pin(
+        task.pin, task.material, task.clamps, task.loads, plan.asked, tell, task.between
+    )
+    for solution in found:
+        case = plan.loads[solution.peak.case]
+        field = gather_fields.field(task, solution, case, plan.also)
+        if field is not None:
+            tell(f"pin {task.pin.name}, pictures")
+            keep(field)
+    lost = lost_shape(task.pin)
+    peaks = tuple(replace(s.peak, note="; ".join(filter(None, (s.peak.note, lost)))) for s in found)
+    ranges = (gather.landing_range(plan.loads, task, s) for s in found)
+    landing = tuple(r for r in ranges if r is not None)
+    beam = None
+    if task is plan.checked and study.table.beam_check is not None:
+        tell(f"pin {task.pin.name}, beam check")
+        beam = checks.beam_check(study, task)
+    return Solved(peaks, landing, beam, surface_of(plan.loads, task, found))

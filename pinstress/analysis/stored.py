@@ -1,0 +1,104 @@
+"""What remains of a solved pin, what it depends on, and whether it can be kept for other runs."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, replace
+from math import inf
+
+from fea.checks.calculix_compare import Opinion
+from fea.checks.records import BeamCheck
+from fea.core.memory import too_much
+from fea.core.peak import Peak
+from fea.solve_pin import MESHES, MOST_UNKNOWNS, count_loads, unknowns_after
+from geometry import CutPin, Pin, PinLike
+from loads import read_regular
+from pinstress.analysis.plan import Plan
+from pinstress.model.tasks import Task
+from reports.data.results import Field, LandingRange
+from reports.data.surface import Surface
+
+
+@dataclass(frozen=True)
+class Solved:
+    """A task's peaks in the order of its cases, and what else reports and CalculiX have to say.
+    before: whether an earlier run found it.
+    """
+
+    peaks: tuple[Peak, ...]
+    landing: tuple[LandingRange, ...] = ()
+    beam: BeamCheck | None = None
+    surface: Surface | None = None
+    opinions: tuple[Opinion, ...] = ()
+    before: bool = False
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What the cache has of a task."""
+
+    solved: Solved
+    fields: tuple[Field, ...]
+
+    def answers(self, task: Task) -> bool:
+        """Whether it is of this pin in these cases: files are named after them."""
+        rows = [(task.pin.name, loads.case) for loads in task.loads]
+        own = [(p.pin, p.case) for p in self.solved.peaks]
+        return own == rows and {(f.pin, f.case) for f in self.fields} <= set(rows)
+
+
+def question(plan: Plan, task: Task) -> object:
+    """All that the answer to a task depends on, but for versions and memory, as what
+    pinstress.cache.serialise takes.
+    """
+    study, cases = plan.study, [plan.loads[loads.case] for loads in task.loads]
+    check = study.table.beam_check if task is plan.checked else None
+    return (
+        _shape(task.pin),
+        task.clamps,
+        task.loads,
+        task.left_out,
+        task.ranges,
+        [(case.reactions.times, case.range) for case in cases],
+        task.material,
+        replace(plan.asked, memory=None),
+        plan.also,
+        study.system,
+        None if check is None else check.model_dump(),
+    )
+
+
+def _shape(pin: PinLike) -> object:
+    if isinstance(pin, Pin | CutPin):
+        return pin
+    from geometry.imported.imported_pin import SolidBody
+    from geometry.mesh.solid_mesh import MeshSize
+    from pinstress.model.imported_pin import LARGEST_BODY
+
+    assert isinstance(pin, SolidBody)
+    file = pin.file
+    content = hashlib.sha256(read_regular(file.path, LARGEST_BODY)).hexdigest()
+    mesh = None
+    if pin.meshed:  # some formats have other files beside them: what was read counts
+        read = pin.mesh(MeshSize()).mesh
+        mesh = read.doflocs, read.t, read.boundaries
+    return file.name, file.path.suffix, file.unit, file.places, content, mesh
+
+
+def lasting(plan: Plan, task: Task, peaks: tuple[Peak, ...]) -> bool:
+    """Whether more memory would not have given another answer (fea.solve_pin stops there)."""
+    open_ = [
+        p
+        for p in peaks
+        if p.model in MESHES
+        and p.max_von_mises is not None
+        and (p.own_error or inf) > plan.asked.tolerance * p.max_von_mises
+    ]
+    if not open_:
+        return True
+    model = open_[0].model
+    if len(open_[0].history) >= (plan.asked.meshes or MESHES[model]):
+        return True
+    finer = unknowns_after(task.pin, model, max(p.dofs for p in open_))
+    loads = count_loads(task.loads) if model == "harmonic" else 0
+    return finer > MOST_UNKNOWNS[model] or not too_much(finer, plan.asked.memory, loads)

@@ -1,0 +1,1 @@
+"""Answers and drawings of earlier runs, found by what they depend on."""

@@ -1,0 +1,1 @@
+"""Error against time and memory, for every model and mesh."""

@@ -1,0 +1,72 @@
+"""The `chart` command: solve all meshes, write the output folder, print the table."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+
+import click
+
+from pinstress.chart.chart import chart, plan_chart
+from pinstress.chart.measured_process import MeasureLimits, measure
+from pinstress.cli.output_folder import replacing, require_replaceable
+from pinstress.cli.run import PLOTTERS, console, progress_bar
+from pinstress.cli.streams import unneeded
+from pinstress.processes.pool import preload
+from pinstress.processes.system import portable
+from pinstress.study.choices import require_positive
+from pinstress.study.errors import InputError
+from pinstress.study.file import Study
+from reports.data.chart import NAME, Chart
+from reports.format.file_names import plot_name
+from reports.tables.chart import write_chart_csv
+from reports.text.chart import print_chart
+from reports.text.chart_summary import percent
+
+MARK = f"{NAME}.csv"
+
+
+def chart_and_write(
+    study: Study,
+    pin: str,
+    case: str,
+    out: Path | None,
+    tolerance: float | None,
+    meshes: int | None,
+    runs: int,
+    limits: MeasureLimits,
+) -> int:
+    """Chart a pin into a folder; returns the exit status. Raises: InputError, ArithmeticError."""
+    if portable():
+        raise InputError("chart measures the memory of processes, which is done on Linux only")
+    preload(*PLOTTERS)
+    from reports.plots.chart import chart_plot
+
+    directory = out or Path("out") / plot_name(f"{study.name}-{NAME}", pin, case)
+    require_replaceable(directory, MARK)
+    require_positive("time_limit", limits.seconds, endless=True)
+    require_positive("memory_limit", limits.memory, endless=True)
+    plan = plan_chart(study, pin, case, tolerance)
+    with replacing(directory, MARK) as staging:
+        with progress_bar() as progress:
+            found = chart(plan, partial(measure, limits=limits), meshes, runs, progress)
+        write_chart_csv(found, staging)
+        chart_plot(found, staging)
+    with unneeded(directory):
+        print_chart(found, console())
+    click.echo(f"Chart: {directory / NAME}.svg", err=True)
+    return _report_missed(found)
+
+
+def _report_missed(found: Chart) -> int:
+    tolerance, reference = percent(found.tolerance), found.reference.error
+    if reference > found.tolerance:
+        click.echo(
+            f"Not decided: the reference itself has an error of {percent(reference)}, which "
+            f"exceeds the tolerance of {tolerance}.", err=True,
+        )  # fmt: skip
+        return 1
+    if not any(p.error is not None and p.error <= found.tolerance for p in found.points):
+        click.echo(f"Not converged: no mesh is within the tolerance of {tolerance}.", err=True)
+        return 1
+    return 0

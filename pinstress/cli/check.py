@@ -1,0 +1,111 @@
+"""Describe what a study would run, without solving."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from loads import Linkage
+from loads.closed_form.four_bar import four_bar
+from pinstress.model.cases import case_loads
+from pinstress.model.linkage import determined, linkage, span
+from pinstress.model.pins import lost_shape, weight
+from pinstress.model.pins import pin as pin_of
+from pinstress.schema.cases import GivenCase, LegCase, MotionCase
+from pinstress.schema.pins import PinTable
+from pinstress.study.errors import Errors
+from pinstress.study.file import Study
+from pinstress.study.published_tables import read_published
+
+
+def describe(study: Study) -> str:
+    """A summary of a valid study. Raises: InputError for errors that involve several tables."""
+    table = study.table
+    lines = [f"{study.path}: {table.title}", f"units {study.system.name}"]
+    wrong = Errors(study.path)
+    wrong.attempt(lambda: read_published(study))
+    mechanism = wrong.attempt(lambda: linkage(study)) if table.mechanism else None
+    if mechanism is not None:
+        described = wrong.attempt(partial(_mechanism, study, mechanism))
+        lines += described or []
+        mechanism = mechanism if described else None  # its cases would say the same again
+    for name, case in table.case.items():
+        if mechanism is not None or isinstance(case, GivenCase | LegCase):
+            lines.append(wrong.attempt(partial(_case, study, name, mechanism)) or "")
+    lines += [wrong.attempt(partial(_pin, study, name)) or "" for name in table.pin]
+    wrong.tell()
+    a = table.analysis
+    goal = (
+        f", required safety factor {a.required_safety_factor:g}" if a.required_safety_factor else ""
+    )
+    lines.append(f"model {a.model}, tolerance {a.tolerance:g}{goal}")
+    return "\n".join(lines)
+
+
+def _pin(study: Study, name: str) -> str:
+    pin, p, system = pin_of(study, name), study.table.pin[name], study.system
+    ways = dict.fromkeys(study.clamps(name, case) for case in study.table.case)
+    clamped = " or ".join(", ".join(w) or "nowhere (loads must balance)" for w in ways)
+    density = study.table.material[p.material].density
+    heavy = ""
+    if density:
+        heavy = f", {weight(pin, density) / system.factor('force'):.4g} {system.force}"
+    return (
+        f"pin {name}: {p.material}, {_form(p)}{heavy}; "
+        f"loaded at {', '.join(pin.connections) or 'nothing'}; clamped at {clamped}"
+        + (f"; {lost}" if (lost := lost_shape(pin)) else "")
+    )
+
+
+def _form(pin: PinTable) -> str:
+    if pin.profile is None:
+        return f"from {pin.geometry}"
+    counted = ((len(pin.profile), "segment"), (len(pin.hole), "hole"), (len(pin.flat), "flat"))
+    return ", ".join(f"{n} {what}{'s' * (n > 1)}" for n, what in counted if n)
+
+
+def _mechanism(study: Study, mechanism: Linkage) -> list[str]:
+    found = determined(study, mechanism)
+    lines = [
+        f"mechanism: {len(mechanism.bodies)} bodies, {len(mechanism.joints)} joints, "
+        f"{len(mechanism.connections)} connections, driven by {', '.join(mechanism.driven)}"
+    ]
+    counted = f"mobility {found.degrees}"
+    if found.kutzbach != found.degrees:
+        counted += f" by rank, {found.kutzbach} by count (Kutzbach)"
+    if ring := four_bar(mechanism):
+        counted += f"; four-bar {'-'.join(ring.joints)}: {ring.kind}, assembled {ring.branch}"
+    if not found.redundant:
+        return [*lines, counted]
+    if found.shared and not mechanism.sharing:
+        raise study.error(
+            "mechanism: rigid-body statics does not determine the forces at "
+            f"{', '.join(found.shared)}; state how they share the load in [[mechanism.sharing]]",
+            code="statically-indeterminate",
+        )
+    rule = ", ".join(f"{'/'.join(s.connections)}" for s in mechanism.sharing)
+    return [
+        *lines,
+        f"{counted}; {found.redundant} redundant: the forces at {', '.join(found.shared)} follow "
+        f"the sharing rule for {rule}",
+    ]
+
+
+def _case(study: Study, name: str, mechanism: Linkage | None) -> str:
+    return f"case {name}: {_words(study, name, mechanism)}"
+
+
+def _words(study: Study, name: str, mechanism: Linkage | None) -> str:
+    case, table = study.table.case[name], study.table.spatial_leg
+    reactions = case_loads(study, name, mechanism, extremes=False).reactions  # it can follow
+    if isinstance(case, GivenCase):
+        many = f"{len(reactions)} instants" if reactions.times is not None else "one instant"
+        return f"given, {many}, connections {', '.join(reactions.connections)}"
+    if isinstance(case, LegCase):
+        assert table is not None
+        return f"spatial leg, {case.samples} instants over {table.fold.duration:g} s"
+    assert mechanism is not None
+    loads = ", ".join(f"{load.body}" for load in case.apply)
+    if isinstance(case, MotionCase):
+        also = f", loads on {loads}" if loads else ""
+        return f"motion, {case.samples} instants over {span(study):g} s{also}"
+    return f"{case.kind}, {f'loads on {loads}' if loads else 'gravity only'}"

@@ -1,0 +1,113 @@
+"""The closing lines of a run on stderr: loads left out, reused pins, unconverged rows."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterable
+from typing import TypeVar
+
+import click
+
+from pinstress.analysis.plan import Plan
+from pinstress.analysis.stored import Solved
+from reports.data.results import PinResult, Results, SingularZone
+from reports.format.words import outcome
+
+Reason = TypeVar("Reason", bound=Hashable)
+DESCRIBED = {
+    "singular": "singular",
+    "unconverged": "not converged",
+    "rigid": "rigid",
+}
+
+
+def report_left_out(results: Results) -> None:
+    """The forces that were left out because their band is clamped, one line per pin."""
+    ways: dict[tuple[str, tuple[str, ...]], list[str]] = {}
+    for p in results.pins:
+        if p.left_out:
+            ways.setdefault((p.pin, p.left_out), []).append(p.case)
+    for (pin, connections), cases in ways.items():
+        click.echo(
+            f"Pin {pin}, {', '.join(cases)}: the force at {', '.join(connections)} is left out, "
+            "because the pin is clamped there.",
+            err=True,
+        )
+
+
+def report_reused(plan: Plan, found: list[Solved]) -> None:
+    """How many pins were taken from the cache."""
+    pins = {task.pin.name for task in plan.tasks}
+    anew = {t.pin.name for t, made in zip(plan.tasks, found, strict=True) if not made.before}
+    if pins - anew:
+        click.echo(
+            f"{len(pins - anew)} of {len(pins)} pin{'s' * (len(pins) > 1)} reused from the cache "
+            "(--no-cache solves all again).",
+            err=True,
+        )
+
+
+def report_missed(results: Results, decide: bool) -> int:
+    """The rows without a converged maximum and those that failed; returns the exit status.
+
+    decide: whether the study only requests a decision on the required factor.
+    """
+    failed = [p for p in results.pins if p.verdict == "failed"]
+    missed = [
+        p
+        for p in results.pins
+        if p.verdict not in ("converged", "failed")
+        and not (decide and p.meets_required is not None)
+    ]
+    for line in _lines(missed):
+        click.echo(line, err=True)
+    for which, reason in _together((p, p.note) for p in failed):
+        click.echo(f"Error: the numerics failed: {_listed(which)}: {reason}", err=True)
+    return 3 if failed else int(bool(missed))
+
+
+def _lines(rows: Iterable[PinResult]) -> list[str]:
+    """A line for each result and reason: Not decided, singular at ...: A (landing), B (landing)."""
+    lines = []
+    for which, (result, verdict, reason) in _together(
+        (p, (outcome(p), p.verdict, _reason(p))) for p in rows
+    ):
+        head = f"{result.capitalize()}, {DESCRIBED[verdict]}"
+        if verdict == "singular":
+            lines.append(f"{head}{reason}{_between(which)}: {_listed(which)}.")
+        else:
+            lines.append(f"{head}: {_listed(which)}: {reason}.")
+    return lines
+
+
+def _together(rows: Iterable[tuple[PinResult, Reason]]) -> list[tuple[list[PinResult], Reason]]:
+    """Rows with equal reasons together, in the order of the rows."""
+    found: dict[Reason, list[PinResult]] = {}
+    for pin, reason in rows:
+        found.setdefault(reason, []).append(pin)
+    return [(which, reason) for reason, which in found.items()]
+
+
+def _reason(pin: PinResult) -> str:
+    if pin.verdict != "singular":
+        return pin.note
+    worst = _governing(pin)
+    return f" at {worst.kind}" if worst else ""
+
+
+def _governing(pin: PinResult) -> SingularZone | None:
+    zones = [zone for zone in pin.singular_at if zone.governs]
+    return max(zones, key=lambda zone: zone.max_von_mises, default=None)
+
+
+def _between(rows: list[PinResult]) -> str:
+    """The surfaces that meet at the singularity, if it is the same in all rows."""
+    found = {zone.between for pin in rows if (zone := _governing(pin))}
+    return f" ({' / '.join(found.pop())})" if len(found) == 1 else ""
+
+
+def _listed(rows: list[PinResult]) -> str:
+    """Pins with their cases: A (retract, landing), B (landing)."""
+    cases: dict[str, list[str]] = {}
+    for p in rows:
+        cases.setdefault(p.pin, []).append(p.case)
+    return ", ".join(f"{pin} ({', '.join(names)})" for pin, names in cases.items())

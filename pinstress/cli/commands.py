@@ -1,0 +1,280 @@
+"""The command line. Data go to stdout, progress and messages to stderr.
+
+Numeric libraries are imported inside the commands that need them, so that `check` starts fast.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from pinstress.cli.environment import settle_surroundings
+from pinstress.cli.more_commands import completion, init, schema, size, view
+from pinstress.cli.shared import example, names, read_study
+from pinstress.processes import interrupts
+from pinstress.processes.interrupts import INTERRUPTED
+from pinstress.study.choices import ChoiceError
+from pinstress.study.errors import InputError, clipped
+
+if TYPE_CHECKING:
+    from fea.solve_pin import Model
+
+REACHED, NOT_REACHED, BAD_INPUT, NUMERICS_FAILED = 0, 1, 2, 3
+
+
+def run_command_line(arguments: list[str]) -> int:
+    """Exit status of a command: 0 done, 1 done but a requested result was not reached, 2 bad input,
+    3 the numerics failed, 130 interrupted.
+    """
+    interrupts.listen()
+    try:
+        status = commands.main(arguments, prog_name="pinstress", standalone_mode=False)
+        return int(status or REACHED)
+    except BaseException as error:
+        ended = INTERRUPTED if interrupts.came() else _status(error)
+        if ended is None:
+            raise
+        if ended == INTERRUPTED:
+            click.echo("Interrupted; nothing was written.", err=True)
+        return ended
+
+
+def _status(error: BaseException) -> int | None:
+    """Report the error that ended a command; its exit status, or None for a bug."""
+    match error:
+        case click.ClickException():
+            short = clipped(message := error.format_message())
+            (error if message == short else click.ClickException(short)).show()
+            return BAD_INPUT
+        case InputError():
+            about = error.of_option if isinstance(error, ChoiceError) else error
+            click.echo(f"Error: {about}", err=True)
+            return BAD_INPUT
+        case ArithmeticError():  # MeshError, SolveError and what numpy raises
+            click.echo(f"Error: the numerics failed: {error}", err=True)
+            return NUMERICS_FAILED
+        case MemoryError():
+            click.echo(
+                "Error: the numerics failed: out of memory; a larger --tolerance needs less",
+                err=True,
+            )
+            return NUMERICS_FAILED
+        case KeyboardInterrupt() | click.Abort():
+            return INTERRUPTED
+    return None
+
+
+@click.group(
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog="A first run: pinstress init trial && pinstress run trial/one_pin.toml",
+)
+@click.version_option(package_name="pinstress")
+def commands() -> None:
+    """Stresses and safety factors of the pins of a linkage."""
+    settle_surroundings()
+
+
+@commands.command(
+    short_help="Compute forces, stresses and safety factors; write the report.",
+    help=example("pinstress run studies/grenier2008.toml --pins B,E --out out/trial")
+    + "\nCompute reactions, stresses and safety factors. Prints the safety factor table; writes "
+    "tables, plots, VTK files and report.html.\n\n"
+    "Exit status: 0 done; 1 done, but a requested accuracy was not reached or CalculiX disagrees; "
+    "2 bad input; 3 the numerics failed; 130 interrupted.",
+)
+@click.argument("study", type=click.Path(path_type=Path))
+@click.option("--out", type=click.Path(path_type=Path), help="Output folder [out/<study name>].")
+@click.option("--pins", callback=names, metavar="A,B", help="Only these pins.")
+@click.option("--cases", callback=names, metavar="X,Y", help="Only these cases.")
+@click.option(
+    "--model",
+    type=click.Choice(["auto", "beam", "harmonic", "solid"]),
+    help="Override the study's model.",
+)
+@click.option(
+    "--tolerance",
+    type=click.FloatRange(0.0, 1.0, min_open=True, max_open=True),
+    help="Override the study's tolerance on the maximum stress.",
+)
+@click.option("--no-pictures", is_flag=True, help="No plots and no pictures of the pins (faster).")
+@click.option(
+    "--vtk",
+    type=click.Choice(["model", "surface", "solid", "motion", "none"]),
+    default="model",
+    show_default=True,
+    help="Fields for ParaView. model: the surface of a revolved pin, all of a solid model; "
+    "surface: surfaces only; solid: also the interior of revolved pins (large); motion: also a "
+    "time series of every motion (large).",
+)
+@click.option(
+    "--jobs",
+    type=click.IntRange(1),
+    metavar="N",
+    help="Number of parallel processes [number of cores]; does not affect the results.",
+)
+@click.option(
+    "--memory-limit",
+    type=click.FloatRange(0.0, min_open=True),
+    metavar="MB",
+    help="Memory limit of a model [80 % of free memory]; finer meshes are not solved.",
+)
+@click.option(
+    "--second-opinion",
+    type=click.Choice(["ccx"]),
+    help="Solve every row again with CalculiX on the solid model's mesh, and compare.",
+)
+@click.option("--no-cache", is_flag=True, help="Solve all pins again; do not reuse cached results.")
+@click.option("--json", "as_json", is_flag=True, help="Print results.json instead of the table.")
+@click.option("--quiet", is_flag=True, help="No progress bar, no notes; errors are still reported.")
+@click.option("--open", "opens", is_flag=True, help="Open the report in the browser when done.")
+def run(
+    study: Path,
+    out: Path | None,
+    pins: list[str] | None,
+    cases: list[str] | None,
+    model: Model | None,
+    tolerance: float | None,
+    no_pictures: bool,
+    vtk: str,
+    jobs: int | None,
+    memory_limit: float | None,
+    second_opinion: str | None,
+    no_cache: bool,
+    as_json: bool,
+    quiet: bool,
+    opens: bool,
+) -> int:
+    if second_opinion is not None:
+        _require_calculix()
+    loaded = read_study(study)
+    directory = out or Path("out") / loaded.name
+    from pinstress.cli.run import Wanted, run_and_write
+
+    second, cached = second_opinion is not None, not no_cache
+    wanted = Wanted(not no_pictures, second, vtk, as_json, quiet, opens, jobs, cached)
+    return run_and_write(
+        loaded,
+        directory,
+        wanted,
+        pins=pins,
+        cases=cases,
+        model=model,
+        tolerance=tolerance,
+        memory=memory_limit,
+    )
+
+
+def _require_calculix() -> None:
+    from fea.checks.calculix import installed
+
+    if not installed():
+        raise InputError(
+            "--second-opinion ccx: CalculiX is not installed (no command ccx); on Debian and "
+            "Ubuntu: sudo apt-get install --no-install-recommends calculix-ccx"
+        )
+
+
+@commands.command(
+    short_help="Compute the mechanism's forces only, without stresses.",
+    help=example("pinstress loads studies/bowman2019.toml")
+    + "\nCompute the mechanism only: reactions, drives, motion, plots and an animation of every "
+    "case.",
+)
+@click.argument("study", type=click.Path(path_type=Path))
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="Output folder [out/<study name>-loads]."
+)
+@click.option("--cases", callback=names, metavar="X,Y", help="Only these cases.")
+@click.option("--no-pictures", is_flag=True, help="No plots (faster).")
+@click.option("--quiet", is_flag=True, help="No notes; errors are still reported.")
+def loads(
+    study: Path, out: Path | None, cases: list[str] | None, no_pictures: bool, quiet: bool
+) -> int:
+    loaded = read_study(study)
+    from pinstress.cli.run import loads_and_write
+
+    directory = out or Path("out") / f"{loaded.name}-loads"
+    return loads_and_write(loaded, directory, plots=not no_pictures, cases=cases, quiet=quiet)
+
+
+@commands.command(
+    short_help="Chart error against time and memory for every model on one pin.",
+    help=example("pinstress chart studies/one_pin.toml --pin B --case landing")
+    + "\nChart the error of the maximum stress against time and memory for every model and mesh on "
+    "one of your pins. Prints a table; writes chart.csv, chart.svg and chart.png. Each mesh is "
+    "solved in its own process; takes about three minutes.\n\n"
+    "Exit status: 0 done; 1 done, but no result is within the tolerance, or the reference is not "
+    "accurate enough to tell; 2 bad input; 3 the numerics failed; 130 interrupted.",
+)
+@click.argument("study", type=click.Path(path_type=Path))
+@click.option("--pin", required=True, metavar="NAME", help="The pin.")
+@click.option("--case", required=True, metavar="NAME", help="The case (all its instants).")
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    help="Output folder [out/<study>-chart.PIN.CASE].",
+)
+@click.option(
+    "--tolerance",
+    type=click.FloatRange(0.0, 1.0, min_open=True, max_open=True),
+    help="Override the study's tolerance.",
+)
+@click.option(
+    "--meshes",
+    type=click.IntRange(1, 9),
+    help="Number of meshes per solid element type [5, or 4 if they get large]; each takes about "
+    "twice as long as the previous one.",
+)
+@click.option(
+    "--runs",
+    type=click.IntRange(1),
+    default=3,
+    show_default=True,
+    help="Number of runs per mesh; the median time is reported.",
+)
+@click.option(
+    "--time-limit",
+    type=click.FloatRange(0.0, min_open=True),
+    default=120.0,
+    show_default=True,
+    help="Time limit per mesh, s; slower ones are marked as failed. The reference has no limit.",
+)
+@click.option(
+    "--memory-limit", type=click.FloatRange(0.0, min_open=True), default=4000.0,
+    show_default=True, help="Memory limit per mesh, MB above the bare process.",
+)  # fmt: skip
+def chart(
+    study: Path,
+    pin: str,
+    case: str,
+    out: Path | None,
+    tolerance: float | None,
+    meshes: int | None,
+    runs: int,
+    time_limit: float,
+    memory_limit: float,
+) -> int:
+    loaded = read_study(study)
+    from pinstress.chart.measured_process import MeasureLimits
+    from pinstress.cli.chart import chart_and_write
+
+    limits = MeasureLimits(time_limit, memory_limit)
+    return chart_and_write(loaded, pin, case, out, tolerance, meshes, runs, limits)
+
+
+@commands.command(
+    short_help="Validate a study without solving it.",
+    help=example("pinstress check studies/grenier2008.toml")
+    + "\nRead and validate a study and all its files without solving; print what would be run.",
+)
+@click.argument("study", type=click.Path(path_type=Path))
+def check(study: Path) -> None:
+    from pinstress.cli.check import describe
+
+    click.echo(describe(read_study(study)))
+
+
+for _command in (init, schema, size, view, completion):
+    commands.add_command(_command)

@@ -1,0 +1,93 @@
+"""The list of our files in an output folder, `.pinstress.json`.
+
+Only listed files are ever removed. Links are not followed; a link counts as a file of its folder.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from contextlib import suppress
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+NAME = ".pinstress.json"
+PARTIAL = f"{NAME}.partial"
+SCHEMA = "pinstress-output/1"
+LARGEST = 10_000_000  # bytes
+
+
+def begin(folder: Path) -> None:
+    """Mark a folder as being written: everything in it is ours."""
+    _write(folder, [])
+
+
+def complete(folder: Path) -> None:
+    """Write the list of all files in a folder."""
+    _write(folder, sorted(entries(folder) - {NAME}))
+
+
+def ours(folder: Path) -> set[str] | None:
+    """What we may remove from a folder: the listed files, or everything if its writer was killed
+    while writing. None if the folder is not empty and has no list of ours.
+    """
+    there, known = entries(folder), listed(folder)
+    if known == {NAME} or there <= {PARTIAL}:
+        return there
+    return known
+
+
+def listed(folder: Path) -> set[str] | None:
+    """The files that we wrote into a folder, with the list itself; None without a list of ours."""
+    path = folder / NAME
+    try:
+        if not _is_file(path) or path.stat().st_size > LARGEST:
+            return None
+        content: Any = json.loads(path.read_text(encoding="utf-8"))
+        if content["schema"] != SCHEMA:
+            return None
+        names = {str(name) for name in content["files"]}
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+    return {NAME} | {n for n in names if ".." not in PurePosixPath(n).parts and n[:1] != "/"}
+
+
+def entries(folder: Path) -> set[str]:
+    """All entries of a folder, relative to it; folders end with a slash, links count as files."""
+    found = set()
+    for at, folders, files in os.walk(folder, onerror=_raise):
+        for name in folders + files:
+            path = Path(at, name)
+            ending = "/" if name in folders and not path.is_symlink() else ""
+            found.add(path.relative_to(folder).as_posix() + ending)
+    return found
+
+
+def remove(folder: Path, names: set[str]) -> None:
+    """Remove these entries of a folder."""
+    for name in sorted(names, key=len, reverse=True):  # contents before their folder
+        path = folder / name
+        if any(p.is_symlink() for p in path.parents if folder in p.parents):
+            continue  # it is outside this folder
+        with suppress(OSError):  # gone already, or not empty
+            path.rmdir() if name.endswith("/") else path.unlink()
+
+
+def _write(folder: Path, names: list[str]) -> None:
+    text = json.dumps({"schema": SCHEMA, "files": names}, indent=1, ensure_ascii=False)
+    partial = folder / PARTIAL
+    try:
+        with partial.open("x", encoding="utf-8") as file:
+            file.write(text + "\n")
+        partial.replace(folder / NAME)
+    except BaseException:
+        partial.unlink(missing_ok=True)
+        raise
+
+
+def _is_file(path: Path) -> bool:
+    return path.is_file() and not path.is_symlink()
+
+
+def _raise(error: OSError) -> None:
+    raise error

@@ -1,0 +1,147 @@
+"""The commands besides run, loads, chart and check: init, schema, size, view, completion."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from pinstress.cli.shared import example, names, read_study
+from pinstress.cli.streams import unneeded
+from pinstress.study.errors import InputError
+
+
+@click.command(
+    short_help="Write a small example study to start from.",
+    help=example("pinstress init trial")
+    + "\nWrite a small commented study, one_pin.toml, that runs as it is.",
+)
+@click.argument("directory", type=click.Path(path_type=Path, file_okay=False), default=Path("."))
+@click.option("--open", "opens", is_flag=True, help="Run it immediately and open the report.")
+def init(directory: Path, opens: bool) -> int:
+    from pinstress.cli.new_file import write_new
+    from pinstress.study.shipped import shipped
+
+    target = directory / "one_pin.toml"
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{target}: cannot be written ({error.strerror})") from None
+    write_new(target, shipped("one_pin.toml").read_bytes(), "name another folder")
+    with unneeded(target):
+        click.echo(str(target))
+    out = Path("out") / target.stem
+    if not opens:
+        click.echo(f"Next: pinstress run {target}  (writes {out / 'report.html'})", err=True)
+        return 0
+    from pinstress.cli.run import Wanted, run_and_write
+    from pinstress.study.file import load_study
+
+    return run_and_write(load_study(target), out, Wanted(opens=True))
+
+
+@click.command(
+    short_help="Print the JSON Schema of the study file.",
+    help=example("pinstress schema > study.schema.json")
+    + "\nPrint the JSON Schema of the study file, for completion and validation in editors.",
+)
+def schema() -> None:
+    import json
+
+    from pinstress.schema.tables import StudyTable
+
+    made = StudyTable.model_json_schema()
+    made["$schema"] = "https://json-schema.org/draft/2020-12/schema"
+    click.echo(json.dumps(made, indent=2))
+
+
+@click.command(
+    short_help="Show a pin of an earlier run in a 3D window.",
+    help=example("pinstress view out/grenier2008 --pin B --case landing")
+    + "\nShow the von Mises stress of a pin of an earlier run at its governing instant, in a "
+    "window. Default: the pin and case with the lowest safety factor.",
+)
+@click.argument("results", type=click.Path(path_type=Path))
+@click.option("--pin", metavar="NAME", help="The pin.")
+@click.option("--case", metavar="NAME", help="The case.")
+@click.option(
+    "--screenshot",
+    type=click.Path(path_type=Path, dir_okay=False),
+    metavar="FILE",
+    help="Write a picture (.png) instead of opening a window; needs no display.",
+)
+@click.option("--force", is_flag=True, help="Overwrite FILE if it exists.")
+def view(
+    results: Path, pin: str | None, case: str | None, screenshot: Path | None, force: bool
+) -> None:
+    from pinstress.cli.view import view as show
+
+    show(results, pin, case, screenshot, force)
+
+
+@click.command(
+    short_help="Print a shell completion script.",
+    help=example("pinstress completion bash >> ~/.bashrc")
+    + "\nPrint a completion script for commands, options and file names. For zsh append it to "
+    "~/.zshrc; for fish write it to ~/.config/fish/completions/pinstress.fish.",
+)
+@click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
+@click.pass_context
+def completion(context: click.Context, shell: str) -> None:
+    from click.shell_completion import get_completion_class
+
+    found, root = get_completion_class(shell), context.find_root().command
+    assert found is not None
+    click.echo(found(root, {}, "pinstress", "_PINSTRESS_COMPLETE").source())
+
+
+@click.command(
+    short_help="Find the smallest diameters that reach a safety factor.",
+    help=example("pinstress size studies/one_pin.toml --fos 10 --step 0.125")
+    + "\nFind the smallest diameters with which every pin reaches a safety factor in all cases; "
+    "write a new study with them. Lengths do not change; diameters, bores and fillets are scaled "
+    "together. The new study is run before it is written.\n\n"
+    "Exit status: 0 done; 1 done, but a pin does not verifiably reach the factor; 2 bad input; "
+    "3 the numerics failed; 130 interrupted.",
+)
+@click.argument("study", type=click.Path(path_type=Path))
+@click.option(
+    "--fos",
+    type=click.FloatRange(0.0, min_open=True),
+    help="Safety factor to reach; overrides the study's required_safety_factor.",
+)
+@click.option("--pins", callback=names, metavar="A,B", help="Only these pins.")
+@click.option(
+    "--step",
+    metavar="LENGTH",
+    help='Round diameters up to multiples of this, in study units or with a unit ("1 mm").',
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, dir_okay=False),
+    metavar="FILE",
+    help="The new study [<study name>_sized.toml, next to the study].",
+)
+@click.option("--quiet", is_flag=True, help="No progress bar, no notes; errors are still reported.")
+@click.option("--jobs", type=click.IntRange(1), metavar="N", help="Pins sized in parallel.")
+def size(
+    study: Path,
+    fos: float | None,
+    pins: list[str] | None,
+    step: str | None,
+    out: Path | None,
+    quiet: bool,
+    jobs: int | None,
+) -> int:
+    from pinstress.schema.units import to_si
+
+    loaded = read_study(study)
+    try:
+        metres = None if step is None else to_si(step, "length", loaded.system)
+    except ValueError as error:
+        raise InputError(f"--step: {error}") from None
+    if metres is not None and metres <= 0.0:
+        raise InputError("--step: must be positive")
+    from pinstress.cli.size import size_and_write
+
+    return size_and_write(loaded, fos, out, pins, metres, quiet, jobs)

@@ -1,0 +1,28 @@
+"""Files named by the user: an existing one is never overwritten without permission."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from pinstress.study.errors import InputError
+
+
+def require_new(path: Path, remedy: str) -> None:
+    """Raises: InputError if `path` exists, even as a broken link.
+
+    remedy: what the user can do.
+    """
+    if os.path.lexists(path):
+        raise InputError(f"{path} exists already; {remedy}")
+
+
+def write_new(path: Path, content: bytes, remedy: str) -> None:
+    """Create a file. Raises: InputError if it exists or cannot be written."""
+    try:
+        with path.open("xb") as file:  # does not follow links
+            file.write(content)
+    except FileExistsError:
+        raise InputError(f"{path} exists already; {remedy}") from None
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror})") from None

@@ -1,0 +1,196 @@
+"""Output folders that are either complete or absent: written next to the target, then exchanged,
+in one step where the system has one.
+
+The folder being written, `.NAME.partial`, is locked by its writer; the lock is released however the
+writer ends. An unlocked one was left by a killed run and is removed. Only files that we wrote are
+removed (pinstress.cli.manifest), and no link is followed except the one that the user names with
+--out.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from pinstress.cli import manifest
+from pinstress.processes.exchange import exchange
+from pinstress.processes.folder_lock import Release, lock
+from pinstress.study.errors import InputError
+
+MARK = "results.json"  # what a run and the loads alone write
+
+
+def require_replaceable(directory: Path, mark: str = MARK) -> None:
+    """Raises: InputError if replacing `directory` would destroy files that are not ours, or results
+    of another command, which has no file `mark`.
+    """
+    try:
+        if directory.exists() and not directory.is_dir():
+            raise InputError(f"--out: {directory} is a file; name a folder")
+        there = manifest.entries(directory) if directory.exists() else set()
+        known = manifest.listed(directory)
+    except OSError as error:  # it cannot be read, or its name is too long
+        raise InputError(f"--out: {directory}: {error.strerror}") from None
+    if there and mark not in there:
+        raise InputError(
+            f"--out: {directory} holds files that are not results of pinstress to replace (it has "
+            f"no {mark}, but {_some(there)}); name an empty or new folder"
+        )
+    if there and known is None:
+        raise InputError(
+            f"--out: {directory} holds {_some(there)}, and no list of what pinstress wrote "
+            f"({manifest.NAME}): it is not of pinstress, or of an earlier version, or was copied "
+            "without that file; name another folder, or remove this one if nothing in it is yours"
+        )
+    if strange := there - (known or set()):
+        raise InputError(
+            f"--out: {directory} holds {_some(strange)}, which pinstress did not write and would "
+            "delete; move that elsewhere or name another folder"
+        )
+
+
+@contextmanager
+def replacing(directory: Path, mark: str = MARK) -> Iterator[Path]:
+    """A folder to write into that becomes `directory` when the block ends without an error; an
+    existing one is replaced if it contains `mark` and only files of ours.
+
+    Raises: InputError if the folder cannot be created or written, or another run is writing it.
+    """
+    directory = _resolved(directory)
+    partial, earlier = (directory.parent / f".{directory.name}.{x}" for x in ("partial", "earlier"))
+    made = [p for p in directory.parents if not p.exists()]
+    release: Release | None = None
+    try:
+        try:
+            directory.parent.mkdir(parents=True, exist_ok=True)
+            release = _claim(partial, directory)
+            _recover(earlier, directory)
+        except OSError as error:
+            raise InputError(
+                f"--out: cannot write to {directory.parent} ({error.strerror})"
+            ) from None
+        require_replaceable(directory, mark)
+        try:
+            yield partial
+            manifest.complete(partial)
+        except OSError as error:  # a full disk
+            if not _is_inside(error, partial):
+                raise
+            raise InputError(f"--out: cannot write to {directory} ({error.strerror})") from error
+        require_replaceable(directory, mark)  # a run takes minutes
+        try:
+            _replace(partial, directory, earlier)
+        except OSError as error:
+            raise InputError(
+                f"--out: cannot replace {directory} ({error.strerror}); close programs that have "
+                "one of its files open, or name another folder"
+            ) from error
+    finally:
+        if release is not None:
+            _clear(partial)
+            release()
+        for parent in made:
+            with suppress(OSError):  # it holds the results
+                parent.rmdir()
+
+
+def _resolved(directory: Path) -> Path:
+    """The user's path with links resolved."""
+    try:
+        return directory.resolve()
+    except (OSError, RuntimeError):  # the latter of Python up to 3.12
+        raise InputError(f"--out: {directory} is a link that leads back to itself") from None
+
+
+def _some(names: set[str]) -> str:
+    """The first few names, top level first."""
+    names = names - {manifest.NAME} or names
+    first = sorted(names, key=lambda name: (name.count("/") - name.endswith("/"), name))
+    more = f" and {len(first) - 3} more" if len(first) > 3 else ""
+    return ", ".join(first[:3]) + more
+
+
+def _claim(partial: Path, directory: Path) -> Release:
+    """Create and lock an empty folder `partial` until it is released."""
+    while True:
+        with suppress(FileExistsError):
+            partial.mkdir()
+        try:
+            release = lock(partial)
+        except FileNotFoundError:  # the other run has just ended
+            continue
+        except NotADirectoryError:  # a link, wherever it leads
+            raise _in_the_way(partial) from None
+        except BlockingIOError:
+            raise InputError(
+                f"--out: another run is writing {directory}; wait for it or name another folder"
+            ) from None
+        try:
+            _empty(partial)  # by a run that was killed
+            manifest.begin(partial)
+        except BaseException:
+            release()
+            raise
+        return release
+
+
+def _empty(partial: Path) -> None:
+    """Remove what a killed run left. Raises: InputError if anything else is there."""
+    manifest.remove(partial, manifest.ours(partial) or set())
+    if left := manifest.entries(partial):
+        raise _in_the_way(partial / min(left))
+
+
+def _clear(folder: Path) -> None:
+    """Remove our files from a folder, and the folder if it is then empty."""
+    if folder.is_dir() and not folder.is_symlink():
+        with suppress(OSError):  # it holds something else
+            manifest.remove(folder, manifest.ours(folder) or set())
+            folder.rmdir()
+
+
+def _in_the_way(path: Path) -> InputError:
+    return InputError(
+        f"--out: {path} is in the way and not of pinstress; move it or name another folder"
+    )
+
+
+def _recover(earlier: Path, directory: Path) -> None:
+    """Recover from a run that was killed between the two steps of `_replace`."""
+    if earlier.is_symlink() or (earlier.exists() and not earlier.is_dir()):
+        raise _in_the_way(earlier)
+    if not earlier.exists():
+        return
+    if not directory.exists() and manifest.ours(earlier) is not None:
+        earlier.rename(directory)
+        return
+    _clear(earlier)
+    if earlier.exists():
+        raise _in_the_way(earlier)
+
+
+def _replace(partial: Path, directory: Path, earlier: Path) -> None:
+    """Swap `partial` and `directory`; afterwards the old content is at `partial` or removed."""
+    if not directory.exists():
+        partial.rename(directory)
+        return
+    if exchange(partial, directory):
+        return
+    directory.rename(earlier)
+    try:
+        partial.rename(directory)
+    except OSError:
+        earlier.rename(directory)
+        raise
+    _clear(earlier)
+
+
+def _is_inside(error: OSError, folder: Path) -> bool:
+    """Whether the error is from writing into `folder`; a full disk always is."""
+    if error.errno in (errno.ENOSPC, errno.EFBIG, errno.EDQUOT):
+        return True
+    name = error.filename
+    return isinstance(name, str | os.PathLike) and folder in Path(name).parents

@@ -1,0 +1,135 @@
+"""Standard output and error that may fail: a full disk or a closed pipe must not turn finished work
+into a traceback, and a terminal without ± gets a substitute character.
+"""
+
+from __future__ import annotations
+
+import codecs
+import errno
+import io
+import os
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TextIO, TypeGuard
+
+from pinstress.processes.system import portable
+
+PLAIN = {
+    "–": "-",
+    "−": "-",
+    "×": "x",
+    "·": ".",
+    "…": ".",
+    "±": "~",
+    "≥": ">",
+    "“": '"',
+    "”": '"',
+    "’": "'",
+}
+WAIT = 0.005  # s
+# Errors of a pipe whose reader went away, on Windows the second.
+GONE = (errno.EPIPE, errno.EINVAL) if os.name == "nt" else (errno.EPIPE,)
+
+
+class Outlet(io.FileIO):
+    """A descriptor that records write errors instead of raising them. lost: whether anything was
+    not written; why: the first error.
+    """
+
+    def __init__(self, descriptor: int, why: OSError | None = None) -> None:
+        super().__init__(descriptor, "wb", closefd=False)
+        self.why = why
+        self.lost = False
+
+    def write(self, data: object) -> int:
+        """Write or drop the data; the number of bytes consumed."""
+        size = memoryview(data).nbytes  # type: ignore[arg-type]
+        while self.why is None:
+            try:
+                written = super().write(data)  # type: ignore[arg-type]
+            except OSError as error:
+                self.why = error
+                break
+            if written is not None:
+                return written
+            time.sleep(WAIT)  # a non-blocking pipe
+        self.lost = True
+        return size
+
+
+def guard() -> None:
+    """Replace standard output and error by outlets, also if they are closed: otherwise the next
+    file opened would get their descriptor, and with it everything that libraries print.
+    """
+    codecs.register_error("plain", _plain)
+    for descriptor, old in enumerate((None, sys.stdout, sys.stderr)):
+        why = None
+        try:
+            os.fstat(descriptor)
+        except OSError as error:
+            why = error
+            os.open(os.devnull, os.O_RDWR)
+        if descriptor == 0:
+            continue
+        errors = "plain" if descriptor == 1 else "backslashreplace"
+        if _is_console(old):
+            old.reconfigure(errors=errors)
+            continue
+        made = _text(Outlet(descriptor, why), old, errors)
+        if descriptor == 1:
+            sys.stdout = made
+        else:
+            sys.stderr = made
+
+
+def _is_console(old: TextIO | None) -> TypeGuard[io.TextIOWrapper]:
+    """Whether it is left to Python to write to: a terminal of Windows takes no bytes of UTF-8."""
+    return portable() and isinstance(old, io.TextIOWrapper) and old.isatty()
+
+
+def _text(outlet: Outlet, old: TextIO | None, errors: str) -> TextIO:
+    encoding = getattr(old, "encoding", None) or "utf-8"
+    waits = not (outlet.isatty() or errors == "backslashreplace")
+    buffer = io.BufferedWriter(outlet)
+    return io.TextIOWrapper(buffer, encoding, errors, line_buffering=not waits)
+
+
+def _plain(error: UnicodeError) -> tuple[str, int]:
+    assert isinstance(error, UnicodeEncodeError)
+    bad = error.object[error.start : error.end]
+    return "".join(PLAIN.get(c, "?") for c in bad), error.end
+
+
+@contextmanager
+def unneeded(where: Path) -> Iterator[None]:
+    """Output printed inside is also in `where`: losing it is reported but changes no status."""
+    yield
+    if outlet := _failed():
+        if why := reason(outlet):
+            print(f"{why}; the results are in {where}", file=sys.stderr)
+        outlet.lost = False
+
+
+def lost() -> str | None:
+    """Why requested output did not reach standard output; "" if the reader closed the pipe."""
+    outlet = _failed()
+    return reason(outlet) if outlet else None
+
+
+def reason(outlet: Outlet) -> str:
+    """The error as text; empty if the reader closed the pipe."""
+    if outlet.why is None or outlet.why.errno in GONE:
+        return ""
+    return f"cannot write to standard output ({outlet.why.strerror})"
+
+
+def _failed() -> Outlet | None:
+    """Standard output, if anything printed was lost."""
+    outlet = getattr(getattr(sys.stdout, "buffer", None), "raw", None)
+    if not isinstance(outlet, Outlet):
+        return None
+    sys.stdout.flush()
+    return outlet if outlet.lost else None

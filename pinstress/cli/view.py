@@ -1,0 +1,92 @@
+"""The `view` command: show a pin of an earlier run in a window or write a picture."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from pinstress.cli.new_file import require_new, write_new
+from pinstress.cli.run import PAINTERS
+from pinstress.processes.pool import preload
+from pinstress.study.errors import InputError
+from reports.vtk.read_back import Opened, open_results
+from reports.vtk.render import render_pin, show_pin
+from reports.vtk.renderer import renderer_problem
+
+OVERWRITE = "name another file, or overwrite it with --force"
+
+
+def view(
+    directory: Path,
+    pin: str | None,
+    case: str | None,
+    screenshot: Path | None,
+    force: bool = False,
+) -> None:
+    """Show a pin of a results folder, by default the one with the lowest factor.
+
+    screenshot: a PNG file to write instead of opening a window; force: overwrite it.
+    Raises: InputError.
+    """
+    opened = _opened(directory)
+    try:
+        row = opened.row(pin, case)
+        field = opened.field(row)
+    except ValueError as error:
+        raise InputError(f"{directory}: {error}") from None
+    except FileNotFoundError as error:
+        raise InputError(
+            f"{error}: no such file; a beam has no field, nor has a pin that was not solved, "
+            "nor a run with --vtk none"
+        ) from None
+    title = opened.title(row)
+    preload(*PAINTERS)
+    if screenshot is None:
+        _require_display()
+        show_pin(field, opened.units, title)
+        return
+    if screenshot.suffix.lower() != ".png" or not screenshot.parent.is_dir():
+        raise InputError(f"--screenshot {screenshot}: name a .png file in a folder that exists")
+    if not force:
+        require_new(screenshot, OVERWRITE)
+    problem = renderer_problem()
+    if problem is not None:
+        raise InputError(f"--screenshot: {problem}; install libosmesa6 or libegl1")
+    with TemporaryDirectory(prefix="pinstress-") as folder:
+        picture = Path(folder) / "pin.png"
+        render_pin(field, picture, opened.units, title)
+        if force and os.path.lexists(screenshot):
+            _remove(screenshot)
+        write_new(screenshot, picture.read_bytes(), OVERWRITE)
+
+
+def _remove(path: Path) -> None:
+    """Remove a file or link. Raises: InputError for anything else."""
+    if not (path.is_file() or path.is_symlink()):
+        raise InputError(f"--screenshot {path} is no file that can be overwritten; name another")
+    try:
+        path.unlink()
+    except OSError as error:
+        raise InputError(f"{path}: cannot be overwritten ({error.strerror})") from None
+
+
+def _opened(directory: Path) -> Opened:
+    try:
+        return open_results(directory)
+    except OSError:
+        raise InputError(
+            f"{directory}: no results.json in it; name the folder that `pinstress run` wrote"
+        ) from None
+    except ValueError as error:
+        raise InputError(f"{directory}: {error}") from None
+
+
+def _require_display() -> None:
+    shows = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    if sys.platform == "linux" and not shows:
+        raise InputError(
+            "there is no display to open a window on (neither DISPLAY nor WAYLAND_DISPLAY is set); "
+            "--screenshot FILE.png writes a picture instead"
+        )

@@ -1,0 +1,321 @@
+"""From a study's cases to the reactions on its pins."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from loads import (
+    Applied,
+    Course,
+    Dynamics,
+    Impasse,
+    LegDynamics,
+    Linkage,
+    LinkageError,
+    Motion,
+    OverTime,
+    PeakForces,
+    Reactions,
+    StateDrive,
+    TableError,
+    given_reactions,
+    impulse_force,
+    motion_reactions,
+    move,
+    over_time,
+    peak_forces,
+    read_reactions,
+    require_possible,
+)
+from loads.linkage import Floats
+from pinstress.model.linkage import laws, span, state
+from pinstress.model.moving_loads import Acting, MovingLoads, acting
+from pinstress.model.spatial_leg import AXES, dynamics, hinge_reactions, instants
+from pinstress.schema.cases import (
+    ApplyTable,
+    GivenCase,
+    ImpulseTable,
+    InstantCase,
+    LegCase,
+    MechanismCase,
+    MotionCase,
+    StaticCase,
+)
+from pinstress.study.errors import InputError
+from pinstress.study.file import Study
+
+
+@dataclass(frozen=True)
+class ImpulseLoads:
+    """Reactions over pairs of impulse time (s) and velocity change (m/s), an instant each: times
+    and velocities (P,), forces (P,) N. nominal: the case's own pair.
+    """
+
+    times: Floats
+    velocities: Floats
+    forces: Floats
+    reactions: Reactions
+    nominal: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class CaseLoads:
+    """The reactions of one case, with the dynamics behind them where a mechanism made them.
+
+    note: how the loads came about. at: reactions at other times (T,) s of the same motion. range:
+    over the ranges of an impulse. leg: of a spatial leg. solve: the dynamics at other times (T,) s.
+    peaks: the largest forces over the time. over: other results of the whole motion. moving:
+    what acts on the pins at any time.
+    """
+
+    reactions: Reactions
+    dynamics: Dynamics | None = None
+    note: str = ""
+    at: Callable[[Floats], Reactions] | None = None
+    range: ImpulseLoads | None = None
+    leg: LegDynamics | None = None
+    solve: Callable[[Floats], Dynamics] | None = None
+    peaks: PeakForces | None = None
+    over: OverTime | None = None
+    moving: MovingLoads | None = None
+
+
+def at_time(case: CaseLoads, time: float) -> CaseLoads | None:
+    """The same case at one time (s), whether or not that is a sample; None outside its time, and
+    between the instants of a table.
+    """
+    times = case.reactions.times
+    if times is None:
+        return case
+    near = 1e-9 * float(np.ptp(times))
+    if not times[0] - near <= time <= times[-1] + near:
+        return None
+    at = np.clip(np.array([time]), times[0], times[-1])
+    if case.solve is not None:
+        dynamics = case.solve(at)
+        return replace(case, reactions=dynamics.reactions, dynamics=dynamics)
+    if case.at is not None:
+        return replace(case, reactions=case.at(at))
+    k = int(np.abs(times - time).argmin())
+    if abs(times[k] - time) > near:
+        return None
+    r = case.reactions
+    parts = (x[k : k + 1] for x in (r.forces, r.moments, r.turn))
+    forces, moments, turn = parts
+    one = replace(r, times=times[k : k + 1], forces=forces, moments=moments, turn=turn)
+    return replace(case, reactions=one)
+
+
+def case_loads(
+    study: Study, name: str, mechanism: Linkage | None, extremes: bool = True
+) -> CaseLoads:
+    """Reactions of a case. extremes: whether with those of a whole motion.
+
+    Raises: InputError for mistakes in the study or its tables.
+    """
+    case = study.table.case[name]
+    try:
+        if isinstance(case, GivenCase):
+            return CaseLoads(_given(study, name, case))
+        if isinstance(case, LegCase):
+            return _leg(study, name, case)
+        assert mechanism is not None
+        if isinstance(case, MotionCase):
+            return _motion(study, name, case, mechanism, extremes)
+        return _held(study, name, case, mechanism)
+    except TableError as error:
+        raise InputError(str(error), code=error.code) from None
+    except Impasse as error:
+        message = f"case.{name}: {error.message(_shown(study))}"
+        raise study.error(message, code=error.code) from None
+    except LinkageError as error:
+        raise study.error(f"case.{name}: {error}", code=error.code) from None
+
+
+def _shown(study: Study) -> Callable[[float, bool], str]:
+    unit, factor = study.system.length, study.system.factor("length")
+
+    def show(value: float, slides: bool) -> str:
+        return f"{value / factor:.6g} {unit}" if slides else f"{math.degrees(value):.6g} deg"
+
+    return show
+
+
+def _given(study: Study, name: str, case: GivenCase) -> Reactions:
+    if case.table is None:
+        forces, moments = (
+            {c: tuple(values) for c, values in (given or {}).items()}
+            for given in (case.forces, case.moments)
+        )
+        return given_reactions(name, forces, moments)
+    known = {c for p in study.table.pin for c in study.connections(p)}
+    return read_reactions(
+        name,
+        study.beside(case.table),
+        study.system.factor("force"),
+        study.system.factor("moment"),
+        study.system.factor("time"),
+        known,
+    )
+
+
+def _leg(study: Study, name: str, case: LegCase) -> CaseLoads:
+    at = partial(_hinge, study, name)
+    times = instants(study, case)
+    note = f"Axes of the hinge: {AXES}. The moment about z is the actuator's, not the pin's."
+    found = dynamics(study, times)
+    peaks = peak_forces(times, at)
+    moving = MovingLoads(partial(_without_joints, at), times)
+    return CaseLoads(at(times), note=note, at=at, leg=found, peaks=peaks, moving=moving)
+
+
+def _hinge(study: Study, name: str, times: Floats) -> Reactions:
+    return hinge_reactions(study, name, times, dynamics(study, times))
+
+
+def _without_joints(at: Callable[[Floats], Reactions], times: Floats) -> Acting:
+    return at(times), np.zeros((len(times), 0, 2))
+
+
+@dataclass(frozen=True)
+class _Moved:
+    """A case's dynamics at any times (T,) s of its motion. Not closures: it is sent to processes
+    that are started anew.
+    """
+
+    name: str
+    course: Course
+    applied: tuple[Applied, ...]
+
+    def solve(self, times: Floats) -> Dynamics:
+        return motion_reactions(self.name, self.course.at(times), self.applied)
+
+    def reactions(self, times: Floats) -> Reactions:
+        return self.solve(times).reactions
+
+    def acting(self, times: Floats) -> Acting:
+        return acting(self.solve(times))
+
+
+def _motion(
+    study: Study, name: str, case: MotionCase, mechanism: Linkage, extremes: bool
+) -> CaseLoads:
+    end = span(study)
+    course = Course(mechanism, laws(study), 0.0, end)
+    applied, note = _applied(study, case, mechanism)
+    moved = _Moved(name, course, applied)
+    found = moved.solve(np.linspace(0.0, end, case.samples))
+    if not extremes:
+        require_possible(course, moved.solve, found.motion.times)
+        return CaseLoads(found.reactions, found, note)
+    over = over_time(course, moved.solve, found.motion.times)
+    return CaseLoads(
+        found.reactions,
+        found,
+        note,
+        moved.reactions,
+        solve=moved.solve,
+        peaks=over.peaks,
+        over=over,
+        moving=MovingLoads(moved.acting, found.motion.times, over.corners),
+    )
+
+
+def _held(study: Study, name: str, case: StaticCase | InstantCase, mechanism: Linkage) -> CaseLoads:
+    applied, note = _applied(study, case, mechanism)
+    held = [StateDrive(*values) for values in state(study, name, case, mechanism)]
+    motion = move(mechanism, held, np.zeros(1))
+    found = motion_reactions(name, motion, applied, timed=False)
+    return CaseLoads(found.reactions, found, note, range=_range(study, name, case, motion))
+
+
+def _applied(
+    study: Study, case: MechanismCase, mechanism: Linkage
+) -> tuple[tuple[Applied, ...], str]:
+    """The loads of a case, and how impulses among them came about."""
+    loads = tuple(_load(load, mechanism, _force(load)) for load in case.apply)
+    notes = [_told(study, load) for load in case.apply if load.impulse is not None]
+    return loads, " ".join(notes)
+
+
+def _load(load: ApplyTable, mechanism: Linkage, force: tuple[float, float]) -> Applied:
+    at = load.at
+    if at is None:
+        at = next(b.centre for b in mechanism.bodies if b.name == load.body)
+    elif isinstance(at, str):
+        at = mechanism.joint(at).at
+    return Applied(load.body, at, force, load.couple, load.follows)
+
+
+def _force(load: ApplyTable) -> tuple[float, float]:
+    if load.impulse is None:
+        return load.force or (0.0, 0.0)
+    impulse = load.impulse
+    return _directed(impulse, _size(impulse, impulse.velocity_change, impulse.impulse_time))
+
+
+def _size(impulse: ImpulseTable, velocity: float, time: float) -> float:
+    mass = impulse.mass
+    if mass is None:
+        mass = (impulse.weight or 0.0) / impulse.gravity
+    return impulse_force(mass, velocity, time, impulse.pulse)
+
+
+def _directed(impulse: ImpulseTable, size: float) -> tuple[float, float]:
+    x, y = np.array(impulse.direction) / np.hypot(*impulse.direction)
+    return float(size * x), float(size * y)
+
+
+def _told(study: Study, load: ApplyTable) -> str:
+    impulse = load.impulse
+    assert impulse is not None
+    size = _size(impulse, impulse.velocity_change, impulse.impulse_time)
+    unit, factor = study.system.force, study.system.factor("force")
+    mean = "the mean force" if impulse.pulse == "rectangular" else f"the peak of a {impulse.pulse}"
+    return (
+        f"Impulse estimate on {load.body}: {size / factor:,.1f} {unit}, {mean} over "
+        f"{impulse.impulse_time:g} s."
+    )
+
+
+def _range(
+    study: Study, name: str, case: StaticCase | InstantCase, motion: Motion
+) -> ImpulseLoads | None:
+    """The case again for every pair in the ranges of its impulse."""
+    ranged = [load for load in case.apply if load.impulse and load.impulse.range]
+    if not ranged:
+        return None
+    if len(ranged) > 1:
+        raise study.error(
+            f"case.{name}: only one impulse of a case may have a range", code="several-ranges"
+        )
+    impulse = ranged[0].impulse
+    assert impulse is not None
+    assert impulse.range is not None
+    times, velocities = (
+        x.ravel() for x in np.meshgrid(impulse.range.impulse_time, impulse.range.velocity_change)
+    )
+    mechanism = motion.linkage
+    others = [_load(x, mechanism, _force(x)) for x in case.apply if x is not ranged[0]]
+    sizes = np.array([_size(impulse, v, t) for t, v in zip(times, velocities, strict=True)])
+    found = [
+        motion_reactions(
+            name, motion, [*others, _load(ranged[0], mechanism, _directed(impulse, size))], False
+        ).reactions
+        for size in sizes
+    ]
+    forces, moments, turn = (
+        np.concatenate([getattr(r, key) for r in found]) for key in ("forces", "moments", "turn")
+    )
+    return ImpulseLoads(
+        times,
+        velocities,
+        sizes,
+        replace(found[0], forces=forces, moments=moments, turn=turn),
+        (impulse.impulse_time, impulse.velocity_change),
+    )

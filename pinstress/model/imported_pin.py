@@ -1,0 +1,137 @@
+"""A pin's shape read from its file, in a separate process with limits of time and memory.
+
+OpenCASCADE crashes on some damaged files and hangs on others; a mesh of a few bytes may request
+more memory than there is.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import subprocess
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from geometry import GeometryError
+from geometry.imported.body_file import BodyFile
+from geometry.imported.imported_pin import MEASURE, SolidBody
+from geometry.mesh.solid_mesh import MeshError
+from loads import MB, FileError, require_regular
+from pinstress.processes.current_folder import trusting_python
+from pinstress.processes.limits import Limits, keep_within, passed
+from pinstress.processes.parent import end_with_parent
+from pinstress.processes.pool import Died, Job, Tell, ended, processes, side_by_side
+from pinstress.processes.system import portable
+
+LARGEST_BODY = 1024 * MB
+CODE = "import sys; from pinstress.model.imported_pin import serve; serve(sys.argv[1])"
+
+Work = Callable[..., Any]
+
+
+CAD = Limits(30, 300)  # to measure it; a sound pin takes about a second
+LARGE = Limits(600, 6000)  # for a mesh file, and to mesh a CAD file more finely
+
+
+def read_body(file: BodyFile) -> SolidBody:
+    """The body in the file, with its bands measured.
+
+    Raises: GeometryError, MeshError as SolidBody; GeometryError if it is not a regular file, is too
+    large, or cannot be read within the limits.
+    """
+    try:
+        require_regular(file.path, LARGEST_BODY)
+    except FileError as error:
+        raise GeometryError(f"pin {file.name}: {file.path.name} {error}", error.code) from None
+    except FileNotFoundError:
+        pass  # which SolidBody reports
+    except OSError as error:
+        raise GeometryError(
+            f"pin {file.name}: {file.path.name} cannot be read ({error.strerror})", "unreadable"
+        ) from None
+    return SolidBody(file, apart)
+
+
+def apart(work: Work, file: BodyFile, *arguments: object) -> Any:
+    """The result of `work(file, ...)`, run in another process.
+
+    Raises: what it raises; GeometryError if that process crashes or exceeds its limits.
+    """
+    limits = CAD if not file.meshed and arguments in ((), (MEASURE,)) else LARGE
+    job = partial(_limited, limits, work, file, *arguments)
+    if processes(2) == 1:  # with other threads running no process can be forked
+        made = _started(job)
+    else:
+        (made,) = side_by_side([Job(f"pin {file.name}", partial(_silent, job))], 2)
+    if isinstance(made, Died):
+        raise GeometryError(
+            f"pin {file.name}: reading {file.path.name} failed ({_why(made, limits)}): it is "
+            "damaged, too large, or has very small faces or edges; repair and export it again, "
+            "or mesh it in another program and give the mesh",
+            "reading-crashed",
+        )
+    return made
+
+
+def _silent(job: Work, _: Tell) -> Any:
+    return job()
+
+
+def _limited(limits: Limits, work: Work, file: BodyFile, *arguments: object) -> Any:
+    """Run `work` within limits, beyond which this process ends."""
+    keep_within(limits)
+    try:
+        return work(file, *arguments)
+    except MemoryError:
+        raise _out_of_memory(limits, file) from None
+    except (GeometryError, MeshError) as error:
+        if error.code == "out-of-memory":  # of gmsh
+            raise _out_of_memory(limits, file) from None
+        raise
+
+
+def _out_of_memory(limits: Limits, file: BodyFile) -> GeometryError:
+    return GeometryError(
+        f"pin {file.name}: reading {file.path.name} needs more than the limit of "
+        f"{limits.memory / 2**30:g} GB of memory; it is damaged, or too fine: give a coarser mesh",
+        "out-of-memory",
+    )
+
+
+def _why(died: Died, limits: Limits) -> str:
+    if died.status == -signal.SIGABRT and not portable():
+        return f"{died.reason}; its memory limit is {limits.memory / 2**30:g} GB"
+    return passed(died.status, limits) or died.reason
+
+
+def _started(job: Work) -> Any:
+    """The result of a job in a new Python process; Died if that ends without one."""
+    with TemporaryDirectory(prefix="pinstress-") as folder:
+        place = Path(folder)
+        (place / "job").write_bytes(pickle.dumps((os.getpid(), job)))
+        command, environment = trusting_python(CODE, folder)
+        done = subprocess.run(
+            command, env=environment, stdin=subprocess.DEVNULL, capture_output=True, check=False
+        )
+        try:
+            raised, found = pickle.loads((place / "result").read_bytes())
+        except (OSError, EOFError):
+            return Died(ended(done.returncode), done.returncode)
+    if raised:
+        raise found
+    return found
+
+
+def serve(folder: str) -> None:
+    """Run in the new Python: read a job from a folder, write its result there."""
+    parent, job = pickle.loads((Path(folder) / "job").read_bytes())
+    end_with_parent(parent)
+    try:
+        found = False, job()
+    except Exception as error:
+        found = True, error
+    (Path(folder) / "result").write_bytes(pickle.dumps(found))

@@ -1,0 +1,344 @@
+"""From a study's mechanism to the linkage and the laws of its drives."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from typing import TypeVar
+
+import numpy as np
+
+from loads import (
+    GROUND,
+    Body,
+    Connection,
+    ConstantDrive,
+    CosineDrive,
+    CycloidalDrive,
+    Joint,
+    Law,
+    Linkage,
+    LinkageError,
+    LoadsArgumentError,
+    Sharing,
+    Slider,
+    TableDrive,
+    TableError,
+    Turn,
+    read_table,
+)
+from loads.mass_properties import flat_bar, round_bar
+from loads.mobility import Mobility, require_determined
+from pinstress.model.joint_layout import LayoutError, Point, places
+from pinstress.model.pins import pin
+from pinstress.schema.cases import Coordinates, InstantCase, StaticCase
+from pinstress.schema.mechanism import (
+    BodyTable,
+    MechanismTable,
+    RotaryDrive,
+    SliderDrive,
+    SliderTable,
+)
+from pinstress.schema.units import to_si
+from pinstress.study.errors import InputError, Wrong
+from pinstress.study.file import Study
+
+A = TypeVar("A")
+B = TypeVar("B")
+STANDARD_GRAVITY = 9.80665
+LAWS: dict[str, type[CosineDrive | CycloidalDrive | ConstantDrive]] = {
+    "cosine": CosineDrive,
+    "cycloidal": CycloidalDrive,
+    "constant": ConstantDrive,
+}
+AnyDriveTable = SliderDrive | RotaryDrive
+
+
+def linkage(study: Study) -> Linkage:
+    """The study's mechanism. Raises: InputError with all its contradictions."""
+    mechanism = _mechanism(study)
+    g = float(np.hypot(*mechanism.gravity)) or STANDARD_GRAVITY
+    try:
+        unit, factor = study.system.length, study.system.factor("length")
+        at = places(mechanism, lambda length: f"{length / factor:.6g} {unit}")
+        return _assembled(study, mechanism, at, g)
+    except LayoutError as error:
+        raise study.error(str(error), code=error.code) from None
+    except LinkageError as error:
+        raise study.errors(_wrong(error)) from None
+
+
+def _wrong(error: LinkageError) -> list[Wrong]:
+    return [
+        Wrong(f"mechanism: {each}", at=".".join(map(str, ("mechanism", *each.at))), code=each.code)
+        for each in error.each
+    ]
+
+
+def determined(study: Study, mechanism: Linkage) -> Mobility:
+    """The mobility of a mechanism whose drives determine every position, and each of whose sharing
+    rules applies to an indeterminate force. Raises: InputError.
+    """
+    try:
+        return require_determined(mechanism)
+    except LinkageError as error:
+        raise study.errors(_wrong(error)) from None
+
+
+def _assembled(study: Study, mechanism: MechanismTable, at: dict[str, Point], g: float) -> Linkage:
+    wrong: list[LinkageError] = []
+
+    def each(make: Callable[[A], B], of: Iterable[A]) -> tuple[B, ...]:
+        made = []
+        for one in of:
+            try:
+                made.append(make(one))
+            except LinkageError as error:
+                wrong.extend(error.each)
+        return tuple(made)
+
+    bodies = each(lambda b: _body(mechanism, *b, at, g), mechanism.body.items())
+    sliders = each(lambda s: _slider(mechanism, *s, at), mechanism.slider.items())
+    turning = [d for d in mechanism.drive if isinstance(d, RotaryDrive)]
+    turns = each(lambda d: _turn(study, mechanism, d, at), turning)
+    if wrong:
+        raise LinkageError.all(wrong)
+    return Linkage(
+        bodies=bodies,
+        joints=tuple(
+            Joint(
+                name,
+                at[name],
+                tuple(Connection(c, body) for c, body in j.connections.items()),
+                j.fixed_in,
+                _pin_mass(study, name, j.weight, g) if j.fixed_in is None else 0.0,
+            )
+            for name, j in mechanism.joint.items()
+        ),
+        sliders=sliders,
+        turns=turns,
+        driven=tuple(drive_name(d) for d in mechanism.drive),
+        gravity=mechanism.gravity,
+        sharing=tuple(Sharing(tuple(s.connections), tuple(s.stiffness)) for s in mechanism.sharing),
+    )
+
+
+def _mechanism(study: Study) -> MechanismTable:
+    if study.table.mechanism is None:
+        raise study.error("the study has no [mechanism]; add one", code="no-mechanism")
+    return study.table.mechanism
+
+
+def drive_name(drive: AnyDriveTable) -> str:
+    """The name of a drive: its slider, or its own name or that of the body it turns."""
+    return drive.slider if isinstance(drive, SliderDrive) else drive.name or drive.body
+
+
+def _slider(mechanism: MechanismTable, name: str, s: SliderTable, at: dict[str, Point]) -> Slider:
+    start, end = (at[p] if isinstance(p, str) else p for p in s.joints)
+    base, moving = s.bodies
+    for body, place in zip(s.bodies, s.joints, strict=True):
+        if isinstance(place, str) and body not in (on := _bodies_at(mechanism, place)):
+            raise LinkageError(
+                f"slider {name}: joint {place} is not on {body} but on {', '.join(on)}; list the "
+                "bodies in the order of their joints, or give the point as [x, y]",
+                "joint-not-on-body",
+                ("slider", name),
+            )
+    return Slider(name, base, moving, start, end, s.direction, s.friction, s.bearing)
+
+
+def _bodies_at(mechanism: MechanismTable, joint: str) -> list[str]:
+    """The bodies that a joint joins, the one that carries the pin among them."""
+    j = mechanism.joint[joint]
+    return ([j.fixed_in] if j.fixed_in else []) + list(j.connections.values())
+
+
+def _turn(
+    study: Study, mechanism: MechanismTable, drive: RotaryDrive, at: dict[str, Point]
+) -> Turn:
+    """The driven angle; of its values a turn apart, the drawn one is nearest to the start."""
+    for body, line in ((drive.body, drive.line), (drive.against, drive.against_line or ())):
+        for joint in line:
+            if body not in _bodies_at(mechanism, joint):
+                raise LinkageError(
+                    f"drive {drive_name(drive)}: joint {joint} is not on {body}, whose angle the "
+                    "line defines; name two of its joints",
+                    "joint-not-on-body",
+                    ("drive", drive_name(drive)),
+                )
+        if len(set(line)) == 1:
+            raise LinkageError(
+                f"drive {drive_name(drive)}: the line needs two different joints",
+                "same-joint",
+                ("drive", drive_name(drive)),
+            )
+    drawn = _direction(drive.line, at)
+    if drive.against_line is not None:
+        drawn -= _direction(drive.against_line, at)
+    start = drive.start if drive.law != "table" else _table(study, drive).values[0]
+    if start is not None:
+        drawn += 2.0 * math.pi * round((start - drawn) / (2.0 * math.pi))
+    return Turn(drive_name(drive), drive.body, drawn, drive.against)
+
+
+def _direction(line: tuple[str, str], at: dict[str, Point]) -> float:
+    (x1, y1), (x2, y2) = (at[j] for j in line)
+    return math.atan2(y2 - y1, x2 - x1)
+
+
+def _body(
+    mechanism: MechanismTable, name: str, b: BodyTable, at: dict[str, Point], g: float
+) -> Body:
+    if b.bar is not None:
+        (x1, y1), (x2, y2) = (at[j] for j in b.bar.joints)
+        length = math.hypot(x2 - x1, y2 - y1)
+        if b.bar.section is not None:
+            mass, inertia = flat_bar(length, *b.bar.section, b.bar.density)
+        else:
+            mass, inertia = round_bar(length, b.bar.diameter or 0.0, b.bar.density)
+        middle = (0.5 * (x1 + x2), 0.5 * (y1 + y2))
+        return Body(name, mass, middle, inertia if b.inertia is None else b.inertia)
+    mass = b.mass if b.mass is not None else (b.weight or 0.0) / g
+    centre = b.centre
+    if centre is None:
+        on = [
+            at[key]
+            for key, j in mechanism.joint.items()
+            if j.fixed_in == name or name in j.connections.values()
+        ]
+        if len(on) not in (1, 2):
+            raise LinkageError(
+                f"body {name}: a body with {len(on)} joints needs a centre = [x, y]",
+                "missing-centre",
+                ("body", name),
+            )
+        centre = (sum(x for x, _ in on) / len(on), sum(y for _, y in on) / len(on))
+    return Body(name, mass, centre, b.inertia)
+
+
+def _pin_mass(study: Study, joint: str, weight: float | None, gravity: float) -> float:
+    """Mass of a floating pin: as stated, or of the profile of that name, or nothing."""
+    if weight is not None:
+        return weight / gravity
+    if joint not in study.table.pin:
+        return 0.0
+    density = study.table.material[study.table.pin[joint].material].density
+    return density * pin(study, joint).volume if density else 0.0
+
+
+def laws(study: Study) -> tuple[Law, ...]:
+    """The law of every drive. Raises: InputError for a table that cannot be used."""
+    return tuple(_law(study, d) for d in _mechanism(study).drive)
+
+
+def offsets(study: Study) -> tuple[float, ...]:
+    """The offset subtracted from each drive's length to display its position, m."""
+    drives = _mechanism(study).drive
+    return tuple(getattr(d, "position_offset", 0.0) for d in drives)
+
+
+def _law(study: Study, drive: AnyDriveTable) -> Law:
+    if drive.law == "table":
+        return _table(study, drive)
+    assert drive.start is not None
+    assert drive.end is not None
+    assert drive.duration is not None
+    return LAWS[drive.law](drive.start, drive.end, drive.duration, drive.begin)
+
+
+def span(study: Study) -> float:
+    """Time at which the last drive ends, s."""
+    return max(float(law.finish) for law in laws(study))  # type: ignore[attr-defined]
+
+
+def _table(study: Study, drive: AnyDriveTable) -> TableDrive:
+    path = study.beside(drive.table or "")
+    slides = isinstance(drive, SliderDrive)
+    length, time = study.system.factor("length"), study.system.factor("time")
+    value = "position" if slides else "position_deg"
+    unit, rates = (length, length) if slides else (math.pi / 180.0, 1.0)
+    units = {
+        "time": time,
+        value: unit,
+        "velocity": rates / time,
+        "acceleration": rates / time**2,
+    }
+    try:
+        rows = list(read_table(path, ("time", value), ("velocity", "acceleration")))
+        columns = [c for c in units if c in rows[0].cells]
+        if len(columns) == 3:
+            raise TableError(
+                f"{path}: give both velocity and acceleration, or neither", "give-both"
+            )
+        return TableDrive(*(tuple(row.number(c) * units[c] for row in rows) for c in columns))
+    except TableError as error:
+        raise InputError(str(error), code=error.code) from None
+    except LinkageError as error:
+        raise InputError(f"{path}: {error}", code=error.code) from None
+
+
+def state(
+    study: Study, name: str, case: StaticCase | InstantCase, drawn: Linkage
+) -> list[tuple[float, float, float]]:
+    """Position, velocity and acceleration of every drive in a case, SI. Raises: InputError."""
+    drives = _mechanism(study).drive
+    rates = (case.velocity, case.acceleration) if isinstance(case, InstantCase) else (0.0, 0.0)
+    return [
+        (
+            _coordinate(study, name, "position", case.position, drive, drawn.drives[k].drawn),
+            _coordinate(study, name, "velocity", rates[0], drive, 0.0),
+            _coordinate(study, name, "acceleration", rates[1], drive, 0.0),
+        )
+        for k, drive in enumerate(drives)
+    ]
+
+
+DIMENSION = {
+    "position": ("length", "angle"),
+    "velocity": ("velocity", "angular velocity"),
+    "acceleration": ("acceleration", "angular acceleration"),
+}
+
+
+def _coordinate(
+    study: Study,
+    case: str,
+    key: str,
+    value: Coordinates | None,
+    drive: AnyDriveTable,
+    default: float,
+) -> float:
+    where = f"case.{case}.{key}"
+    names = [drive_name(d) for d in _mechanism(study).drive]
+    if isinstance(value, dict):
+        unknown = [n for n in value if n not in names]
+        if unknown:
+            raise study.error(
+                f"{where}: no drive {unknown[0]!r}; there are {', '.join(names)}",
+                code="unknown-drive",
+            )
+        value = value.get(drive_name(drive))
+    elif value not in (None, 0.0) and len(names) > 1:
+        raise study.error(
+            f"{where}: there are several drives; give {{ {names[0]} = ..., {names[1]} = ... }}",
+            code="drive-not-named",
+        )
+    if value is None or (value == 0.0 and key != "position"):
+        return default
+    slides = isinstance(drive, SliderDrive)
+    try:
+        found = to_si(value, DIMENSION[key][0 if slides else 1], study.system)
+    except LoadsArgumentError as error:
+        raise study.error(f"{where}: {error}", code=error.code) from None
+    if key == "position" and not slides:
+        found += 2.0 * math.pi * round((default - found) / (2.0 * math.pi))
+    return found
+
+
+def ground_joint(linkage: Linkage) -> str:
+    """The joint about which moments on the ground are taken: the first that stands still."""
+    for joint in linkage.joints:
+        if joint.fixed_in == GROUND or any(c.body == GROUND for c in joint.connections):
+            return joint.name
+    return linkage.joints[0].name

@@ -1,0 +1,141 @@
+"""From a study to pins and their materials."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from fea.core.material import Material
+from geometry import CutPin, Flat, GeometryError, Hole, Pin, PinLike, Segment
+from geometry.coded import Place
+from pinstress.schema.pins import PinTable
+from pinstress.study.errors import Wrong
+from pinstress.study.file import Study
+
+TELL = 1e-3  # of the volume
+METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
+
+
+def material(study: Study, name: str) -> Material:
+    """A material of the study."""
+    m = study.table.material[name]
+    return Material(name, m.youngs_modulus, m.poisson_ratio, m.density, m.yield_strength)
+
+
+def pin(study: Study, name: str) -> PinLike:
+    """A pin of the study.
+
+    Raises: InputError for an impossible shape, a file without a solid, or an unknown clamp;
+    MeshError when a solid cannot be cut or that of a file cannot be meshed.
+    """
+    p = study.table.pin[name]
+    try:
+        made = _from_file(study, name, p) if p.geometry is not None else _turned(name, p)
+    except GeometryError as error:
+        raise study.error(str(error), _key(name, p, error.at), error.code) from None
+    unknown: list[Wrong] = []
+    for key, clamp in _clamps(study, name):
+        try:
+            made.surface(clamp)
+        except GeometryError as error:
+            unknown.append(Wrong(str(error), at=key, code=error.code))
+    if unknown:
+        raise study.errors(unknown)
+    return made
+
+
+def _clamps(study: Study, name: str) -> Iterator[tuple[str, str]]:
+    """All clamped surfaces of a pin, each after its key."""
+    clamps = {f"pin.{name}.clamp": study.table.pin[name].clamp}
+    for case, table in study.table.case.items():
+        clamps[f"case.{case}.clamp.{name}"] = table.clamp.get(name, [])
+    for key, surfaces in clamps.items():
+        for i, surface in enumerate(surfaces, 1):
+            yield f"{key}[{i}]", surface
+
+
+def _key(name: str, p: PinTable, at: Place) -> str:
+    """The key of the part of a pin that geometry names."""
+    match at:
+        case ("segment", int(i)):
+            return f"pin.{name}.profile[{i}]"
+        case (str(kind), int(i)):
+            return f"pin.{name}.{kind}[{i}]"
+        case ("band", str(band)):
+            return f"pin.{name}.band.{band}"
+    return f"pin.{name}" + ".geometry" * (p.geometry is not None)
+
+
+def lost_shape(pin: PinLike) -> str:
+    """Errors of a shape that no error estimate includes, as text; empty if there are none."""
+    profile = pin.profile if isinstance(pin, CutPin) else pin
+    if isinstance(profile, Pin) and profile.merged:
+        return (
+            f"diameters or bores that differ by up to {profile.merged / METRES['mm']:.2g} mm, "
+            "less than a billionth of its smallest diameter, are taken as equal"
+        )
+    if not pin.meshed:
+        return ""
+    from geometry.imported.imported_pin import SolidBody
+
+    assert isinstance(pin, SolidBody)
+    if pin.cut_off < TELL:
+        return ""
+    return (
+        f"the sides of its elements are straight where its surface is curved, which changes its "
+        f"volume by about {pin.cut_off:.1%} and is not part of any error estimate: give curved "
+        "quadratic elements, finer ones, or a STEP file"
+    )
+
+
+def weight(pin: PinLike, density: float, gravity: float = 9.80665) -> float:
+    """Weight (N) for a density in kg/m^3."""
+    return density * gravity * pin.volume
+
+
+def outline(pin: PinLike) -> list[tuple[float, float, float, str, str]]:
+    """Cylinders to draw a pin by: length, diameter, bore (m), name, and "band" or "plain"; of a
+    shape from a file its bands, and as much as there is between them.
+    """
+    profile = pin.profile if isinstance(pin, CutPin) else pin
+    if isinstance(profile, Pin):
+        return [
+            (s.length, s.diameter, s.bore, label if s.connection or s.name else "",
+             "band" if s.connection else "plain")
+            for s, label in zip(profile.segments, profile.labels, strict=True)
+        ]  # fmt: skip
+    drawn: list[tuple[float, float, float, str, str]] = []
+    at, end = pin.ends
+    for name in pin.connections:
+        band = pin.band(name)
+        if band.z0 > at:
+            drawn.append((band.z0 - at, 2 * band.radius, 0.0, "", "plain"))
+        drawn.append((band.length, 2 * band.radius, 0.0, name, "band"))
+        at = band.z1
+    if end > at and drawn:
+        drawn.append((end - at, drawn[-1][1], 0.0, "", "plain"))
+    return drawn
+
+
+def _turned(name: str, p: PinTable) -> Pin | CutPin:
+    segments = tuple(
+        Segment(s.length, s.diameter, s.bore, s.name, s.connection, s.fillet)
+        for s in p.profile or ()
+    )
+    profile = Pin(name, segments, p.fillet)
+    if not (p.hole or p.flat):
+        return profile
+    holes = tuple(Hole(h.z, h.diameter, h.angle) for h in p.hole)
+    cut = CutPin(profile, holes, tuple(Flat(*f.z, f.distance, f.angle) for f in p.flat))
+    cut.require_whole()
+    return cut
+
+
+def _from_file(study: Study, name: str, p: PinTable) -> PinLike:
+    from geometry.imported.body_file import BodyFile
+    from geometry.imported.body_file import Place as Band
+    from pinstress.model.imported_pin import read_body  # which needs meshio and scikit-fem
+
+    assert p.geometry is not None
+    places = tuple(Band(n, b.z, b.surface, b.connection) for n, b in p.band.items())
+    file = BodyFile(name, study.beside(p.geometry), METRES[p.geometry_unit], places)
+    return read_body(file)

@@ -1,0 +1,63 @@
+"""Interrupts: that one came is remembered, because not every library lets it through.
+
+C code that is imported or called turns a KeyboardInterrupt into an error of its own, or drops it.
+"""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+NAMES = "SIGINT", "SIGTERM", "SIGHUP"  # the last is not on Windows
+INTERRUPTS = tuple(getattr(signal, name) for name in NAMES if hasattr(signal, name))
+INTERRUPTED = 130  # the exit status
+
+_came = False
+_held = False
+
+
+def listen() -> None:
+    """From now on interrupts raise KeyboardInterrupt, the first of them; forget earlier ones."""
+    global _came
+    _came = False
+    for each in INTERRUPTS:
+        if signal.getsignal(each) != signal.SIG_IGN:  # nohup, or a job in the background
+            signal.signal(each, _interrupt)
+
+
+def ignore() -> None:
+    """From now on no interrupt changes anything."""
+    for each in INTERRUPTS:
+        signal.signal(each, signal.SIG_IGN)
+
+
+def came() -> bool:
+    """Whether one came."""
+    return _came
+
+
+def require_none() -> None:
+    """Raises: KeyboardInterrupt once more if an interrupt came and something has dropped it."""
+    if _came:
+        raise KeyboardInterrupt
+
+
+@contextmanager
+def held() -> Iterator[None]:
+    """Interrupts wait meanwhile, once `listen` was called."""
+    global _held
+    _held = True
+    try:
+        yield
+    finally:
+        _held = False
+    require_none()
+
+
+def _interrupt(*_: object) -> None:
+    global _came
+    _came = True
+    ignore()  # clearing up is not interrupted once more
+    if not _held:
+        raise KeyboardInterrupt

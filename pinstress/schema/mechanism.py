@@ -1,0 +1,290 @@
+"""The study file's form: the mechanism."""
+
+import math
+from typing import Annotated, Any, Literal
+
+from pydantic import Discriminator, Field, Tag, field_validator, model_validator
+
+from loads.coded import LoadsArgumentError
+from pinstress.schema.types import (
+    NOT_NEGATIVE,
+    POSITIVE,
+    Acceleration,
+    Angle,
+    Density,
+    Duration,
+    Inertia,
+    JointOrPoint,
+    Length,
+    Mass,
+    Number,
+    Point,
+    PositiveLength,
+    StrictTable,
+    Time,
+    Weight,
+)
+
+
+class Polar(StrictTable):
+    """A point at a distance from a joint, in a direction counter-clockwise from x."""
+
+    origin: str
+    """A joint."""
+    distance: PositiveLength
+    """Distance from it."""
+    angle: Angle
+    """Counter-clockwise from x."""
+
+
+class Dyad(StrictTable):
+    """A point at distances from two joints, on one side of the line from the first to the second:
+    the two sides are the two branches (open and crossed) in which a four-bar can be assembled.
+    """
+
+    origins: tuple[str, str]
+    """Two joints."""
+    distances: tuple[PositiveLength, PositiveLength]
+    """Distances from the first and from the second."""
+    side: Literal["left", "right"]
+    """Of the line from the first to the second."""
+
+
+def _way_of_placing(value: object) -> str:
+    if isinstance(value, dict):
+        return "<dyad>" if "origins" in value else "<polar>"
+    return "<point>"
+
+
+Place = Annotated[
+    Annotated[Point, Tag("<point>")]
+    | Annotated[Polar, Tag("<polar>")]
+    | Annotated[Dyad, Tag("<dyad>")],
+    Discriminator(_way_of_placing),
+]
+
+
+class JointTable(StrictTable):
+    """A pin of the mechanism as drawn, and the body on each of its connections."""
+
+    at: Place
+    """[x, y], { origin, distance, angle } or { origins, distances, side }."""
+    connections: Annotated[dict[str, str], Field(min_length=1)]
+    """By the name of the connection the body that turns on the pin; names are unique in the
+    study."""
+    fixed_in: str | None = None
+    """What carries the pin: "ground" or a body of which it is part; absent for a pin that
+    floats."""
+    weight: Weight | None = None
+    """Of a pin that floats, as a particle; absent: that of its profile."""
+
+
+class BarTable(StrictTable):
+    """A uniform straight bar between two joints, round or rectangular."""
+
+    joints: tuple[str, str]
+    """Its ends."""
+    diameter: PositiveLength | None = None
+    """Of a round bar. Give either `diameter` or `section`."""
+    section: tuple[PositiveLength, PositiveLength] | None = None
+    """[depth in the plane, width across it] of a rectangular one."""
+    density: Density
+    """Of its material."""
+
+    @model_validator(mode="after")
+    def _one_section(self) -> "BarTable":
+        if (self.diameter is None) == (self.section is None):
+            raise LoadsArgumentError("give either diameter or section = [depth, width]", "give-one")
+        return self
+
+
+class BodyTable(StrictTable):
+    """A rigid body."""
+
+    weight: Weight | None = None
+    """Give one of `weight`, `mass` or `bar`."""
+    mass: Mass | None = None
+    """Mass."""
+    bar: BarTable | None = None
+    """A uniform straight bar, from which mass, centre and inertia follow."""
+    centre: Point | None = None
+    """Centre of mass as drawn; absent: midway between its joints when it has two."""
+    inertia: Inertia | None = None
+    """About the centre of mass. Absent: of a bar its own; else the body is a particle, which hangs
+    on one connection or slides on the ground."""
+
+    @model_validator(mode="after")
+    def _one_mass(self) -> "BodyTable":
+        if sum(x is not None for x in (self.mass, self.weight, self.bar)) != 1:
+            raise LoadsArgumentError("give one of weight, mass or bar", "give-one")
+        if self.bar is not None and self.centre is not None:
+            raise LoadsArgumentError(
+                "centre cannot be used with bar, whose centre is its middle; give mass or weight "
+                "instead",
+                "key-not-applicable",
+            )
+        return self
+
+
+class SliderTable(StrictTable):
+    """One body sliding on another, or on the ground, without turning on it."""
+
+    bodies: tuple[str, str]
+    """[base, moving]; the base may be "ground"."""
+    joints: tuple[JointOrPoint, JointOrPoint]
+    """A joint or [x, y] of the base, and one of the moving body. The distance of the two along the
+    direction is its length."""
+    direction: tuple[Number, Number] | None = None
+    """Of the axis, as drawn; it turns with the base. Absent: from the first point to the
+    second."""
+    friction: Annotated[Number, Field(ge=0.0, le=10.0)] = 0.0
+    """Coulomb's coefficient."""
+    bearing: Annotated[Length, POSITIVE] | None = None
+    """Distance of the two pads that carry its couple, centred on the second point; absent: the
+    couple is carried without friction."""
+
+    @field_validator("direction")
+    @classmethod
+    def _not_zero(cls, value: tuple[float, float] | None) -> tuple[float, float] | None:
+        if value is not None and not any(value):
+            raise LoadsArgumentError("must not be zero", "no-direction")
+        return value
+
+
+class LawTable(StrictTable):
+    """Keys of all laws of motion: from start to end in `duration`, or a table. Without either the
+    drive can only be used by cases that give its position.
+    """
+
+    name: str | None = None
+    """Its name; by default that of its slider or its body."""
+    law: Literal["cosine", "cycloidal", "constant", "table"] = "cosine"
+    """The course: "cosine", at rest at both ends; "cycloidal", there also without acceleration;
+    "constant" speed; or a "table"."""
+    duration: Duration | None = None
+    """Time from start to end."""
+    begin: Annotated[Time, NOT_NEGATIVE] = 0.0
+    """Time at which it starts to move."""
+    table: str | None = None
+    """CSV in the study's folder for `law = "table"`: time,position (or
+    position_deg)[,velocity,acceleration]."""
+
+    @model_validator(mode="after")
+    def _course(self) -> "LawTable":
+        course = [getattr(self, key, None) for key in ("start", "end", "duration")]
+        if self.law == "table":
+            if self.table is None or any(v is not None for v in course):
+                raise LoadsArgumentError(
+                    'law = "table" needs table = "file.csv", without start, end and duration',
+                    "law-and-keys",
+                )
+        elif self.table is not None:
+            raise LoadsArgumentError(f'table needs law = "table", not {self.law!r}', "law-and-keys")
+        elif len({v is None for v in course}) > 1:
+            raise LoadsArgumentError(
+                f"law {self.law!r} needs start, end and duration", "law-and-keys"
+            )
+        return self
+
+    @property
+    def moves(self) -> bool:
+        """Whether a course is given."""
+        return self.table is not None or self.duration is not None
+
+
+class SliderDrive(LawTable):
+    """A drive of a slider's length (hydraulic piston, screw)."""
+
+    slider: str
+    """The slider whose length it drives."""
+    start: Length | None = None
+    """Length at the start."""
+    end: Length | None = None
+    """Length at the end."""
+    position_offset: Length = 0.0
+    """Plots show the length less this."""
+
+
+MOST_TURNS = 1000  # each is followed in steps of 0.25 rad
+
+
+class RotaryDrive(LawTable):
+    """A drive of a body's angle: the direction of a line between two of its joints,
+    counter-clockwise from x or, for a drive between two bodies, from a line of the other.
+    """
+
+    body: str
+    """The body that it turns."""
+    line: tuple[str, str]
+    """Two joints of the body, from the first to the second, whose direction is the angle."""
+    against: str = "ground"
+    """The body from which the angle is measured."""
+    against_line: tuple[str, str] | None = None
+    """Two joints of that body; goes with `against`."""
+    start: Angle | None = None
+    """Angle at the start."""
+    end: Angle | None = None
+    """Angle at the end."""
+
+    @model_validator(mode="after")
+    def _both(self) -> "RotaryDrive":
+        if (self.against == "ground") != (self.against_line is None):
+            raise LoadsArgumentError(
+                "against (a body) and against_line (two of its joints) must be given together",
+                "give-both",
+            )
+        if abs((self.end or 0.0) - (self.start or 0.0)) > MOST_TURNS * 2.0 * math.pi:
+            raise LoadsArgumentError(
+                f"start and end are more than {MOST_TURNS} turns apart", "out-of-range"
+            )
+        return self
+
+
+def _kind_of_drive(value: object) -> str:
+    return "<slider>" if isinstance(value, dict) and "slider" in value else "<rotary>"
+
+
+AnyDrive = Annotated[
+    Annotated[SliderDrive, Tag("<slider>")] | Annotated[RotaryDrive, Tag("<rotary>")],
+    Discriminator(_kind_of_drive),
+]
+
+
+class SharingTable(StrictTable):
+    """How redundant connections share their load: as springs."""
+
+    connections: Annotated[list[str], Field(min_length=1)]
+    """The connections that deform."""
+    stiffness: Annotated[list[Annotated[Number, Field(ge=1e-18, le=1e18)]], Field(min_length=1)]
+    """One for each connection; only ratios matter."""
+
+    @model_validator(mode="after")
+    def _same_length(self) -> "SharingTable":
+        if len(self.connections) != len(self.stiffness):
+            raise LoadsArgumentError("give one stiffness for each connection", "lengths-differ")
+        return self
+
+
+class MechanismTable(StrictTable):
+    """A planar linkage in the position in which it is drawn, with one drive or several."""
+
+    gravity: Annotated[
+        tuple[Acceleration, Acceleration],
+        Field(json_schema_extra={"default": ["0 m/s^2", "-9.80665 m/s^2"]}),
+    ] = (0.0, -9.80665)
+    """[gx, gy]; [0, 0] for none."""
+    joint: Annotated[dict[str, JointTable], Field(min_length=1)]
+    """Joints by name."""
+    body: Annotated[dict[str, BodyTable], Field(min_length=1)]
+    """Bodies by name, without the ground."""
+    slider: dict[str, SliderTable] = {}
+    """Sliders by name."""
+    drive: Annotated[list[AnyDrive], Field(min_length=1)]
+    """One table, or several `[[mechanism.drive]]`: as many as degrees of freedom."""
+    sharing: list[SharingTable] = []
+    """Redundant connections, and how they share their load."""
+
+    @field_validator("drive", mode="before")
+    @classmethod
+    def _one_or_several(cls, value: Any) -> Any:
+        return [value] if isinstance(value, dict) else value

@@ -1,0 +1,68 @@
+"""Names and values of an input as messages show them: always short."""
+
+from __future__ import annotations
+
+import datetime
+import difflib
+import reprlib
+from collections.abc import Iterable
+from itertools import islice
+
+LONGEST = 80  # characters of a name or value in a message
+COMPARED = 1000  # names compared for a hint, which must be quick
+LISTED = 20  # names that a message lists
+ELLIPSIS = "…"
+
+_SHORT = reprlib.Repr()
+_SHORT.maxlong = _SHORT.maxstring = _SHORT.maxother = LONGEST
+
+
+def cut(text: str, most: int = LONGEST) -> str:
+    """The text, or its beginning and an ellipsis."""
+    return text if len(text) <= most else text[: most - 1] + ELLIPSIS
+
+
+def shown(value: object) -> str:
+    """A value as Python writes it, shortened; also an integer too long for Python to write."""
+    if isinstance(value, str):
+        return repr(cut(value))
+    if isinstance(value, int) and value.bit_length() > 4 * LONGEST:
+        return "a whole number of more than 80 digits"
+    return cut(_SHORT.repr(value))
+
+
+def listed(names: Iterable[object]) -> str:
+    """Names after each other: the first few, and how many more there are."""
+    names = list(names)
+    more = f" and {len(names) - LISTED:,} more" if len(names) > LISTED else ""
+    return (", ".join(cut(str(name)) for name in names[:LISTED]) or "none") + more
+
+
+def nearest(name: object, known: Iterable[str], cutoff: float = 0.6) -> str | None:
+    """The known name that is most like this one, if any is: first but for capitals."""
+    wanted, among = cut(str(name)), [cut(k) for k in islice(known, COMPARED)]
+    for each in among:
+        if each.casefold() == wanted.casefold():
+            return each
+    found = difflib.get_close_matches(wanted, among, n=1, cutoff=cutoff)
+    return found[0] if found else None
+
+
+def near(name: object, known: Iterable[str]) -> str:
+    """A hint for a name that is not known."""
+    known = list(known)
+    found = nearest(name, known)
+    return f"did you mean {found!r}?" if found else f"there are {listed(known)}"
+
+
+def in_toml(value: object) -> str:
+    """A value as the study file spells it, or what kind of value it is."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, dict):
+        return "a table"
+    if isinstance(value, list):
+        return "a list"
+    if isinstance(value, datetime.date | datetime.time):
+        return f"the date or time {value.isoformat()}"
+    return shown(value)

@@ -1,0 +1,107 @@
+"""The study file's form: every table and key, with its unit, domain and description."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from pinstress.schema.cases import GivenCase, InstantCase, LegCase, MotionCase, StaticCase
+from pinstress.schema.leg import SpatialLegTable
+from pinstress.schema.mechanism import MechanismTable
+from pinstress.schema.pins import MaterialTable, PinTable
+from pinstress.schema.types import Name, Number, PositiveLength, StrictTable
+
+
+class AnalysisTable(StrictTable):
+    """Requirements on the analysis."""
+
+    model: Literal["auto", "beam", "harmonic", "solid"] = "auto"
+    """The model; "auto" uses the smallest that is accurate enough."""
+    goal: Literal["value", "decide"] = "value"
+    """The maximum to the tolerance ("value"), or only on which side of the required factor of
+    safety it is ("decide"; it needs a yield strength)."""
+    tolerance: Annotated[Number, Field(gt=0.0, lt=1.0)] = 0.02
+    """Largest relative error of the maximum von Mises stress."""
+    excluded_distance: Annotated[Number, Field(ge=0.01, le=0.5)] = 0.1
+    """Fraction of the local diameter around sharp corners and edges of clamps within which stress
+    is excluded if it is singular there."""
+    required_safety_factor: Annotated[Number, Field(gt=0.0)] | None = None
+    """Factor that every pin must reach; absent: no comparison."""
+
+
+class BeamCheckTable(StrictTable):
+    """Compare a cantilever pin's axial stress with beam theory, with the load on its surface and on
+    a thin bore.
+    """
+
+    pin: str
+    """A pin clamped at its start face, loaded on one band."""
+    case: str
+    """A case without moments on it."""
+    axis_bore: PositiveLength
+    """Diameter of the bore that carries the load."""
+
+
+class MotionCheckTable(StrictTable):
+    """Compare a joint's speed and acceleration with the closed form of a lever: the joint turns
+    about a fixed pivot with the moving end of the driven slider.
+    """
+
+    case: str
+    """A case of kind "motion"."""
+    joint: str
+    """The joint that turns."""
+    pivot: str
+    """The joint about which it turns."""
+
+
+class PublishedTable(StrictTable):
+    """Published values to print next to ours, in CSV files in the study's folder."""
+
+    source: str
+    """Their source."""
+    peaks: str | None = None
+    """pin,case,max_von_mises,safety_factor."""
+    reactions: str | None = None
+    """case,connection,force."""
+    motion: str | None = None
+    """time,speed,acceleration of the joint in `motion_check`."""
+    values: str | None = None
+    """case,time,quantity,name,published,reason."""
+
+
+class StudyTable(StrictTable):
+    """A study: pins, their materials, their loads and the requirements on the analysis."""
+
+    title: Annotated[str, Field(max_length=1000)]
+    """Heads every table and the report."""
+    units: Literal["in-lbf-s", "mm-N-s", "m-N-s"]
+    """The unit system of numbers without a unit, and of the results."""
+    material: dict[str, MaterialTable] = {}
+    """Materials by name."""
+    pin: dict[Name, PinTable] = {}
+    """Pins by name; without any, `pinstress loads` gives the reactions alone."""
+    case: Annotated[
+        dict[
+            Name,
+            Annotated[
+                GivenCase | MotionCase | StaticCase | InstantCase | LegCase,
+                Field(discriminator="kind"),
+            ],
+        ],
+        Field(min_length=1),
+    ]
+    """Cases by name; each runs the pins that it loads."""
+    mechanism: MechanismTable | None = None
+    """The linkage of the cases "motion", "static" and "instant"."""
+    spatial_leg: SpatialLegTable | None = None
+    """The leg of the cases "spatial_leg"."""
+    analysis: AnalysisTable = AnalysisTable()
+    """Requirements on the analysis."""
+    beam_check: BeamCheckTable | None = None
+    """A comparison with beam theory."""
+    motion_check: MotionCheckTable | None = None
+    """A comparison with the closed form of a lever."""
+    published: PublishedTable | None = None
+    """Published values to print next to ours."""
+    assumptions: list[str] = []
+    """Sentences for the report."""

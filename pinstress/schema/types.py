@@ -1,0 +1,231 @@
+"""The study file's vocabulary: quantities with units, names, tables that know their keys.
+
+For editors and for the reference in the documentation the JSON Schema gives of every quantity its
+`dimension` and `domain`, and of every key its description: the string under it in the code.
+"""
+
+import ast
+import inspect
+from dataclasses import dataclass
+from itertools import pairwise
+from textwrap import dedent
+from typing import Annotated, Any
+from urllib.parse import quote
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    GetJsonSchemaHandler,
+    Tag,
+    ValidationError,
+    model_validator,
+)
+from pydantic_core import InitErrorDetails, PydanticCustomError, core_schema
+
+from loads.coded import LoadsArgumentError
+from pinstress.schema.shown import listed, nearest, shown
+from pinstress.schema.units import DIMENSIONS, LARGEST, SYSTEMS, to_si
+
+KINDS = ("given", "derived", "fitted", "assumed")
+UNKNOWN_KEY = "unknown_key"  # the type of pydantic's error
+SMALLEST = 1.0 / LARGEST  # in SI: its square does not underflow
+LONGEST_NAME = 100  # characters as quoted: two names fit into a file name
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Marks a float that is read from a number or a string with a unit, and kept in SI."""
+
+    dimension: str
+
+    def __get_pydantic_core_schema__(self, *_: object) -> core_schema.CoreSchema:
+        return core_schema.with_info_plain_validator_function(self._read)
+
+    def __get_pydantic_json_schema__(self, *_: object) -> dict[str, Any]:
+        plain: list[dict[str, Any]] = [
+            {"type": "number"},
+            {"type": "string", "examples": [DIMENSIONS[self.dimension][1]]},
+        ]
+        return {"anyOf": [*plain, sourced(plain)], "dimension": self.dimension}
+
+    def _read(self, value: object, info: core_schema.ValidationInfo) -> float:
+        system = (info.context or {}).get("system", SYSTEMS["m-N-s"])
+        return to_si(value, self.dimension, system)
+
+
+PROVENANCE: dict[str, Any] = {
+    "provenance": {"enum": list(KINDS), "description": "where the numbers here come from"},
+    "note": {"type": "string", "description": "why, in words"},
+}
+
+
+def _complete(schema: dict[str, Any], table: type["StrictTable"]) -> None:
+    """Descriptions and provenance for a table's JSON Schema."""
+    for key, words in described(table).items():
+        schema["properties"][key]["description"] = words
+    schema["properties"].update(PROVENANCE)
+
+
+def described(table: type["StrictTable"]) -> dict[str, str]:
+    """The description of each key: the string under the field in the code, read only when a schema
+    is requested, since it takes time.
+    """
+    told: dict[str, str] = {}
+    for one in reversed(table.__mro__):
+        if not issubclass(one, StrictTable) or one is StrictTable:
+            continue
+        (made,) = ast.parse(dedent(inspect.getsource(one))).body
+        assert isinstance(made, ast.ClassDef)
+        for field, text in pairwise(made.body):
+            match (field, text):
+                case (
+                    ast.AnnAssign(target=ast.Name(id=key)),
+                    ast.Expr(value=ast.Constant(value=str(words))),
+                ):
+                    told[key] = " ".join(words.split())
+    return told
+
+
+def sourced(value: list[dict[str, Any]]) -> dict[str, Any]:
+    """JSON Schema of { value = ..., provenance = "given", note = "..." }."""
+    return {
+        "type": "object",
+        "properties": {
+            "value": {"anyOf": value},
+            **PROVENANCE,
+        },
+        "required": ["value", "provenance"],
+        "additionalProperties": False,
+    }
+
+
+@dataclass(frozen=True)
+class Within(AfterValidator):
+    """Restricts a quantity to a domain, which the JSON Schema states as text."""
+
+    domain: str
+
+    def __get_pydantic_json_schema__(
+        self, core: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        return handler(core) | {"domain": self.domain}
+
+
+def _positive(value: float) -> float:
+    if not value > 0.0:
+        raise LoadsArgumentError("must be positive", "not-positive")
+    if value < SMALLEST:
+        raise LoadsArgumentError(f"must be at least {SMALLEST:g} in SI units", "out-of-range")
+    return value
+
+
+def _pin_sized(value: float) -> float:
+    if not 1e-6 < value < 1e3:
+        raise LoadsArgumentError("must be between 1e-6 m and 1000 m", "out-of-range")
+    return value
+
+
+def _not_negative(value: float) -> float:
+    if value < 0.0:
+        raise LoadsArgumentError("must not be negative", "negative")
+    return value
+
+
+POSITIVE = Within(_positive, "> 0")
+NOT_NEGATIVE = Within(_not_negative, "≥ 0")
+PIN_SIZED = Within(_pin_sized, "from 1 µm to 1 km")
+
+
+def usable_name(name: str) -> str:
+    if bad := [c for c in dict.fromkeys(name) if c in '/\\:*?"<>|']:
+        raise LoadsArgumentError(
+            f"{shown(name)} cannot be part of a file name on every system, because of "
+            f"{' '.join(bad)}; use letters, digits, - and _",
+            "unusable-name",
+        )
+    if not name or name[0] in ". ":
+        raise LoadsArgumentError(
+            f"{shown(name)} cannot be part of a file name; use letters, digits, - and _",
+            "unusable-name",
+        )
+    if len(quote(name)) > LONGEST_NAME:
+        raise LoadsArgumentError(
+            f"{shown(name)} is too long to be part of a file name; use at most {LONGEST_NAME} "
+            "characters",
+            "unusable-name",
+        )
+    if not name.isprintable():
+        raise LoadsArgumentError(
+            f"{shown(name)} has unprintable characters; use letters, digits, - and _",
+            "unusable-name",
+        )
+    return name
+
+
+Number = Annotated[float, Field(strict=True)]  # else pydantic reads "1" and true as 1.0
+Whole = Annotated[int, Field(strict=True)]
+Switch = Annotated[bool, Field(strict=True)]
+Length = Annotated[float, Quantity("length")]
+Force = Annotated[float, Quantity("force")]
+PositiveLength = Annotated[Length, POSITIVE, PIN_SIZED]
+NotNegativeLength = Annotated[Length, NOT_NEGATIVE]
+Stress = Annotated[Annotated[float, Quantity("stress")], POSITIVE]
+Density = Annotated[Annotated[float, Quantity("density")], POSITIVE]
+Weight = Annotated[Force, NOT_NEGATIVE]
+Mass = Annotated[Annotated[float, Quantity("mass")], NOT_NEGATIVE]
+Inertia = Annotated[Annotated[float, Quantity("inertia")], NOT_NEGATIVE]
+Duration = Annotated[Annotated[float, Quantity("time")], POSITIVE]
+Velocity = Annotated[float, Quantity("velocity")]
+Acceleration = Annotated[float, Quantity("acceleration")]
+SignedInertia = Annotated[float, Quantity("inertia")]
+AngularVelocity = Annotated[float, Quantity("angular velocity")]
+AngularAcceleration = Annotated[float, Quantity("angular acceleration")]
+Angle = Annotated[float, Quantity("angle")]
+Moment = Annotated[float, Quantity("moment")]
+Time = Annotated[float, Quantity("time")]
+Name = Annotated[str, AfterValidator(usable_name)]
+Point = tuple[Length, Length]
+
+
+def _joint_or_point(value: object) -> str:
+    return "<joint>" if isinstance(value, str) else "<point>"
+
+
+JointOrPoint = Annotated[
+    Annotated[str, Tag("<joint>")] | Annotated[Point, Tag("<point>")],
+    Discriminator(_joint_or_point),
+]
+
+
+class StrictTable(BaseModel):
+    """A table of the study file: unknown keys are errors.
+
+    Any table may also have `provenance` and `note`; they are taken out before validation.
+    """
+
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, allow_inf_nan=False, json_schema_extra=_complete
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _known_keys(cls, data: Any) -> Any:
+        unknown = data.keys() - cls.model_fields.keys() if isinstance(data, dict) else ()
+        if unknown:
+            wrong = [_unknown(key, list(cls.model_fields)) for key in data if key in unknown]
+            raise ValidationError.from_exception_data(cls.__name__, wrong)
+        return data
+
+
+def _unknown(key: object, known: list[str]) -> InitErrorDetails:
+    told: dict[str, Any] = {"told": f"unknown key {shown(key)}; ", "key": key, "known": known}
+    return InitErrorDetails(type=PydanticCustomError(UNKNOWN_KEY, "{told}", told), input=None)
+
+
+def hint_for_key(key: str, known: list[str]) -> str:
+    """What an unknown key may mean: found only for errors that are printed, since it takes time."""
+    near = nearest(key, known, cutoff=0.5)
+    return f"did you mean {near!r}?" if near else f"known here: {listed(known)}"

@@ -1,0 +1,1 @@
+"""The smallest diameters that reach a factor of safety."""

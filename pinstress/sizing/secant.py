@@ -1,0 +1,66 @@
+"""The smallest scale of a pin that reaches a factor of safety."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+BENDING = 3.0  # the factor grows with the cube of the diameter in bending, its square in tension
+GENTLE, STEEP = 0.5, 6.0  # slopes that are believed
+CLOSE = 0.01  # how much more than the required factor is close enough
+NARROW = 0.001  # a bracket of scales that is not looked into
+LEAST, MOST = 0.02, 50.0
+TRIALS = 14
+
+
+class NoSizeError(Exception):
+    """No scale reaches the factor; the message says why."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A scale and the factor of safety at it."""
+
+    scale: float
+    factor: float
+
+
+def smallest(factor_at: Callable[[float], float], required: float) -> Trial:
+    """The smallest scale whose factor is at least `required`, and at most CLOSE more of it.
+
+    The factor grows with the scale; log factor against log scale is nearly a line, so secants find
+    it; trials on both sides keep them in bounds. The scale that is returned was itself tried.
+
+    Raises: NoSizeError.
+    """
+    below: Trial | None = None
+    above: Trial | None = None
+    before: Trial | None = None
+    scale, slope = 1.0, BENDING
+    for _ in range(TRIALS):
+        now = Trial(scale, factor_at(scale))
+        if now.factor >= required:
+            above = now if above is None or now.scale < above.scale else above
+            if now.factor <= required * (1.0 + CLOSE):
+                return now
+        else:
+            below = now if below is None or now.scale > below.scale else below
+        if above and below and above.scale <= below.scale * (1.0 + NARROW):
+            return above
+        if before is not None and before.scale != now.scale:
+            rise = math.log(now.factor / before.factor) / math.log(now.scale / before.scale)
+            slope = min(max(rise, GENTLE), STEEP)
+        before = now
+        # Aimed a little high, for only what is not below will do.
+        aim = required * (1.0 + 0.4 * CLOSE)
+        scale = now.scale * (aim / now.factor) ** (1.0 / slope)
+        if above and below and not below.scale < scale < above.scale:
+            scale = math.sqrt(above.scale * below.scale)
+        if not LEAST < scale < MOST:
+            raise NoSizeError(
+                f"even with {now.scale:.3g} times its diameters its factor is {now.factor:.4g}"
+            )
+    if above is not None:
+        return above
+    raise NoSizeError(f"the factor is not reached in {TRIALS} trials")

@@ -1,0 +1,138 @@
+"""The smallest diameters of every pin that reach a factor of safety.
+
+A pin keeps its lengths, which the links set, and its proportions across the axis. Every trial is
+the text of a study, read and solved as any other, so what is found is what a run of it gives.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+
+from fea.core.peak import Peak, Verdict
+from fea.solve_pin import Asked, solve_pin
+from pinstress.analysis.plan import Plan
+from pinstress.model.pins import material as material_of
+from pinstress.model.pins import pin as pin_of
+from pinstress.model.tasks import tasks
+from pinstress.sizing.scaled_study import resized
+from pinstress.sizing.secant import NoSizeError, smallest
+from pinstress.study.errors import InputError
+from pinstress.study.file import Study, parse_study
+
+STEPS_UP = 8  # of diameters rounded to steps, until the factor is reached
+
+Tell = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Sized:
+    """A pin: by which scale it reaches the factor (None where it does not, and `why`), its factor
+    before and then, in the case that governs, with that case's verdict.
+    """
+
+    pin: str
+    scale: float | None
+    before: float | None
+    factor: float | None
+    verdict: Verdict | None
+    why: str = ""
+
+
+def size_pin(
+    plan: Plan, pin: str, required: float, step: float | None = None, tell: Tell = lambda _: None
+) -> Sized:
+    """Size one pin for all cases of a plan. step: to which diameters are rounded up, m.
+
+    Failures are reported in the answer.
+    """
+    study = plan.study
+    problem = _problem(study, pin)
+    if problem:
+        return Sized(pin, None, None, None, None, problem)
+    found: dict[float, Peak] = {}
+    factors: dict[float, float] = {}
+
+    def factor_at(scale: float, rounding: float | None = None) -> float:
+        if rounding is None and scale in factors:
+            return factors[scale]
+        tell(f"pin {pin}, {scale:.3f} times its diameters")
+        text = resized(study.text, {pin: scale}, study.system, rounding)
+        found[scale] = governing(plan, parse_study(study.path, text), pin, tell)
+        factors[scale] = _factor(study, found[scale])
+        return factors[scale]
+
+    before: float | None = None
+    try:
+        before = factor_at(1.0)
+        best = smallest(factor_at, required)
+        scale, factor = best.scale, best.factor
+        if step is not None:
+            least = min(segment.diameter for segment in study.table.pin[pin].profile or ())
+            scale, factor = _stepped(factor_at, scale, step, least, required)
+    except NoSizeError as error:
+        return Sized(pin, None, before, None, None, str(error))
+    except (InputError, ArithmeticError) as error:
+        tried = ", ".join(f"{scale:.3g}" for scale in found) or "none"
+        why = f"a trial fails (those that went: {tried} times its diameters): {error}"
+        return Sized(pin, None, before, None, None, why)
+    return Sized(pin, scale, before, factor, found[scale].verdict)
+
+
+def _stepped(
+    factor_at: Callable[[float, float | None], float],
+    scale: float,
+    step: float,
+    diameter: float,
+    required: float,
+) -> tuple[float, float]:
+    """A scale at which the factor is reached with diameters rounded up to a step."""
+    for _ in range(STEPS_UP):
+        factor = factor_at(scale, step)
+        if factor >= required:
+            return scale, factor
+        scale += step / diameter  # rounding changes proportions, so notches may be sharper
+    raise NoSizeError(f"the factor is not reached within {STEPS_UP} steps of the diameter")
+
+
+def governing(plan: Plan, study: Study, pin: str, tell: Tell = lambda _: None) -> Peak:
+    """The peak with the lowest factor of a pin of `study`, under the loads of the plan.
+
+    Raises: InputError for a shape that cannot be, NoSizeError when the pin is not solved.
+    """
+    peaks: list[Peak] = []
+    asked: Asked = replace(plan.asked, goal="value")
+    for task in tasks(study, [pin_of(study, pin)], plan.loads):
+        found = solve_pin(
+            task.pin, task.material, task.clamps, task.loads, asked, tell, task.between
+        )
+        peaks += [solution.peak for solution in found]
+    for peak in peaks:
+        if peak.verdict == "rigid":
+            raise NoSizeError(f"it is unconstrained in case {peak.case}: {peak.note}")
+    acting = [peak for peak in peaks if peak.max_von_mises]
+    if not acting:
+        raise NoSizeError("no case loads it")
+    return max(acting, key=lambda peak: peak.max_von_mises or 0.0)
+
+
+def _factor(study: Study, peak: Peak) -> float:
+    material = material_of(study, study.table.pin[peak.pin].material)
+    factor = peak.safety_factor(material.yield_strength)
+    assert factor is not None  # a pin without strength is refused before
+    return factor
+
+
+def _problem(study: Study, pin: str) -> str:
+    table = study.table.pin[pin]
+    if table.profile is None:
+        return "its shape comes from a file, which has no diameters to change"
+    if study.table.material[table.material].yield_strength is None:
+        return f"its material {table.material} has no yield_strength"
+    return ""
+
+
+def new_text(study: Study, sized: Iterable[Sized], step: float | None, required: float) -> str:
+    """The study's text with all the sizes that were found."""
+    scales = {s.pin: s.scale for s in sized if s.scale is not None}
+    return resized(study.text, scales, study.system, step, required)

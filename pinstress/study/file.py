@@ -1,0 +1,195 @@
+"""Reading a study file: TOML, validated, in SI, every cross-reference checked."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from loads import MB, FileError, read_regular
+from pinstress.schema.shown import shown
+from pinstress.schema.tables import StudyTable
+from pinstress.schema.types import KINDS
+from pinstress.schema.units import SYSTEMS, UnitSystem
+from pinstress.study.errors import MOST_TOLD, InputError, Wrong, located, study_error
+from pinstress.study.file_names import same_files
+from pinstress.study.limits import too_many
+from pinstress.study.plausible import questions
+from pinstress.study.references import cross_references
+from pinstress.study.toml_text import read_toml
+from pinstress.study.validation import explain
+
+LARGEST_STUDY = 16 * MB
+LONGEST_PATH = 4096  # as Linux has it
+MOST_ITEMS = 200_000  # of a list
+LONGEST_KEY = 200  # characters; no name is longer, and messages have it in full
+
+
+@dataclass(frozen=True)
+class Sourced:
+    """Where a number of the study comes from."""
+
+    key: str
+    kind: str
+    note: str
+
+
+@dataclass(frozen=True)
+class Study:
+    """A valid study. table: its content in SI. system: the units it speaks. questions: what is
+    hardly meant in it, each after its key. located: whether messages give lines of its text, which
+    was not written by the user where the study was made in Python.
+    """
+
+    path: Path
+    text: str
+    table: StudyTable
+    provenance: tuple[Sourced, ...]
+    questions: tuple[str, ...] = ()
+    located: bool = True
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """The first of its questions, each with its line, and how many more there are."""
+        if not self.questions:
+            return ()
+        told = located(self.path, self._lines, [Wrong(q) for q in self.questions], MOST_TOLD)
+        more = len(self.questions) - len(told)
+        return (*told, f"{self.path}: and {more:,} more") if more else tuple(told)
+
+    @property
+    def system(self) -> UnitSystem:
+        """The study's unit system."""
+        return SYSTEMS[self.table.units]
+
+    @property
+    def name(self) -> str:
+        """The file's name without its ending."""
+        return self.path.stem
+
+    @property
+    def sha256(self) -> str:
+        """Hash of the study file."""
+        return hashlib.sha256(self.text.encode()).hexdigest()
+
+    def beside(self, name: str) -> Path:
+        """A file that the study names. Raises: InputError for what can be no file's name."""
+        if "\0" in name or len(name) > LONGEST_PATH:
+            raise self.error(f"{shown(name)} is not a file name", code="not-a-file-name")
+        return self.path.parent / name
+
+    def error(self, message: str, at: str = "", code: str = "") -> InputError:
+        """An error of this study, with the line of the key that the message begins with, or of the
+        key `at`.
+        """
+        return self.errors([Wrong(message, at=at, code=code)])
+
+    def errors(self, wrong: Sequence[Wrong]) -> InputError:
+        """The same for several."""
+        return study_error(self.path, self._lines, wrong)
+
+    @property
+    def _lines(self) -> str:
+        return self.text if self.located else ""
+
+    def clamps(self, pin: str, case: str) -> tuple[str, ...]:
+        """What holds a pin in a case, in the study's words."""
+        return tuple(self.table.case[case].clamp.get(pin, self.table.pin[pin].clamp))
+
+    def connections(self, pin: str) -> tuple[str, ...]:
+        """Connections that bear on a pin."""
+        return tuple(name for _, name in self.table.pin[pin].connections)
+
+
+def load_study(path: str | os.PathLike[str]) -> Study:
+    """Read and validate a study file.
+
+    Raises: InputError naming the file, the keys and what would be right.
+    """
+    if not isinstance(path, str | os.PathLike):
+        raise InputError(
+            f"{shown(path)} is not the path of a study file; give a string or a Path",
+            code="not-a-path",
+        )
+    path = Path(path)
+    try:
+        text = read_regular(path, LARGEST_STUDY).decode("utf-8-sig")
+        text = text.replace("\r\n", "\n").replace("\r", "\n")
+    except FileNotFoundError:
+        raise InputError(f"{path}: no such file", code="no-such-file") from None
+    except FileError as error:
+        raise InputError(f"{path}: {error}", code=error.code) from None
+    except (OSError, ValueError) as error:  # ValueError: no text, or no file's name
+        raise InputError(f"{path}: cannot be read ({error})", code="unreadable") from None
+    return parse_study(path, text)
+
+
+def parse_study(path: Path, text: str, located: bool = True) -> Study:
+    """Validate the text of a study file at `path`. located: as a Study's. Raises: InputError as
+    load_study.
+    """
+    lines = text if located else ""
+    provenance: list[Sourced] = []
+    long: list[Wrong] = []
+    raw = _unwrap(read_toml(path, text), "", provenance, long)
+    if long:
+        raise study_error(path, lines, long)
+    wrong = [
+        Wrong(
+            f"{s.key}: provenance must be given, derived, fitted or assumed, not {shown(s.kind)}",
+            code="not-a-choice",
+        )
+        for s in provenance
+        if s.kind not in KINDS
+    ]
+    units = raw.get("units")
+    system = SYSTEMS.get(units if isinstance(units, str) else "", SYSTEMS["m-N-s"])
+    try:
+        table = StudyTable.model_validate(raw, context={"system": system})
+    except ValidationError as error:
+        raise study_error(path, lines, wrong + explain(error)) from None
+    wrong += cross_references(table)
+    doubtful = questions(table, raw, system)
+    if beyond := list(too_many(table)):
+        wrong += [Wrong(text, code="too-large") for text in beyond]
+        wrong += [Wrong(text, code="doubtful") for text in doubtful]  # a wrong unit may be why
+    if not wrong:
+        same = same_files(table.pin, table.case)
+        wrong += [Wrong(text, code="same-file-names") for text in same]
+    if wrong:
+        raise study_error(path, lines, wrong)
+    return Study(path, text, table, tuple(provenance), doubtful, located)
+
+
+def _unwrap(node: Any, key: str, found: list[Sourced], long: list[Wrong]) -> Any:
+    """The same tree without provenance and notes, which go to `found`; of { value, provenance,
+    note } the value remains. long: where keys go that are too long.
+    """
+    if isinstance(node, list):
+        if len(node) > MOST_ITEMS:
+            long.append(
+                Wrong(
+                    f"{key}: {len(node):,} elements; the limit is {MOST_ITEMS:,}", code="too-many"
+                )
+            )
+            return []
+        return [_unwrap(v, f"{key}[{i}]", found, long) for i, v in enumerate(node, 1)]
+    if not isinstance(node, dict):
+        return node
+    if isinstance(node.get("provenance"), str):
+        found.append(Sourced(key, node["provenance"], str(node.get("note", ""))))
+        node = {k: v for k, v in node.items() if k not in ("provenance", "note")}
+        if set(node) == {"value"}:
+            return node["value"]
+    long += [
+        Wrong(f"{key}{': ' * bool(key)}the name {shown(k)} has {len(k):,} characters; the limit is "
+              f"{LONGEST_KEY}", code="too-long")
+        for k in node if len(k) > LONGEST_KEY
+    ]  # fmt: skip
+    inner = {k: f"{key}.{k}" if key else k for k in node if len(k) <= LONGEST_KEY}
+    return {k: _unwrap(node[k], place, found, long) for k, place in inner.items()}

@@ -1,0 +1,33 @@
+"""Whether the files written for pins and cases have different names."""
+
+from __future__ import annotations
+
+import unicodedata
+from collections.abc import Iterable
+
+
+def field_name(pin: str, case: str) -> str:
+    """The name, without suffix, of the files written for a pin in a case."""
+    return f"{pin}_{case}"
+
+
+def same_files(pins: Iterable[str], cases: Iterable[str]) -> Iterable[str]:
+    """Errors for names that give the same file name, also on systems that ignore case."""
+    cases = list(cases)
+    owners: dict[str, str] = {}
+    for kind, names in (("pin", pins := list(pins)), ("case", cases)):
+        seen: dict[str, str] = {}
+        for name in names:
+            other = seen.setdefault(_folded(name), name)
+            if other != name:
+                yield f"{kind}.{name}: its files would replace those of {kind}.{other}; rename one"
+    for pin in pins:
+        for case in cases:
+            told = f"pin.{pin} in case.{case}"
+            other = owners.setdefault(_folded(field_name(pin, case)), told)
+            if other != told:
+                yield f"{told}: its files would replace those of {other}; rename one"
+
+
+def _folded(name: str) -> str:
+    return unicodedata.normalize("NFKC", name).casefold()

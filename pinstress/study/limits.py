@@ -1,0 +1,52 @@
+"""Limits on the size of a study: more would take hours, or more memory than machines have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sized
+
+from pinstress.schema.tables import StudyTable
+
+MOST_PINS = MOST_CASES = 1000
+MOST_PARTS = 1000  # of a pin: a profile of so many segments takes half a minute
+MOST_LOADS = 1000  # of a case
+MOST_SLENDER = 1000.0  # length over diameter: beyond it the numerics fail, after many minutes
+MOST_STEPPED = 3000.0  # largest diameter over smallest
+MOST_BODIES = 500  # and joints: three unknowns each, in dense equations
+
+
+def too_many(table: StudyTable) -> Iterator[str]:
+    """Errors for whatever exceeds a limit."""
+    for key, what, there, most in _counted(table):
+        if len(there) > most:
+            yield f"{key}: {len(there):,} {what}; the limit is {most:,}"
+    for name, pin in table.pin.items():
+        diameters = [segment.diameter for segment in pin.profile or ()]
+        if not diameters:
+            continue
+        slender = sum(segment.length for segment in pin.profile or ()) / max(diameters)
+        if slender > MOST_SLENDER:
+            yield f"pin.{name}.profile: {_odd('as long as it is wide', slender, MOST_SLENDER)}"
+        stepped = max(diameters) / min(diameters)
+        if stepped > MOST_STEPPED:
+            yield f"pin.{name}.profile: {_odd('as wide as elsewhere', stepped, MOST_STEPPED)}"
+
+
+def _odd(what: str, found: float, most: float) -> str:
+    return f"the pin is {found:,.0f} times {what}; the limit is {most:,.0f}; check the units"
+
+
+def _counted(table: StudyTable) -> Iterator[tuple[str, str, Sized, int]]:
+    yield "pin", "pins", table.pin, MOST_PINS
+    yield "case", "cases", table.case, MOST_CASES
+    for name, pin in table.pin.items():
+        yield f"pin.{name}.profile", "segments", pin.profile or (), MOST_PARTS
+        yield f"pin.{name}.hole", "holes", pin.hole, MOST_PARTS
+        yield f"pin.{name}.flat", "flats", pin.flat, MOST_PARTS
+        yield f"pin.{name}.band", "bands", pin.band, MOST_PARTS
+    for name, case in table.case.items():
+        yield f"case.{name}.apply", "loads", getattr(case, "apply", ()), MOST_LOADS
+    if (mechanism := table.mechanism) is not None:
+        yield "mechanism.joint", "joints", mechanism.joint, MOST_BODIES
+        yield "mechanism.body", "bodies", mechanism.body, MOST_BODIES
+        yield "mechanism.slider", "sliders", mechanism.slider, MOST_BODIES
+        yield "mechanism.drive", "drives", mechanism.drive, MOST_BODIES

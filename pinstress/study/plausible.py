@@ -1,0 +1,149 @@
+"""Numbers of a study that can be and are hardly meant: mostly their unit is another one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from pinstress.schema.pins import MaterialTable, PinTable
+from pinstress.schema.shown import shown
+from pinstress.schema.tables import StudyTable
+from pinstress.schema.units import SYSTEMS, UnitSystem, split, to_si
+
+
+@dataclass(frozen=True)
+class Usual:
+    """What a quantity lies between, in SI, of whose, and near what; and the units in which it is
+    stated, metric and imperial, the first to say it in.
+    """
+
+    dimension: str
+    low: float
+    high: float
+    typical: float
+    whose: str
+    metric: tuple[str, ...]
+    imperial: tuple[str, ...]
+
+
+LENGTHS = ("mm", "m", "cm"), ("in", "ft")
+IMPERIAL_STRESSES = "ksi", "psi", "Msi"
+USUAL = {
+    "modulus": Usual(
+        "stress", 1e9, 1.2e12, 2e11, "a structural material", ("GPa", "MPa", "Pa"),
+        IMPERIAL_STRESSES,
+    ),
+    "strength": Usual(
+        "stress", 1e6, 6e9, 5e8, "a structural material", ("MPa", "GPa", "Pa"), IMPERIAL_STRESSES
+    ),
+    "density": Usual(
+        "density", 1e2, 2.3e4, 7850.0, "a solid material", ("kg/m^3", "g/cm^3", "t/mm^3"),
+        ("lb/in^3", "lb/ft^3"),
+    ),
+    "diameter": Usual("length", 1e-4, 3.0, 0.03, "a pin", *LENGTHS),
+    "length": Usual("length", 1e-5, 10.0, 0.03, "a pin", *LENGTHS),
+    "gravity": Usual(
+        "acceleration", 1.0, 200.0, 9.81, "a machine", ("m/s^2", "mm/s^2"), ("ft/s^2", "in/s^2")
+    ),
+}  # fmt: skip
+MOST_STRAIN = 1.0 / 20.0  # at which a material yields
+
+
+@dataclass(frozen=True)
+class Stated:
+    """A number of the study: its key, its value in SI and as it is written."""
+
+    key: str
+    value: float
+    written: Any
+
+
+def questions(table: StudyTable, raw: dict[str, Any], system: UnitSystem) -> tuple[str, ...]:
+    """What is hardly meant, each with the key and the likely unit. raw: what the table is from."""
+    return tuple(
+        told
+        for kind, stated, high in _numbers(table, raw)
+        if (told := _question(kind, stated, high, system))
+    )
+
+
+def _numbers(table: StudyTable, raw: Any) -> Iterator[tuple[str, Stated, float]]:
+    """Everything that has a usual range, which, and up to where."""
+    for name, material in table.material.items():
+        yield from _of_material(f"material.{name}", material, raw["material"][name])
+    for name, pin in table.pin.items():
+        yield from _of_pin(f"pin.{name}", pin, raw["pin"][name])
+    if table.mechanism is not None and (gravity := raw["mechanism"].get("gravity")):
+        x, y = table.mechanism.gravity
+        stated = Stated("mechanism.gravity", math.hypot(x, y), gravity[abs(y) >= abs(x)])
+        yield "gravity", stated, USUAL["gravity"].high
+    if table.spatial_leg is not None and "gravity" in raw["spatial_leg"]:
+        stated = Stated(
+            "spatial_leg.gravity", table.spatial_leg.gravity, raw["spatial_leg"]["gravity"]
+        )
+        yield "gravity", stated, USUAL["gravity"].high
+    bodies = table.mechanism.body if table.mechanism is not None else {}
+    for name, body in bodies.items():
+        if body.bar is not None:
+            written = raw["mechanism"]["body"][name]["bar"]["density"]
+            stated = Stated(f"mechanism.body.{name}.bar.density", body.bar.density, written)
+            yield "density", stated, USUAL["density"].high
+
+
+def _of_material(
+    key: str, material: MaterialTable, raw: dict[str, Any]
+) -> Iterator[tuple[str, Stated, float]]:
+    modulus, most = USUAL["modulus"], USUAL["strength"].high
+    stated = Stated(f"{key}.youngs_modulus", material.youngs_modulus, raw["youngs_modulus"])
+    yield "modulus", stated, modulus.high
+    if material.density is not None:
+        stated = Stated(f"{key}.density", material.density, raw["density"])
+        yield "density", stated, USUAL["density"].high
+    if material.yield_strength is not None:
+        if modulus.low <= material.youngs_modulus <= modulus.high:
+            most = min(most, MOST_STRAIN * material.youngs_modulus)
+        stated = Stated(f"{key}.yield_strength", material.yield_strength, raw["yield_strength"])
+        yield "strength", stated, most
+
+
+def _of_pin(key: str, pin: PinTable, raw: dict[str, Any]) -> Iterator[tuple[str, Stated, float]]:
+    for i, segment in enumerate(pin.profile or ()):
+        for kind, value in (("diameter", segment.diameter), ("length", segment.length)):
+            stated = Stated(f"{key}.profile[{i + 1}].{kind}", value, raw["profile"][i][kind])
+            yield kind, stated, USUAL[kind].high
+
+
+def _question(kind: str, stated: Stated, high: float, system: UnitSystem) -> str:
+    usual = USUAL[kind]
+    if stated.value == 0.0 or usual.low <= abs(stated.value) <= high:
+        return ""
+    unit = usual.metric[0]
+    one = to_si(f"1 {unit}", usual.dimension, system)
+    is_, low, most = (f"{value / one:,.4g}" for value in (stated.value, usual.low, high))
+    hint = f"; is it {likely}?" if (likely := _likely(usual, stated, high, system)) else ""
+    return (
+        f"{stated.key}: {shown(stated.written)} is {is_} {unit}, and that of {usual.whose} lies "
+        f"between {low} and {most} {unit}{hint}"
+    )
+
+
+def _likely(usual: Usual, stated: Stated, high: float, system: UnitSystem) -> str:
+    """The number as it is written with the unit in which it is most usual, if there is one: of the
+    units of its own kind the one nearest to the typical value, else of the others.
+    """
+    found = split(stated.written) if isinstance(stated.written, str) else (stated.written, "")
+    if found is None:
+        return ""
+    number, unit = found
+    kinds = [usual.metric, usual.imperial]
+    if unit in usual.imperial or (not unit and system is SYSTEMS["in-lbf-s"]):
+        kinds.reverse()
+    for units in kinds:
+        values = {u: abs(number) * to_si(f"1 {u}", usual.dimension, system) for u in units}
+        usable = {u: v for u, v in values.items() if usual.low <= v <= high}
+        if usable:
+            best = min(usable, key=lambda u: abs(math.log(usable[u] / usual.typical)))
+            return f'"{number:.10g} {best}"'
+    return ""

@@ -1,0 +1,129 @@
+"""References by name within a study: each must exist."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import partial
+
+from pinstress.schema.cases import GivenCase, LegCase, MotionCase
+from pinstress.schema.mechanism import MechanismTable, RotaryDrive, SliderDrive
+from pinstress.schema.shown import near, shown
+from pinstress.schema.tables import StudyTable
+from pinstress.study.errors import Wrong
+
+
+def cross_references(table: StudyTable) -> Iterator[Wrong]:
+    """References to things that do not exist."""
+    bears: dict[str, str] = {}
+    for name, pin in table.pin.items():
+        yield from _known(f"pin.{name}.material", "material", pin.material, table.material)
+        for key, connection in pin.connections:
+            if connection in bears:
+                yield Wrong(
+                    f"pin.{name}.{key}: connection {shown(connection)} already bears on pin "
+                    f"{bears[connection]}; a connection bears on one pin only",
+                    code="duplicate-connection",
+                )
+            bears[connection] = name
+    yield from _of_cases(table, bears)
+    if table.mechanism is not None:
+        yield from _of_pins(table, table.mechanism, bears)
+        yield from _of_mechanism(table.mechanism)
+        yield from _of_its_cases(table, table.mechanism)
+    for key, check, pools in (
+        ("beam_check", table.beam_check, (("pin", table.pin), ("case", table.case))),
+        ("motion_check", table.motion_check, (("case", table.case),)),
+    ):
+        for field, pool in pools:
+            if check is not None:
+                yield from _known(f"{key}.{field}", field, getattr(check, field), pool)
+
+
+def _known(where: str, what: str, name: str, names: Mapping[str, object]) -> Iterator[Wrong]:
+    if name not in names:
+        code = f"unknown-{what.split()[-1]}"
+        yield Wrong(f"{where}: no {what} {shown(name)}; ", partial(near, name, names), code=code)
+
+
+def _of_cases(table: StudyTable, bears: dict[str, str]) -> Iterator[Wrong]:
+    for name, case in table.case.items():
+        for pin in case.clamp:
+            yield from _known(f"case.{name}.clamp", "pin", pin, table.pin)
+        if isinstance(case, GivenCase):
+            for key, given in (("forces", case.forces), ("moments", case.moments)):
+                for connection in given or ():
+                    what = "pin has a connection"
+                    yield from _known(f"case.{name}.{key}", what, connection, bears)
+        elif isinstance(case, LegCase):
+            if table.spatial_leg is None:
+                yield Wrong(f"case.{name}: kind 'spatial_leg' needs a [spatial_leg]", code="no-leg")
+        elif table.mechanism is None:
+            yield Wrong(f"case.{name}: kind {case.kind!r} needs a [mechanism]", code="no-mechanism")
+
+
+def _of_pins(
+    table: StudyTable, mechanism: MechanismTable, bears: dict[str, str]
+) -> Iterator[Wrong]:
+    have = dict.fromkeys(c for joint in mechanism.joint.values() for c in joint.connections)
+    if all(isinstance(case, GivenCase | LegCase) for case in table.case.values()):
+        return
+    for connection, pin in bears.items():
+        if connection not in have:
+            told = f"pin.{pin}: connection {shown(connection)} is not in the mechanism; "
+            yield Wrong(told, partial(near, connection, have), code="unknown-connection")
+
+
+def named_joints(mechanism: MechanismTable) -> Iterator[tuple[str, str]]:
+    """Every key below [mechanism] that names a joint, with the name."""
+    for name, slider in mechanism.slider.items():
+        for joint in slider.joints:
+            if isinstance(joint, str):
+                yield f"slider.{name}.joints", joint
+    for name, body in mechanism.body.items():
+        for joint in body.bar.joints if body.bar is not None else ():
+            yield f"body.{name}.bar.joints", joint
+    for i, drive in enumerate(mechanism.drive, 1):
+        for joint in () if isinstance(drive, SliderDrive) else _lines(drive):
+            yield f"drive[{i}].line" if len(mechanism.drive) > 1 else "drive.line", joint
+
+
+def _lines(drive: RotaryDrive) -> tuple[str, ...]:
+    return drive.line + (drive.against_line or ())
+
+
+def _of_mechanism(mechanism: MechanismTable) -> Iterator[Wrong]:
+    bodies = dict.fromkeys(["ground", *mechanism.body])
+    for name, joint in mechanism.joint.items():
+        where = f"mechanism.joint.{name}"
+        if joint.fixed_in is not None:
+            yield from _known(f"{where}.fixed_in", "body", joint.fixed_in, bodies)
+        for connection, body in joint.connections.items():
+            yield from _known(f"{where}.connections.{connection}", "body", body, bodies)
+    for place, named in named_joints(mechanism):
+        yield from _known(f"mechanism.{place}", "joint", named, mechanism.joint)
+    for i, drive in enumerate(mechanism.drive, 1):
+        where = "mechanism.drive" + (f"[{i}]" if len(mechanism.drive) > 1 else "")
+        if isinstance(drive, SliderDrive):
+            yield from _known(f"{where}.slider", "slider", drive.slider, mechanism.slider)
+            continue
+        yield from _known(f"{where}.body", "body", drive.body, bodies)
+        yield from _known(f"{where}.against", "body", drive.against, bodies)
+
+
+def _of_its_cases(table: StudyTable, mechanism: MechanismTable) -> Iterator[Wrong]:
+    moves = all(d.moves for d in mechanism.drive)
+    for name, case in table.case.items():
+        if isinstance(case, MotionCase) and not moves:
+            yield Wrong(
+                f"case.{name}: a motion needs start, end and duration in [mechanism.drive]",
+                code="drive-without-motion",
+            )
+        for i, load in enumerate(getattr(case, "apply", ()), 1):
+            where = f"case.{name}.apply[{i}]"
+            yield from _known(f"{where}.body", "body", load.body, mechanism.body)
+            if isinstance(load.at, str):
+                yield from _known(f"{where}.at", "joint", load.at, mechanism.joint)
+    if (check := table.motion_check) is not None:
+        for field in ("joint", "pivot"):
+            where = f"motion_check.{field}"
+            yield from _known(where, "joint", getattr(check, field), mechanism.joint)

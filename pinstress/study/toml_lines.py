@@ -1,0 +1,180 @@
+"""On which line of a study file a key stands, for messages that name the key.
+
+tomllib keeps no positions and tomlkit gives none. The text has been read by tomllib already, so it
+is valid TOML and its headers, keys and brackets only need to be followed.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import count
+
+# A string that does not end goes on to the end of its line or of the text: were it no token, every
+# quote in it would be looked at anew.
+TOKEN = re.compile(
+    r'''"""(?:\\.|[^\\])*?(?:"{3,5}|\Z) | \'\'\'.*?(?:'{3,5}|\Z)
+    | "(?:\\.|[^"\\\n])*+"? | '[^'\n]*'? | \#[^\n]*'''
+    r"""| \n | [][{}=,.] | [^][{}=,.\s"'\#]+""",
+    re.VERBOSE | re.DOTALL,
+)
+KEY_END = re.compile(r"[:.\[]| in ")  # after a key in a message
+LONGEST_END = 4
+QUOTED = re.compile(r"'([^']*)'")
+Place = tuple[str | int, ...]  # keys, and indices from 0 into arrays
+
+
+class Tokens:
+    """The tokens of a text one after the other, each with the line on which it begins: a list of
+    those of a large file would take gigabytes.
+    """
+
+    def __init__(self, text: str) -> None:
+        self._rest = _tokens(text)
+        self._next = next(self._rest, None)
+
+    def __bool__(self) -> bool:
+        return self._next is not None
+
+    @property
+    def first(self) -> tuple[str, int]:
+        """The token that comes next."""
+        assert self._next is not None
+        return self._next
+
+    def pop(self) -> tuple[str, int]:
+        """The same, and past it."""
+        first = self.first
+        self._next = next(self._rest, None)
+        return first
+
+
+def places(text: str) -> dict[Place, int]:
+    """The line, from 1 on, of every key, table and array element of a valid TOML text. A table
+    that has no line of its own has the first of what it contains.
+    """
+    tokens = Tokens(text)
+    found: dict[Place, int] = {}
+    sizes: dict[Place, int] = {}  # of the arrays of tables
+    table: Place = ()
+    while tokens:
+        token, line = tokens.first
+        if token == "[":
+            table = _header(tokens, sizes)
+            _mark(table, line, found)
+        elif token == "\n":
+            tokens.pop()
+        else:
+            _pair(tokens, table, found)
+    return found
+
+
+def lines_of(text: str, messages: Iterable[str]) -> list[int | None]:
+    """The line of the key with which each message begins ("pin.B.profile[2].length: ..."), or of
+    the nearest table around it that is there; None where there is none. If the message goes on to
+    quote a key of that table ("unknown key 'x'"), it is that key's.
+    """
+    known: dict[str, int] = {}
+    everywhere = places(text)
+    # Messages leave out the `value` of { value, provenance }, and the index of an only table.
+    for unsaid in ((), ("value",), ("value", 0)):
+        for place, line in everywhere.items():
+            known.setdefault(_said([part for part in place if part not in unsaid]), line)
+    longest = max(map(len, known), default=0)
+    return [_line(known, longest, message) for message in messages]
+
+
+def _line(known: dict[str, int], longest: int, message: str) -> int | None:
+    # [1] also for the one table that may be written without an array
+    spellings = (message, message.replace("[1]", ""))
+    keys = (next(_keys(known, m[: longest + LONGEST_END]), "") for m in spellings)
+    key = max(keys, key=len)
+    quoted = QUOTED.search(message)
+    inner = f"{key}.{quoted[1]}".lstrip(".") if quoted else key
+    return known.get(inner, known.get(key))
+
+
+def _keys(known: dict[str, int], message: str) -> Iterator[str]:
+    """The known keys with which a message begins, the longest first: looked up where one may end,
+    which is much less than to compare it with every key of a large study.
+    """
+    for end in reversed([m.start() for m in KEY_END.finditer(message)]):
+        if message[:end] in known:
+            yield message[:end]
+
+
+def _said(place: Sequence[str | int]) -> str:
+    """A place as messages spell it, which count from 1."""
+    return "".join(f"[{p + 1}]" if isinstance(p, int) else f".{p}" for p in place)[1:]
+
+
+def _tokens(text: str) -> Iterator[tuple[str, int]]:
+    line, at = 1, 0
+    for match in TOKEN.finditer(text + "\n"):
+        line += text.count("\n", at, match.start())
+        at = match.start()
+        if not match[0].startswith("#"):
+            yield match[0], line
+
+
+def _header(tokens: Tokens, sizes: dict[Place, int]) -> Place:
+    """The table that [a.b] or the next [[a.b]] opens."""
+    tokens.pop()
+    array = tokens.first[0] == "["
+    if array:
+        tokens.pop()
+    names = _key(tokens, "]")
+    table: Place = ()
+    for depth, name in enumerate(names, 1):
+        table += (name,)
+        if array and depth == len(names):
+            tokens.pop()
+            sizes[table] = sizes.get(table, 0) + 1
+        if table in sizes:
+            table += (sizes[table] - 1,)
+    return table
+
+
+def _key(tokens: Tokens, end: str) -> list[str]:
+    """The parts of a dotted key, and past its end."""
+    parts = []
+    while (token := tokens.pop()[0]) != end:
+        if token[0] in "\"'":
+            parts.append(str(tomllib.loads(f"key = {token}")["key"]))
+        elif token != ".":
+            parts.append(token)
+    return parts
+
+
+def _pair(tokens: Tokens, table: Place, found: dict[Place, int]) -> None:
+    line = tokens.first[1]
+    place = (*table, *_key(tokens, "="))
+    _mark(place, line, found)
+    _value(tokens, place, found)
+
+
+def _value(tokens: Tokens, place: Place, found: dict[Place, int]) -> None:
+    """Past a value, and what it contains; what ends it remains."""
+    first, _ = tokens.pop()
+    if first not in ("[", "{"):
+        while tokens.first[0] not in (",", "]", "}", "\n"):
+            tokens.pop()  # 1.5 and a time of day are several tokens
+        return
+    for i in count():
+        while tokens.first[0] in (",", "\n"):
+            tokens.pop()
+        if tokens.first[0] in ("]", "}"):
+            tokens.pop()
+            return
+        if first == "{":
+            _pair(tokens, place, found)
+        else:
+            _mark((*place, i), tokens.first[1], found)
+            _value(tokens, (*place, i), found)
+
+
+def _mark(place: Place, line: int, found: dict[Place, int]) -> None:
+    for depth in range(1, len(place)):
+        found.setdefault(place[:depth], line)
+    found[place] = line

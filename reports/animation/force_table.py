@@ -1,0 +1,112 @@
+"""The forces on the pins in an animation: arrows, table, number formats."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from reports.animation.frames import nice
+from reports.animation.scene import LONGEST, Scene
+from reports.data.results import DriveTable, Units
+from reports.format.fixed_decimals import Fixed
+from reports.format.numbers import short
+
+HEAD = 10.0  # length of an arrow's head
+KEY = 0.45  # of the largest force, about: the arrow that explains the scale
+
+
+@dataclass(frozen=True)
+class Arrow:
+    """A force at the first frame: where, how long on the picture, and its direction in degrees."""
+
+    colour: str
+    at: tuple[float, float]
+    length: float
+    angle: float
+
+    @property
+    def head(self) -> float:
+        """Length of the head, which shrinks with a short arrow."""
+        return min(HEAD, 0.6 * self.length)
+
+
+def arrows(scene: Scene) -> list[Arrow]:
+    """One per connection, in proportion to its force."""
+    found = []
+    for c, ((fx, fy), joint) in enumerate(zip(scene.forces[0].tolist(), scene.tails, strict=True)):
+        x, y = scene.joints[0, joint].tolist()
+        length = LONGEST * float(np.hypot(fx, fy)) / (scene.largest or 1.0)
+        colour = scene.colour(scene.motion.connections[c][1])
+        found.append(Arrow(colour, (x, y), length, float(np.degrees(np.arctan2(-fy, fx)))))
+    return found
+
+
+def key(scene: Scene) -> tuple[float, Arrow] | None:
+    """A round force and its arrow; None without forces."""
+    if not scene.largest > 0.0:
+        return None
+    force = nice(KEY * scene.largest)
+    return force, Arrow("plain", (0.0, -24.0), LONGEST * force / scene.largest, 0.0)
+
+
+@dataclass(frozen=True)
+class Shown:
+    """How forces are written, and of each drive its position and its force."""
+
+    force: Fixed
+    drives: list[tuple[Fixed, Fixed]]
+
+    @staticmethod
+    def of(scene: Scene, drives: list[DriveTable], units: Units) -> Shown:
+        pairs = []
+        for d in drives:
+            rotary = d.kind == "rotary"
+            torque = f"{units.force}·{units.length}"
+            pairs.append(
+                (
+                    Fixed.of(d.position, "°" if rotary else units.length),
+                    Fixed.of(d.force, torque if rotary else units.force),
+                )
+            )
+        return Shown(Fixed.of(np.array([scene.largest]), units.force), pairs)
+
+
+@dataclass(frozen=True)
+class ForceRow:
+    """A connection in the table: numbers at the first frame, and its largest with the time."""
+
+    name: str
+    body: str
+    joint: int
+    colour: str
+    x: str
+    y: str
+    force: str
+    largest: str
+    when: str
+
+
+def rows(scene: Scene, shown: Shown) -> list[ForceRow]:
+    """One per connection, in the order of the joints."""
+    table = scene.table
+    if table is None:
+        return []
+    peaks, first, found = table.largest, scene.instants[0], []
+    for c, (name, body, _) in enumerate(scene.motion.connections):
+        fx, fy = (shown.force(v) for v in scene.forces[0, c].tolist())
+        peak, when = peaks[c].force, peaks[c].time
+        found.append(
+            ForceRow(
+                name,
+                body,
+                scene.tails[c],
+                scene.colour(body),
+                fx,
+                fy,
+                shown.force(float(table.magnitudes[first, c])),
+                shown.force(peak),
+                "" if when is None else short(float(f"{when:.4g}")),
+            )
+        )
+    return found

@@ -1,0 +1,78 @@
+"""The instants of an animation, and the mapping to its picture."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reports.data.results import DriveTable, Floats, LinkageMotion, ReactionTable
+
+MOST = 240  # frames: 4 s at 60 per second
+WIDTH, TALLEST, SHORTEST = 960.0, 560.0, 300.0
+MARGIN = 36.0  # room for names and for what is drawn around a joint
+
+
+def frames(
+    motion: LinkageMotion, table: ReactionTable | None, drives: list[DriveTable]
+) -> NDArray[np.int64]:
+    """Indices of at most 240 instants: evenly spaced, and those of the peaks."""
+    count = len(motion.joint_position)
+    if count <= MOST:
+        return np.arange(count)
+    peaks = [int(np.argmax(np.abs(d.force))) for d in drives if len(d.force) == count]
+    if table is not None:
+        peaks += table.magnitudes.argmax(axis=0).tolist()
+    kept = np.unique(peaks)[: MOST // 2]
+    even = np.linspace(0, count - 1, MOST - len(kept)).round().astype(int)
+    return np.union1d(even, kept)
+
+
+@dataclass(frozen=True)
+class Viewport:
+    """From lengths in the study's unit to the picture, y downwards: scale, then the corner."""
+
+    scale: float
+    left: float
+    top: float
+    height: float
+
+    @staticmethod
+    def of(points: Floats, tails: Floats, arrows: Floats) -> Viewport:
+        """Such that all points (N, 2) fit, and the arrows (M, 2; on the picture, y upwards) from
+        their tails (M, 2).
+        """
+        all_points = np.concatenate([points, tails])
+        offsets = np.concatenate([np.zeros_like(points), arrows])
+        room = np.array([WIDTH, TALLEST]) - 2.0 * MARGIN
+        size = np.ptp(all_points, axis=0)
+        if not size.any():
+            size = np.ones(2)
+        low, high = 0.0, float(np.min(room / np.maximum(size, 1e-9 * size.max())))
+        for _ in range(40):  # the arrows keep their length, so there is no formula
+            middle = 0.5 * (low + high)
+            fits = np.all(np.ptp(middle * all_points + offsets, axis=0) <= room)
+            low, high = (middle, high) if fits else (low, middle)
+        drawn = low * all_points + offsets
+        corner, size = drawn.min(axis=0), np.ptp(drawn, axis=0)
+        height = float(max(size[1] + 2.0 * MARGIN, SHORTEST))
+        left = 0.5 * (WIDTH - size[0]) - corner[0]
+        top = 0.5 * (height + size[1]) + corner[1]
+        return Viewport(low, float(left), float(top), height)
+
+    def __call__(self, points: Floats) -> Floats:
+        """Positions (..., 2) in the picture."""
+        return np.stack(
+            [self.left + self.scale * points[..., 0], self.top - self.scale * points[..., 1]],
+            axis=-1,
+        )
+
+
+def nice(value: float) -> float:
+    """The largest 1, 2 or 5 times a power of ten that is not above the value."""
+    if not value > 0.0 or not np.isfinite(value):
+        return 1.0
+    power = 10.0 ** np.floor(np.log10(value))
+    digit = max(d for d in (1.0, 2.0, 5.0) if d <= value / power * (1.0 + 1e-9))
+    return float(digit * power)

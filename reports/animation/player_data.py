@@ -1,0 +1,104 @@
+"""The numbers for an animation's script, rounded to visible precision."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+from markupsafe import Markup
+
+from reports.animation.frames import nice
+from reports.animation.scene import LONGEST, Scene
+from reports.data.results import DriveTable, Floats, Units
+from reports.format.numbers import short
+
+SECONDS = 6.0  # that a motion takes to play, about
+WATCHABLE = (2.0, 12.0)  # seconds that need no other speed
+
+
+def script_json(data: object) -> Markup:
+    """JSON that is safe inside a script element."""
+    text = json.dumps(data, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
+    return Markup(text.translate({ord(c): f"\\u{ord(c):04x}" for c in "<>&'"}))
+
+
+def player_data(scene: Scene, drives: list[DriveTable], units: Units) -> dict[str, Any]:
+    """Positions and values by frame."""
+    at = scene.instants
+    time = scene.motion.time
+    return {
+        "time": digits(np.arange(len(at), dtype=np.float64) if time is None else time[at], 7),
+        "places": {"left": scene.view.left, "top": scene.view.top, "scale": scene.view.scale},
+        "units": {"length": units.length, "force": units.force, "time": units.time},
+        "joints": list(scene.motion.joints),
+        "xy": [pixels(scene.joints[:, j]) for j in range(len(scene.motion.joints))],
+        "centres": [pixels(scene.centres[:, b]) for b in range(len(scene.motion.bodies))],
+        "links": scene.members,
+        "slides": [
+            {
+                "ends": pixels(s.ends.reshape(-1, 4)),
+                "cylinder": round(s.cylinder, 2),
+                "rail": s.rail is not None,
+                "angle": round(s.angle, 3),
+            }
+            for s in scene.slides
+        ],
+        "connections": _connections(scene),
+        "drives": [
+            {"position": digits(d.position[at]), "force": digits(d.force[at])} for d in drives
+        ],
+        "arrow": {"longest": LONGEST, "largest": scene.largest},
+    }
+
+
+def _connections(scene: Scene) -> list[dict[str, Any]]:
+    if scene.table is None:
+        return []
+    size = scene.table.magnitudes[scene.instants]
+    return [
+        {
+            "name": name,
+            "body": body,
+            "joint": scene.tails[c],
+            "fx": digits(scene.forces[:, c, 0]),
+            "fy": digits(scene.forces[:, c, 1]),
+            "f": digits(size[:, c]),
+        }
+        for c, (name, body, _) in enumerate(scene.motion.connections)
+    ]
+
+
+def speeds(time: Floats | None) -> list[tuple[float, str, bool]]:
+    """Speeds to choose from, in times of the real, with their words; True for that to begin with.
+
+    A motion of milliseconds or of hours plays in seconds.
+    """
+    if time is None or len(time) < 2:
+        return []
+    duration = float(np.ptp(time)) or 1.0
+    middle = nice(1.5 * duration / SECONDS)
+    if WATCHABLE[0] <= duration <= WATCHABLE[1]:
+        middle = 1.0
+    choices = sorted({float(f"{middle * m:.6g}") for m in (0.1, 0.2, 0.5, 1.0, 2.0, 5.0)} | {1.0})
+    return [
+        (s, f"{short(s)}×" + (" (real time)" if s == 1.0 else ""), s == middle) for s in choices
+    ]
+
+
+def digits(values: Floats, significant: int = 5) -> list[float | None]:
+    """Numbers rounded relative to the largest; None for missing ones."""
+    finite = values[np.isfinite(values)]
+    largest = float(np.abs(finite).max(initial=0.0))
+    decimals = significant - 1 - int(np.floor(np.log10(largest))) if largest > 0.0 else 0
+    return [_plain(round(v, decimals)) if np.isfinite(v) else None for v in values.tolist()]
+
+
+def pixels(points: Floats) -> list[float]:
+    """Coordinates one after the other, to a hundredth of a pixel."""
+    return [_plain(round(v, 2)) for v in points.reshape(-1).tolist()]
+
+
+def _plain(value: float) -> float:
+    # Whole numbers without ".0", and no minus zero: a third of the file.
+    return int(value) if value == int(value) else value

@@ -1,0 +1,207 @@
+"""What a run found: all that reports are made from. Made once, in SI; `Results.in_units` gives the
+same in the units of a study, from which tables and pages are written.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Self
+
+from fea.checks.records import BeamCheck, HandCheck
+from fea.core.dimensions import (
+    Floats,
+    Force,
+    Forces,
+    Length,
+    Moments,
+    Point,
+    Stress,
+    Stresses,
+    Time,
+    Times,
+    Velocities,
+    Velocity,
+)
+from fea.core.peak import Refinement, SingularZone
+from reports.data.fields import BandLoad, Field, Still, Volume
+from reports.data.in_units import Unit, in_units
+from reports.data.mechanics import (
+    Dimensioned,
+    DriveEffort,
+    DrivePosition,
+    DriveTable,
+    Extremes,
+    GuideForces,
+    LegTable,
+    LinkageMotion,
+    MotionCheck,
+    PeakReaction,
+    PowerLedger,
+    PublishedValue,
+    ReactionTable,
+    shown_position,
+)
+from reports.data.surface import Surface
+
+__all__ = [
+    "BandLoad", "BeamCheck", "Dimensioned", "DriveEffort", "DriveTable", "Extremes", "Field",
+    "Floats", "GoverningLoad", "GuideForces", "HandCheck", "LandingRange", "LegTable",
+    "LinkageMotion", "MotionCheck", "PeakReaction", "PinResult", "PinShape", "PowerLedger",
+    "Provenance", "PublishedValue", "ReactionTable", "Refinement", "Results", "SingularZone",
+    "Still", "Surface", "Units", "Volume",
+]  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Units:
+    """Names of the units of results."""
+
+    length: str
+    force: str
+    stress: str
+    time: str
+
+
+SI = Units("m", "N", "Pa", "s")
+
+
+@dataclass(frozen=True)
+class GoverningLoad:
+    """What a body does to the pin at a connection at the governing instant: force and moment (3,),
+    world axes.
+    """
+
+    connection: str
+    body: str
+    force: Forces
+    moment: Moments
+
+
+@dataclass(frozen=True)
+class PinResult:
+    """One pin in one case. Numbers are None for `rigid` and `failed`, time without a motion.
+
+    location: x, y, z in the pin's own axes. held: what holds the pin, in words. left_out: given
+    forces that were not applied because their band is held. published_*: the publication's value,
+    in the study's units. position_unit: as a ReactionTable's.
+    why: which model answered and why it was enough. singular_at: stress singularities; where one
+    governs (verdict `singular`) maximum and factor are those outside all of them, as are those of
+    the history; the intervals are those over half and twice the excluded distance, and
+    error_estimate reaches both ends. error_parts: stresses by what they come from (mesh, time,
+    ..). loads: at the governing instant.
+    """
+
+    pin: str
+    case: str
+    model: str
+    verdict: str
+    note: str
+    max_von_mises: Stress | None
+    error_estimate: Stress | None
+    location: Point | None
+    time: Time | None
+    position: DrivePosition | None
+    safety_factor: float | None
+    yields: bool | None
+    meets_required: bool | None
+    dofs: int
+    seconds: float
+    history: tuple[Refinement, ...]
+    held: str
+    left_out: tuple[str, ...] = ()
+    published_max_von_mises: float | None = None
+    published_safety_factor: float | None = None
+    why: str = ""
+    singular_at: tuple[SingularZone, ...] = ()
+    hand_checks: tuple[HandCheck, ...] = ()
+    max_von_mises_interval: tuple[Stress, Stress] | None = None
+    safety_factor_interval: tuple[float, float | None] | None = None
+    error_parts: Mapping[str, Stress] = field(default_factory=dict)
+    loads: tuple[GoverningLoad, ...] = ()
+    position_unit: str = ""
+
+    @property
+    def instead(self) -> dict[str, str]:
+        return shown_position(self.position_unit)
+
+
+@dataclass(frozen=True)
+class LandingRange:
+    """One pin over the ranges of a landing's impulse, (P,) pairs each: impulse time, velocity
+    change, force, maximum von Mises and factor of safety (None without a yield strength). nominal:
+    the pair of the case itself. verdict: of the case, which holds for all pairs. spread: of a
+    `singular` one the ends of its interval of the factor, over the factor.
+    """
+
+    pin: str
+    case: str
+    impulse_time: Times
+    velocity_change: Velocities
+    force: Forces
+    max_von_mises: Stresses
+    safety_factor: Floats | None
+    nominal: tuple[Time, Velocity]
+    verdict: str
+    spread: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
+class PinShape:
+    """A pin's profile for drawing: segments (length, diameter, bore, label, kind) in order, where
+    kind is "band", "held" or "plain"; its weight (None without a density).
+    """
+
+    pin: str
+    segments: tuple[tuple[Length, Length, Length, str, str], ...]
+    material: str
+    weight: Force | None
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Where a number of the study comes from: given, derived, fitted or assumed."""
+
+    key: str
+    kind: str
+    note: str
+
+
+@dataclass(frozen=True)
+class Results:
+    """Everything a run found, without the fields inside of pins (those are written pin by pin)."""
+
+    title: str
+    study: str
+    study_sha256: str
+    units: Units
+    required_safety_factor: float | None
+    tolerance: float
+    pins: tuple[PinResult, ...]
+    shapes: tuple[PinShape, ...] = ()
+    reactions: tuple[ReactionTable, ...] = ()
+    drive: tuple[DriveTable, ...] = ()
+    motion: tuple[LinkageMotion, ...] = ()
+    beam_check: BeamCheck | None = None
+    motion_check: MotionCheck | None = None
+    published: tuple[PublishedValue, ...] = ()
+    legs: tuple[LegTable, ...] = ()
+    landing: tuple[LandingRange, ...] = ()
+    surfaces: tuple[Surface, ...] = ()
+    provenance: tuple[Provenance, ...] = ()
+    published_source: str = ""
+    assumptions: tuple[str, ...] = ()
+    versions: dict[str, str] = field(default_factory=dict)
+    study_text: str = ""
+
+    def __getitem__(self, row: tuple[str, str]) -> PinResult:
+        """A pin in a case: results["E", "landing"]. Raises: KeyError."""
+        found = [p for p in self.pins if (p.pin, p.case) == row]
+        if not found:
+            there = ", ".join(f'["{p.pin}", "{p.case}"]' for p in self.pins)
+            raise KeyError(f"no row {row!r}; there are {there}")
+        return found[0]
+
+    def in_units(self, units: Units, unit: Unit) -> Self:
+        """The same in other units; unit: their values in SI, by dimension."""
+        return in_units(replace(self, units=units), unit)

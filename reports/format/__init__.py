@@ -1,0 +1,1 @@
+"""Formatting of numbers, words, files and pictures."""

@@ -1,0 +1,29 @@
+"""File names of the plots, known without drawing any."""
+
+from __future__ import annotations
+
+from urllib.parse import quote
+
+from reports.data.results import DriveTable
+
+SVG, PNG = ".svg", ".png"
+
+
+def plot_name(kind: str, *names: str) -> str:
+    """A name without extension, such as "reactions.retract.B"; different names stay different."""
+    return ".".join((kind, *(_safe(name) for name in names)))
+
+
+def drive_names(drive: DriveTable) -> list[str]:
+    """The names in a drive's plot_name: its case and, where it has one, its own."""
+    return [drive.case, drive.name] if drive.name else [drive.case]
+
+
+def animation_name(case: str) -> str:
+    """The file name of a case's animation."""
+    return f"animation_{_safe(case)}.html"
+
+
+def _safe(name: str) -> str:
+    # A dot parts the names, so it is no letter of one.
+    return quote(name, safe="").replace(".", "%2E")

@@ -1,0 +1,34 @@
+"""A maximum's error and safety factor as text; intervals for a singular row."""
+
+from __future__ import annotations
+
+from reports.data.results import PinResult
+from reports.format.numbers import DASH, engineering
+
+END = 3  # digits of an interval's ends
+
+
+def error_range(pin: PinResult, to: str = " to ") -> str:
+    """The error of a maximum, or its interval over half and twice the excluded distance, which is a
+    convention.
+    """
+    interval = pin.max_von_mises_interval
+    if interval is None:
+        return engineering(pin.error_estimate, 2)
+    return to.join(engineering(end, END) for end in interval)
+
+
+def factor_range(pin: PinResult, to: str = " to ") -> str:
+    """The safety factor, or its interval."""
+    interval = pin.safety_factor_interval
+    if interval is None:
+        return engineering(pin.safety_factor)
+    low, high = interval
+    return to.join([engineering(low, END), DASH if high is None else engineering(high, END)])
+
+
+def error_words(pin: PinResult) -> str:
+    """The error or interval for use in a sentence."""
+    if pin.max_von_mises_interval is None:
+        return f"± {error_range(pin)}"
+    return f"{error_range(pin)} over half and twice the excluded distance"

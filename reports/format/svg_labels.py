@@ -1,0 +1,64 @@
+"""Where to write the names of points, so that they hide neither lines nor each other."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from reports.data.results import Floats
+
+DIRECTIONS = np.array(
+    [(1, -1), (-1, -1), (1, 1), (-1, 1), (1, 0), (-1, 0), (0, -1), (0, 1)], dtype=float
+)
+REACHES = (1.0, 1.7)
+SAMPLES = 24  # points that stand for a line
+# What hiding each costs; so does being far away, or off the picture.
+POINT, LABEL, LINE, FAR, OUTSIDE = 6.0, 10.0, 1.0, 0.5, 20.0
+
+
+def label_offsets(
+    points: Floats, sizes: Floats, lines: Floats, gap: float, picture: tuple[float, float]
+) -> Floats:
+    """Offsets (J, 2) of the centres of labels from their points, in the unit of the picture, y
+    downwards; one offset per label for all frames.
+
+    points: (F, J, 2). sizes: (J, 2) of the labels. lines: (F, S, 2, 2) their ends. gap: between
+    a point and its label. picture: its width and height, beyond which nothing is seen.
+    """
+    along = np.linspace(0.0, 1.0, SAMPLES)[:, None]
+    start, end = lines[:, :, None, 0], lines[:, :, None, 1]
+    inked = (start + along * (end - start)).reshape(len(points), -1, 2)
+    offsets = np.zeros((points.shape[1], 2))
+    boxes: list[tuple[Floats, Floats]] = []  # centres (F, 2) and half sizes (2,) so far
+    for j in range(points.shape[1]):
+        half = 0.5 * sizes[j]
+        best = np.inf
+        for reach in REACHES:
+            for direction in DIRECTIONS:
+                slant = 0.8 if direction.all() else 1.0
+                offset = direction * (half + slant * reach * gap)
+                centre = points[:, j] + offset
+                cost = (
+                    FAR * (reach - 1.0)
+                    + LINE * _inside(inked, centre, half + 2.0) / SAMPLES * 8.0
+                    + POINT * _inside(points, centre, half + 4.0)
+                    + OUTSIDE * _outside(centre, half, np.array(picture))
+                    + LABEL * sum(_overlaps(centre, half, *box) for box in boxes)
+                )
+                if cost < best - 1e-9:
+                    best, offsets[j] = cost, offset
+        boxes.append((points[:, j] + offsets[j], half))
+    return offsets
+
+
+def _inside(points: Floats, centre: Floats, half: Floats) -> float:
+    """How many of the points (F, N, 2) lie in the box, per frame."""
+    return float(np.all(np.abs(points - centre[:, None]) < half, axis=2).sum()) / len(points)
+
+
+def _overlaps(centre: Floats, half: Floats, other: Floats, other_half: Floats) -> float:
+    return float(np.mean(np.all(np.abs(centre - other) < half + other_half, axis=1)))
+
+
+def _outside(centre: Floats, half: Floats, picture: Floats) -> float:
+    """In which part of the frames the box leaves the picture."""
+    return float(np.mean(np.any((centre < half) | (centre > picture - half), axis=1)))

@@ -1,0 +1,74 @@
+"""Numbered rings on the drawing of a pin at stress singularities, with their kind."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from reports.format.spread import rows
+from reports.format.svg import line, text, wide
+from reports.tables.singular_zones import Zone
+
+RED = "#a8211b"
+RING = 4.0  # radius
+LINE = 14.0  # height of a row of words
+ABOVE = 10.0  # between the section and the first row
+
+
+@dataclass(frozen=True)
+class _Mark:
+    """A zone on the drawing: position x, distance r from the axis, label."""
+
+    x: float
+    r: float
+    words: str
+    governs: bool
+
+
+class ZoneMarks:
+    """Marks of the zones (one per circle) on a pin drawn at `scale` from `left`, with labels kept
+    inside a picture of `width`.
+    """
+
+    def __init__(self, zones: list[Zone], left: float, scale: float, width: float) -> None:
+        self.marks = [
+            _Mark(left + scale * zone.z, scale * zone.r, _words(zone), zone.found.governs)
+            for zone in zones
+        ]
+        self.places = [_within(m, width) for m in self.marks]
+        self.rows = rows(self.places, [wide(m.words) for m in self.marks])
+
+    @property
+    def height(self) -> float:
+        """Height of the labels below the section."""
+        return ABOVE + LINE * (max(self.rows) + 1) if self.marks else 0.0
+
+    def draw(self, axis: float, foot: float) -> list[str]:
+        """Rings above and below the axis, leaders, labels; foot: the section's lower edge."""
+        parts = []
+        for mark, place, row in zip(self.marks, self.places, self.rows, strict=True):
+            y = foot + ABOVE + LINE * (row + 1) - 3.0
+            parts.append(line(mark.x, axis + mark.r + RING, place, y - 10.0, 'opacity="0.7"', RED))
+        for mark, place, row in zip(self.marks, self.places, self.rows, strict=True):
+            parts += [_ring(mark.x, axis + side * mark.r, mark.governs) for side in (-1.0, 1.0)]
+            y = foot + ABOVE + LINE * (row + 1) - 3.0
+            parts.append(text(place, y, mark.words, halo=True))
+        return parts
+
+
+def _words(zone: Zone) -> str:
+    return f"{zone.number} {zone.short_kind}" + (", governs" if zone.found.governs else "")
+
+
+def _within(mark: _Mark, width: float) -> float:
+    """The middle of a label, as close to its ring as the picture allows."""
+    half = min(0.5 * wide(mark.words), 0.5 * width)
+    return min(max(mark.x, half), width - half)
+
+
+def _ring(x: float, y: float, governs: bool) -> str:
+    """A ring; filled where the zone governs."""
+    fill = RED if governs else "none"
+    return (
+        f'<circle class="zone" cx="{x:.2f}" cy="{y:.2f}" r="{RING:.1f}" fill="{fill}" '
+        f'fill-opacity="0.6" stroke="{RED}" stroke-width="1.6"/>'
+    )

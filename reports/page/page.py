@@ -1,0 +1,146 @@
+"""report.html: all results of a run in one file that opens offline; scripts are optional."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from reports.data.results import PinShape, Results
+from reports.format.file_names import SVG, drive_names, plot_name
+from reports.format.numbers import DASH, engineering, like, ratio, short
+from reports.format.ranges import error_words, factor_range
+from reports.format.template import environment
+from reports.format.words import BEYOND, MEANING, READING, RESULTS, outcome, verdict_words
+from reports.page.loads import timings
+from reports.page.motion import motion_parts
+from reports.page.pin_drawing import draw_pin
+from reports.page.pins import pin_parts, reaction_tables
+from reports.tables.hand_checks import HAND_CHECKS
+from reports.tables.landing import NOTE, landing_blocks
+from reports.tables.published_reactions import published_reactions
+from reports.tables.safety_factors import (
+    TEXTS,
+    safety_factor_rows,
+    shown,
+    shown_columns,
+    shown_rows,
+)
+from reports.tables.singular_zones import circles, pin_zones
+from reports.text.headline import headline
+from reports.text.summary import summary
+
+TYPES = {".svg": "image/svg+xml", ".png": "image/png", ".jpg": "image/jpeg"}
+
+
+@dataclass(frozen=True)
+class _Plots:
+    """The plots that may be shown, by name."""
+
+    files: dict[str, Path]
+
+    def uri(self, kind: str, *names: str) -> str | None:
+        path = self.files.get(plot_name(kind, *names))
+        return None if path is None else data_uri(path)
+
+
+def write_page(
+    results: Results,
+    directory: Path,
+    pictures: dict[tuple[str, str], Path],
+    plots: Iterable[Path] | None = None,
+) -> Path:
+    """Write report.html and return its path.
+
+    pictures: of pins, by pin and case. plots: their files; None for those in directory/plots.
+    """
+    found = (directory / "plots").glob("*.svg") if plots is None else plots
+    path = directory / "report.html"
+    files = {p.name.removesuffix(SVG): p for p in found if p.suffix == SVG}
+    path.write_text(render(results, pictures, files, directory), encoding="utf-8", newline="\n")
+    return path
+
+
+def render(
+    results: Results,
+    pictures: dict[tuple[str, str], Path],
+    plots: dict[str, Path],
+    directory: Path,
+) -> str:
+    """The page as text; plots by name (reports.format.file_names); directory: where it will be."""
+    from markupsafe import Markup
+
+    templates = environment()
+    templates.filters.update(
+        eng=engineering, short=_short, like=like, error=error_words, factor=factor_range
+    )
+    template = templates.get_template("report.html.j2")
+    drawings: dict[str, str] = {s.pin: Markup(_drawing(s, results)) for s in results.shapes}
+    parts = pin_parts(results, drawings, {k: data_uri(p) for k, p in pictures.items()})
+    return template.render(
+        results=results,
+        units=results.units,
+        headline=headline(results),
+        summary=summary(results),
+        timings=timings(results),
+        reading=READING,
+        meaning=MEANING,
+        explained=RESULTS,
+        beyond=BEYOND,
+        verdict_words=verdict_words,
+        hand_checks=HAND_CHECKS,
+        landing_note=NOTE,
+        plot=_Plots(plots).uri,
+        drive_names=drive_names,
+        ratio=ratio,
+        motion=motion_parts(results, _Plots(plots).uri, directory),
+        anchors={part.pin: part.anchor for part in parts},
+        timed=any(v.time is not None for v in results.published),
+        pins=parts,
+        published=published_reactions(results),
+        landing=landing_blocks(results),
+        landed=list(dict.fromkeys(r.case for r in results.landing)),
+        reactions=reaction_tables(results),
+        cases=list(dict.fromkeys(pin.case for pin in results.pins)),
+        **_safety_factors(results),
+    )
+
+
+def _drawing(shape: PinShape, results: Results) -> str:
+    zones = pin_zones(results, shape.pin).values()
+    return draw_pin(shape, results.units, circles(zone for case in zones for zone in case))
+
+
+def _safety_factors(results: Results) -> dict[str, Any]:
+    rows = shown_rows(results)
+    columns = shown_columns(rows, results.units)
+    columns.pop("meets_required")  # the outcome says it
+    return {
+        "columns": columns,
+        "numeric": [name for name in columns if name not in TEXTS],
+        "rows": [
+            {
+                "pin": pin.pin,
+                "outcome": outcome(pin),
+                "cells": {name: shown(name, row) for name in columns},
+                "values": {name: _plain(exact[name]) for name in columns},
+            }
+            for pin, row, exact in zip(results.pins, rows, safety_factor_rows(results), strict=True)
+        ],
+    }
+
+
+def _plain(value: str | float | None) -> str:
+    """For sorting: all digits; empty for no value."""
+    return "" if value is None else str(value)
+
+
+def data_uri(path: Path) -> str:
+    """A picture as a data URI."""
+    return f"data:{TYPES[path.suffix]};base64,{b64encode(path.read_bytes()).decode('ascii')}"
+
+
+def _short(value: float | None) -> str:
+    return DASH if value is None else short(value)

@@ -1,0 +1,129 @@
+"""A pin's profile as an SVG drawing: section, lengths, diameters, bands and singular zones."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from html import escape
+
+from reports.data.results import PinShape, Units
+from reports.format.numbers import short
+from reports.format.spread import rows
+from reports.format.svg import INK, line, text, wide
+from reports.page.drawing_zones import ZoneMarks
+from reports.tables.singular_zones import Zone
+
+WIDTH, MARGIN, TALLEST = 760.0, 45.0, 150.0
+LINE = 14.0  # height of the text
+FILLS = {"band": "#9dbbe0", "held": "url(#held)", "plain": "#ececec"}
+
+
+@dataclass(frozen=True)
+class _Piece:
+    """A segment on the drawing: x to x + width, radii in the same unit."""
+
+    x: float
+    width: float
+    radius: float
+    bore: float
+    label: str
+    size: str
+    length: str
+    kind: str
+
+    @property
+    def middle(self) -> float:
+        return self.x + 0.5 * self.width
+
+
+def draw_pin(shape: PinShape, units: Units, zones: list[Zone] | None = None) -> str:
+    """The drawing as an <svg> element; zones: one per circle. All its text is escaped."""
+    pieces = _pieces(shape)
+    if not pieces:
+        return ""
+    tops = rows([p.middle for p in pieces], [_text_width(p) for p in pieces])
+    feet = rows([p.middle for p in pieces], [wide(p.length) for p in pieces])
+    radius = max(p.radius for p in pieces)
+    axis = 8.0 + 2.0 * LINE * (max(tops) + 1) + 12.0 + radius
+    left, right = pieces[0].x, pieces[-1].x + pieces[-1].width
+    scale = (right - left) / sum(s[0] for s in shape.segments)
+    marks = ZoneMarks(zones or [], left, scale, WIDTH)
+    chain = axis + radius + marks.height + 24.0
+    overall = chain + LINE * (max(feet) + 1) + 22.0
+    height = overall + 12.0
+    parts = [
+        f'<svg class="pin" viewBox="0 0 {WIDTH:.0f} {height:.0f}" role="img" '
+        f'xmlns="http://www.w3.org/2000/svg" font-size="11" font-family="sans-serif">'
+        f"<title>{escape(f'Profile of pin {shape.pin}')}</title>",
+        '<defs><pattern id="held" width="6" height="6" patternUnits="userSpaceOnUse" '
+        'patternTransform="rotate(45)"><rect width="6" height="6" fill="#fff"/>'
+        '<rect width="2" height="6" fill="#777"/></pattern></defs>',
+    ]
+    parts += [_section(p, axis) for p in pieces]
+    parts.append(line(left - 14, axis, right + 14, axis, 'stroke-dasharray="12 3 2 3"'))
+    parts += [_leader(p, axis, tops[i]) for i, p in enumerate(pieces)]
+    parts += [_label(p, tops[i]) for i, p in enumerate(pieces)]
+    parts += [_dimension(p.x, p.x + p.width, chain, chain - 24.0) for p in pieces]
+    parts += [
+        text(p.middle, chain + LINE * (feet[i] + 1) - 3.0, p.length) for i, p in enumerate(pieces)
+    ]
+    parts.append(_dimension(left, right, overall, chain))
+    total = f"{short(sum(s[0] for s in shape.segments))} {units.length}"
+    parts.append(text(0.5 * (left + right), overall + 3.0, total))
+    parts += marks.draw(axis, axis + radius)
+    return "".join(parts) + "</svg>"
+
+
+def _pieces(shape: PinShape) -> list[_Piece]:
+    length = sum(s[0] for s in shape.segments)
+    widest = max((s[1] for s in shape.segments), default=0.0)
+    if length <= 0.0 or widest <= 0.0:
+        return []
+    scale = min((WIDTH - 2 * MARGIN) / length, TALLEST / widest)
+    x = 0.5 * (WIDTH - scale * length)
+    pieces = []
+    for long, diameter, bore, label, kind in shape.segments:
+        size = f"⌀{short(diameter)}" + (f" / {short(bore)}" if bore > 0.0 else "")
+        pieces.append(
+            _Piece(
+                x, scale * long, scale * diameter / 2, scale * bore / 2, label, size,
+                short(long), kind,
+            )
+        )  # fmt: skip
+        x += scale * long
+    return pieces
+
+
+def _section(piece: _Piece, axis: float) -> str:
+    """The section: the walls above and below the axis."""
+    wall = piece.radius - piece.bore
+    fill = FILLS.get(piece.kind, FILLS["plain"])
+    rectangles = [
+        f'<rect x="{piece.x:.2f}" y="{y:.2f}" width="{piece.width:.2f}" height="{wall:.2f}" '
+        f'fill="{fill}" stroke="{INK}" stroke-width="1"/>'
+        for y in (axis - piece.radius, axis + piece.bore)
+    ]
+    return "".join(rectangles)
+
+
+def _leader(piece: _Piece, axis: float, row: int) -> str:
+    foot = 8.0 + 2.0 * LINE * (row + 1)
+    return line(piece.middle, foot, piece.middle, axis - piece.radius, 'opacity="0.5"')
+
+
+def _label(piece: _Piece, row: int) -> str:
+    y = 8.0 + 2.0 * LINE * row + 11.0
+    return text(piece.middle, y, piece.label, halo=True) + text(
+        piece.middle, y + LINE - 1.0, piece.size, halo=True
+    )
+
+
+def _dimension(left: float, right: float, y: float, from_y: float) -> str:
+    """A dimension line with ticks and extension lines."""
+    ends = (left, right)
+    ticks = [line(x - 3, y - LINE + 5, x + 3, y - LINE - 1) for x in ends]
+    leads = [line(x, from_y + 2, x, y - LINE + 5, 'opacity="0.4"') for x in ends]
+    return line(left, y - LINE + 2, right, y - LINE + 2) + "".join(ticks + leads)
+
+
+def _text_width(piece: _Piece) -> float:
+    return max(wide(piece.label), wide(piece.size))

@@ -1,0 +1,131 @@
+"""The data of each pin and each case on the page."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from reports.data.results import PinResult, PinShape, ReactionTable, Results, Units
+from reports.format.grid import Grid
+from reports.format.numbers import ratio
+from reports.format.words import outcome
+from reports.page.loads import loads_at
+from reports.page.viewer import PinView, pin_views
+from reports.tables.hand_checks import hand_check_table
+from reports.tables.singular_zones import Zone, pin_zones, zone_table
+
+ZONE_NUMBERS = ("zone", "exponent")
+
+
+@dataclass(frozen=True)
+class PinCase:
+    """A pin in one case: result, outcome, picture address, unit of the drive position, singular
+    zones, hand checks, loads, and our maximum over the published one.
+    """
+
+    result: PinResult
+    outcome: str
+    picture: str | None
+    position_unit: str
+    zones: Grid | None
+    checks: Grid | None
+    loads: Grid | None
+    ratio: float | None
+
+
+@dataclass(frozen=True)
+class PinPart:
+    """One pin: anchor on the page, profile and drawing, cases, moving cases, and 3D views."""
+
+    pin: str
+    anchor: str
+    shape: PinShape | None
+    drawing: str
+    cases: tuple[PinCase, ...]
+    moving: tuple[str, ...]
+    views: list[PinView]
+
+    @property
+    def zoned(self) -> bool:
+        """Whether any case has singular zones."""
+        return any(case.zones for case in self.cases)
+
+
+def pin_parts(
+    results: Results, drawings: dict[str, str], pictures: dict[tuple[str, str], str]
+) -> list[PinPart]:
+    """The pins in the order of the results, then those that were not solved."""
+    positions = {t.case: t.position_unit for t in results.reactions}
+    shapes = {shape.pin: shape for shape in results.shapes}
+    names = dict.fromkeys([p.pin for p in results.pins] + list(shapes))
+    zones = {name: pin_zones(results, name) for name in names}
+    return [
+        PinPart(
+            pin=name,
+            anchor=f"pin-{number}",
+            shape=shapes.get(name),
+            drawing=drawings.get(name, ""),
+            cases=tuple(
+                PinCase(
+                    p,
+                    outcome(p),
+                    pictures.get((p.pin, p.case)),
+                    positions.get(p.case) or results.units.length,
+                    _zones(zones[name][p.case], results.units),
+                    Grid(*hand_check_table(p, results.units)) if p.hand_checks else None,
+                    loads_at(p, results.units),
+                    ratio(p.max_von_mises, p.published_max_von_mises),
+                )
+                for p in results.pins
+                if p.pin == name
+            ),
+            moving=tuple(
+                t.case for t in results.reactions if t.times is not None and name in t.pins
+            ),
+            views=pin_views(results, name),
+        )
+        for number, name in enumerate(names, start=1)
+    ]
+
+
+def _zones(zones: list[Zone], units: Units) -> Grid | None:
+    if not zones:
+        return None
+    head, body = zone_table(zones, units.length, units.stress)
+    return Grid(head, body, [name in ZONE_NUMBERS or "[" in name for name in head])
+
+
+@dataclass(frozen=True)
+class ReactionRow:
+    """A connection's maximum force with its components and time, and its maximum moment."""
+
+    connection: str
+    body: str
+    pin: str
+    shared: bool
+    largest: float
+    components: tuple[float, float, float]
+    time: float | None
+    moment: float
+
+
+def reaction_tables(results: Results) -> list[tuple[ReactionTable, list[ReactionRow]]]:
+    """For each case every connection at the instant of its maximum force."""
+    return [(table, _rows(table)) for table in results.reactions]
+
+
+def _rows(table: ReactionTable) -> list[ReactionRow]:
+    rows = []
+    for c, peak in enumerate(table.largest):
+        rows.append(
+            ReactionRow(
+                connection=table.connections[c],
+                body=table.bodies[c],
+                pin=table.pins[c],
+                shared=table.connections[c] in table.shared,
+                largest=peak.force,
+                components=peak.components,
+                time=peak.time,
+                moment=peak.moment,
+            )
+        )
+    return rows

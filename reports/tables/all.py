@@ -1,0 +1,45 @@
+"""Every table of a run, for its CSV files and its workbook."""
+
+from __future__ import annotations
+
+from reports.data.results import Results
+from reports.tables.hand_checks import hand_check_rows
+from reports.tables.landing import landing_table
+from reports.tables.leg import leg_table
+from reports.tables.linkage import linkage_tables
+from reports.tables.motion import (
+    beam_check_table,
+    drive_table,
+    motion_check_table,
+    reactions_pin_axes_table,
+    reactions_table,
+)
+from reports.tables.published_reactions import published_reactions_table
+from reports.tables.published_values import published_values_table
+from reports.tables.safety_factors import safety_factors_table
+from reports.tables.singular_zones import zones_table
+from reports.tables.table import Table
+
+# Long tables of the motion, seldom read in a spreadsheet, are left out of the workbook.
+CSV_ONLY = ("reactions_pin_axes", "motion", "joints", "transmission", "linkage", "sliders")
+
+
+def stress_tables(results: Results) -> list[Table]:
+    """Tables that need stresses, without empty ones; safety factors first."""
+    check = results.beam_check
+    rest = [hand_check_rows(results), zones_table(results), landing_table(results)]
+    rest += [] if check is None else [beam_check_table(check)]
+    return [safety_factors_table(results), *(table for table in rest if table.rows)]
+
+
+def load_tables(results: Results) -> list[Table]:
+    """Tables of the loads, without empty ones."""
+    tables = [published_reactions_table(results), published_values_table(results)]
+    tables += [reactions_table(results), reactions_pin_axes_table(results), drive_table(results)]
+    if results.motion_check is not None:
+        tables.append(motion_check_table(results.motion_check))
+    if results.legs:
+        tables.append(leg_table(results.legs))
+    # All tables of a linkage, so that every run has the same files.
+    full = [table for table in tables if table.rows]
+    return full + (linkage_tables(results) if results.motion else [])

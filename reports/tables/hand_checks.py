@@ -1,0 +1,111 @@
+"""Hand checks with the model's safety factor for comparison, as a table and as Markdown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from reports.data.results import HandCheck, PinResult, Results, Units
+from reports.format import markdown
+from reports.format.csv import Cell
+from reports.format.numbers import DASH, engineering, short
+from reports.format.ranges import factor_range
+from reports.format.words import verdict_words
+from reports.tables.table import Table
+
+CHECK = ("name", "at", "time", "stress", "strength", "factor", "formula", "source")
+# The model's result for the same pin, with its verdict.
+MODEL = ("model", "max_von_mises", "safety_factor", "verdict")
+NUMERIC = ("stress", "strength", "factor", "time")
+HAND_CHECKS = (
+    "Hand checks use nominal stresses: from beam theory or averaged over a section, without stress "
+    "concentration at corners and edges. They cover the whole pin, including excluded zones such "
+    "as "
+    "at a clamp, so their factor may be smaller than the model's."
+)
+
+
+ENDS = ("safety_factor_low", "safety_factor_high")  # of a singular row's factor
+COLUMNS = ("pin", "case", "check", *CHECK[1:], *MODEL, "stress_unit", "time_unit", *ENDS)
+
+
+def hand_check_rows(results: Results) -> Table:
+    """Every check of every pin and case, with all digits."""
+    rows = _rows([pin for pin in results.pins if pin.hand_checks], results.units)
+    return Table.of("hand_checks", COLUMNS, rows)
+
+
+def write_hand_checks(results: Results, directory: Path) -> None:
+    """Write hand_checks.md, if there are any checks."""
+    checked = [pin for pin in results.pins if pin.hand_checks]
+    if not checked:
+        return
+    units = results.units
+    parts = [f"# Hand checks: {markdown.escaped(results.title)}", HAND_CHECKS]
+    for pin in checked:
+        title, (head, body, numeric) = f"{pin.pin}, {pin.case}", hand_check_table(pin, units)
+        parts += [f"## {markdown.escaped(title)}", markdown.table(head, body, numeric)]
+    (directory / "hand_checks.md").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
+
+
+def hand_check_table(pin: PinResult, units: Units) -> tuple[list[str], list[list[str]], list[bool]]:
+    """Head, rows and numeric columns for display: the model's result, then every check.
+
+    The time column is omitted if no row has a time.
+    """
+    headings = {
+        "name": "check",
+        "at": "location",
+        "time": f"time [{units.time}]",
+        "stress": f"stress [{units.stress}]",
+        "strength": f"strength [{units.stress}]",
+        "factor": "factor",
+        "formula": "stress from",
+        "source": "source",
+    }
+    if pin.time is None and all(check.time is None for check in pin.hand_checks):
+        headings.pop("time")
+    rows = [_model(pin, units), *(_check(check) for check in pin.hand_checks)]
+    names = list(headings)
+    body = [[row[name] for name in names] for row in rows]
+    return list(headings.values()), body, [name in NUMERIC for name in names]
+
+
+def _model(pin: PinResult, units: Units) -> dict[str, str]:
+    where = DASH
+    if pin.location is not None:
+        where = f"x, y, z = {', '.join(map(engineering, pin.location))} {units.length}"
+    outside = ", outside the excluded zones" if pin.verdict == "singular" else ""
+    verdict = verdict_words(pin.verdict, pin.yields)
+    return {
+        "name": f"{pin.model} model, maximum von Mises stress{outside}",
+        "at": where,
+        "time": DASH if pin.time is None else short(pin.time),
+        "stress": engineering(pin.max_von_mises),
+        "strength": "yield",
+        "factor": f"{factor_range(pin)} ({verdict})",
+        "formula": "elasticity",
+        "source": DASH,
+    }
+
+
+def _check(check: HandCheck) -> dict[str, str]:
+    return {
+        "name": check.name,
+        "at": check.at,
+        "time": DASH if check.time is None else short(check.time),
+        "stress": engineering(check.stress),
+        "strength": engineering(check.strength),
+        "factor": engineering(check.factor),
+        "formula": check.formula,
+        "source": check.source,
+    }
+
+
+def _rows(checked: list[PinResult], units: Units) -> Iterator[list[Cell]]:
+    for pin in checked:
+        model = [getattr(pin, name) for name in MODEL]
+        for check in pin.hand_checks:
+            own = [getattr(check, name) for name in CHECK]
+            ends = pin.safety_factor_interval or (None, None)
+            yield [pin.pin, pin.case, *own, *model, units.stress, units.time, *ends]

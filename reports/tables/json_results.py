@@ -1,0 +1,139 @@
+"""results.json: the results of a run, machine-readable."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from reports.data.results import HandCheck, PinResult, ReactionTable, Results, SingularZone
+from reports.format.numbers import finite
+
+SCHEMA = "pinstress-results/1"
+
+
+def to_json(results: Results) -> dict[str, Any]:
+    """The results as plain JSON values; missing numbers are null."""
+    return {
+        "schema": SCHEMA,
+        "title": results.title,
+        "study": results.study,
+        "study_sha256": results.study_sha256,
+        "units": asdict(results.units),
+        "required_safety_factor": finite(results.required_safety_factor),
+        "tolerance": finite(results.tolerance),
+        "versions": {name: results.versions[name] for name in sorted(results.versions)},
+        "pins": [_pin(pin) for pin in results.pins],
+        "loads": [_loads(results, table) for table in results.reactions],
+        "provenance": [asdict(entry) for entry in results.provenance],
+    }
+
+
+def write_json(results: Results, path: Path) -> None:
+    """Write results.json: strict JSON in UTF-8 with all digits."""
+    text = json.dumps(to_json(results), indent=2, ensure_ascii=False, allow_nan=False)
+    path.write_text(text + "\n", encoding="utf-8")
+
+
+def _loads(results: Results, table: ReactionTable) -> dict[str, Any]:
+    """One case's loads: maximum forces, drives and checks."""
+    moved = next((m for m in results.motion if m.case == table.case), None)
+    return {
+        "case": table.case,
+        "note": table.note,
+        "shared": list(table.shared),
+        "largest_forces": [
+            {"connection": p.connection, "force": finite(p.force), "time": finite(p.time)}
+            for p in table.largest
+        ],
+        "drives": [
+            {
+                "drive": d.name,
+                "kind": d.kind,
+                "largest": finite(d.largest),
+                "mean": finite(d.mean),
+                "rms": finite(d.rms),
+            }
+            for d in results.drive
+            if d.case == table.case
+        ],
+        "unresolved": [[finite(low), finite(high)] for low, high in table.unresolved],
+        "power_violation": finite(moved.ledger.violation) if moved else None,
+        "largest_condition": finite(moved.worst_condition[0]) if moved else None,
+    }
+
+
+def _pin(pin: PinResult) -> dict[str, Any]:
+    return {
+        "pin": pin.pin,
+        "case": pin.case,
+        "model": pin.model,
+        "max_von_mises": finite(pin.max_von_mises),
+        "max_von_mises_interval": _interval(pin.max_von_mises_interval),
+        "error_estimate": finite(pin.error_estimate),
+        "error_parts": {part: finite(value) for part, value in pin.error_parts.items()},
+        "verdict": pin.verdict,
+        "note": pin.note,
+        "why": pin.why,
+        "location": None if pin.location is None else [finite(x) for x in pin.location],
+        "time": finite(pin.time),
+        "safety_factor": finite(pin.safety_factor),
+        "safety_factor_interval": _interval(pin.safety_factor_interval),
+        "yields": _truth(pin.yields),
+        "meets_required": _truth(pin.meets_required),
+        "dofs": int(pin.dofs),
+        "seconds": finite(pin.seconds),
+        "history": [
+            {
+                "dofs": int(step.dofs),
+                "max_von_mises": finite(step.max_von_mises),
+                "seconds": finite(step.seconds),
+            }
+            for step in pin.history
+        ],
+        "singular_at": [_zone(zone) for zone in pin.singular_at],
+        "hand_checks": [_check(check) for check in pin.hand_checks],
+        "held": pin.held,
+        "left_out": list(pin.left_out),
+    }
+
+
+def _interval(ends: tuple[float, float | None] | None) -> list[float | None] | None:
+    return None if ends is None else [finite(end) for end in ends]
+
+
+def _zone(zone: SingularZone) -> dict[str, Any]:
+    strength = zone.strength
+    return {
+        "location": [finite(x) for x in zone.location],
+        "kind": zone.kind,
+        "between": list(zone.between),
+        "exponent": finite(zone.exponent),
+        "exponent_theory": finite(zone.exponent_theory),
+        "excluded_radius": finite(zone.excluded),
+        "governs": bool(zone.governs),
+        "max_von_mises": finite(zone.max_von_mises),
+        "strength": finite(strength.along if strength else None),
+        "strength_exponent": finite(strength.exponent if strength else None),
+        "notch_stress_intensity": finite(strength.notch if strength else None),
+        "advice": zone.advice,
+    }
+
+
+def _check(check: HandCheck) -> dict[str, Any]:
+    return {
+        "name": check.name,
+        "at": check.at,
+        "time": finite(check.time),
+        "stress": finite(check.stress),
+        "strength": finite(check.strength),
+        "factor": finite(check.factor),
+        "formula": check.formula,
+        "source": check.source,
+    }
+
+
+def _truth(value: bool | None) -> bool | None:
+    # JSON cannot represent a numpy bool.
+    return None if value is None else bool(value)

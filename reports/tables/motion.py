@@ -1,0 +1,99 @@
+"""Tables of reactions and drives along a motion, and of the checks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from reports.data.results import BeamCheck, Floats, MotionCheck, ReactionTable, Results
+from reports.format.csv import Cell
+from reports.tables.table import Table
+
+REACTIONS = ("case", "time", "connection", "body", "fx", "fy", "fz", "mx", "my", "mz")
+DRIVE = (
+    "time",
+    "position",
+    "velocity",
+    "acceleration",
+    "force",
+    "power",
+    "work",
+    "kinetic_energy",
+    "potential_energy",
+)
+BEAM = (
+    "z",
+    "shear",
+    "moment",
+    "beam_axial_stress",
+    "fea_axial_stress",
+    "fea_axial_stress_axis_load",
+)
+MOTION = (
+    "time",
+    "speed",
+    "acceleration",
+    "closed_form_speed",
+    "closed_form_acceleration",
+)
+
+
+def reactions_table(results: Results) -> Table:
+    """The forces and moments on the pins, world axes: a row per instant and connection."""
+    rows = (row for table in results.reactions for row in _instants(table))
+    return Table.of("reactions", REACTIONS, rows)
+
+
+def reactions_pin_axes_table(results: Results) -> Table:
+    """The same in the axes of each pin, which turn with the body that carries it."""
+    turned = (
+        replace(t, forces=_in_pin_axes(t, t.forces), moments=_in_pin_axes(t, t.moments))
+        for t in results.reactions
+    )
+    rows = (row for table in turned for row in _instants(table))
+    return Table.of("reactions_pin_axes", REACTIONS, rows)
+
+
+def _in_pin_axes(table: ReactionTable, vectors: Floats) -> Floats:
+    turn = np.zeros(vectors.shape[:2]) if table.turn is None else table.turn
+    c, s = np.cos(turn), np.sin(turn)
+    x, y, z = np.moveaxis(vectors, 2, 0)
+    return np.stack([c * x + s * y, c * y - s * x, z], axis=2)
+
+
+def _instants(table: ReactionTable) -> Iterator[list[Cell]]:
+    for t in range(len(table.forces)):
+        time = None if table.times is None else float(table.times[t])
+        for c, (connection, body) in enumerate(zip(table.connections, table.bodies, strict=True)):
+            yield [table.case, time, connection, body, *table.forces[t, c], *table.moments[t, c]]
+
+
+def drive_table(results: Results) -> Table:
+    """The drive along every motion, with the case in the first column."""
+    rows: Iterator[list[Cell]] = (
+        [
+            table.case,
+            *(float(getattr(table, name)[t]) for name in DRIVE),
+            table.name,
+            table.kind,
+        ]
+        for table in results.drive
+        for t in range(len(table.time))
+    )
+    turning = any(table.kind != "slider" for table in results.drive)
+    mixed = ("position", "velocity", "acceleration", "force") if turning else ()
+    return Table.of("drive", ("case", *DRIVE, "drive", "kind"), rows, mixed)
+
+
+def beam_check_table(check: BeamCheck) -> Table:
+    """Shear, moment and axial stresses along the cantilever pin."""
+    rows = zip(*(getattr(check, name) for name in BEAM), strict=True)
+    return Table.of("beam_check", BEAM, rows)
+
+
+def motion_check_table(check: MotionCheck) -> Table:
+    """A joint's speed and acceleration, from the linkage and in closed form."""
+    rows = zip(*(getattr(check, name) for name in MOTION), strict=True)
+    return Table.of("motion_check", MOTION, rows)

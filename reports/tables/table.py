@@ -1,0 +1,77 @@
+"""A table as rows of cells: what CSV files and the workbook are written from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from reports.data.results import Units
+from reports.format.csv import Cell, write_csv
+
+# What columns are measured in, by their names; tables name the exceptions.
+DIMENSIONS = {
+    "time": "time",
+    "impulse_time": "time",
+    **dict.fromkeys(("fx", "fy", "fz", "force", "shear", "friction", "normal"), "force"),
+    **dict.fromkeys(("shaking_fx", "shaking_fy"), "force"),
+    **dict.fromkeys(("mx", "my", "mz", "moment", "couple", "shaking_moment"), "moment"),
+    **dict.fromkeys(("work", "kinetic_energy", "potential_energy"), "moment"),
+    **dict.fromkeys(("x", "y", "z", "radius", "excluded_radius", "position"), "length"),
+    **dict.fromkeys(("vx", "vy", "velocity", "velocity_change"), "velocity"),
+    **dict.fromkeys(("speed", "closed_form_speed"), "velocity"),
+    **dict.fromkeys(("ax", "ay", "acceleration", "closed_form_acceleration"), "acceleration"),
+    **dict.fromkeys(("max_von_mises", "error_estimate", "published_max_von_mises"), "stress"),
+    **dict.fromkeys(("max_von_mises_low", "max_von_mises_high"), "stress"),
+    **dict.fromkeys(("error_mesh", "error_time", "error_series", "error_model"), "stress"),
+    **dict.fromkeys(("stress", "strength", "beam_axial_stress"), "stress"),
+    **dict.fromkeys(("fea_axial_stress", "fea_axial_stress_axis_load"), "stress"),
+    **dict.fromkeys(("power", "power_drives", "power_gravity", "power_applied"), "power"),
+    **dict.fromkeys(("power_friction", "kinetic_rate"), "power"),
+    **dict.fromkeys(("angle_deg", "degrees"), "degrees"),
+    "omega": "rate of turn",
+    "alpha": "rate of rate of turn",
+}
+
+
+@dataclass(frozen=True)
+class Table:
+    """name: of its CSV file, without the ending; columns: with as many cells in every row.
+
+    mixed: columns whose unit differs from row to row, as other columns of the row say.
+    """
+
+    name: str
+    columns: tuple[str, ...]
+    rows: tuple[Sequence[Cell], ...]
+    mixed: tuple[str, ...] = ()
+
+    @staticmethod
+    def of(
+        name: str, columns: Iterable[str], rows: Iterable[Sequence[Cell]], mixed: Iterable[str] = ()
+    ) -> Table:
+        """A table from any iterables."""
+        return Table(name, tuple(columns), tuple(rows), tuple(mixed))
+
+    def unit(self, column: str, units: Units) -> str:
+        """Of a column's numbers; empty for texts, ratios, and what differs from row to row."""
+        if column in self.mixed:
+            return ""
+        names = {
+            "time": units.time,
+            "force": units.force,
+            "length": units.length,
+            "stress": units.stress,
+            "moment": f"{units.force} {units.length}",
+            "velocity": f"{units.length}/{units.time}",
+            "acceleration": f"{units.length}/{units.time}²",
+            "power": f"{units.force} {units.length}/{units.time}",
+            "degrees": "°",
+            "rate of turn": f"rad/{units.time}",
+            "rate of rate of turn": f"rad/{units.time}²",
+        }
+        return names.get(DIMENSIONS.get(column, ""), "")
+
+    def write_csv(self, directory: Path) -> None:
+        """Write it into a folder."""
+        write_csv(directory / f"{self.name}.csv", self.columns, self.rows)

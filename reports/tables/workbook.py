@@ -1,0 +1,123 @@
+"""tables.xlsx: a sheet per table, for those who go on in a spreadsheet."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from datetime import datetime
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from reports.data.results import Results
+from reports.format.csv import Cell, harmless
+from reports.format.words import MEANING, READING
+from reports.tables.table import Table
+
+if TYPE_CHECKING:
+    import xlsxwriter
+
+LONG_AGO = datetime(2000, 1, 1)  # a fixed time of creation: the same results, the same bytes
+WIDEST = 60  # characters of a column
+LOOKED_AT = 200  # rows whose texts decide how wide a column is
+LARGE, SMALL = 1e7, 1e-3  # from and below which numbers are shown with a power of ten
+# Of four digits each, by the power of ten of the largest number of a column.
+FORMATS = {-3: "0.000000", -2: "0.00000", -1: "0.0000", 0: "0.000", 1: "#,##0.00", 2: "#,##0.0"}
+
+
+def write_workbook(results: Results, tables: Sequence[Table], path: Path) -> None:
+    """Write tables, numbers as numbers, and a first sheet that says what they are."""
+    import xlsxwriter
+
+    # Texts stay texts, whatever they begin with; a quote keeps them so when they are edited.
+    safe = {
+        "in_memory": True,
+        "strings_to_formulas": False,
+        "strings_to_urls": False,
+        "strings_to_numbers": False,
+    }
+    content = BytesIO()
+    with xlsxwriter.Workbook(content, safe) as book:
+        book.set_properties({"title": results.title, "created": LONG_AGO})
+        bold = book.add_format({"bold": True, "text_wrap": True, "valign": "top", "bottom": 1})
+        _about(book, results, tables, bold)
+        for table in tables:
+            _sheet(book, table, results, bold)
+    path.write_bytes(content.getvalue())
+
+
+def _about(book: xlsxwriter.Workbook, results: Results, tables: Sequence[Table], bold: Any) -> None:
+    sheet = book.add_worksheet("about")
+    wrap = book.add_format({"text_wrap": True, "valign": "top"})
+    u = results.units
+    lines = [
+        ("title", results.title),
+        ("study", f"{results.study} (SHA-256 {results.study_sha256})"),
+        ("units", f"length {u.length}, force {u.force}, stress {u.stress}, time {u.time}"),
+        ("made by", ", ".join(f"{k} {v}" for k, v in sorted(results.versions.items()))),
+        ("how to read", READING),
+        *MEANING.items(),
+        ("sheets", ", ".join(table.name for table in tables) + "; all tables are CSV files, too"),
+    ]
+    sheet.set_column(0, 0, 14)
+    sheet.set_column(1, 1, 100)
+    for row, (name, text) in enumerate(lines):
+        sheet.write_string(row, 0, name, bold)
+        sheet.write_string(row, 1, text, wrap)
+
+
+def _sheet(book: xlsxwriter.Workbook, table: Table, results: Results, bold: Any) -> None:
+    sheet = book.add_worksheet(table.name[:31])  # no more fits a sheet's name
+    sheet.freeze_panes(1, 0)
+    head = [_heading(table, name, results) for name in table.columns]
+    for i, name in enumerate(head):
+        sheet.write_string(0, i, name, bold)
+    quoted = book.add_format({"quote_prefix": True})
+    for i, column in enumerate(zip(*table.rows, strict=True) if table.rows else ()):
+        shape = book.add_format({"num_format": _format(column)})
+        sheet.set_column(i, i, _width(head[i], column))
+        for row, value in enumerate(column, start=1):
+            _write(sheet, row, i, value, shape, quoted)
+    if table.rows:
+        sheet.autofilter(0, 0, len(table.rows), len(head) - 1)
+
+
+def _heading(table: Table, column: str, results: Results) -> str:
+    unit = table.unit(column, results.units)
+    return f"{column} [{unit}]" if unit else column
+
+
+def _write(sheet: Any, row: int, column: int, value: Cell, shape: Any, quoted: Any) -> None:
+    if value is None:
+        return
+    if isinstance(value, (bool, np.bool_)):
+        sheet.write_string(row, column, "yes" if value else "no")
+    elif isinstance(value, str):
+        sheet.write_string(row, column, value, None if harmless(value) == value else quoted)
+    elif np.isfinite(value):
+        sheet.write_number(row, column, float(value), shape)
+
+
+def _numbers(column: Sequence[Cell]) -> list[float]:
+    kinds = (int, float, np.integer, np.floating)
+    found = [float(v) for v in column if isinstance(v, kinds) and not isinstance(v, bool)]
+    return [v for v in found if np.isfinite(v)]
+
+
+def _format(column: Sequence[Cell]) -> str:
+    """How a spreadsheet shows a column: the cells hold every digit, whatever it says."""
+    numbers = _numbers(column)
+    if all(v == int(v) for v in numbers):
+        return "#,##0" if max(map(abs, numbers), default=0.0) < LARGE else "0.000E+00"
+    largest = max(map(abs, numbers))
+    if not SMALL <= largest < LARGE:
+        return "0.000E+00"
+    return FORMATS.get(int(np.floor(np.log10(largest))), "#,##0.0")
+
+
+def _width(heading: str, column: Sequence[Cell]) -> float:
+    texts = [len(v) for v in column[:LOOKED_AT] if isinstance(v, str)]
+    # A heading is broken between its name and its unit.
+    words = max(len(word) for word in heading.replace("] ", "]").split(" "))
+    return min(WIDEST, max(10, words + 3, *texts, 0))

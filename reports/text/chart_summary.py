@@ -1,0 +1,171 @@
+"""Summary of a speed-accuracy chart: the cheapest model, and the cost of equal errors."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from reports.data.chart import Chart, ChartPoint
+from reports.format.numbers import engineering, short
+
+LEAST = 1e-12  # replaces an error of zero
+Curve = Sequence[ChartPoint]
+
+
+@dataclass(frozen=True)
+class Cost:
+    """seconds and memory (MB) of a curve at an error. at_most: the coarsest mesh, whose error is
+    smaller.
+    """
+
+    seconds: float
+    memory: float
+    at_most: bool = False
+
+
+def error(point: ChartPoint) -> float:
+    """Relative error of a point that did not fail, never zero."""
+    assert point.error is not None
+    return max(point.error, LEAST)
+
+
+def staying(curve: Curve, wanted: float) -> Curve:
+    """The last points of a curve that are all within the error; an isolated point within it, by
+    chance, does not count.
+    """
+    last = max((i for i, p in enumerate(curve) if error(p) > wanted), default=-1)
+    return curve[last + 1 :]
+
+
+def cost(curve: Curve, wanted: float) -> Cost | None:
+    """The cost of an error, interpolated linearly on the log-log chart; None if the curve does not
+    stay within it.
+    """
+    within = staying(curve, wanted)
+    if not within:
+        return None
+    first = within[0]
+    before = curve[len(curve) - len(within) - 1] if len(within) < len(curve) else None
+    if before is None:
+        return Cost(first.seconds or 0.0, first.memory or 0.0, at_most=True)
+    part = math.log(error(before) / wanted) / math.log(error(before) / error(first))
+
+    def between(a: float | None, b: float | None) -> float:
+        assert a is not None
+        assert b is not None
+        return math.exp(math.log(a) + part * math.log(b / a))
+
+    return Cost(between(before.seconds, first.seconds), between(before.memory, first.memory))
+
+
+def summary(chart: Chart) -> str:
+    """The sentences under the table: cheapest model within the tolerance, cost of equal errors."""
+    return f"{_cheapest(chart)} {_ratio(chart)}".strip()
+
+
+def _cheapest(chart: Chart) -> str:
+    tolerance = percent(chart.tolerance)
+    found = [staying(curve, chart.tolerance) for curve in chart.curves.values()]
+    first = [within[0] for within in found if within]
+    if not first:
+        return f"No model stays within {tolerance}."
+    best = min(first, key=lambda p: p.seconds or 0.0)
+    text = (
+        f"Cheapest within {tolerance}: {label(best)}, {seconds(best.seconds)}, "
+        f"{engineering(best.memory, 2)} MB, error {percent(error(best))}."
+    )
+    if best.model == "beam" and not best.chosen:
+        own = chart.beam_error
+        why = "unknown" if own is None else percent(own)
+        text += f" (auto does not use it: the estimated error of the beam is {why}.)"
+    return text
+
+
+def _ratio(chart: Chart) -> str:
+    """The harmonic model compared with the fastest solid element at equal error."""
+    harmonic = [c for (model, _), c in chart.curves.items() if model == "harmonic"]
+    solids = {name: c for (model, name), c in chart.curves.items() if model == "solid"}
+    if not harmonic or not solids:
+        return ""
+    text, wanted = "", chart.tolerance
+
+    def fastest(wanted: float) -> tuple[str, Cost] | None:
+        costs = [(name, found) for name, c in solids.items() if (found := cost(c, wanted))]
+        return min(costs, key=lambda c: c[1].seconds, default=None)
+
+    solid = fastest(wanted)
+    if solid is None:
+        wanted = min(error(c[-1]) for c in solids.values()) * (1.0 + 1e-9)
+        text = (
+            f"The solid model does not stay within {percent(chart.tolerance)} on these meshes; its "
+            f"smallest error is {percent(wanted)}. "
+        )
+        solid = fastest(wanted)
+    plane = cost(harmonic[0], wanted)
+    if solid is None or plane is None:
+        return text + f"The harmonic model does not stay within {percent(wanted)}."
+    name, body = solid
+    least = "at least " if plane.at_most else ""
+    if body.at_most:
+        least = "about " if plane.at_most else "at most "
+    times = [body.seconds / plane.seconds, body.memory / plane.memory]
+    slow, large = (f"{least}{engineering(x, 2)}" for x in times)
+    ends = [who for who, c in (("harmonic", plane), ("solid", body)) if c.at_most]
+    also = f"; the {' and the '.join(ends)} model is within it on the coarsest mesh" if ends else ""
+    return (
+        f"{text}At an equal error of {percent(wanted)} the solid model ({name}) takes {slow} times "
+        f"the time and {large} times the memory of the harmonic model (interpolated on the "
+        f"log-log chart{also})."
+    )
+
+
+def label(point: ChartPoint) -> str:
+    """A point as text."""
+    if point.model == "beam":
+        return "beam"
+    dofs = f", {point.dofs:,} unknowns" if point.dofs else ""
+    return f"{point.model} ({point.element}{dofs})"
+
+
+def percent(value: float) -> str:
+    """A relative error as text."""
+    return f"{short(float(f'{100.0 * value:.2g}'))} %"
+
+
+def seconds(value: float | None) -> str:
+    """A time in s or ms."""
+    if value is None:
+        return engineering(None)
+    return f"{engineering(value, 2)} s" if value >= 0.1 else f"{engineering(1e3 * value, 2)} ms"
+
+
+def reference_line(chart: Chart) -> str:
+    """The reference solution."""
+    r = chart.reference
+    charted = [p.dofs for p in chart.points if p.model == r.model and p.dofs]
+    more = f", {r.dofs / max(charted):.0f} times the finest charted" if charted else ""
+    return (
+        f"Reference: {r.model} model, {r.element}, {r.dofs:,} unknowns{more}: "
+        f"{engineering(r.max_von_mises, 5)} {chart.stress_unit}, with an error of "
+        f"{percent(r.error)}."
+    )
+
+
+def failures(chart: Chart) -> list[str]:
+    """Failed meshes with the reason, equal ones together."""
+    meshes: dict[tuple[str, str], int] = {}
+    found: dict[tuple[str, str, str], list[int]] = {}
+    for p in chart.points:
+        meshes[p.model, p.element] = number = meshes.get((p.model, p.element), 0) + 1
+        if p.failed:
+            found.setdefault((p.model, p.element, p.failed), []).append(number)
+    out = []
+    for (model, element, why), numbers in found.items():
+        if meshes[model, element] == len(numbers):
+            which = "" if len(numbers) == 1 else ", all meshes"
+        else:
+            which = f", mesh{'es' if len(numbers) > 1 else ''} {', '.join(map(str, numbers))}"
+        what = f"{model} ({element})" if model == "solid" else model
+        out.append(f"Failed: {what}{which}: {why}")
+    return out

@@ -1,0 +1,31 @@
+"""The safety factors as HTML, for notebooks."""
+
+from __future__ import annotations
+
+from html import escape
+
+from reports.data.results import Results
+from reports.tables.safety_factors import TEXTS, shown, shown_columns, shown_rows
+from reports.text.summary import summary
+
+HEAD = '<th style="text-align:{0}">{1}</th>'
+CELL = '<td style="text-align:{0}">{1}</td>'
+
+
+def safety_factors_html(results: Results) -> str:
+    """Title, safety factor table with verdicts, and summary."""
+    rows = shown_rows(results)
+    columns = shown_columns(rows, results.units)
+    sides = {name: "left" if name in TEXTS else "right" for name in columns}
+    head = "".join(HEAD.format(sides[name], escape(text)) for name, text in columns.items())
+    body = "".join(
+        "<tr>"
+        + "".join(CELL.format(sides[name], escape(shown(name, row))) for name in columns)
+        + "</tr>"
+        for row in rows
+    )
+    return (
+        f"<p><b>{escape(results.title)}</b></p>"
+        f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+        f"<p>{escape(summary(results))}</p>"
+    )

@@ -1,0 +1,76 @@
+"""The safety factors on the terminal."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from reports.data.results import PinResult, Results
+from reports.format.numbers import DASH, engineering, ratio, short
+from reports.format.ranges import error_range, factor_range
+from reports.format.words import BELOW, FAILS, SAFE, YIELDS, outcome
+from reports.text.summary import summary
+
+if TYPE_CHECKING:
+    from rich.console import Console, RenderableType
+    from rich.table import Table
+
+COLOURS = {SAFE: "green", BELOW: "green", FAILS: "red", YIELDS: "red"}
+
+
+def print_safety_factors(results: Results, console: Console) -> None:
+    """Print the safety factors as a table, then a summary."""
+    from rich.text import Text
+
+    console.print(_table(results))
+    # As Text: a name in square brackets is no markup.
+    console.print(Text(summary(results)))
+
+
+def _table(results: Results) -> Table:
+    from rich.table import Table
+    from rich.text import Text
+
+    published = any(pin.published_max_von_mises is not None for pin in results.pins)
+    table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0), header_style="bold")
+    stress, time = results.units.stress, results.units.time
+    table.add_column("Pin", overflow="fold", min_width=3)
+    table.add_column("Case", overflow="fold", min_width=7)
+    ranges = any(pin.max_von_mises_interval for pin in results.pins)
+    error = "± or\nrange" if ranges else "±"
+    required = results.required_safety_factor
+    factor = "FoS" if required is None else f"FoS\n≥ {short(required)}"
+    for heading in (f"t\n[{time}]", f"max von\nMises\n[{stress}]", error, factor):
+        # As Text: a unit in square brackets is no markup.
+        table.add_column(Text(heading), justify="right", no_wrap=True)
+    table.add_column("verdict", no_wrap=True)
+    table.add_column("result", overflow="fold", min_width=len("decided"), max_width=11)
+    for heading in ("published", "ratio") if published else ():
+        table.add_column(heading, justify="right", no_wrap=True)
+    for pin in results.pins:
+        table.add_row(*_cells(pin, published))
+    return table
+
+
+def _cells(pin: PinResult, published: bool) -> list[RenderableType]:
+    from rich.text import Text
+
+    cells: list[RenderableType] = [
+        Text(pin.pin, "bold"),
+        Text(pin.case),
+        DASH if pin.time is None else short(pin.time),
+        engineering(pin.max_von_mises),
+        error_range(pin, "–\n"),
+        factor_range(pin, "–\n"),
+        Text(pin.verdict, "" if pin.verdict == "converged" else "yellow"),
+        Text(_result(pin), COLOURS.get(outcome(pin), "yellow")),
+    ]
+    if published:
+        cells.append(engineering(pin.published_max_von_mises))
+        cells.append(engineering(ratio(pin.max_von_mises, pin.published_max_von_mises), 3))
+    return cells
+
+
+def _result(pin: PinResult) -> str:
+    """Safe, fails or not decided; and that it yields, where it does."""
+    result = outcome(pin)
+    return f"{result}\n{YIELDS}" if pin.yields and result != YIELDS else result

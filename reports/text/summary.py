@@ -1,0 +1,116 @@
+"""What the safety factors say, in a few short sentences."""
+
+from __future__ import annotations
+
+from reports.data.results import PinResult, Results
+from reports.format.numbers import short
+from reports.format.ranges import factor_range
+from reports.format.words import (
+    BELOW,
+    BEYOND,
+    FAILS,
+    NOT_DECIDED,
+    SAFE,
+    YIELDS,
+    outcome,
+    undecided_because,
+)
+
+
+def summary(results: Results) -> str:
+    """How many pins are safe, the lowest factors, and the rows without a maximum."""
+    if not results.pins:
+        return "No pin was solved."
+    parts = [_against_required(results), _lowest(results), _yielding(results), _unknown(results)]
+    return " ".join(part for part in parts if part)
+
+
+def _against_required(results: Results) -> str:
+    required = results.required_safety_factor
+    good, bad = (SAFE, FAILS) if required is not None else (BELOW, YIELDS)
+    outcomes: dict[str, set[str]] = {}
+    for pin in results.pins:
+        outcomes.setdefault(pin.pin, set()).add(outcome(pin))
+    safe = [pin for pin, found in outcomes.items() if found == {good}]
+    failing = [pin for pin, found in outcomes.items() if bad in found]
+    open_ = [pin for pin in outcomes if pin not in safe and pin not in failing]
+    factor = "" if required is None else f" (required factor {short(required)})"
+    total = len(outcomes)
+    text = f"{len(safe)} of {_count(total, 'pin')} {_is(total)} {good} in all cases{factor}"
+    if failing:
+        text += f"; {bad}: {', '.join(failing)}"
+    if open_:
+        text += f"; not decided: {_with_reasons(open_, results)}"
+    return text + "."
+
+
+def _with_reasons(pins: list[str], results: Results) -> str:
+    """The pins with why they are not decided, equal reasons together."""
+    together: dict[str, list[str]] = {}
+    for pin in pins:
+        rows = [p for p in results.pins if p.pin == pin and outcome(p) == NOT_DECIDED]
+        why = ", ".join(dict.fromkeys(undecided_because(p) for p in rows))
+        together.setdefault(why, []).append(pin)
+    return ", ".join(f"{', '.join(names)} ({why})" for why, names in together.items())
+
+
+def _lowest(results: Results) -> str:
+    """Of the converged rows; of the singular ones only where it is lower still."""
+    converged, singular = (_least(results, verdict) for verdict in ("converged", "singular"))
+    text = ""
+    if converged is not None:
+        text = f"Lowest converged factor: {_factor(converged)}."
+    if singular is not None and (converged is None or _size(singular) < _size(converged)):
+        text += f" Lowest factor outside the excluded zones: {_factor(singular)}."
+    return text.strip()
+
+
+def _least(results: Results, verdict: str) -> PinResult | None:
+    found = [p for p in results.pins if p.verdict == verdict and p.safety_factor is not None]
+    return min(found, key=_size) if found else None
+
+
+def _size(pin: PinResult) -> float:
+    return pin.safety_factor or 0.0
+
+
+def _factor(pin: PinResult) -> str:
+    return f"{factor_range(pin)}, pin {pin.pin}, case {pin.case}"
+
+
+def _yielding(results: Results) -> str:
+    pins = list(dict.fromkeys(p.pin for p in results.pins if p.yields))
+    if not pins:
+        return ""
+    return f"{BEYOND.capitalize()}, where linear elasticity is not valid: {_names(pins)}."
+
+
+def _unknown(results: Results) -> str:
+    total = len(results.pins)
+    verdicts = [p.verdict for p in results.pins]
+    singular, loose = verdicts.count("singular"), verdicts.count("unconverged")
+    unsolved = verdicts.count("rigid") + verdicts.count("failed")
+    text = ""
+    if singular:
+        text = f"{_of(singular, total)} {_is(singular)} singular: no maximum exists."
+    if loose:
+        text += f" {_of(loose, total)} did not converge."
+    if unsolved:
+        text += f" {_of(unsolved, total)} could not be solved."
+    return text.strip()
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}" + ("" if number == 1 else "s")
+
+
+def _of(number: int, total: int) -> str:
+    return f"{number} of {_count(total, 'row')}"
+
+
+def _is(number: int) -> str:
+    return "is" if number == 1 else "are"
+
+
+def _names(pins: list[str]) -> str:
+    return ("pin " if len(pins) == 1 else "pins ") + ", ".join(pins)

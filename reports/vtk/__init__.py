@@ -1,0 +1,1 @@
+"""Fields for ParaView, and pictures of them."""

@@ -1,0 +1,176 @@
+"""Fields on meshes: VTU files for ParaView with loads and bands beside them, and pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from reports.data.results import BandLoad, Field, Floats, Units, Volume
+from reports.vtk.render import render_pin
+from reports.vtk.renderer import renderer_problem
+from reports.vtk.writer import Block, Data, write_block, write_multiblock, write_series
+
+__all__ = [
+    "block",
+    "point_data",
+    "render_pin",
+    "renderer_problem",
+    "surface",
+    "write_pin",
+    "write_vtu",
+]
+
+# From xx, yy, zz, yz, xz, xy to the order of VTK's symmetric tensors, XX YY ZZ XY YZ XZ.
+VTK_SYMMETRIC = (0, 1, 2, 5, 3, 4)
+FACES = {  # of a tetrahedron: corners, then the middles of their edges
+    "tetra10": ((0, 2, 1, 6, 5, 4), (0, 1, 3, 4, 8, 7), (1, 2, 3, 5, 9, 8), (0, 3, 2, 7, 9, 6)),
+    "tetra": ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)),
+}
+AROUND = 60  # quads around a band
+
+
+def point_data(field: Field, units: Units) -> dict[str, Floats]:
+    """Arrays at the nodes under names with units: displacement (N, 3), stress (N, 6: XX, YY, ZZ,
+    XY, YZ, XZ, as ParaView names the components of a symmetric tensor), von Mises (N,), von Mises
+    envelope (N,; NaN inside) and, with a yield strength, the factor of safety that follows from it.
+    """
+    stress = units.stress
+    data = {
+        f"displacement [{units.length}]": field.displacement,
+        f"stress [{stress}]": field.stress[:, VTK_SYMMETRIC],
+        f"von Mises [{stress}]": field.von_mises,
+        f"von Mises envelope [{stress}]": field.envelope,
+    }
+    if field.yield_strength is not None:
+        lowest = np.finfo(np.float32).tiny * field.yield_strength  # a factor that is no infinity
+        data["factor of safety"] = field.yield_strength / np.maximum(field.envelope, lowest)
+    return data
+
+
+def write_vtu(field: Field, path: Path, units: Units) -> None:
+    """Write a VTU file with results at the nodes, and its time."""
+    write_block(block(field, units), path)
+
+
+def block(field: Field, units: Units) -> Block:
+    """What a VTU file has of a field."""
+    # "TimeValue" is the name by which VTK knows a file's time.
+    time: Data = {} if field.time is None else {"TimeValue": np.array([field.time])}
+    return Block(field.points, field.cells, field.cell_type, point_data(field, units), whole=time)
+
+
+def write_pin(field: Field, name: str, directory: Path, units: Units) -> None:
+    """Write NAME.vtu, and NAME.vtm, which adds loads, bands and volume (NAME/*.vtu); with stills
+    NAME.pvd, the same along the motion.
+    """
+    write_vtu(field, directory / f"{name}.vtu", units)
+    if not field.loads:
+        return
+    beside = directory / name
+    beside.mkdir()
+    # Here and not in the field's own file, for meshio reads none that has texts.
+    texts = {"pin": [field.pin], "case": [field.case], "verdict": [field.verdict]}
+    write_block(replace(_loads(field.loads, units), whole=texts), beside / "loads.vtu")
+    write_block(_bands(field.loads, units), beside / "bands.vtu")
+    kinds = ["loads", "bands"]
+    if field.volume is not None:
+        write_block(_volume(field.volume, units), beside / "solid.vtu")
+        kinds.append("solid")
+    blocks = {kind: f"{name}/{kind}.vtu" for kind in kinds}
+    write_multiblock({"pin": f"{name}.vtu", **blocks}, directory / f"{name}.vtm")
+    if field.stills:
+        parts = _write_stills(surface(field), beside, units)
+        write_series(
+            [(time, kind, f"{name}/{file}") for time, kind, file in parts],
+            directory / f"{name}.pvd",
+        )
+
+
+def _volume(volume: Volume, units: Units) -> Block:
+    data = {
+        f"displacement [{units.length}]": volume.displacement,
+        f"stress [{units.stress}]": volume.stress[:, VTK_SYMMETRIC],
+        f"von Mises [{units.stress}]": volume.von_mises,
+    }
+    return Block(volume.points, volume.cells, volume.cell_type, data)
+
+
+def _write_stills(field: Field, directory: Path, units: Units) -> list[tuple[float, str, str]]:
+    parts: list[tuple[float, str, str]] = []
+    for i, still in enumerate(field.stills):
+        data = {
+            f"displacement [{units.length}]": still.displacement,
+            f"von Mises [{units.stress}]": still.von_mises,
+        }
+        pin, loads = f"pin_{i:03d}.vtu", f"loads_{i:03d}.vtu"
+        write_block(Block(field.points, field.cells, field.cell_type, data), directory / pin)
+        write_block(_loads(still.loads, units), directory / loads)
+        found = (("pin", pin), ("loads", loads), ("bands", "bands.vtu"))
+        parts += [(still.time, kind, file) for kind, file in found]
+    return parts
+
+
+def _loads(loads: Sequence[BandLoad], units: Units) -> Block:
+    """A point at every band's middle with the force and moment that act there."""
+    return Block(
+        np.array([load.middle for load in loads]),
+        np.arange(len(loads))[:, None],
+        "vertex",
+        {
+            f"force [{units.force}]": np.array([load.force for load in loads]),
+            f"moment [{units.force} {units.length}]": np.array([load.moment for load in loads]),
+            "held": np.array([load.held for load in loads], dtype=np.int8),
+            "connection": [load.connection for load in loads],
+        },
+    )
+
+
+def _bands(loads: Sequence[BandLoad], units: Units) -> Block:
+    """A cylinder on every band, each cell with its name and load."""
+    angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
+    circle = np.stack([np.cos(angle), np.sin(angle), np.zeros(AROUND)], axis=1)
+    points = [load.radius * circle + np.array([0.0, 0.0, z]) for load in loads for z in load.z]
+    j = np.arange(AROUND)
+    k = (j + 1) % AROUND
+    ring = np.stack([j, k, k + AROUND, j + AROUND], axis=1)
+    cells = [ring + 2 * AROUND * i for i in range(len(loads))]
+    each = [load for load in loads for _ in range(AROUND)]
+    return Block(
+        np.concatenate(points),
+        np.concatenate(cells),
+        "quad",
+        cell_data={
+            f"force [{units.force}]": np.array([load.force for load in each]),
+            "held": np.array([load.held for load in each], dtype=np.int8),
+            "connection": [load.connection for load in each],
+        },
+    )
+
+
+def surface(field: Field) -> Field:
+    """The outside of a solid alone: the faces that only one tetrahedron has, and their nodes."""
+    if field.cell_type not in FACES:
+        return field
+    faces = np.concatenate([field.cells[:, list(face)] for face in FACES[field.cell_type]])
+    _, first, count = np.unique(
+        np.sort(faces[:, :3], axis=1), axis=0, return_index=True, return_counts=True
+    )
+    outer = faces[np.sort(first[count == 1])]
+    nodes, numbers = np.unique(outer, return_inverse=True)
+    return replace(
+        field,
+        points=field.points[nodes],
+        cells=numbers.reshape(outer.shape),
+        cell_type={6: "triangle6", 3: "triangle"}[outer.shape[1]],
+        displacement=field.displacement[nodes],
+        stress=field.stress[nodes],
+        von_mises=field.von_mises[nodes],
+        envelope=field.envelope[nodes],
+        stills=tuple(
+            replace(s, displacement=s.displacement[nodes], von_mises=s.von_mises[nodes])
+            for s in field.stills
+        ),
+    )

@@ -1,0 +1,157 @@
+"""Pictures of pins coloured by von Mises stress; call renderer_problem() first."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from reports.data.results import Field, Floats, Units
+from reports.format.camera import VIEW_ANGLE, View
+from reports.format.numbers import engineering
+from reports.vtk.writer import TYPES
+
+if TYPE_CHECKING:
+    import pyvista
+
+SIZE = (1200, 800)
+SUBDIVISIONS = 3  # of each quadratic triangle, so that round pins look round
+SHARP = 30.0  # degrees between faces from which an edge is drawn
+INK = "#222222"
+
+
+def render_pin(field: Field, path_png: Path, units: Units, title: str) -> None:
+    """Draw a pin's surface with its von Mises stress and mark the largest: a PNG of 1200x800."""
+    import pyvista
+
+    plotter = pyvista.Plotter(off_screen=True, window_size=list(SIZE))
+    try:
+        _draw(plotter, field, units, title)
+        plotter.screenshot(path_png)
+    finally:
+        plotter.close()
+
+
+def show_pin(field: Field, units: Units, title: str) -> None:
+    """The same in a window, until it is closed; needs a display."""
+    import pyvista
+
+    plotter: Any = pyvista.Plotter(window_size=list(SIZE), title=title)
+    _draw(plotter, field, units, title)
+    plotter.add_axes()
+    plotter.show()
+
+
+def _draw(plotter: Any, field: Field, units: Units, title: str) -> None:
+    peak = int(np.argmax(field.von_mises))
+    largest, place, told = float(field.von_mises[peak]), field.points[peak], "max"
+    if field.outside is not None:  # colours would only show how fine the mesh is at the zones
+        largest, place = field.outside[0], np.asarray(field.outside[1])
+        told = "max outside excluded zones"
+    power = _power(largest)
+    # VTK's font has no raised digits.
+    unit = units.stress if power == 0 else f"10^{power} {units.stress}"
+    name = f"von Mises [{unit}]"
+    surface = _surface(field, name, 10.0**power)
+    view = View.of(field.points, place)
+    plotter.set_background("white")
+    _add_surface(plotter, surface, name, largest / 10.0**power)
+    label = f"{told} {engineering(largest / 10.0**power)} {unit}"
+    _mark(plotter, place, view.beside(field.points, place), label)
+    plotter.add_text(_drawable(title), position=(24, SIZE[1] - 48), font_size=13, color=INK)
+    # Apart from the bar, whose own title lies on its labels.
+    plotter.add_text(name, position=(0.2 * SIZE[0], 0.1 * SIZE[1]), font_size=10, color=INK)
+    plotter.camera_position = view.camera
+    plotter.camera.view_angle = VIEW_ANGLE
+    plotter.reset_camera_clipping_range()
+    plotter.enable_anti_aliasing("ssaa")
+
+
+def _power(largest: float) -> int:
+    """The power of ten, in threes, that brings a large maximum under a million."""
+    return 0 if not 1e6 <= largest < np.inf else 3 * (int(np.floor(np.log10(largest))) // 3)
+
+
+def _drawable(text: str) -> str:
+    # VTK takes text between two dollar signs for TeX.
+    return text.replace("$", "")
+
+
+def _surface(field: Field, name: str, scale: float) -> pyvista.PolyData:
+    import pyvista
+    from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter
+
+    kind = np.full(len(field.cells), TYPES[field.cell_type], dtype=np.uint8)
+    counts = np.full((len(field.cells), 1), field.cells.shape[1])
+    cells = np.hstack([counts, field.cells]).ravel()
+    grid = pyvista.UnstructuredGrid(cells, kind, np.asarray(field.points, dtype=float))
+    grid.point_data[name] = field.von_mises / scale
+    # VTK's own filter: the arguments of pyvista's extract_surface change from version to version.
+    skin = vtkDataSetSurfaceFilter()
+    skin.SetInputData(grid)
+    skin.SetNonlinearSubdivisionLevel(SUBDIVISIONS)
+    skin.Update()
+    surface: Any = pyvista.wrap(skin.GetOutput())
+    return surface.compute_normals(  # type: ignore[no-any-return]
+        cell_normals=False, split_vertices=True, feature_angle=SHARP
+    )
+
+
+def _add_surface(
+    plotter: pyvista.Plotter, surface: pyvista.PolyData, name: str, largest: float
+) -> None:
+    bar: Any = {
+        "title": "",
+        "vertical": False,
+        "position_x": 0.2,
+        "position_y": 0.02,
+        "height": 0.08,
+        "width": 0.6,
+        "n_labels": 6,
+        "fmt": _bar_format(largest),
+        "color": INK,
+        "label_font_size": 18,
+        "unconstrained_font_size": True,
+    }
+    plotter.add_mesh(
+        surface,
+        scalars=name,
+        # Between the nodes the quadratic surface may dip below zero.
+        clim=(0.0, largest or 1.0),
+        cmap="viridis",
+        smooth_shading=True,
+        scalar_bar_args=bar,
+        specular=0.15,
+        ambient=0.25,
+    )
+    edges = surface.extract_feature_edges(
+        feature_angle=SHARP, boundary_edges=True, manifold_edges=False, non_manifold_edges=False
+    )
+    if edges.n_points:
+        plotter.add_mesh(edges, color=INK, line_width=1.5)
+
+
+def _bar_format(largest: float) -> str:
+    if largest <= 0.0:
+        return "%.1f"
+    return f"%.{max(0, 2 - int(np.floor(np.log10(largest))))}f"
+
+
+def _mark(plotter: pyvista.Plotter, place: Floats, beside: Floats, text: str) -> None:
+    plotter.add_lines(np.asarray([place, beside]), color=INK, width=1)
+    plotter.add_points(
+        np.asarray([place]), color="red", point_size=12, render_points_as_spheres=True
+    )
+    plotter.add_point_labels(
+        np.asarray([beside]),
+        [text],
+        font_size=18,
+        text_color=INK,
+        shape_color="white",
+        shape_opacity=0.85,
+        margin=4,
+        show_points=False,
+        justification_horizontal="center",
+        always_visible=True,
+    )

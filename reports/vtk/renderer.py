@@ -1,0 +1,71 @@
+"""Whether VTK can draw off-screen here, tried in another process: where it cannot, it crashes."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+WINDOW = "VTK_DEFAULT_OPENGL_WINDOW"
+OFF_SCREEN = ("vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow")
+SECONDS = 120
+PROBE = """
+import pyvista
+plotter = pyvista.Plotter(off_screen=True, window_size=(32, 32))
+plotter.add_mesh(pyvista.Sphere(), color="red")
+picture = plotter.screenshot(return_img=True)
+assert picture.min() < picture.max(), "the picture is empty"
+print(plotter.render_window.GetClassName())
+"""
+
+
+def renderer_problem() -> str | None:
+    """Why no pictures can be drawn, or None where they can.
+
+    Keeps the renderer that works in this process's environment, so call it before drawing.
+    """
+    problems = []
+    for window in _candidates():
+        problem = _try(window)
+        if problem is None:
+            if window:
+                os.environ[WINDOW] = window
+            return None
+        problems.append(f"{window or 'default'}: {problem}")
+    return "VTK finds no renderer (" + "; ".join(problems) + ")"
+
+
+def _candidates() -> tuple[str, ...]:
+    chosen = os.environ.get(WINDOW, "")
+    # Without a display VTK's own choice complains about the X server before it falls back.
+    display = sys.platform != "linux" or bool(os.environ.get("DISPLAY"))
+    first = (chosen,) if chosen or display else ()
+    return first + tuple(window for window in OFF_SCREEN if window != chosen)
+
+
+def _try(window: str) -> str | None:
+    environment = {key: value for key, value in os.environ.items() if key != WINDOW}
+    if window:
+        environment[WINDOW] = window
+    try:
+        done = subprocess.run(
+            [sys.executable, "-P", "-c", PROBE],  # importing nothing from the current folder
+            cwd="/",  # nor taking settings from there, as matplotlib does
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=SECONDS,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        return f"no answer in {SECONDS} s"
+    except OSError as error:
+        return str(error)
+    if done.returncode < 0:
+        return f"ends with signal {-done.returncode}"
+    if done.returncode:
+        return (done.stderr.strip().splitlines() or ["fails"])[-1]
+    # VTK falls back, with warnings, from a window it cannot make.
+    found = done.stdout.split()[-1:]
+    return None if not window or found == [window] else "cannot be made"

@@ -1,0 +1,177 @@
+"""Valid studies drawn at random, by number: each must run, and what does not is judged."""
+
+from __future__ import annotations
+
+import collections
+import json
+import random
+import re
+import shutil
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from tests.fuzz import draw_mechanism, draw_pin
+from tests.fuzz.child import End, run
+from tests.fuzz.quantity import Tree, write
+
+COMMAND = ("run", "study.toml", "--no-cache", "--no-pictures", "--vtk", "none", "--jobs", "1",
+           "--memory-limit", "500", "--tolerance", "0.2")  # fmt: skip
+
+KINDS = ("done", "not all reached", "refused", "numerics", "wrong")  # the first by status
+
+# What a valid study may be refused for, or its numerics fail at, and why that is right. All else
+# is a defect.
+REASONS = {
+    r"dead point at": "the drive would push the linkage past where it can go",
+    r"change point at": "two paths cross there",
+    r"friction jams": "that much friction leaves no motion, or two",
+}
+
+
+@dataclass(frozen=True)
+class Study:
+    """A drawn study; classes: to which it belongs."""
+
+    seed: int
+    tree: Tree
+    classes: frozenset[str]
+
+    def write(self, folder: Path) -> Path:
+        """Put it in a folder, in its own spelling of units."""
+        return write(self.tree, folder, random.Random(f"spelling {self.seed}"))
+
+
+@dataclass(frozen=True)
+class Result:
+    """How a drawn study ended. rows: of its results, each with a verdict."""
+
+    study: Study
+    end: End
+    rows: tuple[Tree, ...] = ()
+
+    @property
+    def kind(self) -> str:
+        """The column of the table."""
+        if self.end.wrong or self.end.status is None:
+            return "wrong"
+        return "wrong" if self.end.status < 2 and self._odd else KINDS[self.end.status]
+
+    @property
+    def message(self) -> str:
+        """What was said, without the study's own names and numbers."""
+        if self.kind == "wrong":
+            return self.end.wrong or self._odd
+        said = self.end.err.partition("the numerics failed: ")[2] or self.end.err
+        said = re.sub(r"^(\w+ \([-\w]+\)(, |: ))+", "", said.partition("\n")[0])
+        said = re.sub(r"Error: |study\.toml(:\d+)?: *|pin [A-Z](: )?", "", said)
+        return re.sub(r"[-+]?\d+(\.\d+)?(e[-+]?\d+)?", "#", said)[:120]
+
+    @property
+    def judged(self) -> str:
+        """Why this end is right; "" for a defect."""
+        if self.kind in ("done", "not all reached"):
+            return "valid"
+        found = (why for sign, why in REASONS.items() if re.search(sign, self.end.err))
+        return next(found, "") if self.kind in ("refused", "numerics") else ""
+
+    @property
+    def _odd(self) -> str:
+        """What is no result of a valid study: all loads here are held or in balance."""
+        if not self.rows:
+            return "no results"
+        for row in self.rows:
+            if row["verdict"] not in ("converged", "unconverged", "singular"):
+                return f"the verdict {row['verdict']}"
+            if not 0.0 <= row["max_von_mises"] < 1e13 or not 0.0 <= row["error_estimate"] < 1e13:
+                return "a maximum or an error that is no number"
+        return ""
+
+
+def draw(seed: int) -> Study:
+    """Every third one has a linkage, the others stated loads."""
+    rng = random.Random(f"study {seed}")
+    study = with_linkage(rng) if seed % 3 == 0 else with_given_loads(rng)
+    return replace(study, seed=seed)
+
+
+def _head(rng: random.Random) -> Tree:
+    return {
+        "title": "Drawn at random",
+        "units": rng.choice(("in-lbf-s", "mm-N-s", "m-N-s")),
+        "material": draw_pin.MATERIALS,
+    }
+
+
+def with_given_loads(rng: random.Random) -> Study:
+    """One pin or two, under stated loads in one case or several."""
+    classes, pins = {"stated loads"}, {}
+    for name in rng.choice(("P", "P", "PQ")):
+        shape = draw_pin.profile(rng, rng.choice((1, 1, 2, 3)))
+        clamp = draw_pin.clamps(rng, shape)
+        clamp = ["start"] if clamp == [] and rng.random() < 0.3 else clamp
+        classes |= shape.classes | {_clamped(clamp)}
+        names = [f"{name}{i}" for i in range(sum(s.band for s in shape.segments))]
+        material = rng.choice(("steel", "steel", "steel", "rubber", "cork"))
+        pins[name] = draw_pin.table(shape, clamp, names, material)
+    cases = {}
+    for name in ("landing", "take-off", "taxi")[: rng.choice((1, 1, 2, 3))]:
+        cases[name], kinds = draw_pin.given(rng, pins, name)
+        classes |= kinds
+    return Study(0, _head(rng) | {"pin": pins, "case": cases}, frozenset(classes))
+
+
+def _clamped(clamp: list[str]) -> str:
+    if not clamp:
+        return "balanced"
+    return "clamped faces" if {*clamp} <= {"start", "end"} else "clamped segment"
+
+
+def with_linkage(rng: random.Random) -> Study:
+    """A linkage and one or two of its pins."""
+    drawn = draw_mechanism.mechanism(rng)
+    classes, pins = {"linkage", *drawn.classes}, {}
+    for joint in rng.sample(sorted(drawn.joints), rng.choice((1, 1, 2))):
+        connections, floats = drawn.joints[joint]
+        shape = draw_pin.profile(rng, len(connections))
+        classes |= shape.classes
+        clamp = [] if floats else [rng.choice(("start", "end"))]
+        pins[joint] = draw_pin.table(shape, clamp, list(connections))
+    parts: Tree = {"mechanism": drawn.mechanism, "pin": pins, "case": drawn.cases}
+    return Study(0, _head(rng) | parts, frozenset(classes))
+
+
+def ended(seed: int, place: Path) -> Result:
+    """Draw a study and run it; it stays in `place` unless all was well."""
+    folder = place / f"{seed}"
+    folder.mkdir()
+    study = draw(seed)
+    study.write(folder)
+    end, results = run(folder, [*COMMAND]), folder / "out" / "study" / "results.json"
+    rows = json.loads(results.read_text())["pins"] if results.is_file() else []
+    found = Result(study, end, tuple(rows))
+    shutil.rmtree(folder / "out", ignore_errors=True)
+    if found.judged:
+        shutil.rmtree(folder)
+        for ending in (".out", ".err"):
+            folder.with_suffix(ending).unlink()
+    return found
+
+
+def classes_table(results: list[Result]) -> Iterator[tuple[str | int, ...]]:
+    """By class: how many there were, how they ended, and how many are defects."""
+    names = sorted({name for r in results for name in r.study.classes})
+    for name in ["all", *names]:
+        of = [r for r in results if name == "all" or name in r.study.classes]
+        kinds = collections.Counter(r.kind for r in of)
+        yield (name, len(of), *(kinds[k] for k in KINDS), sum(not r.judged for r in of))
+
+
+def reasons_table(results: list[Result]) -> Iterator[tuple[str | int, ...]]:
+    """What was said by those that have no result: how often, by which first, and the judgement."""
+    said: dict[tuple[str, str, str], list[int]] = {}
+    for r in results:
+        if r.judged != "valid":
+            said.setdefault((r.kind, r.message, r.judged), []).append(r.study.seed)
+    for (kind, message, judged), seeds in sorted(said.items(), key=lambda x: -len(x[1])):
+        yield (kind, len(seeds), ", ".join(map(str, seeds[:8])), judged or "DEFECT", message)

@@ -1,0 +1,120 @@
+"""Studies made and changed in Python, and results asked for by pin and case."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import pinstress
+from pinstress import InputError, changed_study, load_study, shipped_studies, study_from
+
+ONE_PIN = shipped_studies()["one_pin"]
+BAR: dict[str, Any] = {
+    "title": "A bar",
+    "units": "mm-N-s",
+    "material": {"steel": {"youngs_modulus": 210e3, "poisson_ratio": np.float64(0.3)}},
+    "pin": {
+        "P": {
+            "material": "steel",
+            "clamp": ("start",),
+            "fillet": None,
+            "profile": [{"length": 40, "diameter": np.int64(20), "connection": "rod"}],
+        }
+    },
+    "case": {"pull": {"kind": "given", "forces": {"rod": np.array([0.0, 0.0, 1000.0])}}},
+}
+
+
+def test_a_dict_is_as_good_as_a_file(tmp_path: Path) -> None:
+    """The tables of a shipped study, and its text, give its table and the same stress."""
+    text = ONE_PIN.read_text(encoding="utf-8")
+    loaded, made = load_study(ONE_PIN), study_from(tomllib.loads(text))
+    assert made.table == loaded.table
+    assert study_from(text).table == loaded.table
+    asked = pinstress.run(made, tolerance=0.05)["B", "landing"]
+    assert asked.max_von_mises == pinstress.run(loaded, tolerance=0.05).pins[0].max_von_mises
+
+
+def test_numbers_of_numpy_tuples_and_none_are_understood() -> None:
+    study = study_from(BAR)
+    pin = study.table.pin["P"]
+    assert pin.profile is not None
+    assert pin.profile[0].diameter == pytest.approx(0.02)
+    assert list(pin.clamp) == ["start"]
+    assert study.name == "study"
+
+
+def test_mistakes_in_a_dict_name_the_key_and_no_line() -> None:
+    wrong = {**BAR, "units": "furlongs"}
+    with pytest.raises(InputError) as error:
+        study_from(wrong)
+    assert str(error.value).startswith("study: units: ")
+    with pytest.raises(InputError) as error:
+        study_from({**BAR, "case": {"pull": {"kind": "given", "forces": {"rod": object()}}}})
+    assert str(error.value).startswith("study.case.pull.forces.rod: ")
+    with pytest.raises(InputError):
+        study_from(12)  # type: ignore[arg-type]
+
+
+def test_files_are_looked_for_in_the_folder() -> None:
+    with pytest.raises(InputError) as error:
+        pinstress.run(study_from({**BAR, "pin": {"P": {
+            "material": "steel", "clamp": ["start"], "geometry": "no.step",
+            "band": {"rod": {"z": [0, 1]}},
+        }}}, folder="some/where"))  # fmt: skip
+    assert str(Path("some/where/no.step")) in str(error.value)
+
+
+def test_a_changed_study_has_the_new_value_and_all_else_as_it_was() -> None:
+    study = load_study(ONE_PIN)
+    pin = next(iter(study.table.pin))
+    new = changed_study(study, {f"pin.{pin}.profile[1].diameter": "3 in", "title": "Thick"})
+    assert (new.table.title, new.path) == ("Thick", study.path)
+    before, after = study.table.pin[pin].profile, new.table.pin[pin].profile
+    assert before is not None
+    assert after is not None
+    assert after[0].diameter == pytest.approx(3 * 0.0254)
+    assert after[1:] == before[1:]
+    assert study.table.title != "Thick"
+
+
+def test_a_key_with_dots_is_quoted_and_a_new_key_is_added() -> None:
+    odd = study_from({**BAR, "pin": {"a.b": BAR["pin"]["P"]}})
+    new = changed_study(odd, {'pin."a.b".clamp[1]': "end", "analysis": {"tolerance": 0.1}})
+    assert list(new.table.pin["a.b"].clamp) == ["end"]
+    assert new.table.analysis.tolerance == 0.1
+
+
+def test_a_value_with_provenance_is_replaced() -> None:
+    sourced = {"value": 210e3, "provenance": "assumed", "note": "a guess"}
+    steel = {"youngs_modulus": sourced, "poisson_ratio": 0.3}
+    study = study_from({**BAR, "material": {"steel": steel}})
+    assert len(study.provenance) == 1
+    new = changed_study(study, {"material.steel.youngs_modulus": "70 GPa"})
+    assert new.table.material["steel"].youngs_modulus == pytest.approx(70e9)
+    assert new.provenance == ()
+
+
+@pytest.mark.parametrize(
+    "key",
+    [
+        *("", "pin.", "pin..P", "pin.Q.clamp", "pin.P[1].x"),
+        *("pin.P.profile[2].bore", "pin.P.profile[0].bore", "pin.P.profile[1].colour"),
+    ],
+)
+def test_keys_that_lead_nowhere(key: str) -> None:
+    with pytest.raises(InputError):
+        changed_study(study_from(BAR), {key: 1})
+
+
+def test_results_by_pin_and_case() -> None:
+    results = pinstress.run(study_from(BAR), tolerance=0.1)
+    assert results["P", "pull"] is results.pins[0]
+    with pytest.raises(KeyError, match=r"P.*pull"):
+        results["P", "push"]
+    plan = pinstress.prepare(study_from(BAR), tolerance=0.1)
+    assert pinstress.solve(plan)["P", "pull"].max_von_mises == results.pins[0].max_von_mises

@@ -1,0 +1,122 @@
+"""Results are made in SI and converted at once, by the dimensions of their fields."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fea.core.mesh_result import Strength
+from fea.core.peak import SingularZone
+from pinstress.schema.units import SYSTEMS
+from reports.data import results as data
+from reports.data.in_units import in_units
+from reports.data.results import (
+    Dimensioned,
+    DriveEffort,
+    DriveTable,
+    ReactionTable,
+    Results,
+)
+
+INCHES, MILLIMETRES = SYSTEMS["in-lbf-s"], SYSTEMS["mm-N-s"]
+
+
+def numbers(value: Any) -> list[float]:
+    """All numbers of results, in order, but seconds of computing."""
+    if dataclasses.is_dataclass(value):
+        names = [f.name for f in dataclasses.fields(value)]
+        return [x for name in names for x in numbers(getattr(value, name))]
+    if isinstance(value, np.ndarray):
+        return [float(x) for x in value.ravel() if x == x]
+    if isinstance(value, dict):
+        return [x for v in value.values() for x in numbers(v)]
+    if isinstance(value, tuple | list):
+        return [x for v in value for x in numbers(v)]
+    return [value] if isinstance(value, float) else []
+
+
+def test_there_and_back_is_the_same(results: Results) -> None:
+    """Nothing is converted one way only: SI values of the inverse units undo it."""
+    there = in_units(results, MILLIMETRES.factor)
+    back = in_units(there, lambda dimension: 1.0 / MILLIMETRES.factor(dimension))
+    assert numbers(back) == pytest.approx(numbers(results), rel=1e-12)
+    assert numbers(there) != numbers(results)
+
+
+def test_every_array_has_a_dimension_or_is_known_to_need_none() -> None:
+    """A new field that holds numbers cannot be left in SI by oversight."""
+    plain = {
+        f"{name}.{f.name}"
+        for name, kind in vars(data).items()
+        if dataclasses.is_dataclass(kind)
+        for f in dataclasses.fields(kind)
+        if str(f.type).split(" | ")[0] in ("Floats", "float", "dict[str, Floats]")
+    }
+    assert plain == {
+        "PinResult.seconds",
+        "PinResult.safety_factor",
+        "PinResult.published_max_von_mises",  # as published, in the study's units
+        "PinResult.published_safety_factor",
+        "ReactionTable.turn",  # rad
+        "PowerLedger.violation",  # a ratio
+        "LinkageMotion.angle",  # degrees, and rad
+        "LinkageMotion.angular_velocity",
+        "LinkageMotion.angular_acceleration",
+        "LinkageMotion.transmission",
+        "LinkageMotion.condition",
+        "LandingRange.safety_factor",
+        "PublishedValue.time",
+        "PublishedValue.published",
+        "Refinement.seconds",
+        "SingularZone.exponent",
+        "SingularZone.exponent_theory",
+        "Results.required_safety_factor",
+        "Results.tolerance",
+    }
+
+
+def test_a_singularity_has_the_units_of_its_exponent() -> None:
+    zone = SingularZone(
+        (0.0254, 0.0, 0.0), "a sharp corner", ("a", "b"), 0.44, 0.4555, 0.0508, True, 6894.757293,
+        "a fillet", Strength(6894.757293 * 0.0254**0.4555, 0.4555, None),
+    )  # fmt: skip
+    found = in_units(zone, INCHES.factor)
+    assert found.location == pytest.approx((1.0, 0.0, 0.0))
+    assert (found.excluded, found.max_von_mises) == pytest.approx((2.0, 1.0))
+    assert found.strength is not None
+    assert found.strength.along == pytest.approx(1.0)
+    assert found.strength.notch is None
+    assert found.exponent == 0.44
+
+
+@pytest.mark.parametrize(("kind", "length", "force"), [("slider", 1e3, 1.0), ("rotary", 1.0, 1e3)])
+def test_a_drive_has_a_force_or_a_torque(kind: str, length: float, force: float) -> None:
+    one = np.ones(2)
+    drive = DriveTable("m", one, one, one, one, one, one, one, one, one, "d", kind)
+    found = in_units(replace(drive, effort=DriveEffort(1.0, 1.0, 1.0, 1.0)), MILLIMETRES.factor)
+    assert found.position == pytest.approx(length)
+    assert found.velocity == pytest.approx(length)
+    assert found.force == pytest.approx(force)
+    assert found.power == pytest.approx(1e3)  # N mm/s
+    assert found.effort is not None
+    assert (found.effort.largest, found.effort.time) == pytest.approx((force, 1.0))
+
+
+def test_positions_are_lengths_or_degrees() -> None:
+    zero = np.zeros((2, 1, 3))
+    table = ReactionTable("m", np.ones(2), np.ones(2), ("A",), ("b",), ("p",), zero, zero)
+    assert in_units(table, MILLIMETRES.factor).position == pytest.approx(1e3)
+    turning = replace(table, position_unit="deg")
+    assert in_units(turning, MILLIMETRES.factor).position == pytest.approx(1.0)
+
+
+def test_a_product_of_units() -> None:
+    momentum = Dimensioned(np.ones(1), "force length time", MILLIMETRES.unit("force length time"))
+    found = in_units(momentum, MILLIMETRES.factor)
+    assert found.values == pytest.approx(1e3)
+    assert found.unit == "N mm s"
+    assert in_units(Dimensioned(np.ones(1), "rad/s", "rad/s"), INCHES.factor).values == 1.0

@@ -1,0 +1,93 @@
+"""Intervals of singular rows wherever a factor is shown, and none hidden behind an error."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import replace
+from io import StringIO
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from fea.core.mesh_result import Strength
+from reports.data.results import PinResult, Results, SingularZone
+from reports.format.ranges import error_range, error_words, factor_range
+from reports.tables.json_results import to_json
+from reports.tables.safety_factors import safety_factors_table, write_safety_factors
+from reports.tables.singular_zones import zones_table
+from reports.text.headline import headline
+from reports.text.html import safety_factors_html
+from reports.text.safety_factors import print_safety_factors
+from reports.text.summary import summary
+
+ZONE = SingularZone(
+    (0.0, 0.5, 1.0), "the edge of a clamp", ("left", "A"), 0.5, 0.4555, 0.1, True, 9e5, "none",
+    Strength(1234.5, 0.4555, 4321.0),
+)  # fmt: skip
+
+
+@pytest.fixture
+def found(results: Results) -> Results:
+    return replace(results, pins=(singular(results.pins[0]), results.pins[1]))
+
+
+def singular(pin: PinResult) -> PinResult:
+    return replace(
+        pin,
+        verdict="singular",
+        max_von_mises=72_430.0,
+        error_estimate=23_170.0,
+        safety_factor=3.107,
+        max_von_mises_interval=(51_500.0, 95_600.0),
+        safety_factor_interval=(2.354, 4.369),
+        meets_required=False,
+        singular_at=(ZONE,),
+    )
+
+
+def test_in_words(found: Results) -> None:
+    wide, narrow = found.pins
+    assert error_range(wide) == "51,500 to 95,600"
+    assert factor_range(wide) == "2.35 to 4.37"
+    assert error_words(wide) == "51,500 to 95,600 over half and twice the excluded distance"
+    assert factor_range(replace(wide, safety_factor_interval=(2.354, None))) == "2.35 to –"
+    assert error_words(narrow).startswith("± ")
+
+
+def test_no_table_shows_a_factor_without_its_interval(found: Results, tmp_path: Path) -> None:
+    console = Console(width=80, file=StringIO())
+    print_safety_factors(found, console)
+    screen = console.file.getvalue()  # type: ignore[attr-defined]
+    assert all(len(line) <= 80 for line in screen.splitlines())
+    write_safety_factors(found, tmp_path)
+    text = (tmp_path / "safety_factors.md").read_text(encoding="utf-8")
+    for shown in (screen, text, safety_factors_html(found), summary(found), headline(found)):
+        assert "3.107" not in shown
+        assert "2.35" in shown
+        assert "4.37" in shown
+    for shown in (screen, text, safety_factors_html(found)):
+        assert "23,0" not in shown
+
+
+def test_every_digit_for_programs(found: Results, tmp_path: Path) -> None:
+    row = to_json(found)["pins"][0]
+    assert row["max_von_mises_interval"] == [51_500.0, 95_600.0]
+    assert row["safety_factor_interval"] == [2.354, 4.369]
+    assert row["error_parts"] == found.pins[0].error_parts
+    assert row["singular_at"][0]["strength"] == 1234.5
+    assert row["singular_at"][0]["notch_stress_intensity"] == 4321.0
+    assert to_json(found)["pins"][1]["max_von_mises_interval"] is None
+    for table in (safety_factors_table(found), zones_table(found)):
+        table.write_csv(tmp_path)
+    with (tmp_path / "safety_factors.csv").open(encoding="utf-8") as file:
+        first, second = csv.DictReader(file)
+    assert (float(first["max_von_mises_low"]), float(first["safety_factor_high"])) == (
+        51_500,
+        4.369,
+    )
+    assert second["max_von_mises_low"] == second["safety_factor_high"] == ""
+    assert float(first["error_time"]) == found.pins[0].error_parts["time"]
+    with (tmp_path / "singular_zones.csv").open(encoding="utf-8") as file:
+        (zone,) = csv.DictReader(file)
+    assert float(zone["notch_stress_intensity"]) == 4321.0

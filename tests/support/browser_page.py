@@ -1,0 +1,81 @@
+"""What tests ask of a page in a browser."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+WAIT = 30.0  # s, for what a slow machine draws in software
+COLOURS = """
+const c = arguments[0], { data } = c.getContext("2d").getImageData(0, 0, c.width, c.height);
+return new Set(new Uint32Array(data.buffer)).size;
+"""
+PIXELS = "return arguments[0].toDataURL();"
+
+
+def opened(browser: Any, folder: Path) -> None:
+    """Open the report of a run from disk, and wait until it is laid out."""
+    browser.get_log("browser")
+    browser.get((folder / "report.html").as_uri())
+    wait(browser, lambda: browser.find_element("css selector", "h1").text)
+
+
+def wait(browser: Any, ready: Callable[[], Any]) -> Any:
+    """What `ready` gives once it is true."""
+    from selenium.webdriver.support.ui import WebDriverWait
+
+    return WebDriverWait(browser, WAIT).until(lambda _: ready())
+
+
+def views(browser: Any, pin: str) -> list[Any]:
+    """A pin's views, by its heading as written: rendering waits for the layout of a long page."""
+
+    def headed() -> list[Any]:
+        headings = browser.find_elements("css selector", "section.viewed > h2")
+        return [h for h in headings if h.get_attribute("textContent").strip() == f"Pin {pin}"]
+
+    (heading,) = wait(browser, headed)
+    return list(heading.find_elements("xpath", "..//*[@data-view]"))
+
+
+def view(browser: Any, pin: str) -> Any:
+    """A pin's first view, scrolled to and drawn."""
+    root = views(browser, pin)[0]
+    browser.execute_script("arguments[0].scrollIntoView();", root)
+    wait(browser, lambda: part(root, "told").text)
+    wait(browser, lambda: colours(browser, root) > 10)
+    return root
+
+
+def part(root: Any, name: str) -> Any:
+    return root.find_element("css selector", f'[data-is="{name}"]')
+
+
+def canvas(root: Any) -> Any:
+    return root.find_element("css selector", "canvas")
+
+
+def colours(browser: Any, root: Any) -> int:
+    """How many distinct colours the view shows."""
+    return int(browser.execute_script(COLOURS, canvas(root)))
+
+
+def pixels(browser: Any, root: Any) -> str:
+    return str(browser.execute_script(PIXELS, canvas(root)))
+
+
+def maximum(root: Any) -> float:
+    """The maximum that is shown."""
+    return float(part(root, "told").get_attribute("data-maximum"))
+
+
+def slide(browser: Any, slider: Any, value: int) -> None:
+    """Move a slider as a user does, as far as the page can tell."""
+    script = "arguments[0].value = arguments[1]; arguments[0].dispatchEvent(new Event('input'));"
+    browser.execute_script(script, slider, value)
+
+
+def errors(browser: Any) -> list[str]:
+    """What the console complains of."""
+    return [e["message"] for e in browser.get_log("browser") if e["level"] == "SEVERE"]

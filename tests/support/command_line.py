@@ -1,0 +1,30 @@
+"""The command line on the smallest study: in a process of its own, and in this one."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from contextlib import chdir, redirect_stderr, redirect_stdout
+from io import StringIO
+from pathlib import Path
+
+from pinstress.cli.commands import run_command_line
+from tests.conftest import ROOT
+
+ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()
+# a coarse answer is enough to test what surrounds it
+QUICK = ONE_PIN.replace("tolerance = 0.05", "tolerance = 0.3")
+
+
+def pinstress(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
+    """The program as a user starts it."""
+    return subprocess.run(
+        [sys.executable, "-m", "pinstress", *arguments], cwd=cwd, capture_output=True, text=True
+    )
+
+
+def run_here(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
+    """What it answers, without the start of a process, which takes longer than a quick run."""
+    with chdir(cwd), redirect_stdout(StringIO()) as out, redirect_stderr(StringIO()) as err:
+        status = run_command_line(list(arguments))
+    return subprocess.CompletedProcess(arguments, status, out.getvalue(), err.getvalue())

@@ -1,0 +1,22 @@
+"""Errors by their code and what they name, not by their wording."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TypeVar
+
+import pytest
+
+E = TypeVar("E", bound=Exception)
+
+
+@contextmanager
+def raises(kind: type[E], code: str, *named: str) -> Iterator[pytest.ExceptionInfo[E]]:
+    """An error of this kind with this code, whose message names all of these."""
+    with pytest.raises(kind) as caught:
+        yield caught
+    codes = getattr(caught.value, "codes", None) or (getattr(caught.value, "code", None),)
+    assert code in codes, f"{codes}: {caught.value}"
+    for name in named:
+        assert name in str(caught.value)

@@ -1,0 +1,45 @@
+"""A page as a reader of its text and its addresses sees it, and a name that is a script."""
+
+from __future__ import annotations
+
+from html.parser import HTMLParser
+from pathlib import Path
+
+EVIL = '<script>alert("1")</script>&\'='
+
+
+class Reader(HTMLParser):
+    """Collects tags, addresses, anchors, pages within and the text that is shown."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.tags: list[str] = []
+        self.addresses: list[str] = []
+        self.ids: list[str] = []
+        self.within: list[str] = []
+        self.text = ""
+        self.silent = False
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        self.silent = tag in ("script", "style")
+        for name, value in attrs:
+            if name in ("src", "href", "srcset", "data", "xlink:href"):
+                self.addresses.append(value or "")
+            if name == "srcdoc":
+                self.within.append(value or "")
+            if name == "id":
+                self.ids.append(value or "")
+
+    def handle_endtag(self, tag: str) -> None:
+        self.silent = False
+
+    def handle_data(self, data: str) -> None:
+        if not self.silent:
+            self.text += data
+
+
+def parse(path: Path) -> Reader:
+    reader = Reader()
+    reader.feed(path.read_text(encoding="utf-8"))
+    return reader
