@@ -39,6 +39,8 @@ def run_command_line(arguments: list[str]) -> int:
         if ended == INTERRUPTED:
             click.echo("Interrupted; nothing was written.", err=True)
         return ended
+    finally:
+        interrupts.forget()
 
 
 def _status(error: BaseException) -> int | None:

@@ -19,11 +19,16 @@ _held = False
 
 def listen() -> None:
     """From now on interrupts raise KeyboardInterrupt, the first of them; forget earlier ones."""
-    global _came
-    _came = False
+    forget()
     for each in INTERRUPTS:
         if signal.getsignal(each) != signal.SIG_IGN:  # nohup, or a job in the background
             signal.signal(each, _interrupt)
+
+
+def forget() -> None:
+    """What came has been answered: what this process does next is not to end for it."""
+    global _came
+    _came = False
 
 
 def ignore() -> None:
@@ -53,6 +58,24 @@ def held() -> Iterator[None]:
     finally:
         _held = False
     require_none()
+
+
+@contextmanager
+def blocked() -> Iterator[None]:
+    """Around a fork: interrupts of this process wait meanwhile, those of the child until it has
+    handlers of its own and calls `unblock`.
+    """
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, INTERRUPTS)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def unblock() -> None:
+    """Let interrupts through again, where they can be blocked."""
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, INTERRUPTS)
 
 
 def _interrupt(*_: object) -> None:

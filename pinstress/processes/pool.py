@@ -197,7 +197,8 @@ def _start(jobs: Sequence[Job[T]]) -> _Child:
         process = multiprocessing.get_context("fork").Process(
             target=_serve, args=(jobs, theirs, os.getpid()), daemon=False
         )
-        process.start()
+        with interrupts.blocked():  # a child that ours reach would go on with what we are doing
+            process.start()
     theirs.close()  # so that its end is the pipe's
     return _Child(process, ours)
 
@@ -210,9 +211,16 @@ def _serve(
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # an interrupt is for the parent, which ends us
     signal.signal(signal.SIGTERM, _leave)
-    end_with_parent(parent)
-    preload(*libraries)
+    interrupts.unblock()
+    try:
+        end_with_parent(parent)
+        preload(*libraries)
+        _do_jobs(jobs, pipe)
+    finally:  # nothing is left to be cleaned up
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
 
+
+def _do_jobs(jobs: Sequence[Job[T]], pipe: Connection) -> None:
     def say(kind: str, value: object) -> None:
         pipe.send((kind, pickle.dumps(value)))
 
@@ -230,6 +238,7 @@ def _serve(
 
 
 def _leave(*_: object) -> None:
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # leaving is not begun once more
     # In a finalizer Python prints what is raised and goes on; the parent kills us then.
     sys.unraisablehook = lambda _: None
     sys.exit(128 + signal.SIGTERM)

@@ -19,6 +19,7 @@ from fea.core.linear_solver import SolveError
 from fea.solve_pin import solve_pin
 from pinstress import InputError
 from pinstress.cli.commands import run_command_line
+from pinstress.processes import interrupts
 from tests.conftest import ROOT
 from tests.support.command_line import QUICK
 
@@ -239,6 +240,7 @@ def test_whatever_an_interrupt_becomes_the_status_is_130(
     with signals_heard():
         assert run_command_line(["check", "study.toml"]) == 130
     assert capsys.readouterr().err == "Interrupted; nothing was written.\n"
+    interrupts.require_none()  # nor does anything that this process does later end for it
 
 
 def test_an_interrupt_that_is_dropped_comes_back(

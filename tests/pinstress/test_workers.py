@@ -128,6 +128,33 @@ def test_an_interrupt_ends_processes_that_do_not_listen() -> None:
     assert child_processes() == before
 
 
+@pytest.mark.linux
+def test_a_child_that_is_ended_as_it_starts_does_nothing_of_its_parents() -> None:
+    """Under the parent's handlers, which raise, it would go on where the parent is."""
+    code = """
+import os
+from functools import partial
+from pinstress.processes import interrupts
+from pinstress.processes.pool import Job, side_by_side
+from tests.pinstress.test_workers import sleep, wrong
+from pinstress import InputError
+
+own = os.getpid()
+interrupts.listen()
+for _ in range(200):
+    try:
+        side_by_side([Job("long", sleep), Job("pin Q", wrong)], 2)
+    except InputError:
+        continue
+    finally:
+        if os.getpid() != own:
+            print("a child is here")
+print("done")
+"""
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert (said.stdout, said.stderr) == ("done\n", "")
+
+
 def test_there_is_a_core() -> None:
     assert 1 <= cores() <= (os.cpu_count() or 1)
 
