@@ -1,5 +1,7 @@
 """Fixtures that several rooms share."""
 
+# ruff: noqa: E402  (threads are limited before numpy is imported)
+
 from __future__ import annotations
 
 import os
@@ -11,6 +13,10 @@ from pathlib import Path
 
 import pytest
 from hypothesis import settings
+
+from pinstress.processes.threads import hold_threads
+
+hold_threads()  # as the command does, whose numbers are compared
 
 from fea.core.material import Material
 from geometry import Pin, Segment

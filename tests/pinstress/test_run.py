@@ -71,7 +71,7 @@ def test_moments_reach_the_pin_and_the_tables(tmp_path: Path) -> None:
 def test_the_same_study_gives_the_same_numbers(run_once: tuple[Path, str, str]) -> None:
     folder = run_once[0]
     first = json.loads((folder / "out" / "study" / "results.json").read_text())
-    done = run_here("run", "study.toml", "--no-pictures", "--out", "again", cwd=folder)
+    done = pinstress("run", "study.toml", "--no-pictures", "--out", "again", cwd=folder)
     assert done.returncode == 0
     again = json.loads((folder / "again" / "results.json").read_text())
 
