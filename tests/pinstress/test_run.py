@@ -115,7 +115,7 @@ def test_all_models_answer(run_once: tuple[Path, str, str], tmp_path: Path) -> N
         ("harmonic", 0, "converged"),
         ("solid", 0, "converged"),
     ):
-        done = run_here("run", "study.toml", "--no-pictures", "--model", model, cwd=tmp_path)
+        done = pinstress("run", "study.toml", "--no-pictures", "--model", model, cwd=tmp_path)
         assert done.returncode == status, done.stderr
         (pin,) = json.loads((tmp_path / "out/study/results.json").read_text())["pins"]
         assert (pin["model"], pin["verdict"]) == (model, verdict)
