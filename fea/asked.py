@@ -22,7 +22,8 @@ class Asked:
     """What is wanted: the maximum to a `tolerance`, or (goal "decide") only on which side of the
     `required` factor of safety it is. distance: of the local diameter, that is excluded at corners
     and edges of clamps. meshes: at most so many, as the model has it by default. memory: MB that a
-    mesh may take, by default most of what is free.
+    mesh may take, by default most of what is free. because: why by this model and no smaller one,
+    where that is not this package's choice.
     """
 
     tolerance: float = 0.02
@@ -32,6 +33,7 @@ class Asked:
     distance: float = 0.1
     meshes: int | None = None
     memory: float | None = None
+    because: Note | None = None
 
 
 def decided(asked: Asked, material: Material, low: float, high: float) -> bool:
@@ -68,6 +70,8 @@ def reasons(asked: Asked, material: Material, model: str) -> Callable[[Seen], No
 
 def _chosen(asked: Asked, model: str) -> Note:
     """Why this model and no smaller one."""
+    if asked.because is not None:
+        return asked.because
     if asked.model == model:
         return Note(f"{model}: requested", ("requested",))
     if model == "solid":

@@ -63,18 +63,20 @@ class SingularZone:
 @dataclass(frozen=True)
 class ErrorParts:
     """The parts of an error, Pa: from the mesh; from the time between instants; from the truncated
-    harmonics of a bearing pressure; from the beam model. None includes the modelling of the joint.
+    harmonics of a bearing pressure; from the beam model; from the cells of contact pressure. None
+    includes the modelling of the joint.
     """
 
     mesh: float
     time: float = 0.0
     series: float = 0.0
     model: float = 0.0
+    cells: float = 0.0
 
     @property
     def total(self) -> float:
         """Their sum, Pa."""
-        return self.mesh + self.time + self.series + self.model
+        return self.mesh + self.time + self.series + self.model + self.cells
 
 
 @dataclass(frozen=True)

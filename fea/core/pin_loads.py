@@ -30,11 +30,22 @@ BODY = ""  # the `surface` of a load on the whole pin
 
 
 class UnitLoad(NamedTuple):
-    """A load of one harmonic on a surface (by name): per N, N m, or (kind "body") m/s^2."""
+    """A load of one harmonic on a surface (by name): per N, N m, or (kind "body") m/s^2.
+
+    parts: instead, of a pressure on several surfaces, each with its amplitude, Pa.
+    """
 
     surface: str
     kind: Kind
     n: int
+    parts: tuple[tuple[str, float], ...] = ()
+
+    @property
+    def surfaces(self) -> tuple[str, ...]:
+        """Those on which it acts, by name; none for a load on the whole pin."""
+        if self.parts:
+            return tuple(name for name, _ in self.parts)
+        return (self.surface,) if self.surface else ()
 
     @property
     def shears(self) -> bool:
@@ -77,6 +88,11 @@ class PinLoads:
 
     def __len__(self) -> int:
         return len(self.forces)
+
+    @property
+    def links(self) -> PinLoads:
+        """What the links do to the pin: these loads themselves, unless contact carries them."""
+        return self
 
     @property
     def pressures(self) -> tuple[int, ...]:

@@ -43,8 +43,16 @@ INWARDS = np.array([-1.0, 0.0, 0.0])
 _NONE = np.zeros(3)
 
 
+def tractions_of(pin: PinLike, load: UnitLoad) -> tuple[Traction, ...]:
+    """The tractions of a unit load on bands; none of one on the whole pin."""
+    if load.parts:
+        bands = [(pin.band(name), amplitude) for name, amplitude in load.parts]
+        return tuple(Traction(b.name, b.middle, x * INWARDS, _NONE) for b, x in bands)
+    return () if load.kind == "body" else (traction(pin, load),)
+
+
 def traction(pin: PinLike, load: UnitLoad) -> Traction:
-    """The traction of a unit load on a band."""
+    """The traction of a unit load on one band."""
     band = pin.band(load.surface)
     mean, slope = _NONE, _NONE
     if load.kind == "force":

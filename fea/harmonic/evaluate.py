@@ -109,7 +109,7 @@ def _ends(
     pin: Pin, clamps: tuple[str, ...], loads: tuple[UnitLoad, ...]
 ) -> tuple[tuple[float, float], ...]:
     """Where a pressure ends on a smooth surface, (r, z) in m."""
-    pushed = {load.surface for load in loads if load.kind == "pressure"}
+    pushed = {name for load in loads if load.kind == "pressure" for name in load.surfaces}
     if not clamps and any(load.n <= 1 and not load.shears for load in loads):
         pushed |= set(pin.connections)  # which react the imbalance
     return smooth_edges(pin, pushed, clamps)

@@ -14,7 +14,7 @@ import scipy.sparse as sp
 from fea.core.linear_solver import Analysis, SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, UnitLoad
-from fea.core.tractions import ALONG_X, ALONG_Z, Traction, closing_tractions, traction
+from fea.core.tractions import ALONG_X, ALONG_Z, Traction, closing_tractions, tractions_of
 from fea.harmonic.assembly import Ints, Section, around
 from fea.harmonic.boundary import Outline
 from fea.harmonic.fields import MeridianFields
@@ -82,9 +82,7 @@ class HarmonicModel:
 
     def _applied(self, n: int, loads: list[UnitLoad]) -> tuple[Floats, Floats]:
         """Nodal forces (unknowns, K) and tractions at the outline's nodes (E, 3, 3, K)."""
-        parts: list[tuple[Traction, ...]] = [
-            () if load.kind == "body" else (traction(self.pin, load),) for load in loads
-        ]
+        parts = [tractions_of(self.pin, load) for load in loads]
         forces, tractions = self._forces(n, parts)
         for k, load in enumerate(loads):
             if load.kind == "body":

@@ -80,6 +80,16 @@ class Pressed:
         """Which cells are in contact."""
         return self.gap <= 0.0
 
+    def times(self, factor: float) -> Pressed:
+        """Under so many times the loads, where contact without them has no gap to close."""
+        return Pressed(
+            factor * self.pressure,
+            factor * self.gap,
+            factor * self.shift,
+            factor * self.turn,
+            0,
+        )
+
 
 class ContactProblem:
     """One pin in its lugs, ready for any loads.
@@ -103,6 +113,11 @@ class ContactProblem:
         self._open = np.repeat(bands.gap, sectors)
         self._compliance = self._of_cells(flexibility, tail)
         self._motions = self._rigid(np.asarray(tilt, dtype=float))
+
+    @property
+    def closed(self) -> bool:
+        """Whether pin and bores fit everywhere before any load."""
+        return not self.bands.gap.any()
 
     def _of_cells(self, flexibility: Floats, tail: Floats) -> Floats:
         """Mean displacement of cells under forces on cells, (U, U) m/N."""

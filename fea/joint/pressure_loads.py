@@ -1,24 +1,39 @@
-"""Loads on a pin whose bands are cut into rings: pressures from contact, by harmonic."""
+"""Loads on a pin whose bands are cut into rings: pressures from contact, by harmonic.
+
+Pressures of neighbouring instants are much alike: of each harmonic a few patterns over the rings
+make up all of them (their singular vectors), so that the unit loads are as few as with prescribed
+pressures, however many rings there are.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fea.core.pin_loads import Floats, PinLoads, UnitLoad
-from fea.core.tractions import pressure_amplitude
 from geometry import Pin
+
+NEGLIGIBLE = 1e-10  # of the largest amplitude: patterns below it are round-off
 
 
 @dataclass(frozen=True)
 class PressureLoads(PinLoads):
     """PinLoads on rings, of which `acting` has what acts: (T, 2) of every unit load, by phase.
     forces: resultants of the pressures on the rings, and the shares of forces along the axis.
+    of_links: the loads of the links that the pressures carry, at the same instants.
     """
 
     acting: dict[UnitLoad, Floats] = field(default_factory=dict)
+    of_links: PinLoads | None = None
+
+    @property
+    def links(self) -> PinLoads:
+        """What the links do to the pin."""
+        assert self.of_links is not None
+        return self.of_links
 
     def coefficients(self) -> dict[UnitLoad, Floats]:
         """How much of each unit load acts, (T, 2) by phase."""
@@ -26,52 +41,124 @@ class PressureLoads(PinLoads):
 
     def at(self, instants: NDArray[np.int64]) -> PressureLoads:
         """The loads at some of the instants, by their numbers."""
+        some = super().at(instants)
+        assert isinstance(some, PressureLoads)
         acting = {load: amount[instants] for load, amount in self.acting.items()}
-        times = None if self.times is None else self.times[instants]
-        forces, moments, body = (x[instants] for x in (self.forces, self.moments, self.body))
-        return replace(self, forces=forces, moments=moments, body=body, times=times, acting=acting)
+        return replace(some, acting=acting, of_links=self.links.at(instants))
+
+    def merged(self, other: PinLoads) -> PressureLoads:
+        """With the instants of other loads of the same motion, in the order of time."""
+        assert isinstance(other, PressureLoads)
+        assert self.times is not None
+        assert other.times is not None
+        both = _after_each_other([self, other])
+        first = np.unique(np.concatenate([self.times, other.times]), return_index=True)[1]
+        joined = super().merged(other)
+        assert isinstance(joined, PressureLoads)
+        acting = {load: x[first] for load, x in both.items()}
+        return replace(joined, of_links=self.links.merged(other.links), acting=acting)
 
 
-def pressure_loads(
-    pin: Pin, rings: tuple[str, ...], pressure: Floats, highest: int, loads: PinLoads
-) -> PressureLoads:
-    """Loads of pressures (T, R, M) Pa on M sectors of rings of a pin, with harmonics up to
-    `highest`, and what else is in `loads`, whose surfaces are the bands that the rings cut: forces
-    along the axis and torques, even over a band's rings, and the body force.
+@dataclass(frozen=True)
+class Patterns:
+    """Patterns (K, R) in Pa over the rings of a pin, one array for each harmonic from 0 on."""
+
+    pin: Pin
+    rings: tuple[str, ...]
+    by_harmonic: tuple[Floats, ...]
+
+    def loads(self, pressure: Floats, links: PinLoads) -> PressureLoads:
+        """Of pressures (T, R, M) Pa on M sectors of the rings, made of these patterns, and of what
+        else is in the loads of the links, whose surfaces are the bands that the rings cut: forces
+        along the axis and torques, even over a band's rings, and the body force.
+        """
+        made = _others(self.pin, self.rings, links)
+        acting = dict(PinLoads.coefficients(made))
+        for n, patterns in enumerate(self.by_harmonic):
+            amounts = np.einsum("trp,kr->ktp", amplitudes(pressure, n), patterns)
+            for pattern, amount in zip(patterns.tolist(), amounts, strict=True):
+                parts = tuple(zip(self.rings, pattern, strict=True))
+                acting[UnitLoad("", "pressure", n, parts)] = amount
+        area = np.array([self.pin.band(name).area for name in self.rings])
+        made.forces[:, :, :2] = -0.5 * amplitudes(pressure, 1) * area[:, None]
+        return PressureLoads(
+            links.case,
+            self.rings,
+            made.forces,
+            made.moments,
+            body=links.body,
+            times=links.times,
+            acting=acting,
+            of_links=links,
+        )
+
+    def left_out(self, pressure: Floats) -> float:
+        """Of pressures (T, R, M), the largest part that these patterns miss, relative."""
+        largest, missed = 0.0, 0.0
+        for n, patterns in enumerate(self.by_harmonic):
+            amplitude = amplitudes(pressure, n)
+            amounts = np.einsum("trp,kr->ktp", amplitude, patterns)
+            rest = amplitude - np.einsum("ktp,kr->trp", amounts, patterns)
+            largest = max(largest, float(np.abs(amplitude).max()))
+            missed = max(missed, float(np.abs(rest).max()))
+        return missed / largest if largest else 0.0
+
+
+def patterns_of(
+    pin: Pin, rings: tuple[str, ...], pressures: Sequence[Floats], highest: int
+) -> Patterns:
+    """Those of which pressures (T, R, M) Pa are made, harmonics up to `highest`; in several arrays
+    if the sectors differ in number.
     """
-    forces = np.zeros((len(pressure), len(rings), 3))
-    moments = np.zeros_like(forces)
-    share = _shares(pin, rings, loads.surfaces)
-    forces[:, :, 2] = loads.forces[:, :, 2] @ share
-    moments[:, :, 2] = loads.moments[:, :, 2] @ share
-    others = replace(loads, surfaces=rings, forces=forces, moments=moments)
-    acting = dict(PinLoads.coefficients(others))
-    area = np.array([pin.band(name).area for name in rings])
-    for n in range(highest + 1):
-        amplitude = _amplitude(pressure, n)  # (T, R, 2)
-        for r, name in enumerate(rings):
-            if amplitude[:, r].any():
-                unit = pressure_amplitude(n, pin.band(name))
-                acting[UnitLoad(name, "pressure", n)] = amplitude[:, r] / unit
-    forces[:, :, :2] = -0.5 * _amplitude(pressure, 1) * area[:, None]
-    return PressureLoads(
-        loads.case,
-        rings,
-        forces,
-        moments,
-        body=loads.body,
-        times=loads.times,
-        acting=acting,
+    each = [
+        np.concatenate(
+            [amplitudes(p, n).transpose(0, 2, 1).reshape(-1, len(rings)) for p in pressures]
+        )
+        for n in range(highest + 1)
+    ]
+    least = NEGLIGIBLE * max(float(np.linalg.norm(x, axis=1).max()) for x in each)
+    found = []
+    for amplitude in each:
+        _, size, patterns = np.linalg.svd(amplitude, full_matrices=False)
+        found.append(np.asarray(patterns[size > least]))
+    return Patterns(pin, rings, tuple(found))
+
+
+def stacked(loads: Sequence[PressureLoads]) -> PressureLoads:
+    """Loads made of the same patterns as instants of one case, without times."""
+    acting = _after_each_other(loads)
+    forces, moments, body = (
+        np.concatenate([getattr(one, name) for one in loads])
+        for name in ("forces", "moments", "body")
     )
+    return replace(loads[0], forces=forces, moments=moments, body=body, times=None, acting=acting)
 
 
-def _amplitude(pressure: Floats, n: int) -> Floats:
+def _after_each_other(loads: Sequence[PressureLoads]) -> dict[UnitLoad, Floats]:
+    none = [np.zeros((len(one), 2)) for one in loads]
+    return {
+        unit: np.concatenate([x.acting.get(unit, n) for x, n in zip(loads, none, strict=True)])
+        for unit in dict.fromkeys(unit for one in loads for unit in one.acting)
+    }
+
+
+def amplitudes(pressure: Floats, n: int) -> Floats:
     """Of harmonic n of pressures (T, R, M), even on each sector: (T, R, 2), of cos and sin."""
     sectors = pressure.shape[2]
     angles = 2.0 * np.pi * np.arange(sectors) / sectors
     factor = np.sinc(n / sectors) * (2.0 if n else 1.0) / sectors
     waves = np.stack([np.cos(n * angles), np.sin(n * angles)], axis=1)
     return np.asarray(pressure @ waves * factor)
+
+
+def _others(pin: Pin, rings: tuple[str, ...], links: PinLoads) -> PinLoads:
+    """What the links do along the axis and about it, and the body force, on the rings."""
+    forces = np.zeros((len(links), len(rings), 3))
+    moments = np.zeros_like(forces)
+    share = _shares(pin, rings, links.surfaces)
+    forces[:, :, 2] = links.forces[:, :, 2] @ share
+    moments[:, :, 2] = links.moments[:, :, 2] @ share
+    return PinLoads(links.case, rings, forces, moments, body=links.body, times=links.times)
 
 
 def _shares(pin: Pin, rings: tuple[str, ...], bands: tuple[str, ...]) -> Floats:

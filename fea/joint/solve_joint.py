@@ -7,11 +7,12 @@ stress, its error and verdict come from fea.solve_pin, of a pin that nothing cla
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
@@ -19,10 +20,11 @@ from fea.core.pin_loads import Floats, PinLoads
 from fea.joint.contact import Bands, ContactProblem, Pressed
 from fea.joint.flexibility import half_plane, lug_flexibility, pin_flexibility
 from fea.joint.lug import Lug
-from fea.joint.pressure_loads import PressureLoads, pressure_loads
+from fea.joint.pressure_loads import PressureLoads, patterns_of
 from fea.joint.rings import annulus, ring, ringed
 from geometry import Pin
 
+DIGITS = 13  # to which loads are in proportion
 BALANCED = 1e-6  # of the largest force: what links and the body force may leave over
 
 
@@ -106,14 +108,26 @@ class JointModel:
         count = cells.rings
         self.pin = ringed(pin, pin.connections, count)
         self.rings = tuple(ring(lug.connection, i) for lug in self.lugs for i in range(count))
-        flexible = pin_flexibility(self.pin, self.rings, material, cells.across, cells.highest)
+        self.of_pin = pin_flexibility(self.pin, self.rings, material, cells.across, cells.highest)
+        of_lugs = np.zeros_like(self.of_pin)
         for b, lug in enumerate(self.lugs):
             own = slice(b * count, (b + 1) * count)
             eye = annulus(pin, lug.connection, lug.outer_diameter, count)
             across = cells.across * lug.outer_diameter / eye.segments[0].bore / 4.0
-            flexible[:, own, own] += lug_flexibility(eye, lug.material, across, cells.highest)
-        self.flexibility = flexible
+            of_lugs[:, own, own] = lug_flexibility(eye, lug.material, across, cells.highest)
+        self.of_lugs = of_lugs
 
+    def varied(self, lugs: tuple[Lug, ...], softness: float = 1.0) -> JointModel:
+        """The same pin in lugs of other clearance, edge radius and tilt, and so many times softer:
+        with the flexibilities at hand.
+        """
+        other = copy.copy(self)
+        other.__dict__.pop("contact", None)
+        other.lugs = tuple(replace(lug, material=_softer(lug.material, softness)) for lug in lugs)
+        other.of_lugs = softness * self.of_lugs
+        return other
+
+    @cached_property
     def contact(self) -> ContactProblem:
         """Ready for any loads."""
         bands = [self.pin.band(name) for name in self.rings]
@@ -121,18 +135,24 @@ class JointModel:
         radius = np.array([b.radius for b in bands])
         number = np.repeat(np.arange(len(self.lugs)), self.cells.rings)
         gap = np.concatenate([lug.gap(self._ends(lug)) for lug in self.lugs])
-        tail = np.array(
-            [
-                half_plane(self.material, r) + half_plane(self.lugs[b].material, r)
-                for r, b in zip(radius.tolist(), number.tolist(), strict=True)
-            ]
-        )
         tilt = [lug.tilt for lug in self.lugs]
         cut = Bands(z, length, radius, number, gap)
-        return ContactProblem(cut, self.flexibility, tail, tilt, self.cells.sectors)
+        return ContactProblem(cut, self.of_pin + self.of_lugs, self.tail, tilt, self.cells.sectors)
+
+    @property
+    def tail(self) -> Floats:
+        """n u_n / p_n of pin and lug together for high harmonics, m/Pa, by ring."""
+        radius = {lug: self.whole.band(lug.connection).radius for lug in self.lugs}
+        each = [
+            half_plane(self.material, r) + half_plane(lug.material, r) for lug, r in radius.items()
+        ]
+        return np.repeat(each, [len(self._rings_of(lug)) for lug in self.lugs])
+
+    def _rings_of(self, lug: Lug) -> list[str]:
+        return [ring(lug.connection, i) for i in range(self.cells.rings)]
 
     def _ends(self, lug: Lug) -> Floats:
-        bands = [self.pin.band(ring(lug.connection, i)) for i in range(self.cells.rings)]
+        bands = [self.pin.band(name) for name in self._rings_of(lug)]
         return np.array([bands[0].z0, *(b.z1 for b in bands)])
 
     def solve(self, loads: PinLoads) -> JointContact:
@@ -140,19 +160,39 @@ class JointModel:
 
         Raises: SolveError where contact does not settle, or forces are not in balance.
         """
-        forces = self._forces(loads)
-        contact, found = self.contact(), []
-        couples = self._couples(loads, contact.bands)
-        last: NDArray[np.bool_] | None = None
-        for t in range(len(loads)):
-            pressed = contact.solve(forces[t], (couples[t, 0], couples[t, 1]), last)
-            last = pressed.active
-            found.append(pressed)
+        found = self.pressed(loads)
         pressure = np.stack([x.pressure for x in found])
-        made = pressure_loads(self.pin, self.rings, pressure, self.cells.highest, loads)
-        return JointContact(self.pin, self.lugs, contact.bands, contact.angles, tuple(found), made)
+        made = patterns_of(self.pin, self.rings, [pressure], self.cells.highest)
+        return self.joined(found, made.loads(pressure, loads))
 
-    def _forces(self, loads: PinLoads) -> Floats:
+    def joined(self, found: Sequence[Pressed], loads: PressureLoads) -> JointContact:
+        """Contact at the instants of some loads, with them."""
+        contact = self.contact
+        return JointContact(self.pin, self.lugs, contact.bands, contact.angles, tuple(found), loads)
+
+    def pressed(self, loads: PinLoads) -> list[Pressed]:
+        """Contact at each of their instants. Without any gap to close, contact under loads in
+        proportion is the same, so that it is solved once.
+
+        Raises: SolveError as `solve`.
+        """
+        forces, contact = self.forces(loads), self.contact
+        couples = self.couples(loads)
+        found: list[Pressed] = []
+        known: dict[bytes, tuple[float, Pressed]] = {}
+        for force, couple in zip(forces, couples, strict=True):
+            size = float(np.abs(force).max())
+            part = np.round(np.append(force, couple / self.pin.length) / (size or 1.0), DIGITS)
+            like = known.get(part.tobytes()) if contact.closed else None
+            if like is not None:
+                found.append(like[1].times(size / like[0]))
+                continue
+            last = found[-1].active if found else None
+            found.append(contact.solve(force, (couple[0], couple[1]), last))
+            known[part.tobytes()] = size, found[-1]
+        return found
+
+    def forces(self, loads: PinLoads) -> Floats:
         """Of the links along x and y by lug, (T, B, 2) N."""
         out = np.zeros((len(loads), len(self.lugs), 2))
         for b, lug in enumerate(self.lugs):
@@ -168,9 +208,10 @@ class JointModel:
             )
         return out
 
-    def _couples(self, loads: PinLoads, bands: Bands) -> Floats:
+    def couples(self, loads: PinLoads) -> Floats:
         """About the middle of the bands along x and y, (T, 2) N m, of the body force."""
-        middle = 0.5 * (bands.z.min() + bands.z.max())
+        z = self.contact.bands.z
+        middle = 0.5 * (z.min() + z.max())
         arm = _centre(self.whole) - middle
         x, y = (loads.body[:, :2] * self._mass).T
         return np.stack([-arm * y, arm * x], axis=1)
@@ -178,6 +219,10 @@ class JointModel:
     @property
     def _mass(self) -> float:
         return (self.material.density or 0.0) * self.whole.volume
+
+
+def _softer(material: Material, times: float) -> Material:
+    return replace(material, youngs_modulus=material.youngs_modulus / times)
 
 
 def _centre(pin: Pin) -> float:

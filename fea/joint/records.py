@@ -1,0 +1,59 @@
+"""What contact with its lugs says of a pin at the governing instant of a case."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from fea.core.dimensions import Force, Length, Stress
+
+LineLoad = Annotated[float, "force length^-1"]
+Couple = Annotated[float, "moment"]
+
+
+@dataclass(frozen=True)
+class BandContact:
+    """A band in its lug. force: of the link on the pin. contact_angle: half of the arc in contact,
+    degrees, where it is widest. line_load: pairs of z and of the load per length there (mean over a
+    ring) in the direction of the force; negative: the other side of the bore carries. couple: what
+    the lug's tilt reacts, a moment on the link. clearance, outer_diameter: of the lug.
+    """
+
+    name: str
+    force: Force
+    contact_angle: float
+    largest_pressure: Stress
+    line_load: tuple[tuple[Length, LineLoad], ...]
+    couple: Couple
+    clearance: Length
+    outer_diameter: Length
+
+
+@dataclass(frozen=True)
+class Variation:
+    """The maximum with something of the joint changed: what, and to what."""
+
+    what: str
+    to: str
+    max_von_mises: Stress
+
+
+@dataclass(frozen=True)
+class JointRange:
+    """The maximum over what is not known of the joint, from the least to the largest."""
+
+    max_von_mises: tuple[Stress, Stress]
+    over: tuple[Variation, ...]
+
+
+@dataclass(frozen=True)
+class JointResult:
+    """How the pin sits in its lugs. model: "contact" or "foundation". bending_moment: the largest
+    along the pin; bending_moments: pairs of z and moment. range: None where it was not found.
+    """
+
+    model: str
+    bands: tuple[BandContact, ...]
+    bending_moment: Couple
+    bending_moments: tuple[tuple[Length, Couple], ...]
+    range: JointRange | None = None

@@ -1,0 +1,178 @@
+"""Pins in their lugs: contact at every instant of every case, stress, its error, and by how much
+the maximum depends on what is not known of the joint.
+
+Stress under the pressures is found as under any loads (fea.solve_pin), of a pin that nothing
+clamps. To the error of meshes and instants comes that of the cells: contact at the governing
+instant is solved once more on cells twice as large, whose order is one at least, so that the
+difference counts whole; cells are refined until it is within the tolerance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from fea.asked import Asked
+from fea.core.linear_solver import SolveError
+from fea.core.material import Material
+from fea.core.over_time import Between
+from fea.core.peak import Note, Peak
+from fea.core.pin_loads import Floats, PinLoads
+from fea.joint.contact import Pressed
+from fea.joint.lug import Lug
+from fea.joint.pressure_loads import PressureLoads, patterns_of
+from fea.joint.records import JointResult
+from fea.joint.solve_joint import Cells, JointModel
+from fea.joint.variations import compare
+from fea.joint.what_contact_says import joint_result
+from fea.solve_pin import Progress, Solution, solve_pin
+from fea.verdict import accuracy
+from geometry import Pin
+
+SETS = (Cells(), Cells(12, 54, 18), Cells(18, 80, 26))  # of cells, until one is fine enough
+CELLS = 0.5  # of the tolerance: what the cells may take
+CONTACT = Note("contact, harmonic: the pin is held by its lugs", ("contact",))
+
+
+@dataclass(frozen=True)
+class InLugs:
+    """A pin in its lugs, to be solved under the loads of its links in some cases. between: of those
+    that are motions, the loads at any times. besides: by case, other loads under which its stress
+    will be asked for.
+    """
+
+    pin: Pin
+    material: Material
+    lugs: tuple[Lug, ...]
+    cases: tuple[PinLoads, ...]
+    between: Mapping[str, Between] = field(default_factory=dict)
+    besides: Mapping[str, PinLoads] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class LugSolution:
+    """A case: the solution of the pin under its pressures, what contact says at the governing
+    instant, None where that failed, and what presses on the pin under other loads of its links.
+    """
+
+    solution: Solution
+    joint: JointResult | None
+    pressed: Callable[[PinLoads], PinLoads]
+
+
+def solve_in_lugs(
+    given: InLugs, asked: Asked, progress: Progress = lambda _: None
+) -> tuple[LugSolution, ...]:
+    """All cases of a pin, on cells as fine as necessary.
+
+    Raises: ArgumentError for lugs that do not fit; MeshError, SolveError.
+    """
+    found: dict[str, LugSolution] = {}
+    for cells in SETS:
+        left = tuple(case for case in given.cases if case.case not in found)
+        progress(f"pin {given.pin.name}, flexibility of {cells.rings} rings of each lug")
+        model = JointModel(given.pin, given.material, given.lugs, cells)
+        for case in left:
+            solution = _solved(model, given, case, asked, progress)
+            if _fine_enough(solution.solution.peak, asked) or cells == SETS[-1]:
+                found[case.case] = solution
+        if len(found) == len(given.cases):
+            break
+    return tuple(found[case.case] for case in given.cases)
+
+
+class _Pressing:
+    """A case's pressures at any time, each found once."""
+
+    def __init__(self, model: JointModel, case: PinLoads, besides: PinLoads | None) -> None:
+        self.model, self.missed = model, 0.0  # of any pressure, by the patterns
+        self._known: dict[float, Pressed] = {}
+        pressures = [_pressure(self.at(case))]
+        if besides is not None:
+            pressures.append(_pressure(model.pressed(besides)))
+        self.patterns = patterns_of(model.pin, model.rings, pressures, model.cells.highest)
+
+    def at(self, links: PinLoads) -> list[Pressed]:
+        """Contact at the loads' instants."""
+        if links.times is None:
+            return self.model.pressed(links)
+        new = [i for i, t in enumerate(links.times.tolist()) if t not in self._known]
+        if new:
+            found = self.model.pressed(links.at(np.array(new)))
+            self._known |= dict(zip(links.times[new].tolist(), found, strict=True))
+        return [self._known[t] for t in links.times.tolist()]
+
+    def __call__(self, links: PinLoads) -> PressureLoads:
+        """What presses on the pin under loads of its links."""
+        pressure = _pressure(self.at(links))
+        self.missed = max(self.missed, self.patterns.left_out(pressure))
+        return self.patterns.loads(pressure, links)
+
+
+def _pressure(found: list[Pressed]) -> Floats:
+    return np.stack([x.pressure for x in found])
+
+
+def _instants(case: PinLoads, between: Between | None) -> PinLoads:
+    """Those of a case, and of a motion also those amid each two."""
+    if between is None or case.times is None or len(case) < 2:
+        return case
+    return case.merged(between(0.5 * (case.times[1:] + case.times[:-1])))
+
+
+def _fine_enough(peak: Peak, asked: Asked) -> bool:
+    """Whether finer cells would not help."""
+    if peak.parts is None or not peak.max_von_mises:
+        return True
+    return peak.parts.cells <= CELLS * asked.tolerance * peak.max_von_mises
+
+
+def _solved(
+    model: JointModel, given: InLugs, case: PinLoads, asked: Asked, progress: Progress
+) -> LugSolution:
+    progress(f"pin {given.pin.name}, case {case.case}, contact")
+    try:
+        between = given.between.get(case.case)
+        pressing = _Pressing(model, _instants(case, between), given.besides.get(case.case))
+        loads = pressing(case)
+        through: dict[str, Between] = {}
+        if between is not None:
+            of_links = between
+            through[case.case] = lambda times: pressing(of_links(times))
+        (solution,) = solve_pin(
+            model.pin,
+            given.material,
+            (),
+            (loads,),
+            replace(asked, model="harmonic", because=CONTACT),
+            progress,
+            through,
+        )
+    except SolveError as error:
+        peak = Peak(given.pin.name, case.case, "harmonic", "failed", str(error))
+        return LugSolution(Solution(peak, None, case), None, lambda links: links)
+    if solution.answer is None:
+        return LugSolution(solution, None, pressing)
+    here = solution.loads.links.at(np.array([solution.instant]))
+    contact = model.joined(pressing.at(here), pressing(here))
+    comparison = compare(model, contact, solution.peak, asked)
+    peak = _with_cells(solution.peak, comparison.cells + pressing.missed, asked)
+    joint = joint_result(contact, comparison.range)
+    return LugSolution(replace(solution, peak=replace(peak, governing=here)), joint, pressing)
+
+
+def _with_cells(peak: Peak, relative: float, asked: Asked) -> Peak:
+    """With the error of the cells, relative, among its parts."""
+    largest, error = peak.max_von_mises, peak.error_estimate
+    if not largest or error is None or peak.parts is None:
+        return peak
+    more = relative * largest
+    interval = peak.interval and (peak.interval[0] - more, peak.interval[1] + more)
+    parts = replace(peak.parts, cells=more)
+    peak = replace(peak, parts=parts, error_estimate=error + more, interval=interval)
+    if peak.verdict != "converged" or parts.total <= asked.tolerance * largest:
+        return peak
+    note = accuracy(parts.total / largest, asked.tolerance, False)
+    return replace(peak, verdict="unconverged", note=note.text, reasons=peak.reasons + note.codes)

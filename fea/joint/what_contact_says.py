@@ -1,0 +1,53 @@
+"""Load per length, moments and contact of a pin's bands at one instant, as results show them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fea.core.pin_loads import Floats
+from fea.joint.records import BandContact, JointRange, JointResult
+from fea.joint.solve_joint import JointContact
+
+STATIONS = 61  # along the pin, besides the ends of rings
+
+
+def joint_result(contact: JointContact, over: JointRange | None) -> JointResult:
+    """Of a contact at a single instant."""
+    z = _stations(contact)
+    moment = np.linalg.norm(contact.bending_moment(z)[0], axis=1)
+    return JointResult(
+        model="contact",
+        bands=tuple(_band(contact, b) for b in range(len(contact.lugs))),
+        bending_moment=float(moment.max()),
+        bending_moments=tuple(zip(z.tolist(), moment.tolist(), strict=True)),
+        range=over,
+    )
+
+
+def _stations(contact: JointContact) -> Floats:
+    bands = contact.bands
+    ends = np.concatenate([bands.z - bands.length / 2.0, bands.z + bands.length / 2.0])
+    even = np.linspace(*contact.pin.ends, STATIONS)
+    return np.unique(np.round(np.concatenate([ends, even]), 12))
+
+
+def _band(contact: JointContact, b: int) -> BandContact:
+    lug, bands = contact.lugs[b], contact.bands
+    own = bands.band == b
+    line = contact.line_load[0, own]
+    force = bands.length[own] @ line
+    size = float(np.linalg.norm(force))
+    along = force / size if size else np.array([1.0, 0.0])
+    arm = bands.z[own] - bands.middles[b]
+    couple = np.linalg.norm((bands.length[own] * arm) @ line)
+    pairs = zip(bands.z[own].tolist(), (line @ along).tolist(), strict=True)
+    return BandContact(
+        name=lug.connection,
+        force=size,
+        contact_angle=float(np.degrees(contact.contact_angle[0, b])),
+        largest_pressure=float(contact.largest_pressure[0, b]),
+        line_load=tuple(pairs),
+        couple=float(couple),
+        clearance=lug.clearance,
+        outer_diameter=lug.outer_diameter,
+    )
