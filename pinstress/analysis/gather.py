@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import asdict, replace
 from importlib.metadata import version
 
@@ -11,6 +11,8 @@ import numpy as np
 from fea.checks.hand_checks import hand_checks
 from fea.checks.records import BeamCheck, HandCheck
 from fea.core.peak import Peak, decides
+from fea.core.pin_loads import PinLoads
+from fea.joint.records import JointResult
 from fea.solve_pin import Solution
 from geometry import CutPin, Pin
 from pinstress.analysis.gather_loads import drive_position, mechanics, position_unit
@@ -31,7 +33,9 @@ def results_of(plan: Plan, found: list[Solved]) -> plain.Results:
     study = plan.study
     pins, cases = list(study.table.pin), list(plan.loads)
     rows = [
-        (task, peak) for task, made in zip(plan.tasks, found, strict=True) for peak in made.peaks
+        (task, peak, joint)
+        for task, made in zip(plan.tasks, found, strict=True)
+        for peak, joint in zip(made.peaks, made.joints or [None] * len(made.peaks), strict=True)
     ]
     rows.sort(key=lambda row: (pins.index(row[1].pin), cases.index(row[1].case)))
     beam = next((made.beam for made in found if made.beam is not None), None)
@@ -60,14 +64,14 @@ def loads_only(study: Study, cases: Iterable[str] | None = None) -> plain.Result
 def _results(
     study: Study,
     loads: dict[str, CaseLoads],
-    rows: list[tuple[Task, Peak]],
+    rows: list[tuple[Task, Peak, JointResult | None]],
     beam: BeamCheck | None,
     published: Published,
     tolerance: float,
 ) -> plain.Results:
     """Everything a run found, in SI. rows: each peak with its task, in the order of the table."""
     table = study.table
-    tasks = {task.pin.name: task for task, _ in reversed(rows)}
+    tasks = {task.pin.name: task for task, _, _ in reversed(rows)}
     return plain.Results(
         title=table.title,
         study=study.path.name,
@@ -75,7 +79,10 @@ def _results(
         units=plain.SI,
         required_safety_factor=table.analysis.required_safety_factor,
         tolerance=tolerance,
-        pins=tuple(_pin_result(study, loads, task, peak, published) for task, peak in rows),
+        pins=tuple(
+            replace(_pin_result(study, loads, task, peak, published), joint=joint)
+            for task, peak, joint in rows
+        ),
         shapes=tuple(_shape(tasks[name]) for name in table.pin if name in tasks),
         **mechanics(study, loads, published),
         beam_check=beam,
@@ -120,7 +127,7 @@ def _pin_result(
         dofs=peak.dofs,
         seconds=peak.seconds,
         history=peak.history,
-        held=", ".join(task.clamps) or "nothing (loads in balance)",
+        held=_held(task),
         left_out=task.left_out[peak.case],
         published_max_von_mises=theirs[0],
         published_safety_factor=theirs[1],
@@ -132,6 +139,12 @@ def _pin_result(
         error_parts={} if peak.parts is None else asdict(peak.parts),
         loads=_governing_loads(task, here),
     )
+
+
+def _held(task: Task) -> str:
+    if task.lugs:
+        return "its lugs (contact)"
+    return ", ".join(task.clamps) or "nothing (loads in balance)"
 
 
 def _factors(peak: Peak, strength: float | None) -> tuple[float, float | None] | None:
@@ -179,13 +192,21 @@ def _shape(task: Task) -> plain.PinShape:
 
 
 def landing_range(
-    loads: dict[str, CaseLoads], task: Task, solution: Solution
+    loads: dict[str, CaseLoads],
+    task: Task,
+    solution: Solution,
+    pressed: Callable[[PinLoads], PinLoads],
 ) -> plain.LandingRange | None:
-    """A pin over the ranges of its landing's impulse: unit fields superposed, nothing solved."""
+    """A pin over the ranges of its landing's impulse: unit fields superposed. pressed: what acts on
+    the pin under loads of its links.
+    """
     case, over = solution.peak.case, loads[solution.peak.case].range
     if over is None or solution.answer is None:
         return None
-    maxima, strength = solution.answer.maxima(task.ranges[case]), task.material.yield_strength
+    maxima, strength = (
+        solution.answer.maxima(pressed(task.ranges[case])),
+        task.material.yield_strength,
+    )
     return plain.LandingRange(
         pin=task.pin.name,
         case=case,

@@ -105,7 +105,7 @@ def _still(task: Task, answer: Answer, loads: PinLoads, instant: int, time: floa
 
 def _bands(task: Task, loads: PinLoads, instant: int) -> tuple[plain.BandLoad, ...]:
     """Every band on which a link bears; those that are held carry no load here."""
-    out = []
+    out, loads = [], loads.links
     for name in (*loads.surfaces, *task.left_out[loads.case]):
         band, held = task.pin.band(name), name not in loads.surfaces
         force, moment = np.zeros(3), np.zeros(3)

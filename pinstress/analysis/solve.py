@@ -9,7 +9,10 @@ from functools import partial
 from fea.checks.calculix_compare import Opinion
 from fea.core.memory import allowed_memory, solid_memory
 from fea.core.peak import Peak
+from fea.core.pin_loads import PinLoads
+from fea.joint.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
 from fea.solve_pin import MOST_UNKNOWNS, solve_pin
+from geometry import Pin
 from pinstress.analysis import checks, gather, gather_fields
 from pinstress.analysis.gather_surface import surface_of
 from pinstress.analysis.plan import Plan
@@ -126,7 +129,8 @@ def _failed(plan: Plan, task: Task, reason: str) -> Solved:
 
 def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
     study = plan.study
-    found = solve_pin(
+    joined = _in_lugs(plan, task, tell)
+    found = tuple(j.solution for j in joined) or solve_pin(
         task.pin, task.material, task.clamps, task.loads, plan.asked, tell, task.between
     )
     for solution in found:
@@ -137,10 +141,27 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
             keep(field)
     lost = lost_shape(task.pin)
     peaks = tuple(replace(s.peak, note="; ".join(filter(None, (s.peak.note, lost)))) for s in found)
-    ranges = (gather.landing_range(plan.loads, task, s) for s in found)
+    pressed = [j.pressed for j in joined] or [_as_given] * len(found)
+    ranges = (
+        gather.landing_range(plan.loads, task, s, on) for s, on in zip(found, pressed, strict=True)
+    )
     landing = tuple(r for r in ranges if r is not None)
     beam = None
     if task is plan.checked and study.table.beam_check is not None:
         tell(f"pin {task.pin.name}, beam check")
         beam = checks.beam_check(study, task)
-    return Solved(peaks, landing, beam, surface_of(plan.loads, task, found))
+    joints = tuple(j.joint for j in joined)
+    return Solved(peaks, landing, beam, surface_of(plan.loads, task, found), joints=joints)
+
+
+def _in_lugs(plan: Plan, task: Task, tell: Tell) -> tuple[LugSolution, ...]:
+    """Solutions of a pin that is in contact with its lugs; none of any other."""
+    if not task.lugs:
+        return ()
+    assert isinstance(task.pin, Pin)
+    given = InLugs(task.pin, task.material, task.lugs, task.loads, task.between, task.ranges)
+    return solve_in_lugs(given, plan.asked, tell)
+
+
+def _as_given(loads: PinLoads) -> PinLoads:
+    return loads

@@ -10,6 +10,7 @@ from fea.checks.calculix_compare import Opinion
 from fea.checks.records import BeamCheck
 from fea.core.memory import too_much
 from fea.core.peak import Peak
+from fea.joint.records import JointResult
 from fea.solve_pin import MESHES, MOST_UNKNOWNS, count_loads, unknowns_after
 from geometry import CutPin, Pin, PinLike
 from loads import read_regular
@@ -22,7 +23,8 @@ from reports.data.surface import Surface
 @dataclass(frozen=True)
 class Solved:
     """A task's peaks in the order of its cases, and what else reports and CalculiX have to say.
-    before: whether an earlier run found it.
+    joints: in the same order, empty where nothing is in contact. before: whether an earlier run
+    found it.
     """
 
     peaks: tuple[Peak, ...]
@@ -30,6 +32,7 @@ class Solved:
     beam: BeamCheck | None = None
     surface: Surface | None = None
     opinions: tuple[Opinion, ...] = ()
+    joints: tuple[JointResult | None, ...] = ()
     before: bool = False
 
 
@@ -56,6 +59,7 @@ def question(plan: Plan, task: Task) -> object:
     return (
         _shape(task.pin),
         task.clamps,
+        task.lugs,
         task.loads,
         task.left_out,
         task.ranges,

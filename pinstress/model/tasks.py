@@ -11,9 +11,11 @@ import numpy as np
 from fea.core.material import Material
 from fea.core.over_time import Between
 from fea.core.pin_loads import Distribution, Floats, PinLoads
+from fea.joint.lug import Lug
 from geometry import PinLike
 from loads import Reactions
 from pinstress.model.cases import CaseLoads
+from pinstress.model.lugs import lugs
 from pinstress.model.moving_loads import MovingLoads
 from pinstress.model.pins import material
 from pinstress.study.file import Study
@@ -25,7 +27,7 @@ class Task:
 
     left_out: by case, the connections whose force and moment are not applied because their band is
     clamped. ranges: by case, the loads over the ranges of its impulse. between: of the cases that
-    are motions, the loads at any times.
+    are motions, the loads at any times. lugs: that hold the pin by contact, if any.
     """
 
     pin: PinLike
@@ -35,6 +37,7 @@ class Task:
     left_out: dict[str, tuple[str, ...]]
     ranges: dict[str, PinLoads]
     between: dict[str, Between]
+    lugs: tuple[Lug, ...] = ()
 
 
 def tasks(study: Study, pins: list[PinLike], loads: dict[str, CaseLoads]) -> list[Task]:
@@ -88,7 +91,8 @@ def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, 
             cases.append(between[case](given.moving.instants))
         if given.range is not None:
             ranges[case] = made(given.range.reactions)
-    return Task(pin, made_of, clamps, tuple(cases), left_out, ranges, between)
+    held_by = lugs(study, pin, clamps) if cases else ()
+    return Task(pin, made_of, clamps, tuple(cases), left_out, ranges, between, held_by)
 
 
 def _at(made: Callable[..., PinLoads], moving: MovingLoads, times: Floats) -> PinLoads:

@@ -15,6 +15,7 @@ from pinstress.schema.types import (
     Stress,
     StrictTable,
     Switch,
+    Tilt,
 )
 
 
@@ -87,6 +88,33 @@ class BandTable(StrictTable):
         return self
 
 
+class BushingTable(StrictTable):
+    """A ring of another material that is bonded in a lug's bore."""
+
+    thickness: PositiveLength
+    """Of its wall."""
+    material: str
+    """Name of a `[material]`."""
+
+
+class LugTable(StrictTable):
+    """The eye of the link at a connection, in which the pin sits: a ring about its band."""
+
+    outer_diameter: PositiveLength | None = None
+    """Of the eye; absent: 2.5 times the band's diameter."""
+    material: str | None = None
+    """Name of a `[material]`; absent: the pin's."""
+    clearance: Length = 0.0
+    """Of the bore's diameter over the pin's; negative: interference."""
+    edge_radius: NotNegativeLength = 0.0
+    """Of the bore's edges. 0 is sharp: a singularity of the contact stress."""
+    tilt: Tilt | None = None
+    """How the link holds its eye against tilting: "guided" (rigidly), "free", or a stiffness;
+    absent: the bending of an eye that is held 0.8 of its outer diameter away."""
+    bushing: BushingTable | None = None
+    """A ring bonded in the eye, in which the pin turns."""
+
+
 class PinTable(StrictTable):
     """A pin: a body of revolution or the body in a file, and its clamped surfaces."""
 
@@ -107,6 +135,9 @@ class PinTable(StrictTable):
     """Unit of the file's numbers. With `geometry` only."""
     band: dict[str, BandTable] = {}
     """Bands of a pin from a file, by name. With `geometry` only."""
+    lug: dict[str, LugTable] = {}
+    """What surrounds its bands, by connection; an empty table takes all defaults. With any, the pin
+    is held by contact with its lugs (`analysis.joints`). With a profile only."""
     clamp: list[str] = []
     """Clamped surfaces: "start" and "end" (faces), a segment's name or connection (its outer
     surface), "hole 1", "flat 1", a band. Empty: none, and the loads must be nearly in balance."""
@@ -117,7 +148,7 @@ class PinTable(StrictTable):
             raise LoadsArgumentError(
                 'give either profile = [...] or geometry = "file.step"', "give-one"
             )
-        turned = ("fillet", "hole", "flat")
+        turned = ("fillet", "hole", "flat", "lug")
         excluded = ("band", "geometry_unit") if self.profile is not None else turned
         for key in excluded:
             if key in self.model_fields_set:

@@ -16,6 +16,9 @@ class AnalysisTable(StrictTable):
 
     model: Literal["auto", "beam", "harmonic", "solid"] = "auto"
     """The model; "auto" uses the smallest that is accurate enough."""
+    joints: Literal["auto", "contact", "prescribed"] = "auto"
+    """How links and pins meet: by contact with elastic lugs ("contact"), or as the study clamps and
+    distributes ("prescribed"); "auto" is contact for the pins that have a `lug`."""
     goal: Literal["value", "decide"] = "value"
     """The maximum to the tolerance ("value"), or only on which side of the required factor of
     safety it is ("decide"; it needs a yield strength)."""

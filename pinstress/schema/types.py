@@ -9,7 +9,7 @@ import inspect
 from dataclasses import dataclass
 from itertools import pairwise
 from textwrap import dedent
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 from urllib.parse import quote
 
 from pydantic import (
@@ -188,6 +188,7 @@ Moment = Annotated[float, Quantity("moment")]
 Time = Annotated[float, Quantity("time")]
 Name = Annotated[str, AfterValidator(usable_name)]
 Point = tuple[Length, Length]
+TiltStiffness = Annotated[Annotated[float, Quantity("tilt stiffness")], POSITIVE]
 
 
 def _joint_or_point(value: object) -> str:
@@ -197,6 +198,18 @@ def _joint_or_point(value: object) -> str:
 JointOrPoint = Annotated[
     Annotated[str, Tag("<joint>")] | Annotated[Point, Tag("<point>")],
     Discriminator(_joint_or_point),
+]
+
+
+def _way_or_stiffness(value: object) -> str:
+    return "<way>" if value in TILTS else "<stiffness>"
+
+
+TILTS = ("guided", "free")
+Tilt = Annotated[
+    Annotated[Literal["guided", "free"], Tag("<way>")]
+    | Annotated[TiltStiffness, Tag("<stiffness>")],
+    Discriminator(_way_or_stiffness),
 ]
 
 

@@ -17,6 +17,16 @@ def cross_references(table: StudyTable) -> Iterator[Wrong]:
     bears: dict[str, str] = {}
     for name, pin in table.pin.items():
         yield from _known(f"pin.{name}.material", "material", pin.material, table.material)
+        own = dict.fromkeys(connection for _, connection in pin.connections)
+        for connection, lug in pin.lug.items():
+            key = f"pin.{name}.lug.{connection}"
+            yield from _known(key, "connection of this pin", connection, own)
+            for at, made_of in (
+                ("material", lug.material),
+                ("bushing.material", None if lug.bushing is None else lug.bushing.material),
+            ):
+                if made_of is not None:
+                    yield from _known(f"{key}.{at}", "material", made_of, table.material)
         for key, connection in pin.connections:
             if connection in bears:
                 yield Wrong(

@@ -24,6 +24,7 @@ from fea.core.dimensions import (
     Velocity,
 )
 from fea.core.peak import Refinement, SingularZone
+from fea.joint.records import JointResult
 from reports.data.fields import BandLoad, Field, Still, Volume
 from reports.data.in_units import Unit, in_units
 from reports.data.mechanics import (
@@ -89,7 +90,7 @@ class PinResult:
     governs (verdict `singular`) maximum and factor are those outside all of them, as are those of
     the history; the intervals are those over half and twice the excluded distance, and
     error_estimate reaches both ends. error_parts: stresses by what they come from (mesh, time,
-    ..). loads: at the governing instant.
+    ..). loads: at the governing instant. joint: contact with the lugs there, if that holds the pin.
     """
 
     pin: str
@@ -120,6 +121,7 @@ class PinResult:
     error_parts: Mapping[str, Stress] = field(default_factory=dict)
     loads: tuple[GoverningLoad, ...] = ()
     position_unit: str = ""
+    joint: JointResult | None = None
 
     @property
     def instead(self) -> dict[str, str]:

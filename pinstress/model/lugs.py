@@ -1,0 +1,67 @@
+"""From a study to the lugs in which its pins sit."""
+
+from __future__ import annotations
+
+import math
+
+from fea.core.material import Material
+from fea.joint.lug import Lug
+from geometry import ArgumentError, Pin, PinLike
+from pinstress.model.pins import material
+from pinstress.schema.pins import LugTable
+from pinstress.study.file import Study
+
+EYE = 2.5  # outer diameter over the band's
+HELD = 0.8  # of the outer diameter: how far from the bore's middle the link holds its eye
+
+
+def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]:
+    """Those of a pin, one for every connection, if contact with them holds it; else none.
+
+    Raises: InputError for lugs that cannot be, and for a pin that contact cannot hold.
+    """
+    table, joints = study.table.pin[pin.name], study.table.analysis.joints
+    if joints == "prescribed" or (joints == "auto" and not table.lug):
+        return ()
+    at = f"pin.{pin.name}" + ".lug" * bool(table.lug)
+    instead = 'or take analysis.joints = "prescribed"'
+    if not isinstance(pin, Pin):
+        raise study.error(
+            f"pin {pin.name} is cut or from a file; contact with lugs is found for turned pins "
+            f"only: remove its lugs {instead}",
+            at,
+            "not-axisymmetric",
+        )
+    if clamps:
+        raise study.error(
+            f"pin {pin.name} is clamped at {', '.join(clamps)}, and its lugs hold it by contact at "
+            f"the same time: remove either, {instead}",
+            at,
+            "clamped-in-lugs",
+        )
+    made_of = material(study, table.material)
+    out = []
+    for connection in pin.connections:
+        try:
+            given = table.lug.get(connection, LugTable())
+            out.append(_lug(study, pin, connection, given, made_of))
+        except ArgumentError as error:
+            raise study.error(str(error), f"{at}.{connection}", error.code) from None
+    return tuple(out)
+
+
+def _lug(study: Study, pin: Pin, connection: str, given: LugTable, of_pin: Material) -> Lug:
+    band = pin.band(connection)
+    outer = given.outer_diameter or EYE * 2.0 * band.radius
+    made_of = of_pin if given.material is None else material(study, given.material)
+    tilt = {"guided": math.inf, "free": 0.0}.get(str(given.tilt))
+    if tilt is None:
+        tilt = (
+            given.tilt if isinstance(given.tilt, float) else _bending(made_of, outer, band.length)
+        )
+    return Lug(connection, outer, made_of, given.clearance, given.edge_radius, tilt)
+
+
+def _bending(material: Material, outer: float, thickness: float) -> float:
+    """Of a shank as wide as the eye, N m/rad."""
+    return material.youngs_modulus * outer * thickness**3 / (12.0 * HELD * outer)
