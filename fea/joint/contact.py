@@ -7,8 +7,8 @@ With pressure p >= 0 on the cells, the gap to the bore is, on the average of a c
 and p g = 0. C is the flexibility of pin and lugs together, harmonic by harmonic, the half-plane's
 beyond, under pressures that are even on every cell, and averaged over cells, so that it is
 symmetric. A lug whose tilt is elastic adds the tilt that the pressures' couple makes. Shifts and
-turn are the multipliers of what equilibrium asks: the resultant on every band is the force of its
-link, and the couples on the pin are in balance. It is a linear complementarity problem with a
+turn are the multipliers of what equilibrium asks: the resultant on the bands of a link is its force,
+and the couples on the pin are in balance. It is a linear complementarity problem with a
 positive definite matrix; a primal-dual active set solves it, from any start, in few steps.
 
 Sources: Hintermueller, Ito & Kunisch, SIAM J. Optim. 13 (2002) 865 (the active set); Ciavarella &
@@ -40,7 +40,9 @@ WAVES = 40  # times the sectors: harmonics of the half-plane that are summed
 @dataclass(frozen=True)
 class Bands:
     """The rings (R,) of all bands, in their order: z of the middle and length, m; radius, m; band:
-    the number of each ring's band; gap: clearance and rounding of the edge, on the radius, m.
+    the number of each ring's band; gap: clearance and rounding of the edge, on the radius, m. link:
+    (B,) the number of the link to which each band's lug belongs, each to its own by default; lugs
+    of one link shift together, and share its force as they can.
     """
 
     z: Floats
@@ -48,9 +50,15 @@ class Bands:
     radius: Floats
     band: NDArray[np.int64]
     gap: Floats
+    link: NDArray[np.int64] | None = None
 
     def __len__(self) -> int:
         return int(self.band.max()) + 1
+
+    @cached_property
+    def links(self) -> NDArray[np.int64]:
+        """(B,) the number of each band's link."""
+        return np.arange(len(self)) if self.link is None else self.link
 
     @cached_property
     def middles(self) -> Floats:
@@ -109,7 +117,8 @@ class ContactProblem:
         e_r = mean * np.stack([np.cos(self.angles), np.sin(self.angles)], axis=1)
         self._e_r = np.tile(e_r, (len(bands.z), 1))  # (U, 2)
         self._z = np.repeat(bands.z, sectors)
-        self._band = np.repeat(bands.band, sectors)
+        self._link = np.repeat(bands.links[bands.band], sectors)
+        self._count = int(bands.links.max()) + 1
         self._open = np.repeat(bands.gap, sectors)
         self._compliance = self._of_cells(flexibility, tail)
         self._motions = self._rigid(np.asarray(tilt, dtype=float))
@@ -138,11 +147,12 @@ class ContactProblem:
         """Changes of the gap by what has no stiffness, (U, Y): shifts of the lugs, turn of the pin,
         tilts of the lugs that are free. Those with stiffness go into the compliance.
         """
-        columns = [self._e_r * (self._band == b)[:, None] for b in range(len(self.bands))]
+        columns = [self._e_r * (self._link == k)[:, None] for k in range(self._count)]
+        band = np.repeat(self.bands.band, self.sectors)
         middle = 0.5 * (self._z.min() + self._z.max())
         columns.append(self._e_r * (self._z - middle)[:, None])
         for b, stiffness in enumerate(tilt.tolist()):
-            arm = (self._z - self.bands.middles[b]) * (self._band == b)
+            arm = (self._z - self.bands.middles[b]) * (band == b)
             column = self._e_r * arm[:, None]
             if stiffness == 0.0:
                 columns.append(column)
@@ -153,7 +163,7 @@ class ContactProblem:
     def solve(
         self, forces: Floats, couple: tuple[float, float] = (0.0, 0.0), start: Mask | None = None
     ) -> Pressed:
-        """Under forces (B, 2) N of the links on the pin, along x and y, at the bands' middles.
+        """Under forces (L, 2) N of the links on the pin, along x and y.
 
         couple: N m, along x and y, on the pin by anything but forces across at the bands, moments
         of links included. start: cells (R, M) in contact, of a neighbouring instant.
@@ -209,7 +219,7 @@ class ContactProblem:
         pin against e_r.
         """
         out = np.zeros(self._motions.shape[1])
-        count = len(self.bands)
+        count = self._count
         out[: 2 * count] = -forces.ravel()
         mx, my = couple  # x: by forces along -y at z, y: by forces along x at z
         out[2 * count : 2 * count + 2] = my, -mx
@@ -226,17 +236,17 @@ class ContactProblem:
 
     def _facing(self, forces: Floats) -> Mask:
         """The cells that face the load of their band."""
-        towards = -np.einsum("ua,ua->u", self._e_r, np.asarray(forces)[self._band])
-        size = np.linalg.norm(forces, axis=1)[self._band]
+        towards = -np.einsum("ua,ua->u", self._e_r, np.asarray(forces)[self._link])
+        size = np.linalg.norm(forces, axis=1)[self._link]
         return np.asarray((towards > 0.3 * size) & (size > 0.0))
 
     def _found(self, force: Floats, gap: Floats, motion: Floats, steps: int) -> Pressed:
         shape = (len(self.bands.z), self.sectors)
-        count = len(self.bands)
+        count = self._count
         return Pressed(
             np.maximum(force / self.area, 0.0).reshape(shape),
             np.maximum(gap, 0.0).reshape(shape),
-            motion[: 2 * count].reshape(count, 2),
+            motion[: 2 * count].reshape(count, 2)[self.bands.links],
             motion[2 * count : 2 * count + 2],
             steps,
         )
