@@ -7,8 +7,8 @@ With pressure p >= 0 on the cells, the gap to the bore is, on the average of a c
 and p g = 0. C is the flexibility of pin and lugs together, harmonic by harmonic, the half-plane's
 beyond, under pressures that are even on every cell, and averaged over cells, so that it is
 symmetric. A lug whose tilt is elastic adds the tilt that the pressures' couple makes. Shifts and
-turn are the multipliers of what equilibrium asks: the resultant on the bands of a link is its force,
-and the couples on the pin are in balance. It is a linear complementarity problem with a
+turn are the multipliers of what equilibrium asks: the resultant on the bands of a link is its
+force, and the couples on the pin are in balance. It is a linear complementarity problem with a
 positive definite matrix; a primal-dual active set solves it, from any start, in few steps.
 
 Sources: Hintermueller, Ito & Kunisch, SIAM J. Optim. 13 (2002) 865 (the active set); Ciavarella &

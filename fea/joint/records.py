@@ -31,10 +31,10 @@ class BandContact:
 
 @dataclass(frozen=True)
 class Variation:
-    """The maximum with something of the joint changed: what, and to what."""
+    """The maximum with something of the joint changed: what, and to what value or way."""
 
     what: str
-    to: str
+    value: str
     max_von_mises: Stress
 
 
@@ -43,7 +43,7 @@ class JointRange:
     """The maximum over what is not known of the joint, from the least to the largest."""
 
     max_von_mises: tuple[Stress, Stress]
-    over: tuple[Variation, ...]
+    variations: tuple[Variation, ...]
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,13 @@ DIMENSIONS = {
     **dict.fromkeys(("ax", "ay", "acceleration", "closed_form_acceleration"), "acceleration"),
     **dict.fromkeys(("max_von_mises", "error_estimate", "published_max_von_mises"), "stress"),
     **dict.fromkeys(("max_von_mises_low", "max_von_mises_high"), "stress"),
-    **dict.fromkeys(("error_mesh", "error_time", "error_series", "error_model"), "stress"),
+    **dict.fromkeys(
+        ("error_mesh", "error_time", "error_series", "error_model", "error_cells"), "stress"
+    ),
+    **dict.fromkeys(("joint_low", "joint_high", "largest_pressure"), "stress"),
+    **dict.fromkeys(("clearance", "outer_diameter"), "length"),
+    "contact_angle": "degrees",
+    "line_load": "force per length",
     **dict.fromkeys(("stress", "strength", "beam_axial_stress"), "stress"),
     **dict.fromkeys(("fea_axial_stress", "fea_axial_stress_axis_load"), "stress"),
     **dict.fromkeys(("power", "power_drives", "power_gravity", "power_applied"), "power"),
@@ -66,6 +72,7 @@ class Table:
             "velocity": f"{units.length}/{units.time}",
             "acceleration": f"{units.length}/{units.time}²",
             "power": f"{units.force} {units.length}/{units.time}",
+            "force per length": f"{units.force}/{units.length}",
             "degrees": "°",
             "rate of turn": f"rad/{units.time}",
             "rate of rate of turn": f"rad/{units.time}²",

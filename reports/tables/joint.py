@@ -1,0 +1,98 @@
+"""Contact of pins with their lugs: tables, JSON, and the range of the maximum over the joint."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from fea.joint.records import JointResult
+from reports.data.results import PinResult, Results
+from reports.format.csv import Cell
+from reports.format.numbers import finite
+from reports.tables.table import Table
+
+BANDS = (
+    *("pin", "case", "connection", "force", "contact_angle", "largest_pressure", "couple"),
+    *("clearance", "outer_diameter", "length_unit", "force_unit", "stress_unit"),
+)
+LINES = ("pin", "case", "connection", "z", "line_load", "length_unit", "force_unit")
+RANGES = ("pin", "case", "what", "value", "max_von_mises", "stress_unit")
+
+
+def joint_tables(results: Results) -> list[Table]:
+    """Of all pins in contact: their bands, the load per length along these, and the maximum with
+    the joint changed.
+    """
+    return [
+        Table.of("joint_bands", BANDS, _bands(results)),
+        Table.of("line_loads", LINES, _lines(results)),
+        Table.of("joint_range", RANGES, _ranges(results)),
+    ]
+
+
+def joint_json(joint: JointResult | None) -> dict[str, Any] | None:
+    """As results.json has it."""
+    if joint is None:
+        return None
+    over = joint.range
+    return {
+        "model": joint.model,
+        "bands": [
+            {
+                "name": band.name,
+                "force": finite(band.force),
+                "contact_angle": finite(band.contact_angle),
+                "largest_pressure": finite(band.largest_pressure),
+                "couple": finite(band.couple),
+                "clearance": finite(band.clearance),
+                "outer_diameter": finite(band.outer_diameter),
+                "line_load": [[finite(z), finite(load)] for z, load in band.line_load],
+            }
+            for band in joint.bands
+        ],
+        "bending_moment": finite(joint.bending_moment),
+        "bending_moments": [[finite(z), finite(m)] for z, m in joint.bending_moments],
+        "range": over
+        and {
+            "max_von_mises": [finite(x) for x in over.max_von_mises],
+            "over": [
+                {"what": v.what, "value": v.value, "max_von_mises": finite(v.max_von_mises)}
+                for v in over.variations
+            ],
+        },
+    }
+
+
+def _joined(results: Results) -> Iterator[tuple[PinResult, JointResult]]:
+    return ((pin, pin.joint) for pin in results.pins if pin.joint is not None)
+
+
+def _bands(results: Results) -> Iterator[list[Cell]]:
+    u = results.units
+    for pin, joint in _joined(results):
+        for b in joint.bands:
+            yield [
+                *(pin.pin, pin.case, b.name, b.force, b.contact_angle, b.largest_pressure),
+                *(b.couple, b.clearance, b.outer_diameter, u.length, u.force, u.stress),
+            ]
+
+
+def _lines(results: Results) -> Iterator[list[Cell]]:
+    for pin, joint in _joined(results):
+        for band in joint.bands:
+            for z, load in band.line_load:
+                yield [
+                    pin.pin,
+                    pin.case,
+                    band.name,
+                    z,
+                    load,
+                    results.units.length,
+                    results.units.force,
+                ]
+
+
+def _ranges(results: Results) -> Iterator[list[Cell]]:
+    for pin, joint in _joined(results):
+        for v in joint.range.variations if joint.range else ():
+            yield [pin.pin, pin.case, v.what, v.value, v.max_von_mises, results.units.stress]
