@@ -33,6 +33,7 @@ LATER = (
     "yields",
     *("max_von_mises_low", "max_von_mises_high", "safety_factor_low", "safety_factor_high"),
     *("error_mesh", "error_time", "error_series", "error_model"),
+    *("error_cells", "joint_low", "joint_high"),
 )
 TEXTS = ("pin", "case", "meets_required", "verdict", "model")
 PUBLISHED = ("published_max_von_mises", "ratio", "published_safety_factor")
@@ -72,12 +73,20 @@ def _row(pin: PinResult, required: float | None) -> Row:
         **_ends("max_von_mises", pin.max_von_mises_interval),
         **_ends("safety_factor", pin.safety_factor_interval),
         **{f"error_{part}": finite(value) for part, value in pin.error_parts.items()},
+        **_joint(pin),
     }
 
 
 def _ends(name: str, interval: tuple[float, float | None] | None) -> Row:
     low, high = interval or (None, None)
     return {f"{name}_low": finite(low), f"{name}_high": finite(high)}
+
+
+def _joint(pin: PinResult) -> Row:
+    """The maximum over what is not known of the joint."""
+    over = pin.joint.range if pin.joint else None
+    low, high = over.max_von_mises if over else (None, None)
+    return {"joint_low": finite(low), "joint_high": finite(high)}
 
 
 def _yes(value: bool) -> str:
