@@ -61,6 +61,7 @@ def pressure_loads(
         moments,
         body=loads.body,
         times=loads.times,
+        lug_edges=loads.lug_edges,
         acting=acting,
     )
 
