@@ -34,7 +34,7 @@ from fea.harmonic.evaluate import (
     harmonic_result,
     harmonic_solution,
 )
-from fea.singular.singularities import Singularity, find_singularities
+from fea.singular.singularities import Singularity, find_singularities, lug_edges
 from fea.solid.evaluate import SolidAnswer, solid_result, solid_solution
 from fea.verdict import Seen, judge
 from geometry import ArgumentError, Pin, PinLike
@@ -158,7 +158,9 @@ def singularities_of(
     if acting and not clamps:  # all bands react the imbalance
         loaded |= set(pin.connections)
     nu = material.poisson_ratio
-    return find_singularities(pin, clamps, tuple(sorted(loaded)), nu, distance)
+    found = find_singularities(pin, clamps, tuple(sorted(loaded)), nu, distance)
+    edges = dict.fromkeys(edge for case in cases for edge in case.lug_edges)
+    return (*found, *lug_edges(pin, edges, distance))
 
 
 def _singularities(job: _Job, cases: tuple[PinLoads, ...]) -> tuple[Singularity, ...]:

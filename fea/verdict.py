@@ -25,7 +25,10 @@ LEAST_ORDER = {"harmonic": 1.0}  # meshes of sections have nodes on the edges of
 NOISE = {"harmonic": 0.026, "solid": 0.13}
 FEWEST = 3  # meshes before a maximum can be converged: two can agree by chance
 
-ARTICLES = {"sharp corner": "a", "edge of a clamp": "the", "edge of a load": "the"}
+ARTICLES = {
+    "sharp corner": "a", "edge of a clamp": "the", "edge of a load": "the", "edge of a lug": "the",
+}  # fmt: skip
+UNRESOLVED = ", not resolved closer than the first ring of the contact pressure"
 
 
 @dataclass(frozen=True)
@@ -179,4 +182,5 @@ def _nowhere(zone: SingularZone) -> str:
     found = ", ".join(f"{s:.2f} {how}" for s, how in exponents if s is not None)
     if not found:
         return f"no maximum exists: at {where} stress grows without bound"
-    return f"no maximum exists: at {where} stress grows as distance^-s, s = {found}"
+    how = UNRESOLVED if zone.kind == "the edge of a lug" else ""
+    return f"no maximum exists: at {where} stress grows as distance^-s, s = {found}{how}"

@@ -16,6 +16,7 @@ So a unit load of harmonic n serves all directions: phases differ by a turn abou
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 from typing import Literal, NamedTuple
 
@@ -60,6 +61,19 @@ class UnitLoad(NamedTuple):
         return (1,) if self.kind == "moment" else (0,)
 
 
+class LugEdge(NamedTuple):
+    """The sharp edge of a lug on a band (`surface`, by name) of a pin: a circle at (r, z), m, near
+    which pressure grows like distance^-exponent (fea.singular.lug_edge). feature: how far (m) that
+    reaches at most: the length of the lug, or of the gap to the next one if that is shorter.
+    """
+
+    surface: str
+    r: float
+    z: float
+    exponent: float
+    feature: float = math.inf
+
+
 @dataclass(frozen=True)
 class PinLoads:
     """Loads on one pin in one case, in the pin's axes: at each surface (by name) a force at its
@@ -68,7 +82,7 @@ class PinLoads:
     distribution: of transverse forces over their bands: "uniform" (a traction of constant
     direction) or "cosine" (a bearing pressure on the loaded half, of which harmonics up to
     `terms` are taken). body: (T, 3) m/s^2 or what broadcasts to it, gravity less the pin's own
-    acceleration. times: (T,) s, rising, of a motion.
+    acceleration. times: (T,) s, rising, of a motion. lug_edges: of the lugs that press on it.
     """
 
     case: str
@@ -79,6 +93,7 @@ class PinLoads:
     body: Floats = field(default_factory=lambda: np.zeros(3))
     terms: int = 6
     times: Floats | None = None
+    lug_edges: tuple[LugEdge, ...] = ()
 
     def __post_init__(self) -> None:
         moments = np.broadcast_to(self.moments, self.forces.shape)

@@ -126,9 +126,7 @@ def _spots(
     times finer than on the first mesh.
     """
     spots = [
-        Spot(p.r, p.z, near * 2.0 * p.r * p.feature / p.radius, p.radius)
-        if p.kind != "edge of a load"
-        else Spot(p.r, p.z, LOGARITHM * p.radius / factor, p.radius)
+        _spot(p, near if p.measured else CLOSE[0] / factor, factor)
         for p, near in zip(singularities, close, strict=True)
     ]
     taken = {(s.r, s.z) for s in spots}
@@ -138,6 +136,15 @@ def _spots(
             d = 2.0 * band.radius
             spots.append(Spot(*at, EDGE * d / factor, 4.0 * EDGE * d))
     return sorted(spots)
+
+
+def _spot(singularity: Singularity, near: float, factor: float) -> Spot:
+    """near: the element there, of the diameter, before it is scaled to a small feature."""
+    p = singularity
+    size = near * 2.0 * p.r * p.feature / p.radius
+    if p.kind == "edge of a load":
+        size = LOGARITHM * p.radius / factor
+    return Spot(p.r, p.z, size, p.radius)
 
 
 def _matters(singularity: int, before: Collection[MeshResult]) -> bool:

@@ -35,7 +35,7 @@ def inside(
     felt = around.top(within & (distance >= FELT * singularity.feature * (1.0 - 1e-9))).value
     c, s = math.cos(top.angle), math.sin(top.angle)
     found = AtSingularity(top.value, felt, (singularity.r * c, singularity.r * s, singularity.z))
-    if singularity.kind == "edge of a load" or close != CLOSE[-1]:
+    if not singularity.measured or close != CLOSE[-1]:
         return found
     exponent, how_strong = _growth(fields, around, singularity, distance, top.instant, nu)
     return replace(found, exponent=exponent, strength=how_strong)

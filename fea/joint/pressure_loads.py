@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.core.pin_loads import Floats, PinLoads, UnitLoad
+from fea.core.pin_loads import Floats, LugEdge, PinLoads, UnitLoad
 from geometry import Pin
 
 NEGLIGIBLE = 1e-10  # of the largest amplitude: patterns below it are round-off
@@ -61,11 +61,14 @@ class PressureLoads(PinLoads):
 
 @dataclass(frozen=True)
 class Patterns:
-    """Patterns (K, R) in Pa over the rings of a pin, one array for each harmonic from 0 on."""
+    """Patterns (K, R) in Pa over the rings of a pin, one array for each harmonic from 0 on. edges:
+    sharp ones of its lugs.
+    """
 
     pin: Pin
     rings: tuple[str, ...]
     by_harmonic: tuple[Floats, ...]
+    edges: tuple[LugEdge, ...] = ()
 
     def loads(self, pressure: Floats, links: PinLoads) -> PressureLoads:
         """Of pressures (T, R, M) Pa on M sectors of the rings, made of these patterns, and of what
@@ -90,6 +93,7 @@ class Patterns:
             times=links.times,
             acting=acting,
             of_links=links,
+            lug_edges=self.edges,
         )
 
     def left_out(self, pressure: Floats) -> float:

@@ -22,7 +22,7 @@ from fea.core.peak import Note, Peak
 from fea.core.pin_loads import Floats, PinLoads
 from fea.joint.contact import Pressed
 from fea.joint.lug import Lug
-from fea.joint.pressure_loads import PressureLoads, patterns_of
+from fea.joint.pressure_loads import PressureLoads
 from fea.joint.records import JointResult
 from fea.joint.solve_joint import Cells, JointModel
 from fea.joint.variations import compare
@@ -92,7 +92,7 @@ class _Pressing:
         pressures = [_pressure(self.at(case))]
         if besides is not None:
             pressures.append(_pressure(model.pressed(besides)))
-        self.patterns = patterns_of(model.pin, model.rings, pressures, model.cells.highest)
+        self.patterns = model.patterns(pressures)
 
     def at(self, links: PinLoads) -> list[Pressed]:
         """Contact at the loads' instants."""

@@ -16,12 +16,13 @@ import numpy as np
 
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
-from fea.core.pin_loads import Floats, PinLoads
+from fea.core.pin_loads import Floats, LugEdge, PinLoads
 from fea.joint.contact import Bands, ContactProblem, Pressed
 from fea.joint.flexibility import half_plane, lug_flexibility, pin_flexibility
 from fea.joint.lug import Lug
-from fea.joint.pressure_loads import PressureLoads, patterns_of
+from fea.joint.pressure_loads import Patterns, PressureLoads, patterns_of
 from fea.joint.rings import annulus, ring, ringed
+from fea.singular.lug_edge import lug_edge_exponent
 from geometry import Pin
 
 DIGITS = 13  # to which loads are in proportion
@@ -162,8 +163,28 @@ class JointModel:
         """
         found = self.pressed(loads)
         pressure = np.stack([x.pressure for x in found])
-        made = patterns_of(self.pin, self.rings, [pressure], self.cells.highest)
-        return self.joined(found, made.loads(pressure, loads))
+        return self.joined(found, self.patterns([pressure]).loads(pressure, loads))
+
+    def patterns(self, pressures: Sequence[Floats]) -> Patterns:
+        """Those of which pressures (T, R, M) Pa are made."""
+        made = patterns_of(self.pin, self.rings, pressures, self.cells.highest)
+        return replace(made, edges=self.sharp_edges)
+
+    @cached_property
+    def sharp_edges(self) -> tuple[LugEdge, ...]:
+        """Of the bores that have no edge radius."""
+        bands = [self.whole.band(lug.connection) for lug in self.lugs]
+        ends = np.array([[b.z0, b.z1] for b in bands])
+        found = []
+        for lug, band in zip(self.lugs, bands, strict=True):
+            if lug.edge_radius > 0.0:
+                continue
+            exponent = lug_edge_exponent(self.material, lug.material)
+            for z in (band.z0, band.z1):
+                gaps = np.abs(ends - z)
+                feature = float(gaps[gaps > 0.0].min())
+                found.append(LugEdge(lug.connection, band.radius, z, exponent, feature))
+        return tuple(found)
 
     def joined(self, found: Sequence[Pressed], loads: PressureLoads) -> JointContact:
         """Contact at the instants of some loads, with them."""

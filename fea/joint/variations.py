@@ -20,7 +20,7 @@ from fea.core.pin_loads import Floats
 from fea.harmonic.evaluate import HarmonicAnswer, harmonic_solution
 from fea.joint.coarser_cells import on_coarser_cells
 from fea.joint.lug import Lug
-from fea.joint.pressure_loads import patterns_of, stacked
+from fea.joint.pressure_loads import stacked
 from fea.joint.records import JointRange, Variation
 from fea.joint.solve_joint import JointContact, JointModel
 from fea.solve_pin import singularities_of
@@ -63,7 +63,7 @@ def _maxima(
     model: JointModel, contact: JointContact, pressures: Sequence[Floats], asked: Asked
 ) -> Floats:
     """Largest von Mises stress (V,) Pa under each of the pressures (1, R, M) on the first mesh."""
-    patterns = patterns_of(model.pin, model.rings, pressures, model.cells.highest)
+    patterns = model.patterns(pressures)
     links = contact.loads.links
     loads = stacked([patterns.loads(pressure, links) for pressure in pressures])
     singular = singularities_of(model.pin, model.material, (), (loads,), asked.distance)

@@ -10,11 +10,13 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.core.pin_loads import LugEdge
 from fea.singular.williams import Side, antiplane_exponent, plane_exponent
 from geometry import Pin, Vertex, vertices
+from geometry.shape.tolerance import SAME
 
 Floats = NDArray[np.float64]
-Kind = Literal["sharp corner", "edge of a clamp", "edge of a load"]
+Kind = Literal["sharp corner", "edge of a clamp", "edge of a load", "edge of a lug"]
 
 FLAT = 1e-9  # rad: two surfaces that meet at pi within this are one smooth surface
 VARIED = (0.5, 2.0)  # times the excluded distance, which is a convention
@@ -28,10 +30,10 @@ class Singularity:
 
     between: the surfaces that meet there. theory: the exponent in plane strain, so for axial and
     bending loads; 0 at the edge of a load, where it grows like log(1/d); None where the angle is
-    not known. torsion_theory: the
-    exponent in torsion; bending has this part too. radius: how far (m) stress is not to be read.
-    feature: how far (m) the singular field reaches at most, the height of a small step, say; at
-    most the radius. angle: of the material, rad. advice: what would make it finite, for people.
+    not known. torsion_theory: the exponent in torsion; bending has this part too. radius: how far
+    (m) stress is not to be read. feature: how far (m) the singular field reaches at most, the
+    height of a small step, say; at most the radius. angle: of the material, rad. advice: what would
+    make it finite, for people.
     """
 
     r: float
@@ -47,6 +49,13 @@ class Singularity:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "feature", min(self.feature, self.radius))
+
+    @property
+    def measured(self) -> bool:
+        """Whether meshes are graded so closely towards it that the growth of stress is measured:
+        not where that is a logarithm, nor under a lug, whose pressure is even on each ring.
+        """
+        return self.kind in ("sharp corner", "edge of a clamp")
 
     @property
     def following(self) -> float:
@@ -90,6 +99,43 @@ def find_singularities(
         replace(singularity, feature=min(singularity.radius, _feature(every, k, held)))
         for k, singularity in enumerate(found)
         if singularity is not None
+    )
+
+
+def lug_edges(pin: Pin, edges: Iterable[LugEdge], distance: float = 0.1) -> tuple[Singularity, ...]:
+    """The sharp edges of lugs that are singular, in their order: those with an exponent, where the
+    pin's surface is smooth (a lug flush with an end face presses on no half plane).
+
+    distance: of the local diameter, that is not to be read. Stress nearer than the first ring of
+    the contact pressure is not resolved.
+    """
+    every = vertices(pin)
+    found = (_lug_edge(every, edge, distance, SAME * pin.smallest_diameter) for edge in edges)
+    return tuple(singularity for singularity in found if singularity is not None)
+
+
+def _lug_edge(
+    every: tuple[Vertex, ...], edge: LugEdge, distance: float, near: float
+) -> Singularity | None:
+    """near: so far (m) from a vertex, the edge is there."""
+    at, corners = (edge.r, edge.z), []
+    for v in every:
+        if abs(v.angle - math.pi) > FLAT:
+            corners.append((v.r, v.z))
+        if math.dist(at, (v.r, v.z)) <= near:
+            at = (v.r, v.z)
+    if edge.exponent <= 0.0 or at in corners:
+        return None
+    return Singularity(
+        *at,
+        kind="edge of a lug",
+        between=(edge.surface, "its lug"),
+        theory=edge.exponent,
+        torsion_theory=0.0,
+        radius=distance * 2.0 * edge.r,
+        advice=_ROUNDED,
+        feature=min([edge.feature, *(math.dist(at, corner) for corner in corners)]),
+        angle=math.pi,
     )
 
 
@@ -170,6 +216,7 @@ INSTEAD_OF_CLAMP = (
 _INSTEAD_OF_TRACTION = (
     'use distribution = "cosine": a bearing pressure has no jump of shear at its edge'
 )
+_ROUNDED = "give the bore an edge_radius: rounded, the stress is finite there"
 _BORE = (
     "a radius here would make it finite, but the step of a bore cannot be given one; read the "
     "stress away from it"

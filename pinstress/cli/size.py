@@ -146,8 +146,8 @@ def _why(sized: Sized, found: list[PinResult]) -> str:
     if singular:
         return (
             f"the factor is reached only outside the excluded zones; in {', '.join(singular)} the "
-            "stress is singular at a sharp corner or the edge of a clamp, whatever the size; "
-            "singular_zones.csv of a run lists remedies"
+            "stress is singular at a sharp corner or the edge of a clamp or lug, whatever the "
+            "size; singular_zones.csv of a run lists remedies"
         )
     if loose:
         return f"in {', '.join(loose)} the stress has not converged to the tolerance"

@@ -18,7 +18,7 @@ from reports.format.numbers import engineering
 from reports.page.pin_drawing import draw_pin
 from reports.plots.all import save_plots
 from reports.tables.json_results import to_json
-from reports.tables.singular_zones import circles, pin_zones
+from reports.tables.singular_zones import Zone, circles, pin_zones
 from tests.support.html_page import EVIL, parse
 from tests.support.judged_results import judged, row, zones
 
@@ -151,6 +151,14 @@ def test_drawing_marks_the_zones(found: Results) -> None:
     assert (y[3] - y[2]) / (x[4] - x[2]) == pytest.approx(1.0 / 1.25, rel=1e-3)
     assert [ring[2] for ring in rings].count("none") == 4  # only what governs is filled
     assert "zone" not in draw_pin(found.shapes[0], found.units)
+
+
+def test_the_edge_of_a_lug_is_drawn_like_the_others(found: Results) -> None:
+    """In theory a power, and not measured."""
+    lug = replace(zones()[1], kind="the edge of a lug", exponent_theory=0.226, governs=True)
+    zone = Zone(1, lug)
+    assert zone.exponents == "– / 0.226"
+    assert "1 edge of a lug, governs<" in draw_pin(found.shapes[0], found.units, [zone])
 
 
 def test_advice_and_names_are_shown_and_not_run(found: Results, tmp_path: Path) -> None:

@@ -1,0 +1,76 @@
+"""How strongly pressure grows towards the sharp edge of a lug on a smooth pin: like d^-s.
+
+The pin is a half plane -pi < theta < 0, the lug a wedge 0 < theta < w; they touch without friction
+at theta = 0, and their other sides are free. With Williams' stress function r^(L + 1) f(theta), f a
+sum of cos and sin of (L + 1) theta and (L - 1) theta, a wedge of angle w under the normal stress
+p r^(L - 1) on its side, without shear, moves along the normal there by u r^L,
+
+    u / p = c k N(w) / D(w),    N = sin 2 L w + L sin 2 w,    D = sin^2 L w - L^2 sin^2 w,
+
+where k = (1 - nu^2) / E, and c = 1 / L is that of all wedges. For the half plane N / D is
+2 cos L pi / sin L pi. Under the same stress both stay in touch if their displacements sum to zero:
+
+    h(L) = 2 k_pin cos(L pi) D(w) + k_lug sin(L pi) N(w) = 0,    s = 1 - Re L.
+
+D > 0 for 0 < L < 1 and 0 < w < pi, so h > 0 at L = 1/2. Towards L = 1 h goes to zero, from below
+where there is a singularity: always for w >= pi/2. Then the least root is real and between. No
+other has 0 < Re L < 1: counted in tests/fea/test_lug_edge.py by the argument principle.
+
+Contact without friction transmits no shear out of the plane: in torsion there is no singularity.
+
+Source: J. Dundurs & M. S. Lee, J. Elasticity 2 (1972) 109, for the problem; M. L. Williams, J.
+Appl. Mech. 19 (1952) 526, for the stress functions.
+"""
+
+from __future__ import annotations
+
+import math
+
+from scipy.optimize import brentq
+
+from fea.core.material import Material
+from geometry import ArgumentError
+
+RIGHT = math.pi / 2.0  # the angle of a lug's edge
+LEAST = 1e-9  # exponents below are those of no singularity
+
+
+def lug_edge_exponent(pin: Material, lug: Material, angle: float = RIGHT) -> float:
+    """Exponent s of pressure and stress ~ d^-s at the sharp edge of a lug, in plane strain; 0 where
+    they stay finite.
+
+    lug: the material that touches the pin, a bushing's if there is one. angle: of the edge, rad.
+
+    Raises: ArgumentError outside 0 < angle < pi. Source: as the module.
+    """
+    return edge_exponent(_compliance(pin), _compliance(lug), angle)
+
+
+def edge_exponent(pin: float, lug: float, angle: float = RIGHT) -> float:
+    """The same from (1 - nu^2) / E of both, in the same unit; 0 is rigid. Only their ratio counts.
+
+    Raises: ArgumentError if both are rigid or one is negative; as `lug_edge_exponent`.
+    """
+    if not 0.0 < angle < math.pi:
+        raise ArgumentError(
+            f"the angle of a lug's edge must be between 0 and pi, not {angle:g}", "out-of-range"
+        )
+    if not (pin >= 0.0 and lug >= 0.0 and 0.0 < pin + lug < math.inf):
+        raise ArgumentError(
+            f"compliances must not be negative, nor both zero: {pin:g} and {lug:g}", "not-positive"
+        )
+    share = lug / (pin + lug)
+
+    def h(s: float) -> float:
+        L = 1.0 - s
+        N = math.sin(2.0 * L * angle) + L * math.sin(2.0 * angle)
+        D = math.sin(L * angle) ** 2 - (L * math.sin(angle)) ** 2
+        return 2.0 * (1.0 - share) * math.cos(L * math.pi) * D + share * math.sin(L * math.pi) * N
+
+    if h(LEAST) >= 0.0:
+        return 0.0
+    return float(brentq(h, LEAST, 0.5, xtol=1e-15))
+
+
+def _compliance(material: Material) -> float:
+    return (1.0 - material.poisson_ratio**2) / material.youngs_modulus
