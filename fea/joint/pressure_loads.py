@@ -41,7 +41,7 @@ def pressure_loads(
     """
     forces = np.zeros((len(pressure), len(rings), 3))
     moments = np.zeros_like(forces)
-    share = _shares(pin, rings, loads.surfaces)
+    share = ring_shares(pin, rings, loads.surfaces)
     forces[:, :, 2] = loads.forces[:, :, 2] @ share
     moments[:, :, 2] = loads.moments[:, :, 2] @ share
     others = replace(loads, surfaces=rings, forces=forces, moments=moments)
@@ -74,7 +74,7 @@ def _amplitude(pressure: Floats, n: int) -> Floats:
     return np.asarray(pressure @ waves * factor)
 
 
-def _shares(pin: Pin, rings: tuple[str, ...], bands: tuple[str, ...]) -> Floats:
+def ring_shares(pin: Pin, rings: tuple[str, ...], bands: tuple[str, ...]) -> Floats:
     """Of each band's load what each ring takes by its length, (C, R)."""
     own = np.array([[name.startswith(f"{band} ring ") for name in rings] for band in bands])
     part = own * np.array([pin.band(name).length for name in rings])

@@ -13,17 +13,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
+from fea.joint.bending import bending_moment, mass_per_length
 from fea.joint.contact import Bands, ContactProblem, Pressed
 from fea.joint.flexibility import half_plane, lug_flexibility, pin_flexibility
+from fea.joint.links import fitting, link_forces
 from fea.joint.lug import Lug
 from fea.joint.pressure_loads import PressureLoads, pressure_loads
 from fea.joint.rings import annulus, ring, ringed
 from geometry import Pin
-
-BALANCED = 1e-6  # of the largest force: what links and the body force may leave over
 
 
 @dataclass(frozen=True)
@@ -41,7 +40,7 @@ class Cells:
 @dataclass(frozen=True)
 class JointContact:
     """A case of a pin in its lugs. pin: its bands cut into rings; contact: by instant; loads: what
-    the rings do to it.
+    the rings do to it; mass: of its segments, kg/m.
     """
 
     pin: Pin
@@ -50,6 +49,7 @@ class JointContact:
     angles: Floats
     contact: tuple[Pressed, ...]
     loads: PressureLoads
+    mass: Floats
 
     @property
     def line_load(self) -> Floats:
@@ -60,10 +60,7 @@ class JointContact:
         """By contact and body force, of the part of the pin before z (Z,) m: (T, Z, 2) N m, the
         integral of the shear along x and along y.
         """
-        low = self.bands.z - self.bands.length / 2.0
-        reach = np.clip(z[:, None] - low, 0.0, self.bands.length)  # of each ring that is before z
-        arm = reach * (z[:, None] - low - reach / 2.0)
-        return np.asarray(np.einsum("zr,tra->tza", arm, self.line_load))
+        return bending_moment(self.pin, self.mass, self.bands, self.loads, z)
 
     @property
     def contact_angle(self) -> Floats:
@@ -93,16 +90,8 @@ class JointModel:
     def __init__(
         self, pin: Pin, material: Material, lugs: Sequence[Lug], cells: Cells = Cells()
     ) -> None:
-        named = {lug.connection: lug for lug in lugs}
-        if len(named) < len(lugs) or set(named) != set(pin.connections):
-            raise ValueError(
-                f"pin {pin.name} needs one lug for each of {', '.join(pin.connections)}"
-            )
+        self.lugs = fitting(pin, lugs)
         self.whole, self.material, self.cells = pin, material, cells
-        self.lugs = tuple(named[connection] for connection in pin.connections)
-        for lug in self.lugs:
-            if lug.outer_diameter <= 2.0 * pin.band(lug.connection).radius:
-                raise ValueError(f"lug {lug.connection}: it must be wider than the pin")
         count = cells.rings
         self.pin = ringed(pin, pin.connections, count)
         self.rings = tuple(ring(lug.connection, i) for lug in self.lugs for i in range(count))
@@ -140,7 +129,7 @@ class JointModel:
 
         Raises: SolveError where contact does not settle, or forces are not in balance.
         """
-        forces = self._forces(loads)
+        forces = link_forces(self.whole, self._mass, loads)
         contact, found = self.contact(), []
         couples = self._couples(loads, contact.bands)
         last: NDArray[np.bool_] | None = None
@@ -150,23 +139,9 @@ class JointModel:
             found.append(pressed)
         pressure = np.stack([x.pressure for x in found])
         made = pressure_loads(self.pin, self.rings, pressure, self.cells.highest, loads)
-        return JointContact(self.pin, self.lugs, contact.bands, contact.angles, tuple(found), made)
-
-    def _forces(self, loads: PinLoads) -> Floats:
-        """Of the links along x and y by lug, (T, B, 2) N."""
-        out = np.zeros((len(loads), len(self.lugs), 2))
-        for b, lug in enumerate(self.lugs):
-            if lug.connection in loads.surfaces:
-                out[:, b] = loads.forces[:, loads.surfaces.index(lug.connection), :2]
-        body = loads.body[:, :2] * self._mass
-        left = np.linalg.norm(out.sum(axis=1) + body, axis=1).max()
-        if left > BALANCED * np.abs(out).max(initial=1e-300):
-            raise SolveError(
-                f"pin {self.whole.name}, case {loads.case}: the forces of its links have "
-                f"a resultant of {left:.3g} N, which no contact reacts",
-                "not-in-equilibrium",
-            )
-        return out
+        mass = mass_per_length(self.pin, self.material.density)
+        cut, angles = contact.bands, contact.angles
+        return JointContact(self.pin, self.lugs, cut, angles, tuple(found), made, mass)
 
     def _couples(self, loads: PinLoads, bands: Bands) -> Floats:
         """About the middle of the bands along x and y, (T, 2) N m, of the body force."""
