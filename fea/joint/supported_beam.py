@@ -111,7 +111,7 @@ class _System:
         free = [M, V, last + M, last + V]  # nothing acts on the ends
         matrix[last + np.arange(STATES), free] = 1.0
         self._hold(matrix[self.motions :], loads[self.motions :])
-        return self._response(np.linalg.solve(matrix, loads))
+        return self._response(np.asarray(np.linalg.solve(matrix, loads), dtype=np.float64))
 
     @property
     def _loads(self) -> int:
