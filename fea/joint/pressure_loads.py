@@ -159,13 +159,13 @@ def _others(pin: Pin, rings: tuple[str, ...], links: PinLoads) -> PinLoads:
     """What the links do along the axis and about it, and the body force, on the rings."""
     forces = np.zeros((len(links), len(rings), 3))
     moments = np.zeros_like(forces)
-    share = _shares(pin, rings, links.surfaces)
+    share = ring_shares(pin, rings, links.surfaces)
     forces[:, :, 2] = links.forces[:, :, 2] @ share
     moments[:, :, 2] = links.moments[:, :, 2] @ share
     return PinLoads(links.case, rings, forces, moments, body=links.body, times=links.times)
 
 
-def _shares(pin: Pin, rings: tuple[str, ...], bands: tuple[str, ...]) -> Floats:
+def ring_shares(pin: Pin, rings: tuple[str, ...], bands: tuple[str, ...]) -> Floats:
     """Of each band's load what each ring takes by its length, (C, R)."""
     own = np.array([[name.startswith(f"{band} ring ") for name in rings] for band in bands])
     part = own * np.array([pin.band(name).length for name in rings])

@@ -14,11 +14,12 @@ from functools import cached_property
 
 import numpy as np
 
-from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, LugEdge, PinLoads
+from fea.joint.bending import bending_moment, mass_per_length
 from fea.joint.contact import Bands, ContactProblem, Pressed
 from fea.joint.flexibility import half_plane, lug_flexibility, pin_flexibility
+from fea.joint.links import fitting, link_forces
 from fea.joint.lug import Lug
 from fea.joint.pressure_loads import Patterns, PressureLoads, patterns_of
 from fea.joint.rings import annulus, ring, ringed
@@ -26,7 +27,6 @@ from fea.singular.lug_edge import lug_edge_exponent
 from geometry import Pin
 
 DIGITS = 13  # to which loads are in proportion
-BALANCED = 1e-6  # of the largest force: what links and the body force may leave over
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Cells:
 @dataclass(frozen=True)
 class JointContact:
     """A case of a pin in its lugs. pin: its bands cut into rings; contact: by instant; loads: what
-    the rings do to it.
+    the rings do to it; mass: of its segments, kg/m.
     """
 
     pin: Pin
@@ -53,6 +53,7 @@ class JointContact:
     angles: Floats
     contact: tuple[Pressed, ...]
     loads: PressureLoads
+    mass: Floats
 
     @property
     def line_load(self) -> Floats:
@@ -63,10 +64,7 @@ class JointContact:
         """By contact and body force, of the part of the pin before z (Z,) m: (T, Z, 2) N m, the
         integral of the shear along x and along y.
         """
-        low = self.bands.z - self.bands.length / 2.0
-        reach = np.clip(z[:, None] - low, 0.0, self.bands.length)  # of each ring that is before z
-        arm = reach * (z[:, None] - low - reach / 2.0)
-        return np.asarray(np.einsum("zr,tra->tza", arm, self.line_load))
+        return bending_moment(self.pin, self.mass, self.bands, self.loads, z)
 
     @property
     def contact_angle(self) -> Floats:
@@ -96,16 +94,8 @@ class JointModel:
     def __init__(
         self, pin: Pin, material: Material, lugs: Sequence[Lug], cells: Cells = Cells()
     ) -> None:
-        named = {lug.connection: lug for lug in lugs}
-        if len(named) < len(lugs) or set(named) != set(pin.connections):
-            raise ValueError(
-                f"pin {pin.name} needs one lug for each of {', '.join(pin.connections)}"
-            )
+        self.lugs = fitting(pin, lugs)
         self.whole, self.material, self.cells = pin, material, cells
-        self.lugs = tuple(named[connection] for connection in pin.connections)
-        for lug in self.lugs:
-            if lug.outer_diameter <= 2.0 * pin.band(lug.connection).radius:
-                raise ValueError(f"lug {lug.connection}: it must be wider than the pin")
         count = cells.rings
         self.pin = ringed(pin, pin.connections, count)
         self.rings = tuple(ring(lug.connection, i) for lug in self.lugs for i in range(count))
@@ -188,8 +178,9 @@ class JointModel:
 
     def joined(self, found: Sequence[Pressed], loads: PressureLoads) -> JointContact:
         """Contact at the instants of some loads, with them."""
-        contact = self.contact
-        return JointContact(self.pin, self.lugs, contact.bands, contact.angles, tuple(found), loads)
+        contact, mass = self.contact, mass_per_length(self.pin, self.material.density)
+        cut, angles = contact.bands, contact.angles
+        return JointContact(self.pin, self.lugs, cut, angles, tuple(found), loads, mass)
 
     def pressed(self, loads: PinLoads) -> list[Pressed]:
         """Contact at each of their instants. Without any gap to close, contact under loads in
@@ -215,19 +206,7 @@ class JointModel:
 
     def forces(self, loads: PinLoads) -> Floats:
         """Of the links along x and y by lug, (T, B, 2) N."""
-        out = np.zeros((len(loads), len(self.lugs), 2))
-        for b, lug in enumerate(self.lugs):
-            if lug.connection in loads.surfaces:
-                out[:, b] = loads.forces[:, loads.surfaces.index(lug.connection), :2]
-        body = loads.body[:, :2] * self._mass
-        left = np.linalg.norm(out.sum(axis=1) + body, axis=1).max()
-        if left > BALANCED * np.abs(out).max(initial=1e-300):
-            raise SolveError(
-                f"pin {self.whole.name}, case {loads.case}: the forces of its links have "
-                f"a resultant of {left:.3g} N, which no contact reacts",
-                "not-in-equilibrium",
-            )
-        return out
+        return link_forces(self.whole, self._mass, loads)
 
     def couples(self, loads: PinLoads) -> Floats:
         """About the middle of the bands along x and y, (T, 2) N m, of the body force."""

@@ -1,0 +1,222 @@
+"""The beam on foundations compared with contact: its error on pins drawn at random, and times."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from statistics import median
+
+import numpy as np
+
+from benchmarks.joint import EYE, FORCE, NAMES, SHARE, STEEL, TRUTH, D, E
+from benchmarks.random_joints import JointTrial, joint_trials
+from benchmarks.timing import seconds, table
+from fea.core.material import Material
+from fea.core.pin_loads import Floats, PinLoads
+from fea.joint.foundation import FoundationModel, Stiffness, foundation_stiffness, moment_error
+from fea.joint.lug import Lug
+from fea.joint.solve_joint import Cells, JointContact, JointModel
+from geometry import Pin, Segment
+
+PINS, SEED = 40, 3  # 1, 2 and 5 served to find the constants
+FINE = Cells(rings=8, sectors=48, highest=16)
+CLEARANCES = 0.001, 0.003  # of the diameter
+PRESSURE = 1e8  # Pa, the mean over the most loaded lug at which clearances count
+INSTANTS = 10_000
+
+
+@dataclass(frozen=True)
+class Compared:
+    """Of one pin: errors of the largest moment and at mid-span over the largest of contact, of the
+    line load at the lugs' ends over the lug's mean, on the last ring and on the last two; bound of
+    the first.
+    """
+
+    lugs: int
+    tube: bool
+    largest: float
+    middle: float
+    last: Floats
+    last_two: Floats
+    bound: float
+
+
+def foundation() -> str:
+    """Four tables."""
+    trials = joint_trials(PINS, SEED)
+    contacts = [_contact(trial) for trial in trials]
+    return "\n\n".join(
+        (_errors(trials, contacts), _clevises(), _clearances(trials, contacts), _times(trials[0]))
+    )
+
+
+def two_constants(segment: Segment, material: Material, lug: Lug) -> float:
+    """The stiffness that clevises with solid pins gave, N/m^2."""
+    return 1.0 / (0.196 / material.youngs_modulus + 0.987 / lug.material.youngs_modulus)
+
+
+def largest_moment(moment: Callable[[Floats], Floats], pin: Pin) -> float:
+    """Of the first instant along x, N m."""
+    return float(np.abs(moment(np.linspace(0.0, pin.length, 401))[0, :, 0]).max())
+
+
+def _contact(trial: JointTrial) -> JointContact:
+    return JointModel(trial.pin, trial.material, trial.lugs, FINE).solve(trial.loads)
+
+
+def _compared(trial: JointTrial, contact: JointContact, stiffness: Stiffness) -> Compared:
+    model = FoundationModel(trial.pin, trial.material, trial.lugs, FINE.rings, stiffness)
+    found = model.solve(trial.loads)
+    truth = largest_moment(contact.bending_moment, trial.pin)
+    ours = largest_moment(found.bending_moment, trial.pin)
+    z = contact.bands.z
+    middle = np.array([0.5 * (z[0] + z[-1])])
+    apart = found.bending_moment(middle) - contact.bending_moment(middle)
+    lengths = np.array([trial.pin.band(lug.connection).length for lug in trial.lugs])
+    means = np.abs(trial.loads.forces[0, :, 0]) / lengths
+    load = (found.loads.forces - contact.loads.forces)[0, :, 0].reshape(len(lengths), -1)
+    ring = contact.bands.length.reshape(load.shape)
+    ends = np.abs([_end_load(load, ring, k) / means[:, None] for k in (1, 2)])
+    return Compared(
+        len(trial.lugs),
+        any(s.bore for s in trial.pin.segments),
+        ours / truth - 1.0,
+        float(apart[0, 0, 0]) / truth,
+        ends[0].ravel(),
+        ends[1].ravel(),
+        moment_error(trial.pin, trial.lugs),
+    )
+
+
+def _end_load(force: Floats, length: Floats, count: int) -> Floats:
+    """Per length, N/m, on the first and last `count` of the rings of each lug, (B, 2)."""
+    sides = slice(None, count), slice(-count, None)
+    each = [force[:, side].sum(axis=1) / length[:, side].sum(axis=1) for side in sides]
+    return np.stack(each, axis=1)
+
+
+def _errors(trials: list[JointTrial], contacts: list[JointContact]) -> str:
+    rows = []
+    for what, stiffness in (
+        ("plane contact", foundation_stiffness),
+        ("two constants", two_constants),
+    ):
+        all_ = [_compared(t, c, stiffness) for t, c in zip(trials, contacts, strict=True)]
+        groups = {
+            "all": all_,
+            "three lugs, solid": [c for c in all_ if c.lugs == 3 and not c.tube],
+            "three lugs, tube": [c for c in all_ if c.lugs == 3 and c.tube],
+            "two lugs, solid": [c for c in all_ if c.lugs == 2 and not c.tube],
+            "two lugs, tube": [c for c in all_ if c.lugs == 2 and c.tube],
+        }
+        rows += [(f"{what}: {name}", *_row(group)) for name, group in groups.items()]
+    head = (
+        "foundation: pins",
+        "number",
+        "largest moment, median [%]",
+        "5th to 95th percentile [%]",
+    )
+    more = ("furthest [%]", "mid-span, 95 % within [%]", "within the bound")
+    loads = ("load of the last 4 %, median [%]", "of the last 15 %")
+    return table((*head, *more[:-1], *loads, more[-1]), rows)
+
+
+def _row(group: list[Compared]) -> tuple[str, ...]:
+    largest = 100.0 * np.array([c.largest for c in group])
+    low, high = np.quantile(largest, [0.05, 0.95])
+    middle = 100.0 * np.quantile(np.abs([c.middle for c in group]), 0.95)
+    last, last_two = (
+        100.0 * np.median(np.concatenate(each))
+        for each in ([c.last for c in group], [c.last_two for c in group])
+    )
+    held = sum(abs(1.0 / (1.0 + c.largest) - 1.0) <= c.bound for c in group)
+    return (
+        str(len(group)),
+        f"{median(largest):+.1f}",
+        f"{low:+.1f} to {high:+.1f}",
+        f"{max(largest, key=abs):+.1f}",
+        f"{middle:.1f}",
+        f"{last:.0f}",
+        f"{last_two:.0f}",
+        f"{held} of {len(group)}",
+    )
+
+
+def clevis(inner: float, outer: float, gap: float) -> tuple[Pin, list[Lug]]:
+    """Of the published references, mm."""
+    over, apart = Segment(0.002, D), Segment(gap / 1e3, D)
+    left, middle, right = (
+        Segment(t / 1e3, D, connection=name)
+        for t, name in zip((outer, inner, outer), NAMES, strict=True)
+    )
+    shank = E * EYE * (outer / 1e3) ** 3 / (12.0 * 0.04)
+    tilts = zip(NAMES, (shank, math.inf, shank), strict=True)
+    pin = Pin("P", (over, left, apart, middle, apart, right, over))
+    return pin, [Lug(name, EYE, STEEL, tilt=k) for name, k in tilts]
+
+
+def _clevises() -> str:
+    rows = []
+    for inner, outer, gap, clearance, moment, _ in TRUTH:
+        pin, lugs = clevis(inner, outer, gap)
+        pull = PinLoads("pull", NAMES, FORCE * SHARE[None, :, None] * np.eye(3)[0])
+        nominal = FORCE / 2.0 * (outer / 2.0 + gap + inner / 4.0) / 1e3
+        found = FoundationModel(pin, STEEL, lugs).solve(pull)
+        middle = np.array([0.5 * pin.length])
+        ours = abs(float(found.bending_moment(middle)[0, 0, 0])) / nominal
+        rows.append(
+            (
+                f"{inner:g} / {outer:g}+{outer:g}, gap {gap:g}",
+                f"{clearance:g}",
+                f"{ours:.4f}",
+                f"{moment:.4f}",
+                f"{100.0 * (ours / moment - 1.0):+.1f}",
+            )
+        )
+    return table(("lugs [mm]", "clearance [mm]", "M / M0", "3D", "off [%]"), rows)
+
+
+def _clearances(trials: list[JointTrial], contacts: list[JointContact]) -> str:
+    """How much more the largest moment is with clearance, by contact."""
+    rows = []
+    for clearance in CLEARANCES:
+        rises = 100.0 * np.array(
+            [_rise(t, c, clearance) for t, c in zip(trials, contacts, strict=True)]
+        )
+        low, high = np.quantile(rises, [0.05, 0.95])
+        rows.append((f"{clearance:g} d", f"{median(rises):+.1f}", f"{low:+.1f} to {high:+.1f}"))
+    head = (
+        f"clearance, mean pressure {PRESSURE / 1e6:g} MPa",
+        "rise of the largest moment, median [%]",
+    )
+    return table((*head, "5th to 95th percentile [%]"), rows)
+
+
+def _rise(trial: JointTrial, contact: JointContact, clearance: float) -> float:
+    bands = [trial.pin.band(lug.connection) for lug in trial.lugs]
+    mean = np.abs(trial.loads.forces[0, :, 0]) / [2.0 * b.radius * b.length for b in bands]
+    factor = PRESSURE / mean.max()
+    loads = replace(trial.loads, forces=factor * trial.loads.forces)
+    lugs = [
+        replace(lug, clearance=clearance * 2.0 * b.radius)
+        for lug, b in zip(trial.lugs, bands, strict=True)
+    ]
+    loose = JointModel(trial.pin, trial.material, lugs, FINE).solve(loads)
+    before = factor * largest_moment(contact.bending_moment, trial.pin)
+    return largest_moment(loose.bending_moment, trial.pin) / float(before) - 1.0
+
+
+def _times(trial: JointTrial) -> str:
+    angle = np.linspace(0.0, 2.0 * np.pi, INSTANTS)[:, None]
+    size = trial.loads.forces[0, :, 0]
+    forces = np.stack([np.cos(angle) * size, np.sin(angle) * size, 0.0 * angle * size], axis=2)
+    loads = PinLoads("turned", trial.loads.surfaces, forces)
+    start = time.perf_counter()
+    model = FoundationModel(trial.pin, trial.material, trial.lugs)
+    first = time.perf_counter() - start
+    built = seconds(lambda: FoundationModel(trial.pin, trial.material, trial.lugs))
+    solved = seconds(lambda: model.solve(loads))
+    head = ("first factorisation [ms]", "further [ms]", f"{INSTANTS} instants [ms]")
+    return table(head, [tuple(f"{1e3 * t:.1f}" for t in (first, built, solved))])

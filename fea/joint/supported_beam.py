@@ -1,0 +1,168 @@
+"""A Timoshenko beam that rests on Winkler foundations in its lugs, without discretisation.
+
+With u the deflection against the bore, psi the slope of the section against the lug, k the
+stiffness of the foundation per length and q what else loads the beam along x,
+
+    u' = psi + V / (kappa G A)    psi' = M / (E I)    M' = -V    V' = k u - q
+
+so a piece takes the state at its start to that at its end by the exponential of a matrix, exactly.
+The states at all stations, the shifts of the lugs and their tilts are found together. Unlike a
+system of stiffnesses, which holds 12 E I / h^3, this one is well conditioned with short pieces.
+
+Sources: M. Hetenyi, Beams on Elastic Foundation (1946), ch. II and V; S. P. Timoshenko, Phil. Mag.
+41 (1921) 744, for the shear.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import expm
+
+from fea.core.pin_loads import Floats
+
+U, PSI, M, V, SUM, TWICE, ONE = range(7)  # SUM: the integral of k u, TWICE: that of SUM
+STATES = 4
+WAVE = 1.0  # most of a foundation's length 1 / lambda in a piece: exponentials remain moderate
+
+
+@dataclass(frozen=True)
+class SupportedBeam:
+    """Pieces (N,) of a beam between stations (N + 1,) m. bending: 1 / (E I), 1 / (N m^2); shear:
+    1 / (kappa G A), 1 / N; foundation: N/m^2, 0 outside lugs; mass: kg/m; lug: number of the lug
+    that holds each, -1 for none.
+    """
+
+    stations: Floats
+    bending: Floats
+    shear: Floats
+    foundation: Floats
+    mass: Floats
+    lug: NDArray[np.int64]
+
+    def __len__(self) -> int:
+        return len(self.lug)
+
+
+@dataclass(frozen=True)
+class Response:
+    """What the lugs do to the pieces of a beam under P loads, one newton on each lug and a body
+    force of 1 m/s^2: force (N, P), N, and moment (N, P), N m, about the middles of the pieces, of
+    forces along x. The first lug reacts what each load leaves over.
+    """
+
+    force: Floats
+    moment: Floats
+
+
+def refined(stations: Floats, bending: Floats, foundation: Floats) -> Floats:
+    """Stations (m) with pieces (N,) cut where they are long for the foundation they are on."""
+    length = np.diff(stations)
+    waves = length * (foundation * bending / 4.0) ** 0.25
+    counts = np.maximum(1, np.ceil(waves / WAVE)).astype(int)
+    cuts = [
+        a + h * np.arange(n) / n
+        for a, h, n in zip(stations[:-1], length, counts.tolist(), strict=True)
+    ]
+    return np.concatenate([*cuts, stations[-1:]])
+
+
+def respond(beam: SupportedBeam, middles: Floats, tilt: Sequence[float]) -> Response:
+    """middles: of the lugs, (B,) m. tilt: N m/rad of the lugs' tilt, inf guided, 0 free; where all
+    are free, the first is guided and reacts the couple that is left over.
+    """
+    length = float(beam.stations[-1] - beam.stations[0]) / len(beam)
+    stiff = 1.0 / float(beam.bending.max() * length**2)  # N; makes numbers near 1 of all
+    held = np.asarray(tilt, dtype=float) / (stiff * length)
+    held[0] = held[0] if held.any() else np.inf
+    unit = replace(
+        beam,
+        stations=beam.stations / length,
+        bending=beam.bending * stiff * length**2,
+        shear=beam.shear * stiff,
+        foundation=beam.foundation * length**2 / stiff,
+        mass=beam.mass * length,
+    )
+    found = _System(unit, np.asarray(middles) / length, held).solve()
+    return Response(found.force, found.moment * length)
+
+
+class _System:
+    """The states (w, phi, M, V) at all stations, then shift and tilt of each lug, as one vector."""
+
+    def __init__(self, beam: SupportedBeam, middles: Floats, tilt: Floats) -> None:
+        self.beam, self.middles, self.tilt = beam, middles, tilt
+        self.lengths = np.diff(beam.stations)
+        self.steps = expm(_rates(beam) * self.lengths[:, None, None])
+        self.motions = STATES * (len(beam) + 1)  # where the lugs' begin
+        self.size = self.motions + 2 * len(middles)
+        self.starts = np.stack([self._against(i, 0) for i in range(len(beam))])
+
+    def solve(self) -> Response:
+        matrix, loads = np.zeros((self.size, self.size)), np.zeros((self.size, self._loads))
+        for i, step in enumerate(self.steps):
+            rows = slice(STATES * i, STATES * (i + 1))
+            matrix[rows] = self._against(i, 1) - step[:STATES, :STATES] @ self.starts[i]
+            loads[rows, -1] = step[:STATES, ONE]
+        last = self.motions - STATES
+        free = [M, V, last + M, last + V]  # nothing acts on the ends
+        matrix[last + np.arange(STATES), free] = 1.0
+        self._hold(matrix[self.motions :], loads[self.motions :])
+        return self._response(np.asarray(np.linalg.solve(matrix, loads), dtype=np.float64))
+
+    @property
+    def _loads(self) -> int:
+        return len(self.middles) + 1
+
+    def _against(self, i: int, end: int) -> Floats:
+        """State at the start (0) or end (1) of a piece against its lug, (STATES, size)."""
+        out, lug = np.zeros((STATES, self.size)), int(self.beam.lug[i])
+        at = STATES * (i + end)
+        out[:, at : at + STATES] = np.eye(STATES)
+        if lug >= 0:
+            shift, arm = self.motions + 2 * lug, self.beam.stations[i + end] - self.middles[lug]
+            out[:2, shift : shift + 2] = [[-1.0, -arm], [0.0, -1.0]]
+        return out
+
+    def _hold(self, rows: Floats, loads: Floats) -> None:
+        """Equations of the lugs: a force and a couple each; the first does not shift."""
+        for b, stiffness in enumerate(self.tilt.tolist()):
+            force, couple = self._reactions(b)
+            rows[2 * b], loads[2 * b, -1], loads[2 * b, b] = force[:-1], -force[-1], 1.0
+            turn = np.eye(self.size)[self.motions + 2 * b + 1]
+            if np.isfinite(stiffness):  # scaled so that very stiff and very soft are harmless
+                turn = (stiffness * turn + couple[:-1]) / (1.0 + stiffness)
+                loads[2 * b + 1, -1] = -couple[-1] / (1.0 + stiffness)
+            rows[2 * b + 1] = turn
+        rows[0], loads[0] = np.eye(self.size)[self.motions], 0.0
+
+    def _reactions(self, lug: int) -> tuple[Floats, Floats]:
+        """Force and couple about its middle that a lug exerts on the beam, (size + 1,) each, by the
+        states and, last, by the body force.
+        """
+        force, couple = np.zeros(self.size + 1), np.zeros(self.size + 1)
+        for i in np.flatnonzero(self.beam.lug == lug).tolist():
+            whole = np.column_stack([self.starts[i], np.zeros(STATES)])
+            sums = self.steps[i][[SUM, TWICE], :STATES] @ whole
+            sums[:, -1] = self.steps[i][[SUM, TWICE], ONE]
+            force -= sums[0]
+            couple -= (self.beam.stations[i + 1] - self.middles[lug]) * sums[0] - sums[1]
+        return force, couple
+
+    def _response(self, x: Floats) -> Response:
+        sums = self.steps[:, [SUM, TWICE], :STATES] @ (self.starts @ x)  # (N, 2, P)
+        sums[:, :, -1] += self.steps[:, [SUM, TWICE], ONE]
+        half = 0.5 * self.lengths[:, None]
+        return Response(-sums[:, 0], sums[:, 1] - half * sums[:, 0])
+
+
+def _rates(beam: SupportedBeam) -> Floats:
+    """Derivatives of (u, psi, M, V, SUM, TWICE, 1), (N, 7, 7)."""
+    out = np.zeros((len(beam), 7, 7))
+    out[:, U, PSI], out[:, U, V], out[:, PSI, M] = 1.0, beam.shear, beam.bending
+    out[:, M, V], out[:, V, U], out[:, V, ONE] = -1.0, beam.foundation, -beam.mass
+    out[:, SUM, U], out[:, TWICE, SUM] = beam.foundation, 1.0
+    return out
