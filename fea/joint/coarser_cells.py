@@ -25,6 +25,7 @@ def on_coarser_cells(model: JointModel) -> tuple[ContactProblem, Floats]:
         fine.bands.radius[first],
         fine.bands.band[first],
         mean.T @ fine.bands.gap,
+        fine.bands.link,
     )
     flexible = (model.of_pin + model.of_lugs)[: model.cells.highest // 2 + 1]
     coarse = np.einsum("rc,nrs,sd->ncd", mean, flexible, belongs)

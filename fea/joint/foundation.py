@@ -30,7 +30,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.joint.bending import bending_moment, mass_per_length
 from fea.joint.contact import Bands
-from fea.joint.links import BALANCED, fitting, link_forces
+from fea.joint.links import fitting, link_forces
 from fea.joint.lug import Lug
 from fea.joint.plane_contact import plane_stiffness
 from fea.joint.pressure_loads import ring_shares
@@ -51,6 +51,7 @@ LONG, LONG_ERROR = 1.8, 0.05  # a middle lug's thickness over the diameter; more
 THICKNESS = 0.3, 3.0  # limits of what was measured, over the smallest diameter
 WIDTH = 1.6, 4.0  # of the lug, over the diameter
 BORE = 0.0, 0.7  # over the diameter
+BALANCED = 1e-6  # of the largest force and the length: a couple below it is none
 ROUND_OFF = 1e-9
 
 Ints = NDArray[np.int64]

@@ -19,7 +19,7 @@ from fea.core.pin_loads import Floats, LugEdge, PinLoads
 from fea.joint.bending import bending_moment, mass_per_length
 from fea.joint.contact import Bands, ContactProblem, Pressed
 from fea.joint.flexibility import half_plane, lug_flexibility, pin_flexibility
-from fea.joint.links import fitting, link_forces
+from fea.joint.links import fitting, link_forces, link_numbers, on_structure
 from fea.joint.lug import Lug
 from fea.joint.pressure_loads import Patterns, PressureLoads, patterns_of
 from fea.joint.rings import annulus, ring, ringed
@@ -94,8 +94,9 @@ class JointModel:
     def __init__(
         self, pin: Pin, material: Material, lugs: Sequence[Lug], cells: Cells = Cells()
     ) -> None:
+        self.given, self.material, self.cells = pin, material, cells
+        self.whole = pin = on_structure(pin, lugs)
         self.lugs = fitting(pin, lugs)
-        self.whole, self.material, self.cells = pin, material, cells
         count = cells.rings
         self.pin = ringed(pin, pin.connections, count)
         self.rings = tuple(ring(lug.connection, i) for lug in self.lugs for i in range(count))
@@ -127,7 +128,8 @@ class JointModel:
         number = np.repeat(np.arange(len(self.lugs)), self.cells.rings)
         gap = np.concatenate([lug.gap(self._ends(lug)) for lug in self.lugs])
         tilt = [lug.tilt for lug in self.lugs]
-        cut = Bands(z, length, radius, number, gap)
+        links = link_numbers(self.whole.connections, self.given.connections)
+        cut = Bands(z, length, radius, number, gap, links)
         return ContactProblem(cut, self.of_pin + self.of_lugs, self.tail, tilt, self.cells.sectors)
 
     @property
@@ -205,8 +207,13 @@ class JointModel:
         return found
 
     def forces(self, loads: PinLoads) -> Floats:
-        """Of the links along x and y by lug, (T, B, 2) N."""
-        return link_forces(self.whole, self._mass, loads)
+        """Of the links along x and y, last of the structure, (T, L, 2) N."""
+        return link_forces(self.given, self._mass, loads, self.on_structure)
+
+    @property
+    def on_structure(self) -> bool:
+        """Whether some of the lugs are those of a structure."""
+        return len(self.lugs) > len(self.given.connections)
 
     def couples(self, loads: PinLoads) -> Floats:
         """About the middle of the bands along x and y, (T, 2) N m, of the body force."""
