@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Mapping
 from dataclasses import replace
 from itertools import pairwise
 
@@ -11,10 +12,32 @@ import numpy as np
 from fea.core.pin_loads import Floats
 from geometry import Pin, Segment
 
+USUAL = 8  # rings of a band with sharp edges
+FIRST = 1.0 / 3.0  # ring where a rounded edge begins, of its radius, if there are so many
+GROWTH = 1.6  # of each ring over the one before, from there on
 
-def graded(length: float, count: int) -> Floats:
-    """Ends of rings, (count + 1,) m from 0 on, shorter towards both ends, where pressure rises."""
-    return np.asarray(length * (1.0 - np.cos(np.linspace(0.0, np.pi, count + 1))) / 2.0)
+
+def graded(length: float, count: int, edge_radius: float = 0.0) -> Floats:
+    """Ends of rings, (R + 1,) m from 0 on, shorter where pressure rises: at sharp edges, `count` of
+    them; else where rounding begins, at `edge_radius` from both ends, as fine as `count` says.
+    """
+    if edge_radius == 0.0:
+        return np.asarray(length * (1.0 - np.cos(np.linspace(0.0, np.pi, count + 1))) / 2.0)
+    first = FIRST * edge_radius * USUAL / count
+    growth = GROWTH ** (USUAL / count)
+    rounded = _growing(edge_radius, first, growth)[::-1]
+    half = np.concatenate([rounded, _growing(length / 2.0 - edge_radius, first, growth)])
+    ends = np.concatenate([[0.0], np.cumsum(half)])
+    return np.concatenate([ends[:-1], [length / 2.0], length - ends[-2::-1]])
+
+
+def _growing(length: float, first: float, growth: float) -> Floats:
+    """Lengths that add up to `length`, m, each `growth` times the one before, from about `first`
+    on.
+    """
+    ratio = math.log1p(length * (growth - 1.0) / first) / math.log(growth)
+    parts = growth ** np.arange(math.ceil(ratio - 1e-9))
+    return np.asarray(length * parts / parts.sum())
 
 
 def ring(connection: str, i: int) -> str:
@@ -22,34 +45,39 @@ def ring(connection: str, i: int) -> str:
     return f"{connection} ring {i + 1}"
 
 
-def ringed(pin: Pin, connections: Iterable[str], count: int) -> Pin:
-    """The same shape with the bands of some connections cut into `count` rings each.
+def rings(connection: str, ends: Floats) -> list[str]:
+    """Names of all that have these ends."""
+    return [ring(connection, i) for i in range(len(ends) - 1)]
+
+
+def ringed(pin: Pin, ends: Mapping[str, Floats]) -> Pin:
+    """The same shape with the bands of some connections cut into rings, whose ends (R + 1,) are in
+    m from the band's start.
 
     A ring is cut where the band is, between its fillets: what a fillet takes stays plain.
     """
-    wanted = set(connections)
     segments: list[Segment] = []
     for i, (s, band) in enumerate(zip(pin.segments, pin.bands, strict=True)):
-        if s.connection not in wanted:
+        if s.connection is None or s.connection not in ends:
             segments.append(s)
             continue
-        ends = [pin.stations[i], *(band.z0 + graded(band.length, count))[1:-1], pin.stations[i + 1]]
+        inner = (band.z0 + ends[s.connection])[1:-1]
         parts = [
             replace(s, length=float(b - a), name=None, connection=ring(s.connection, k), fillet=0.0)
-            for k, (a, b) in enumerate(pairwise(ends))
+            for k, (a, b) in enumerate(pairwise([pin.stations[i], *inner, pin.stations[i + 1]]))
         ]
         parts[-1] = replace(parts[-1], fillet=s.fillet)
         segments += parts
     return replace(pin, segments=tuple(segments))
 
 
-def annulus(pin: Pin, connection: str, outer_diameter: float, count: int) -> Pin:
+def annulus(pin: Pin, connection: str, outer_diameter: float, ends: Floats) -> Pin:
     """A lug's eye, as a body of revolution from z = 0 on, whose bore has the rings of the band on
     which it bears.
     """
     band = pin.band(connection)
     segments = tuple(
         Segment(float(b - a), outer_diameter, 2.0 * band.radius, connection=ring(connection, k))
-        for k, (a, b) in enumerate(pairwise(graded(band.length, count)))
+        for k, (a, b) in enumerate(pairwise(ends))
     )
     return Pin(f"lug {connection}", segments)

@@ -17,12 +17,19 @@ from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.joint.contact import Bands, ContactProblem, Pressed
-from fea.joint.flexibility import half_plane, lug_flexibility, pin_flexibility
+from fea.joint.fit import fitted
+from fea.joint.flexibility import (
+    half_plane,
+    lug_flexibility,
+    pin_flexibility,
+    wavy_flexibility,
+)
 from fea.joint.lug import Lug
 from fea.joint.pressure_loads import PressureLoads, pressure_loads
-from fea.joint.rings import annulus, ring, ringed
+from fea.joint.rings import annulus, graded, ringed, rings
 from geometry import Pin
 
+WAVES = 4  # times the sectors: harmonics in which neighbouring rings feel each other
 BALANCED = 1e-6  # of the largest force: what links and the body force may leave over
 
 
@@ -87,53 +94,54 @@ class JointContact:
 class JointModel:
     """A pin in its lugs, with the flexibilities that serve all cases and clearances.
 
-    Raises: ValueError for a lug where no link bears, or a band without one; MeshError, SolveError.
+    Raises: ArgumentError for lugs that do not fit the pin; MeshError, SolveError.
     """
 
     def __init__(
         self, pin: Pin, material: Material, lugs: Sequence[Lug], cells: Cells = Cells()
     ) -> None:
-        named = {lug.connection: lug for lug in lugs}
-        if len(named) < len(lugs) or set(named) != set(pin.connections):
-            raise ValueError(
-                f"pin {pin.name} needs one lug for each of {', '.join(pin.connections)}"
-            )
         self.whole, self.material, self.cells = pin, material, cells
-        self.lugs = tuple(named[connection] for connection in pin.connections)
-        for lug in self.lugs:
-            if lug.outer_diameter <= 2.0 * pin.band(lug.connection).radius:
-                raise ValueError(f"lug {lug.connection}: it must be wider than the pin")
-        count = cells.rings
-        self.pin = ringed(pin, pin.connections, count)
-        self.rings = tuple(ring(lug.connection, i) for lug in self.lugs for i in range(count))
-        flexible = pin_flexibility(self.pin, self.rings, material, cells.across, cells.highest)
-        for b, lug in enumerate(self.lugs):
-            own = slice(b * count, (b + 1) * count)
-            eye = annulus(pin, lug.connection, lug.outer_diameter, count)
-            across = cells.across * lug.outer_diameter / eye.segments[0].bore / 4.0
-            flexible[:, own, own] += lug_flexibility(eye, lug.material, across, cells.highest)
-        self.flexibility = flexible
+        self.lugs = fitted(pin, material, lugs)
+        self.ends = {
+            lug.connection: graded(pin.band(lug.connection).length, cells.rings, lug.edge_radius)
+            for lug in self.lugs
+        }
+        self.pin = ringed(pin, self.ends)
+        self.rings = tuple(name for c, ends in self.ends.items() for name in rings(c, ends))
+        self.flexibility = self._flexibility()
+
+    def _flexibility(self) -> Floats:
+        """Of pin and lugs on all rings, by harmonic."""
+        cells, waves = self.cells, np.arange(self.cells.highest + 1, WAVES * self.cells.sectors)
+        low = pin_flexibility(self.pin, self.rings, self.material, cells.across, cells.highest)
+        high = np.zeros((len(waves), *low.shape[1:]))
+        first = 0
+        for lug, ends in zip(self.lugs, self.ends.values(), strict=True):
+            own = slice(first, first + len(ends) - 1)
+            first = own.stop
+            radius = self.whole.band(lug.connection).radius
+            eye = annulus(self.whole, lug.connection, lug.outer_diameter, ends)
+            low[:, own, own] += lug_flexibility(eye, lug, cells.across, cells.highest)
+            high[:, own, own] = wavy_flexibility(lug, self.material, radius, ends, waves)
+        return np.concatenate([low, high])
 
     def contact(self) -> ContactProblem:
         """Ready for any loads."""
         bands = [self.pin.band(name) for name in self.rings]
         z, length = (np.array(x) for x in zip(*((b.middle, b.length) for b in bands), strict=True))
         radius = np.array([b.radius for b in bands])
-        number = np.repeat(np.arange(len(self.lugs)), self.cells.rings)
-        gap = np.concatenate([lug.gap(self._ends(lug)) for lug in self.lugs])
+        counts = [len(ends) - 1 for ends in self.ends.values()]
+        number = np.repeat(np.arange(len(self.lugs)), counts)
+        gap = np.concatenate([lug.gap(self.ends[lug.connection]) for lug in self.lugs])
         tail = np.array(
             [
-                half_plane(self.material, r) + half_plane(self.lugs[b].material, r)
+                half_plane(self.material, r) + half_plane(self.lugs[b].bearing, r)
                 for r, b in zip(radius.tolist(), number.tolist(), strict=True)
             ]
         )
         tilt = [lug.tilt for lug in self.lugs]
         cut = Bands(z, length, radius, number, gap)
         return ContactProblem(cut, self.flexibility, tail, tilt, self.cells.sectors)
-
-    def _ends(self, lug: Lug) -> Floats:
-        bands = [self.pin.band(ring(lug.connection, i)) for i in range(self.cells.rings)]
-        return np.array([bands[0].z0, *(b.z1 for b in bands)])
 
     def solve(self, loads: PinLoads) -> JointContact:
         """All instants of a case. loads: of links on all the lugs' bands or on some.
