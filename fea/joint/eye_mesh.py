@@ -12,6 +12,7 @@ from geometry import Pin
 from geometry.mesh.section_mesh import MeridianMesh
 
 GROWTH = 1.6  # of each layer over the one before, from the bore outwards
+THROUGH = 2.0  # elements through a bushing at least: with one, its far side is felt at the bore
 
 
 def eye_mesh(eye: Pin, across: float, interface: float | None = None) -> MeridianMesh:
@@ -23,7 +24,7 @@ def eye_mesh(eye: Pin, across: float, interface: float | None = None) -> Meridia
     bore, outer = eye.segments[0].bore / 2.0, eye.segments[0].diameter / 2.0
     size = 2.0 * bore / across
     ends = [bore, *([] if interface is None else [interface]), outer]
-    r = np.concatenate([[bore], *_layers(ends, size)])
+    r = np.concatenate([[bore], *_layers(ends, min(size, (ends[1] - bore) / THROUGH))])
     z = np.concatenate([[0.0], *(_even(s, e, size) for s, e in _rings(eye))])
     grid = MeshTri2.from_mesh(MeshQuad.init_tensor(r, z).to_meshtri(style="x"))
     return MeridianMesh(grid, _edges(eye, grid), np.zeros(0, dtype=np.int64))

@@ -10,34 +10,46 @@ from itertools import pairwise
 import numpy as np
 
 from fea.core.pin_loads import Floats
-from geometry import Pin, Segment
+from geometry import Band, Pin, Segment
 
-USUAL = 8  # rings of a band with sharp edges
+USUAL = 8  # rings of a band with sharp edges, if it is not long
+LONGEST = 0.25  # ring, of the diameter, if there are so many
 FIRST = 1.0 / 3.0  # ring where a rounded edge begins, of its radius, if there are so many
 GROWTH = 1.6  # of each ring over the one before, from there on
 
 
-def graded(length: float, count: int, edge_radius: float = 0.0) -> Floats:
-    """Ends of rings, (R + 1,) m from 0 on, shorter where pressure rises: at sharp edges, `count` of
-    them; else where rounding begins, at `edge_radius` from both ends, as fine as `count` says.
+def ring_ends(band: Band, edge_radius: float, count: int) -> Floats:
+    """Ends of the rings of a band, (R + 1,) m from its start on, as fine as `count` says: so many
+    where the bore has sharp edges, but for long bands; where it has rounded ones as many as lead
+    from their radius to the middle.
     """
+    coarser = USUAL / count
+    longest = 2.0 * LONGEST * band.radius * coarser
     if edge_radius == 0.0:
-        return np.asarray(length * (1.0 - np.cos(np.linspace(0.0, np.pi, count + 1))) / 2.0)
-    first = FIRST * edge_radius * USUAL / count
-    growth = GROWTH ** (USUAL / count)
-    rounded = _growing(edge_radius, first, growth)[::-1]
-    half = np.concatenate([rounded, _growing(length / 2.0 - edge_radius, first, growth)])
-    ends = np.concatenate([[0.0], np.cumsum(half)])
-    return np.concatenate([ends[:-1], [length / 2.0], length - ends[-2::-1]])
+        least = math.ceil(0.5 * math.pi * band.length / longest - 1e-9)
+        return graded(band.length, max(count, least))
+    first, growth = FIRST * edge_radius * coarser, GROWTH**coarser
+    outside = _growing(edge_radius, first, growth, longest)[::-1]
+    flat = _growing(band.length / 2.0 - edge_radius, first, growth, longest)
+    ends = np.cumsum([0.0, *outside, *flat])
+    return np.concatenate([ends[:-1], [band.length / 2.0], band.length - ends[-2::-1]])
 
 
-def _growing(length: float, first: float, growth: float) -> Floats:
-    """Lengths that add up to `length`, m, each `growth` times the one before, from about `first`
-    on.
+def graded(length: float, count: int) -> Floats:
+    """Ends of rings, (count + 1,) m from 0 on, shorter towards both ends, where pressure rises."""
+    return np.asarray(length * (1.0 - np.cos(np.linspace(0.0, np.pi, count + 1))) / 2.0)
+
+
+def _growing(length: float, first: float, growth: float, longest: float) -> Floats:
+    """Lengths that add up to `length`, m: from about `first` on each `growth` times the one before,
+    up to `longest`.
     """
-    ratio = math.log1p(length * (growth - 1.0) / first) / math.log(growth)
-    parts = growth ** np.arange(math.ceil(ratio - 1e-9))
-    return np.asarray(length * parts / parts.sum())
+    most = math.ceil(length / longest) + math.ceil(
+        max(0.0, math.log(longest / first) / math.log(growth))
+    )
+    parts = np.minimum(first * growth ** np.arange(most + 1), longest)
+    parts = parts[: int(np.searchsorted(np.cumsum(parts), length * (1.0 - 1e-9))) + 1]
+    return np.asarray(parts * (length / parts.sum())) if length > 0.0 else np.zeros(0)
 
 
 def ring(connection: str, i: int) -> str:

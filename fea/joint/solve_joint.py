@@ -26,7 +26,7 @@ from fea.joint.flexibility import (
 )
 from fea.joint.lug import Lug
 from fea.joint.pressure_loads import PressureLoads, pressure_loads
-from fea.joint.rings import annulus, graded, ringed, rings
+from fea.joint.rings import annulus, ring_ends, ringed, rings
 from geometry import Pin
 
 WAVES = 4  # times the sectors: harmonics in which neighbouring rings feel each other
@@ -35,8 +35,9 @@ BALANCED = 1e-6  # of the largest force: what links and the body force may leave
 
 @dataclass(frozen=True)
 class Cells:
-    """How finely contact is resolved: rings of a band, sectors round it, the highest harmonic of
-    elasticity, elements over the pin's diameter where flexibilities are found.
+    """How finely contact is resolved: rings of a band with sharp edges (fea.joint.rings), sectors
+    round it, the highest harmonic of elasticity, elements over the pin's diameter where
+    flexibilities are found.
     """
 
     rings: int = 8
@@ -103,7 +104,7 @@ class JointModel:
         self.whole, self.material, self.cells = pin, material, cells
         self.lugs = fitted(pin, material, lugs)
         self.ends = {
-            lug.connection: graded(pin.band(lug.connection).length, cells.rings, lug.edge_radius)
+            lug.connection: ring_ends(pin.band(lug.connection), lug.edge_radius, cells.rings)
             for lug in self.lugs
         }
         self.pin = ringed(pin, self.ends)
