@@ -52,9 +52,9 @@ def pin_flexibility(
 
 
 def _grades(pin: Pin, rings: Sequence[str], growth: float) -> list[Grade]:
-    """Elements no longer than a ring at its ends."""
+    """Elements at a ring's ends no longer than half of it."""
     bands = (pin.band(name) for name in rings)
-    return [Grade(((b.radius, b.z0), (b.radius, b.z1)), b.length, 0.0, growth) for b in bands]
+    return [Grade(((b.radius, b.z0), (b.radius, b.z1)), b.length / 2.0, 0.0, growth) for b in bands]
 
 
 def lug_flexibility(eye: Pin, lug: Lug, across: float, highest: int) -> Floats:

@@ -123,8 +123,8 @@ def test_soft_lugs() -> None:
 
 
 def test_two_halves_of_a_lug() -> None:
-    """Side by side, with half of the force each: the moment at mid-span to 5 %, and more, because each
-    eye gives way to a tilt by itself.
+    """Side by side, with half of the force each: the moment at mid-span to 5 %, and more, because
+    each eye gives way to a tilt by itself.
     """
     over, apart = Segment(0.002, D), Segment(0.001, D)
     ends = [Segment(0.01, D, connection=name) for name in ("L", "R")]
