@@ -14,21 +14,20 @@ from geometry import Band, Pin, Segment
 
 USUAL = 8  # rings of a band with sharp edges, if it is not long
 LONGEST = 0.25  # ring, of the diameter, if there are so many
-FIRST = 1.0 / 3.0  # ring where a rounded edge begins, of its radius, if there are so many
 GROWTH = 1.6  # of each ring over the one before, from there on
 
 
-def ring_ends(band: Band, edge_radius: float, count: int) -> Floats:
+def ring_ends(band: Band, edge_radius: float, count: int, beside: float) -> Floats:
     """Ends of the rings of a band, (R + 1,) m from its start on, as fine as `count` says: so many
     where the bore has sharp edges, but for long bands; where it has rounded ones as many as lead
-    from their radius to the middle.
+    from their radius to the middle, the first of `beside` times the radius for the usual count.
     """
     coarser = USUAL / count
     longest = 2.0 * LONGEST * band.radius * coarser
     if edge_radius == 0.0:
         least = math.ceil(0.5 * math.pi * band.length / longest - 1e-9)
         return graded(band.length, max(count, least))
-    first, growth = FIRST * edge_radius * coarser, GROWTH**coarser
+    first, growth = beside * edge_radius * coarser, GROWTH**coarser
     outside = _growing(edge_radius, first, growth, longest)[::-1]
     flat = _growing(band.length / 2.0 - edge_radius, first, growth, longest)
     ends = np.cumsum([0.0, *outside, *flat])
