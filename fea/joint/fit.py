@@ -36,11 +36,12 @@ def fitted(pin: Pin, material: Material, lugs: Sequence[Lug]) -> tuple[Lug, ...]
             f"pin {pin.name} needs one lug for each of {', '.join(pin.connections)}",
             "lugs-unlike-bands",
         )
+    bores = {s.connection: s.bore for s in pin.segments}
     for lug in lugs:
-        _require_walls(lug, pin.band(lug.connection))
-        _require_gap(lug, pin.band(lug.connection))
-        bores = {s.connection: s.bore for s in pin.segments}
-        _require_elastic(lug, pin.band(lug.connection), bores[lug.connection] / 2.0, material)
+        band = pin.band(lug.connection)
+        _require_walls(lug, band)
+        _require_gap(lug, band)
+        _require_elastic(lug, band, bores[lug.connection] / 2.0, material)
     return tuple(named[connection] for connection in pin.connections)
 
 
