@@ -37,20 +37,6 @@ def link_numbers(connections: Sequence[str], links: Sequence[str]) -> NDArray[np
     return np.array([number.get(name, len(links)) for name in connections], dtype=np.int64)
 
 
-def fitting(pin: Pin, lugs: Sequence[Lug]) -> tuple[Lug, ...]:
-    """The lugs in the order of the pin's bands.
-
-    Raises: ValueError for a lug where no link bears, a band without one, or one no wider than it.
-    """
-    named = {lug.connection: lug for lug in lugs}
-    if len(named) < len(lugs) or set(named) != set(pin.connections):
-        raise ValueError(f"pin {pin.name} needs one lug for each of {', '.join(pin.connections)}")
-    for lug in lugs:
-        if lug.outer_diameter <= 2.0 * pin.band(lug.connection).radius:
-            raise ValueError(f"lug {lug.connection}: it must be wider than the pin")
-    return tuple(named[connection] for connection in pin.connections)
-
-
 def link_forces(pin: Pin, mass: float, loads: PinLoads, structure: bool = False) -> Floats:
     """Of the links along x and y by connection, (T, L, 2) N, and last of the structure, if any of
     the lugs is its; mass: of the pin, kg. A small imbalance with the body force, as where a weight
