@@ -27,6 +27,7 @@ FEWEST = 3  # meshes before a maximum can be converged: two can agree by chance
 
 ARTICLES = {
     "sharp corner": "a", "edge of a clamp": "the", "edge of a load": "the", "edge of a lug": "the",
+    "rounded edge of a lug": "the",
 }  # fmt: skip
 UNRESOLVED = ", not resolved closer than the first ring of the contact pressure"
 
@@ -83,11 +84,11 @@ class Seen:
 
     @property
     def range(self) -> tuple[float, float]:
-        """Bounds of the maximum, Pa: from its error; where a singular zone governs, from half and
-        twice the excluded distance, with the error.
+        """Bounds of the maximum, Pa: from its error; where stress is larger in an excluded zone,
+        from half and twice the excluded distance, with the error.
         """
         last = self.results[-1]
-        if not last.singular:
+        if not last.governed:
             return last.maximum - self.error, last.maximum + self.error
         low, high = last.interval or (last.maximum, last.maximum)
         return low * (1.0 - self.relative), high * (1.0 + self.relative)
@@ -107,7 +108,7 @@ def zones(result: MeshResult, singularities: Sequence[Singularity]) -> tuple[Sin
             exponent=inside.exponent,
             exponent_theory=singularity.theory,
             excluded=singularity.radius,
-            governs=inside.felt > result.maximum,
+            governs=inside.felt > result.maximum and not inside.bounded,
             max_von_mises=inside.maximum,
             advice=singularity.advice,
             strength=inside.strength,
@@ -147,6 +148,12 @@ def judge(
         outside = "" if known else f"; outside, {own.text}"
         text = f"{_nowhere(worst)}; half and twice the excluded distance give {ends}{outside}"
         own = Note(text, own.codes)
+    elif last.governed:
+        interval = seen.range
+        error = max(last.maximum - interval[0], interval[1] - last.maximum)
+        if error > tolerance * last.maximum:
+            verdict = "unconverged"
+        own = _local(last, interval) + own
     own = own + note
     return Peak(
         pin=seen.pin,
@@ -162,6 +169,18 @@ def judge(
         interval=interval,
         parts=seen.parts,
         reasons=own.codes,
+    )
+
+
+def _local(last: MeshResult, interval: tuple[float, float]) -> Note:
+    """Of stress at rounded edges that is larger than outside."""
+    worst = max(inside.felt for inside in last.governed)
+    ends = " to ".join(f"{end / last.maximum - 1.0:+.0%}" for end in interval)
+    return Note(
+        "away from the rounded edges of lugs, where contact stress is local (at least "
+        f"{worst / last.maximum:.1f} times as large, not resolved); half and twice the excluded "
+        f"distance give {ends}; ",
+        ("local-contact",),
     )
 
 

@@ -33,6 +33,7 @@ class AtSingularity:
     mesh is, where (x, y, z in m); felt: the largest farther away than FELT of its feature; and the
     exponent with which stress was seen to grow, None where that could not be measured. acts: false
     where only other cases of the pin load the singularity, so that stress has a bound there.
+    bounded: true where it has one that is not resolved, at a rounded edge of a lug.
     strength: of the singularity, where the exponent was measured.
     """
 
@@ -42,6 +43,7 @@ class AtSingularity:
     exponent: float | None = None
     acts: bool = True
     strength: Strength | None = None
+    bounded: bool = False
 
 
 @dataclass(frozen=True)
@@ -54,7 +56,7 @@ class MeshResult:
     much it may be higher between two instants, Pa. high: points (r, z) of a section, m, where a
     finer mesh may find the maximum. quiet: fillets, as numbers of corners, where none will
     (fea.harmonic.quiet_corners). interval: the maximum if half and twice the distance is left out
-    of what governs, Pa; None where no singularity governs.
+    of what governs, Pa; None where nothing in them does.
     """
 
     unknowns: int
@@ -70,6 +72,11 @@ class MeshResult:
     interval: tuple[float, float] | None = None
 
     @property
+    def governed(self) -> tuple[AtSingularity, ...]:
+        """Those in which stress is felt to be larger than outside."""
+        return tuple(s for s in self.singularities if s.acts and s.felt > self.maximum)
+
+    @property
     def singular(self) -> bool:
-        """Whether stress is felt to be larger inside of a singularity."""
-        return any(inside.acts and inside.felt > self.maximum for inside in self.singularities)
+        """Whether there is one in which it has no bound."""
+        return any(not inside.bounded for inside in self.governed)

@@ -62,9 +62,10 @@ class UnitLoad(NamedTuple):
 
 
 class LugEdge(NamedTuple):
-    """The sharp edge of a lug on a band (`surface`, by name) of a pin: a circle at (r, z), m, near
-    which pressure grows like distance^-exponent (fea.singular.lug_edge). feature: how far (m) that
-    reaches at most: the length of the lug, or of the gap to the next one if that is shorter.
+    """The edge of a lug on a band (`surface`, by name) of a pin: a circle at (r, z), m, near which
+    pressure grows like distance^-exponent (fea.singular.lug_edge), or does so until close to it
+    where it is `rounded`. feature: how far (m) that reaches at most: the length of the lug, or of
+    the gap to the next one if that is shorter.
     """
 
     surface: str
@@ -72,6 +73,7 @@ class LugEdge(NamedTuple):
     z: float
     exponent: float
     feature: float = math.inf
+    rounded: bool = False
 
 
 @dataclass(frozen=True)

@@ -203,7 +203,7 @@ def harmonic_result(
         high=_high(around, fields.points, among, top),
         quiet=solution.quiet,
     )
-    return replace(result, interval=interval(fields, around, mine)) if result.singular else result
+    return replace(result, interval=interval(fields, around, mine)) if result.governed else result
 
 
 def _high(

@@ -34,7 +34,8 @@ def inside(
     top = around.top(within)
     felt = around.top(within & (distance >= FELT * singularity.feature * (1.0 - 1e-9))).value
     c, s = math.cos(top.angle), math.sin(top.angle)
-    found = AtSingularity(top.value, felt, (singularity.r * c, singularity.r * s, singularity.z))
+    at = (singularity.r * c, singularity.r * s, singularity.z)
+    found = AtSingularity(top.value, felt, at, bounded=singularity.bounded)
     if not singularity.measured or close != CLOSE[-1]:
         return found
     exponent, how_strong = _growth(fields, around, singularity, distance, top.instant, nu)

@@ -62,7 +62,7 @@ class PressureLoads(PinLoads):
 @dataclass(frozen=True)
 class Patterns:
     """Patterns (K, R) in Pa over the rings of a pin, one array for each harmonic from 0 on. edges:
-    sharp ones of its lugs.
+    of its lugs.
     """
 
     pin: Pin

@@ -32,8 +32,9 @@ from fea.solve_pin import Progress, Solution, imbalance, solve_pin
 from fea.verdict import accuracy
 from geometry import Pin
 
-SETS = (Cells(), Cells(12, 54, 18), Cells(18, 80, 26))  # of cells, until one is fine enough
-CELLS = 0.5  # of the tolerance: what the cells may take
+SETS = Cells(), Cells(12, 48, 16)  # until one is fine enough
+CELLS = 0.5  # of the tolerance: what the cells may take in any case
+MOST_CELLS = 6000  # a dense matrix of them takes 300 MB
 CONTACT = Note("contact, harmonic: the pin is held by its lugs", ("contact",))
 
 
@@ -71,17 +72,23 @@ def solve_in_lugs(
     Raises: ArgumentError for lugs that do not fit; MeshError, SolveError.
     """
     found: dict[str, LugSolution] = {}
-    for cells in SETS:
+    for cells, finer in zip(SETS, (*SETS[1:], None), strict=True):
         left = tuple(case for case in given.cases if case.case not in found)
         progress(f"pin {given.pin.name}, flexibility of {cells.rings} rings of each lug")
         model = JointModel(given.pin, given.material, given.lugs, cells)
         for case in left:
             solution = _solved(model, given, case, asked, progress)
-            if _fine_enough(solution.solution.peak, asked) or cells == SETS[-1]:
+            last = finer is None or _count(model, finer) > MOST_CELLS
+            if _fine_enough(solution.solution.peak, asked) or last:
                 found[case.case] = solution
         if len(found) == len(given.cases):
             break
     return tuple(found[case.case] for case in given.cases)
+
+
+def _count(model: JointModel, cells: Cells) -> int:
+    """How many there would be, roughly."""
+    return len(model.rings) * cells.rings // model.cells.rings * cells.sectors
 
 
 class _Pressing:
@@ -127,7 +134,8 @@ def _fine_enough(peak: Peak, asked: Asked) -> bool:
     """Whether finer cells would not help."""
     if peak.parts is None or not peak.max_von_mises:
         return True
-    return peak.parts.cells <= CELLS * asked.tolerance * peak.max_von_mises
+    most = asked.tolerance * peak.max_von_mises
+    return peak.parts.cells <= CELLS * most or peak.parts.total <= most
 
 
 def _solved(

@@ -150,7 +150,7 @@ class JointModel:
         with the flexibilities at hand.
         """
         other = copy.copy(self)
-        for known in ("contact", "flexibility", "sharp_edges"):
+        for known in ("contact", "flexibility", "edges"):
             other.__dict__.pop(known, None)
         other.lugs = tuple(_softer(lug, softness) for lug in lugs)
         other.of_lugs = softness * self.of_lugs
@@ -191,22 +191,21 @@ class JointModel:
     def patterns(self, pressures: Sequence[Floats]) -> Patterns:
         """Those of which pressures (T, R, M) Pa are made."""
         made = patterns_of(self.pin, self.rings, pressures, self.cells.highest)
-        return replace(made, edges=self.sharp_edges)
+        return replace(made, edges=self.edges)
 
     @cached_property
-    def sharp_edges(self) -> tuple[LugEdge, ...]:
-        """Of the bores that have no edge radius."""
+    def edges(self) -> tuple[LugEdge, ...]:
+        """Of the bores, rounded where they have an edge radius."""
         bands = [self.whole.band(lug.connection) for lug in self.lugs]
         ends = np.array([[b.z0, b.z1] for b in bands])
         found = []
         for lug, band in zip(self.lugs, bands, strict=True):
-            if lug.edge_radius > 0.0:
-                continue
             exponent = lug_edge_exponent(self.material, lug.bearing)
             for z in (band.z0, band.z1):
                 gaps = np.abs(ends - z)
                 feature = float(gaps[gaps > 0.0].min())
-                found.append(LugEdge(lug.connection, band.radius, z, exponent, feature))
+                at, rounded = (band.radius, z), lug.edge_radius > 0.0
+                found.append(LugEdge(lug.connection, *at, exponent, feature, rounded))
         return tuple(found)
 
     def joined(self, found: Sequence[Pressed], loads: PressureLoads) -> JointContact:

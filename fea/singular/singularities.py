@@ -16,7 +16,9 @@ from geometry import Pin, Vertex, vertices
 from geometry.shape.tolerance import SAME
 
 Floats = NDArray[np.float64]
-Kind = Literal["sharp corner", "edge of a clamp", "edge of a load", "edge of a lug"]
+Kind = Literal[
+    "sharp corner", "edge of a clamp", "edge of a load", "edge of a lug", "rounded edge of a lug"
+]
 
 FLAT = 1e-9  # rad: two surfaces that meet at pi within this are one smooth surface
 VARIED = (0.5, 2.0)  # times the excluded distance, which is a convention
@@ -56,6 +58,11 @@ class Singularity:
         not where that is a logarithm, nor under a lug, whose pressure is even on each ring.
         """
         return self.kind in ("sharp corner", "edge of a clamp")
+
+    @property
+    def bounded(self) -> bool:
+        """Whether stress has a bound that is not resolved."""
+        return self.kind == "rounded edge of a lug"
 
     @property
     def following(self) -> float:
@@ -103,8 +110,9 @@ def find_singularities(
 
 
 def lug_edges(pin: Pin, edges: Iterable[LugEdge], distance: float = 0.1) -> tuple[Singularity, ...]:
-    """The sharp edges of lugs that are singular, in their order: those with an exponent, where the
-    pin's surface is smooth (a lug flush with an end face presses on no half plane).
+    """The edges of lugs that are singular, or would be if they were not rounded, in their order:
+    those with an exponent, where the pin's surface is smooth (a lug flush with an end face presses
+    on no half plane).
 
     distance: of the local diameter, that is not to be read. Stress nearer than the first ring of
     the contact pressure is not resolved.
@@ -128,12 +136,12 @@ def _lug_edge(
         return None
     return Singularity(
         *at,
-        kind="edge of a lug",
+        kind="rounded edge of a lug" if edge.rounded else "edge of a lug",
         between=(edge.surface, "its lug"),
-        theory=edge.exponent,
+        theory=None if edge.rounded else edge.exponent,
         torsion_theory=0.0,
         radius=distance * 2.0 * edge.r,
-        advice=_ROUNDED,
+        advice=_LOCAL if edge.rounded else _ROUNDED,
         feature=min([edge.feature, *(math.dist(at, corner) for corner in corners)]),
         angle=math.pi,
     )
@@ -217,6 +225,10 @@ _INSTEAD_OF_TRACTION = (
     'use distribution = "cosine": a bearing pressure has no jump of shear at its edge'
 )
 _ROUNDED = "give the bore an edge_radius: rounded, the stress is finite there"
+_LOCAL = (
+    "contact stress at the edge of a bore is local: assess it as bearing stress, or by the wear "
+    "and fretting that it causes"
+)
 _BORE = (
     "a radius here would make it finite, but the step of a bore cannot be given one; read the "
     "stress away from it"
