@@ -6,6 +6,10 @@ force is a traction of constant direction on the outer surface, whose mean tilt 
 What differs: elements (C3D20R), contact (surface to surface, by a penalty), solver, stress
 recovery. Of forces that lie in a plane only one half is modelled. A lug begins where it touches
 the pin: shifted by half of its clearance along its force, which without friction changes nothing.
+
+CalculiX finds contact between the moved bodies, ours between those at rest. So forces and gaps are
+made small in one proportion (Fineness.scale) and results enlarged by it: this is the limit that
+fea.joint computes. At full loads a lug that tilts slides along the pin by more than an element.
 """
 
 from __future__ import annotations
@@ -31,10 +35,6 @@ from geometry import ArgumentError, Pin
 
 Ints = NDArray[np.int64]
 
-# Of the contact, times Young's modulus over the diameter. Halved or doubled it changes the moment
-# and the stress of a clevis by 0.1 to 0.2 %; at 1,000 CalculiX may find tension in the contact and
-# append an increment, whose answer is off the others' trend by 1 %.
-STIFFNESS = 200.0
 APPENDED = "zero-size increment is appended"
 USUAL = Fineness()
 IN_A_PLANE = 1e-9  # of the largest force: what may be across the plane of the others
@@ -115,20 +115,17 @@ def joint_opinion(
     lugs: Sequence[Lug],
     loads: PinLoads,
     fineness: Fineness = USUAL,
-    stiffness: float = STIFFNESS,
 ) -> JointOpinion:
     """CalculiX's opinion on a pin under loads of one instant: forces across of the links, no more.
 
-    stiffness: of the contact, times Young's modulus of the pin over its smallest diameter, per m.
-
     Raises: ArgumentError for loads or shapes that this model lacks; CalculixError.
     """
-    deck, angle = joint_deck(pin, material, lugs, loads, fineness, stiffness)
+    deck, angle = joint_deck(pin, material, lugs, loads, fineness)
     with tempfile.TemporaryDirectory(prefix="pinstress-ccx-") as name:
         folder = Path(name)
         deck.write(folder / f"{calculix.JOB}.inp")
         printed = calculix.run(folder)
-        return _read(pin, deck, angle, folder, printed)
+        return _read(pin, deck, angle, folder, printed, fineness.scale)
 
 
 def joint_deck(
@@ -137,13 +134,12 @@ def joint_deck(
     lugs: Sequence[Lug],
     loads: PinLoads,
     fineness: Fineness,
-    stiffness: float = STIFFNESS,
 ) -> tuple[JointDeck, float]:
     """The deck, and by which angle (rad) its axes are turned about the pin's. As joint_opinion."""
     force = _forces(loads, [lug.connection for lug in lugs])
     angle, half = _plane(force)
     c, s = np.cos(angle), np.sin(angle)
-    turned = force @ np.array([[c, -s], [s, c]]) * (0.5 if half else 1.0)
+    turned = force @ np.array([[c, -s], [s, c]]) * (0.5 if half else 1.0) * fineness.scale
     stations = _stations(pin, fineness)
     mesh = pin_mesh(pin, stations, fineness, half)
     eyes = [
@@ -151,7 +147,7 @@ def joint_deck(
         for lug, f in zip(lugs, turned, strict=True)
     ]
     eyes.sort(key=lambda eye: float(eye.part.mesh.nodes[:, 2].min()))
-    hard = stiffness * material.youngs_modulus / pin.smallest_diameter
+    hard = fineness.stiffness * material.youngs_modulus / pin.smallest_diameter
     return JointDeck(Part("PIN", mesh, material), tuple(eyes), hard, half), angle
 
 
@@ -201,7 +197,8 @@ def _eye(
 ) -> Eye:
     i = pin.labels.index(lug.connection)
     radius, z = pin.segments[i].diameter / 2.0, stations[i]
-    body = _opened(annulus_mesh(radius, lug.outer_diameter / 2.0, z, fineness, half), lug, force)
+    plain = annulus_mesh(radius, lug.outer_diameter / 2.0, z, fineness, half)
+    body = _opened(plain, lug, force, fineness.scale)
     before = sum(len(x) - 1 for x in stations[:i])
     surface = np.abs(mesh.outer - radius) < 1e-9 * radius
     ring = (mesh.layer - before) // fineness.parts
@@ -210,8 +207,10 @@ def _eye(
     return Eye(part, force, lug.tilt * (0.5 if half else 1.0), rings)
 
 
-def _opened(mesh: Hexahedra, lug: Lug, force: Floats) -> Hexahedra:
-    """With the clearance and rounding of the bore, shifted until the loaded side touches."""
+def _opened(mesh: Hexahedra, lug: Lug, force: Floats, scale: float) -> Hexahedra:
+    """With the clearance and rounding of the bore, times `scale`, shifted until the loaded side
+    touches.
+    """
     x = mesh.nodes
     r = np.hypot(x[:, 0], x[:, 1])
     edge = np.minimum(x[:, 2] - x[:, 2].min(), x[:, 2].max() - x[:, 2])
@@ -219,14 +218,17 @@ def _opened(mesh: Hexahedra, lug: Lug, force: Floats) -> Hexahedra:
     depth = lug.edge_radius - np.sqrt(lug.edge_radius**2 - left**2)
     share = (mesh.outer.max() - r) / (mesh.outer.max() - mesh.inner.min())
     moved = x.copy()
-    moved[:, :2] *= (1.0 + share * (0.5 * lug.clearance + depth) / r)[:, None]
+    half = 0.5 * scale * lug.clearance
+    moved[:, :2] *= (1.0 + share * (half + scale * depth) / r)[:, None]
     size = float(np.linalg.norm(force))
-    if size and lug.clearance > 0.0:
-        moved[:, :2] += 0.5 * lug.clearance * force / size
+    if size and half > 0.0:
+        moved[:, :2] += half * force / size
     return replace(mesh, nodes=moved)
 
 
-def _read(pin: Pin, deck: JointDeck, angle: float, folder: Path, printed: str) -> JointOpinion:
+def _read(
+    pin: Pin, deck: JointDeck, angle: float, folder: Path, printed: str, scale: float
+) -> JointOpinion:
     """The results of a run. Raises: CalculixError."""
     seconds = calculix.seconds_of(printed)
     mesh, count = deck.pin.mesh, len(deck.eyes[0].rings)
@@ -244,6 +246,7 @@ def _read(pin: Pin, deck: JointDeck, angle: float, folder: Path, printed: str) -
         )
     c, s = np.cos(angle), np.sin(angle)
     back = np.array([[c, s], [-s, c]])
+    each = each / scale
     force, first = each[:, :2], np.stack([each[:, 4], -each[:, 3]], axis=1)
     if deck.half:
         force, first = (2.0 * x * [1.0, 0.0] for x in (force, first))
@@ -253,7 +256,7 @@ def _read(pin: Pin, deck: JointDeck, angle: float, folder: Path, printed: str) -
         first @ back,
         mesh.nodes,
         mesh.elements,
-        stress,
+        stress / scale,
         angle,
         deck.half,
         edges(pin),

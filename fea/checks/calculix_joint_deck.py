@@ -131,6 +131,7 @@ class JointDeck:
             yield from (f"{n}, 0, 0, 0" for n in (shift, tilt))
             for axis in self.axes:
                 yield from _equations(eye.part.mesh, node, axis, shift, tilt)
+        yield from self._axial(first)
         yield from self._springs(first)
         yield "*BOUNDARY"
         yield from self._fixed(first)
@@ -155,7 +156,7 @@ class JointDeck:
             yield f"{stiffness:.10e}"  # without a point it would be read as another axis
 
     def _fixed(self, first: list[tuple[int, int]]) -> Iterator[str]:
-        """The first lug's shift, guided lugs' tilts, every body along its axis and about it."""
+        """The first lug's shift, guided lugs' tilts, and what lies in the plane of symmetry."""
         shift, _ = self._auxiliary(0)
         yield from (f"{shift}, {axis}" for axis in self.axes)
         for b, eye in enumerate(self.eyes):
@@ -166,13 +167,19 @@ class JointDeck:
                 yield from (f"{tilt}, {axis}" for axis in self.axes)
         for part, (start, _) in zip(self._parts, first, strict=True):
             x = part.mesh.nodes
-            far = int(np.argmax(x[:, 0] - 1e-3 * np.abs(x[:, 1]) - 1e-3 * x[:, 2]))
-            yield f"{start + far}, 3"
             if self.half:
                 flat = np.flatnonzero(np.abs(x[:, 1]) < 1e-9 * np.abs(x).max())
                 yield from (f"{start + n}, 2" for n in flat)
-            else:
-                yield f"{start + far}, 2"
+
+    def _axial(self, first: list[tuple[int, int]]) -> Iterator[str]:
+        """No body moves along its axis or turns about it: by two opposite nodes, so that a tilt
+        does not shift it, which would move the edges of its contact.
+        """
+        for part, (start, _) in zip(self._parts, first, strict=True):
+            one, other = _opposite(part.mesh)
+            yield from ("*EQUATION", "2", f"{start + one}, 3, 1., {start + other}, 3, 1.")
+            if not self.half:
+                yield from ("*EQUATION", "2", f"{start + one}, 2, 1., {start + other}, 2, -1.")
 
     def _step(self, first: list[tuple[int, int]]) -> Iterator[str]:
         yield "*STEP"
@@ -225,6 +232,15 @@ def _ends(mesh: Hexahedra) -> tuple[int, int]:
     x = mesh.nodes
     order = 1e-6 * np.abs(x[:, 1]) - 1e-7 * x[:, 0]
     return int(np.argmin(x[:, 2] + order)), int(np.argmin(order - x[:, 2]))
+
+
+def _opposite(mesh: Hexahedra) -> tuple[int, int]:
+    """Nodes inside of the wall, at half its length, on both sides of the axis along x."""
+    z, wall = mesh.nodes[:, 2], mesh.outer[mesh.outer > 0.0]
+    middle = 0.5 * (z.min() + z.max()) + 1e-4 * np.ptp(z)  # between two nodes not their mean
+    r = 0.5 * (mesh.inner[mesh.outer > 0.0].min() + wall.max())
+    near = [np.linalg.norm(mesh.nodes - [x, 0.0, middle], axis=1).argmin() for x in (r, -r)]
+    return int(near[0]), int(near[1])
 
 
 def _equations(mesh: Hexahedra, first: int, axis: int, shift: int, tilt: int) -> Iterator[str]:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from fea.checks import calculix
 from fea.checks.calculix import CalculixError
 from fea.checks.calculix_joint import (
     JointOpinion,
@@ -30,7 +33,7 @@ from tests.support.errors import raises
 
 D, EYE, FORCE = 0.02, 0.05, 50e3
 STEEL = Material("steel", 210e9, 0.3)
-COARSE = Fineness(rings=3, sectors=8, layers=1, eye=1)
+COARSE = Fineness(rings=3, sectors=8, layers=1, eye=1, scale=1.0)
 FORK = FORCE * np.array([[[-0.5, 0.0, 0.0], [1.0, 0.0, 0.0], [-0.5, 0.0, 0.0]]])
 PULL = PinLoads("pull", ("L", "M", "R"), FORK)
 TURN = np.array([[0.6, 0.8, 0.0], [-0.8, 0.6, 0.0], [0.0, 0.0, 1.0]])
@@ -248,6 +251,47 @@ def test_edges_of_lugs_and_shoulders() -> None:
     assert found == {(0.01, 0.01), (0.01, 0.02), (0.005, 0.02)}
 
 
+def test_small_forces_and_gaps() -> None:
+    """In one proportion, of which the results are the same multiple."""
+    pin, lugs = clevis(clearance=1e-4)
+    small = replace(COARSE, scale=0.01)
+    decks = [joint_deck(pin, STEEL, lugs, PULL, f)[0] for f in (COARSE, small)]
+    for one, other in zip(decks[0].eyes, decks[1].eyes, strict=True):
+        assert other.force == pytest.approx(0.01 * one.force)
+        gaps = [eye.part.mesh.nodes[:, 0].max() - EYE / 2.0 for eye in (one, other)]
+        assert gaps[1] == pytest.approx(0.01 * gaps[0], abs=1e-12)
+
+
+def test_what_a_run_wrote_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Forces of a half are doubled and turned to the pin's axes, and as all results enlarged by
+    the scale; a run with tension in the contact is known.
+    """
+
+    def stand_in(folder: Path) -> str:
+        text = (folder / "job.inp").read_text()
+        count = text.split("*ELEMENT")[0].count("\n") - 1
+        head = "total surface force (fx,fy,fz) and moment about the origin (mx,my,mz)\n\n"
+        names = re.findall(r"SLAVE=(\w+)", text)
+        blocks = (f" statistics for slave set {n}, x\n {head} 3. 9. 0. 0. 0.5 0.\n" for n in names)
+        (folder / "job.dat").write_text("\n".join(blocks))
+        rows = "".join(f" -1{k:10}{1e4:12.5E}{5 * f'{0.0:12.5E}'}\n" for k in range(count))
+        (folder / "job.frd").write_text(f" -4  STRESS\n{rows} -3\n")
+        words = " iteration 1\n iteration 2\n zero-size increment is appended\n"
+        return f"{words} Total CalculiX Time: 2.5\n"
+
+    monkeypatch.setattr(calculix, "run", stand_in)
+    pin, lugs = clevis()
+    loads = PinLoads("pull", ("L", "M", "R"), FORK @ TURN)
+    found = joint_opinion(pin, STEEL, lugs, loads, replace(COARSE, scale=0.01))
+    assert found.force == pytest.approx(np.tile([360.0, 480.0], (9, 1)))
+    assert found.first == pytest.approx(np.tile([60.0, 80.0], (9, 1)))
+    assert found.ends[[0, 3, 8]] == pytest.approx(
+        np.array([[0.002, 0.0045], [0.013, 0.018], [0.0415, 0.044]])
+    )
+    assert found.von_mises_at(np.array([[0.001, 0.002, 0.02]])) == pytest.approx([1e6])
+    assert (found.iterations, found.seconds, found.appended) == (2, 2.5, True)
+
+
 def test_a_run_that_wrote_nothing_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "ccx").write_text("#!/bin/sh\necho Total CalculiX Time: 2.5\n")
     (tmp_path / "ccx").chmod(0o755)
@@ -261,7 +305,8 @@ def test_a_run_that_wrote_nothing_is_told(tmp_path: Path, monkeypatch: pytest.Mo
 @pytest.mark.parametrize("clearance", [0.0, 5e-5])
 def test_calculix_agrees_on_a_clevis(clearance: float) -> None:
     """The largest bending moment within 3 %, the stress of the tension fibre at mid-span within
-    5 %, and the load on every ring within 5 % of the largest; in a direction of no axis.
+    5 %, and the force on every ring within 8 % of the largest, of a mesh that is coarse at the
+    lugs' sharp edges; in a direction of no axis.
     """
     pin, lugs = clevis(clearance)
     loads = PinLoads("pull", ("L", "M", "R"), FORK @ TURN)
@@ -271,7 +316,7 @@ def test_calculix_agrees_on_a_clevis(clearance: float) -> None:
     mine, other = ours.bending_moment(middle)[0], theirs.bending_moment(middle)
     assert other == pytest.approx(mine, rel=0.03)
     apart = np.abs(theirs.force - ours.loads.forces[0, :, :2])
-    assert apart.max() < 0.05 * np.abs(theirs.force).max()
+    assert apart.max() < 0.08 * np.abs(theirs.force).max()
     asked = Asked(model="harmonic", meshes=2)
     answer = solve_pin(ours.pin, STEEL, (), (ours.loads,), asked)[0].answer
     assert isinstance(answer, HarmonicAnswer)
