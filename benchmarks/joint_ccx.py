@@ -1,0 +1,273 @@
+"""Pins in their lugs, drawn at random, by our harmonic contact and by CalculiX in 3D.
+
+Times are of processors, since other work stretches wall times; CalculiX has one thread.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from benchmarks.timing import table
+from fea.checks.calculix import COMMAND, TO_GET, CalculixError, installed
+from fea.checks.calculix_joint import JointOpinion, edges, joint_opinion
+from fea.checks.calculix_joint_mesh import STIFFNESS, Fineness
+from fea.core.material import Material
+from fea.core.pin_loads import Floats, PinLoads
+from fea.harmonic.evaluate import HarmonicAnswer
+from fea.harmonic.superposition import Circumference
+from fea.joint.lug import Lug
+from fea.joint.solve_joint import Cells, JointModel
+from fea.solve_pin import Asked, solve_pin
+from geometry import Pin, Segment
+
+STEEL = Material("steel", 210e9, 0.3)
+EYES = (STEEL, Material("aluminium", 70e9, 0.33), Material("titanium", 114e9, 0.33))
+COUNT, SEED = 6, 20
+DISTANCE = 0.1  # of the smallest diameter, from lugs' edges and shoulders, that is left out
+EVERY = Fineness(sectors=24, layers=3, eye=2, along=8.0)
+WHOLE = Fineness(rings=6, sectors=16, eye=2)  # where no plane of symmetry halves the unknowns
+REFINED = 0  # the joint of which CalculiX has several meshes and stiffnesses
+MESHES = (
+    Fineness(rings=6, sectors=16, eye=2),
+    EVERY,
+    Fineness(sectors=32, layers=3, eye=2, along=8.0),
+    Fineness(rings=6, sectors=16, eye=2, stiffness=STIFFNESS / 2.0),
+    Fineness(rings=6, sectors=16, eye=2, stiffness=STIFFNESS * 2.0),
+    Fineness(rings=6, sectors=16, eye=2, scale=1.0),
+)
+CELLS = Cells(6, 24, 8), Cells(), Cells(10, 48, 16)
+SHAPES = "plain", "stepped", "hollow"
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A pin, its lugs and the forces of one instant."""
+
+    pin: Pin
+    lugs: tuple[Lug, ...]
+    loads: PinLoads
+
+    @property
+    def oblique(self) -> bool:
+        """Whether its forces lie in no plane."""
+        return bool(self.loads.forces[..., 1].any())
+
+    @property
+    def described(self) -> str:
+        """Lugs' thickness over the diameter, and what else is not plain."""
+        d = self.pin.smallest_diameter
+        bands = [self.pin.band(lug.connection) for lug in self.lugs]
+        thick = " + ".join(f"{band.length / d:.2f}" for band in bands)
+        kind = "plain"
+        if self.pin.segments[0].bore:
+            kind = f"bore {self.pin.segments[0].bore / d:.2f} d"
+        widest = max(s.diameter for s in self.pin.segments)
+        if widest > d:
+            kind = f"stepped to {widest / d:.2f} d"
+        return f"{thick} d, {kind}"
+
+
+@dataclass(frozen=True)
+class Ours:
+    """Our answer: largest bending moment, N m; von Mises stress, Pa, at the governing point (3,) m;
+    seconds of processor time for contact and for stress; pressures and unknowns of the mesh.
+    """
+
+    moment: float
+    stress: float
+    point: Floats
+    contact: float
+    stresses: float
+    pressures: int
+    unknowns: int
+
+
+def joint_ccx() -> str:
+    """Four tables."""
+    if not installed():
+        return f"CalculiX is not installed (no {COMMAND}); {TO_GET}"
+    joints = drawn(COUNT, SEED)
+    parts = [_described(joints), _beside(joints), _meshes(joints[REFINED])]
+    return "\n\n".join([*parts, _ours(joints[REFINED])])
+
+
+def drawn(count: int, seed: int) -> list[Joint]:
+    """Of two lugs or three; plain, stepped or hollow; the last with forces in no plane."""
+    rng = np.random.default_rng(seed)
+    return [_drawn(rng, k, oblique=k == count - 1) for k in range(count)]
+
+
+def _drawn(rng: np.random.Generator, k: int, oblique: bool) -> Joint:
+    d, three = float(rng.uniform(0.01, 0.05)), k % 3 != 0 or oblique
+    shape = SHAPES[(k + k // 3) % 3]
+    thick = d * rng.uniform(0.4, 0.9, 3) * ([1.0, 1.6, 1.0] if three else [1.0, 1.0, 1.0])
+    gap, over = (float(x) for x in d * rng.uniform(0.04, 0.12, 2))
+    bore = float(rng.uniform(0.3, 0.6)) * d if shape == "hollow" else 0.0
+    wide = d * float(rng.uniform(1.15, 1.4)) if shape == "stepped" else d
+    names = ("A", "B", "C") if three else ("A", "B")
+    segments = [Segment(over, d, bore)]
+    for name, t in zip(names, thick.tolist(), strict=False):
+        segments.append(Segment(t, wide if name == "B" else d, bore, connection=name))
+        segments.append(Segment(gap, d, bore))
+    segments[-1] = Segment(over, wide if names[-1] == "B" else d, bore)
+    pin = Pin(f"joint {k + 1}", tuple(segments))
+    lugs = tuple(_lug(rng, pin, name, guided=three and name == "B") for name in names)
+    return Joint(pin, lugs, _loads(rng, names, d, oblique))
+
+
+def _lug(rng: np.random.Generator, pin: Pin, name: str, guided: bool) -> Lug:
+    """Its tilt as of a shank as wide as the eye, clamped at its diameter."""
+    band, material = pin.band(name), EYES[int(rng.integers(len(EYES)))]
+    d = 2.0 * band.radius
+    outer = d * float(rng.uniform(2.0, 2.6))
+    clearance = d * float(max(0.0, rng.uniform(-0.002, 0.005)))
+    tilt = material.youngs_modulus * band.length**3 / 12.0
+    return Lug(name, outer, material, clearance, tilt=np.inf if guided else tilt)
+
+
+def _loads(rng: np.random.Generator, names: tuple[str, ...], d: float, oblique: bool) -> PinLoads:
+    size, share = 150e6 * d * d, float(rng.uniform(0.35, 0.65))
+    forces = np.zeros((1, len(names), 3))
+    parts = (-share, 1.0, share - 1.0) if len(names) > 2 else (-0.4, 0.4)
+    forces[0, :, 0] = size * np.array(parts)
+    if oblique:
+        forces[0, :, 1] = size * np.array([0.3, -0.1, -0.2])
+    return PinLoads("pull", names, forces)
+
+
+def _described(joints: list[Joint]) -> str:
+    rows = []
+    for k, joint in enumerate(joints, 1):
+        clearances = ", ".join(
+            f"{lug.clearance / joint.pin.smallest_diameter:.4f}" for lug in joint.lugs
+        )
+        of = ", ".join(lug.material.name for lug in joint.lugs)
+        d = f"{1e3 * joint.pin.smallest_diameter:.1f}"
+        planar = "no" if joint.oblique else "yes"
+        rows.append((k, d, joint.described, clearances, of, planar))
+    return table(("joint", "d [mm]", "lugs, pin", "clearances / d", "lugs of", "in a plane"), rows)
+
+
+def _beside(joints: list[Joint]) -> str:
+    rows = [
+        (k, *_row(joint, ours(joint), _theirs(joint, WHOLE if joint.oblique else EVERY)))
+        for k, joint in enumerate(joints, 1)
+    ]
+    head = ("joint", "M [N m], ours", "CalculiX", "off [%]", "governing point [MPa], ours")
+    more = ("CalculiX", "off [%]", "its largest [MPa]", "unknowns, ours", "CalculiX")
+    return table((*head, *more, "processor [s], ours", "CalculiX", "its iterations"), rows)
+
+
+def _row(
+    joint: Joint, mine: Ours, other: tuple[JointOpinion, float] | CalculixError
+) -> tuple[object, ...]:
+    unknowns = f"{mine.pressures} + {mine.unknowns}"
+    spent = f"{mine.contact:.2f} + {mine.stresses:.2f}"
+    if isinstance(other, CalculixError):
+        own = f"{mine.moment:.4g}", other, "", f"{mine.stress / 1e6:.1f}", "", "", ""
+        return (*own, unknowns, "", spent, "", "")
+    found, used = other
+    moment = largest_moment(found, joint.pin)
+    there = float(found.von_mises_at(mine.point[None])[0])
+    return (
+        f"{mine.moment:.4g}",
+        f"{moment:.4g}",
+        _off(mine.moment, moment),
+        f"{mine.stress / 1e6:.1f}",
+        f"{there / 1e6:.1f}",
+        _off(mine.stress, there),
+        f"{found.largest(DISTANCE * joint.pin.smallest_diameter) / 1e6:.1f}",
+        unknowns,
+        found.unknowns,
+        spent,
+        f"{used:.0f}",
+        _iterations(found),
+    )
+
+
+def _off(one: float, other: float) -> str:
+    return f"{100.0 * (one / other - 1.0):+.1f}"
+
+
+def _theirs(joint: Joint, fineness: Fineness) -> tuple[JointOpinion, float] | CalculixError:
+    """Their answer and its processor time, s; or why there is none."""
+    before = os.times()
+    try:
+        found = joint_opinion(joint.pin, STEEL, joint.lugs, joint.loads, fineness)
+    except CalculixError as error:
+        return error
+    after = os.times()
+    used = after.children_user + after.children_system
+    return found, used - before.children_user - before.children_system
+
+
+def ours(joint: Joint, cells: Cells = CELLS[1]) -> Ours:
+    """Contact, then stress to 2 %, of which the largest away from edges."""
+    start = time.process_time()
+    model = JointModel(joint.pin, STEEL, joint.lugs, cells)
+    found = model.solve(joint.loads)
+    pressed = time.process_time()
+    (solution,) = solve_pin(found.pin, STEEL, (), (found.loads,), Asked(model="harmonic"))
+    done = time.process_time()
+    assert isinstance(solution.answer, HarmonicAnswer)
+    fields, bounds = solution.answer.fields, edges(joint.pin)
+    away = np.hypot(*(fields.points[:, :2, None] - bounds.T).transpose(1, 0, 2))
+    outside = (away > DISTANCE * joint.pin.smallest_diameter).all(axis=1)
+    top = Circumference(fields, found.loads).top(outside)
+    r, z = fields.points[top.point]
+    return Ours(
+        float(np.linalg.norm(found.bending_moment(_along(joint.pin))[0], axis=1).max()),
+        top.value,
+        np.array([r * np.cos(top.angle), r * np.sin(top.angle), z]),
+        pressed - start,
+        done - pressed,
+        model.contact.area.size,
+        solution.peak.dofs,
+    )
+
+
+def largest_moment(found: JointOpinion, pin: Pin) -> float:
+    """Along the pin, N m."""
+    return float(np.linalg.norm(found.bending_moment(_along(pin)), axis=1).max())
+
+
+def _along(pin: Pin) -> Floats:
+    return np.linspace(0.0, pin.length, 401)
+
+
+def _meshes(joint: Joint) -> str:
+    """CalculiX on several meshes, with another stiffness of the contact, and under full loads."""
+    point = ours(joint).point[None]
+    rows: list[tuple[object, ...]] = []
+    for mesh in MESHES:
+        rings = f"{mesh.rings} rings, {mesh.sectors} sectors, {mesh.layers} + {mesh.eye} layers"
+        about = rings, f"{mesh.stiffness:g}", f"{mesh.scale:g}"
+        other = _theirs(joint, mesh)
+        if isinstance(other, CalculixError):
+            rows.append((*about, "", "", other, "", ""))
+            continue
+        found, used = other
+        numbers = largest_moment(found, joint.pin), found.von_mises_at(point)[0] / 1e6
+        cost = found.unknowns, f"{used:.0f}", _iterations(found)
+        rows.append((*about, *(f"{x:.4g}" for x in numbers), *cost))
+    head = (f"CalculiX, joint {REFINED + 1}", "contact [E/d]", "scale", "M [N m]")
+    return table((*head, "governing point [MPa]", "unknowns", "processor [s]", "iterations"), rows)
+
+
+def _iterations(found: JointOpinion) -> str:
+    return f"{found.iterations}, with tension" if found.appended else str(found.iterations)
+
+
+def _ours(joint: Joint) -> str:
+    rows = []
+    for cells in CELLS:
+        mine = ours(joint, cells)
+        about = f"{cells.rings} rings, {cells.sectors} sectors, n to {cells.highest}"
+        numbers = f"{mine.moment:.4g}", f"{mine.stress / 1e6:.1f}", mine.pressures
+        rows.append((about, *numbers, f"{mine.contact:.2f} + {mine.stresses:.2f}"))
+    head = (f"ours, joint {REFINED + 1}", "M [N m]", "governing point [MPa]", "pressures")
+    return table((*head, "processor [s]"), rows)
