@@ -1,0 +1,219 @@
+"""Pins in their lugs: stress with its errors, its range over the joint, and all instants."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fea.asked import Asked
+from fea.core.material import Material
+from fea.core.pin_loads import Floats, PinLoads
+from fea.joint.lug import Lug
+from fea.joint.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
+from fea.joint.solve_joint import JointModel
+from geometry import Pin, Segment
+
+STEEL = Material("steel", 210e9, 0.3)
+D, EYE, FORCE = 0.02, 0.05, 50e3
+SHANK = 210e9 * EYE * 0.01**3 / (12.0 * 0.04)
+PIN = Pin(
+    "P",
+    (
+        Segment(0.002, D),
+        Segment(0.010, D, connection="L"),
+        Segment(0.001, D),
+        Segment(0.020, D, connection="M"),
+        Segment(0.001, D),
+        Segment(0.010, D, connection="R"),
+        Segment(0.002, D),
+    ),
+)
+LUGS = (
+    Lug("L", EYE, STEEL, tilt=SHANK),
+    Lug("M", EYE, STEEL),
+    Lug("R", EYE, STEEL, tilt=SHANK),
+)
+SHARE = np.array([-0.5, 1.0, -0.5])
+QUICK = Asked(tolerance=0.1)
+
+
+def pull(along: Floats, times: Floats | None = None) -> PinLoads:
+    """Forces (T, 2) N on the middle band, half of them back on each of the others."""
+    forces = np.zeros((len(along), 3, 3))
+    forces[:, :, :2] = SHARE[None, :, None] * along[:, None, :]
+    return PinLoads("pull", ("L", "M", "R"), forces, times=times)
+
+
+STEADY = pull(np.array([[FORCE, 0.0]]))
+
+
+@pytest.fixture(scope="module")
+def sharp() -> LugSolution:
+    return solve_in_lugs(InLugs(PIN, STEEL, LUGS, (STEADY,)), Asked())[0]
+
+
+def test_a_clevis_beside_contact_in_three_dimensions(sharp: LugSolution) -> None:
+    """Two programs give 306.3 MPa at mid-span and M / M0 = .8418 where edges are excluded."""
+    peak, joint = sharp.solution.peak, sharp.joint
+    assert joint is not None
+    assert joint.range is not None
+    assert peak.verdict == "singular"
+    assert peak.max_von_mises == pytest.approx(306.3e6, rel=0.03)
+    assert peak.location is not None
+    assert peak.location[2] == pytest.approx(0.023, abs=0.0005)
+    low, high = joint.range.max_von_mises
+    assert low < 306.3e6 < high < 1.1 * low * 1.1
+    nominal = FORCE / 2.0 * (0.005 + 0.001 + 0.005)
+    middle = dict(joint.bending_moments)[0.023]
+    assert middle / nominal == pytest.approx(0.8418, abs=0.03)
+    assert "the edge of a lug" in peak.note
+    assert "contact" in peak.why
+
+
+def test_the_error_names_the_cells(sharp: LugSolution) -> None:
+    peak = sharp.solution.peak
+    assert peak.parts is not None
+    assert peak.max_von_mises is not None
+    assert 0.0 < peak.parts.cells < 0.02 * peak.max_von_mises
+    assert peak.interval is not None
+    assert peak.interval[1] - peak.interval[0] >= 2.0 * peak.parts.cells
+
+
+def test_bands_carry_what_their_links_exert(sharp: LugSolution) -> None:
+    assert sharp.joint is not None
+    bands = {band.name: band for band in sharp.joint.bands}
+    assert [bands[n].force for n in "LMR"] == pytest.approx([25e3, 50e3, 25e3], rel=1e-9)
+    for name, length in (("L", 0.01), ("M", 0.02), ("R", 0.01)):
+        ends = [q for _, q in bands[name].line_load]
+        assert max(ends) > bands[name].force / length > min(ends)
+    assert bands["L"].couple == pytest.approx(bands["R"].couple, rel=0.02)
+    assert bands["M"].couple < 1e-2 * bands["L"].couple
+    assert 60.0 < bands["M"].contact_angle < 100.0
+
+
+def test_stress_is_in_proportion_without_clearance(sharp: LugSolution) -> None:
+    """Also in what is asked for later, of which contact is not solved again."""
+    given = InLugs(PIN, STEEL, LUGS, (STEADY,), besides={"pull": pull(np.array([[1.0, 0.0]]))})
+    (found,) = solve_in_lugs(given, replace(Asked(), meshes=1))
+    answer = found.solution.answer
+    assert answer is not None
+    more = pull(np.array([[FORCE, 0.0], [0.5 * FORCE, 0.0], [0.0, 0.0]]))
+    full, half, none = answer.maxima(found.pressed(more))
+    assert half == pytest.approx(0.5 * full, rel=1e-9)
+    assert none == 0.0
+
+
+def test_rounded_edges_have_a_bound_that_is_not_resolved() -> None:
+    """The maximum away from them is the same as away from sharp ones, and no singularity."""
+    lugs = tuple(replace(lug, edge_radius=0.0005) for lug in LUGS)
+    (found,) = solve_in_lugs(InLugs(PIN, STEEL, lugs, (STEADY,)), QUICK)
+    peak = found.solution.peak
+    assert peak.verdict in ("converged", "unconverged")
+    assert peak.max_von_mises == pytest.approx(306.3e6, rel=0.03)
+    assert "away from the rounded edges of lugs" in peak.note
+    assert "local-contact" in peak.reasons
+    assert {zone.kind for zone in peak.singular_at} == {"the rounded edge of a lug"}
+    assert not any(zone.governs for zone in peak.singular_at)
+
+
+def test_the_crest_of_a_motion_is_found_between_samples() -> None:
+    """A force that turns and is largest at 0.37 s, where there is no sample."""
+    crest = 0.37
+
+    def at(times: Floats) -> PinLoads:
+        size = FORCE * np.exp(-(((times - crest) / 0.3) ** 2))
+        angle = 0.5 * times
+        along = size[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        return pull(along, times)
+
+    case = at(np.linspace(0.0, 1.0, 5))
+    given = InLugs(PIN, STEEL, LUGS, (case,), between={"pull": at})
+    (found,) = solve_in_lugs(given, QUICK)
+    peak = found.solution.peak
+    assert peak.time == pytest.approx(crest, abs=0.01)
+    assert peak.max_von_mises == pytest.approx(306.3e6, rel=0.03)
+    assert peak.parts is not None
+    assert peak.parts.time < 0.02 * 306.3e6
+    assert peak.governing is not None
+    assert peak.governing.surfaces == ("L", "M", "R")
+
+
+def test_lugs_of_a_structure_share_what_the_link_leaves_over() -> None:
+    """A pin whose ends sit in a structure: half of the force each, as a fork's would be told to."""
+    segments = tuple(
+        replace(s, connection=None, name=s.connection) if s.connection in ("L", "R") else s
+        for s in PIN.segments
+    )
+    pin = replace(PIN, segments=segments)
+    loads = PinLoads("pull", ("M",), np.array([[[FORCE, 0.0, 0.0]]]))
+    (found,) = solve_in_lugs(InLugs(pin, STEEL, LUGS, (loads,)), replace(Asked(), meshes=1))
+    assert found.joint is not None
+    forces = {band.name: band.force for band in found.joint.bands}
+    assert forces["L"] + forces["R"] == pytest.approx(FORCE, rel=1e-9)
+    assert forces["L"] == pytest.approx(forces["R"], rel=1e-3)
+    assert found.solution.peak.max_von_mises == pytest.approx(306.3e6, rel=0.04)
+
+
+def test_a_structure_beside_takes_more_than_one_farther_away() -> None:
+    """Statically indeterminate: lugs of one structure shift together."""
+    pin = Pin(
+        "P",
+        (
+            Segment(0.010, D, name="L"),
+            Segment(0.001, D),
+            Segment(0.020, D, connection="M"),
+            Segment(0.020, D),
+            Segment(0.010, D, name="R"),
+        ),
+    )
+    loads = PinLoads("pull", ("M",), np.array([[[FORCE, 0.0, 0.0]]]))
+    (found,) = solve_in_lugs(InLugs(pin, STEEL, LUGS, (loads,)), replace(Asked(), meshes=1))
+    assert found.joint is not None
+    forces = {band.name: band.force for band in found.joint.bands}
+    assert forces["L"] > 1.5 * forces["R"] > 0.0
+    assert forces["L"] + forces["R"] == pytest.approx(FORCE, rel=1e-9)
+
+
+def test_a_rounded_weight_is_shared_and_reported() -> None:
+    forces = STEADY.forces.copy()
+    forces[0, 0, 0] *= 1.001
+    loads = replace(STEADY, forces=forces)
+    (found,) = solve_in_lugs(InLugs(PIN, STEEL, LUGS, (loads,)), replace(Asked(), meshes=1))
+    share = found.solution.peak.imbalance
+    assert share is not None
+    assert share[0] == pytest.approx(0.5e-3, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("forces", "lugs", "said"),
+    [
+        (SHARE * [2.0, 1.0, 1.0], LUGS, "which no contact reacts"),
+        ([-0.3, 1.0, -0.7], tuple(replace(lug, tilt=0.0) for lug in LUGS), "no lug reacts"),
+    ],
+)
+def test_what_cannot_be_in_equilibrium_has_failed_with_the_reason(
+    forces: list[float], lugs: tuple[Lug, ...], said: str
+) -> None:
+    along = np.zeros((1, 3, 3))
+    along[0, :, 0] = FORCE * np.array(forces)
+    loads = PinLoads("pull", ("L", "M", "R"), along)
+    (found,) = solve_in_lugs(InLugs(PIN, STEEL, lugs, (loads,)), QUICK)
+    peak = found.solution.peak
+    assert (peak.verdict, peak.max_von_mises, found.joint) == ("failed", None, None)
+    assert said in peak.note
+
+
+def test_a_softer_joint_is_that_of_softer_lugs() -> None:
+    """What the range varies is what a model of its own would have."""
+    model = JointModel(PIN, STEEL, LUGS)
+    soft = Material("soft", 105e9, 0.3)
+    own = JointModel(PIN, STEEL, tuple(replace(lug, material=soft) for lug in LUGS))
+    varied = model.varied(model.lugs, 2.0)
+    z = np.array([0.023])
+    ours, theirs = (m.solve(STEADY).bending_moment(z)[0, 0, 0] for m in (varied, own))
+    assert ours == pytest.approx(theirs, rel=1e-9)
+    tilted = model.varied(tuple(replace(lug, tilt=math.inf) for lug in model.lugs))
+    assert abs(tilted.solve(STEADY).bending_moment(z)[0, 0, 0]) < abs(ours)
