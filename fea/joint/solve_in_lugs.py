@@ -171,8 +171,15 @@ def _with_cells(peak: Peak, relative: float, asked: Asked) -> Peak:
     more = relative * largest
     interval = peak.interval and (peak.interval[0] - more, peak.interval[1] + more)
     parts = replace(peak.parts, cells=more)
-    peak = replace(peak, parts=parts, error_estimate=error + more, interval=interval)
-    if peak.verdict != "converged" or parts.total <= asked.tolerance * largest:
-        return peak
-    note = accuracy(parts.total / largest, asked.tolerance, False)
-    return replace(peak, verdict="unconverged", note=note.text, reasons=peak.reasons + note.codes)
+    ratios = [x.total / largest for x in (peak.parts, parts)]
+    before, after = (accuracy(x, asked.tolerance, x <= asked.tolerance) for x in ratios)
+    loose = peak.verdict == "converged" and after.codes != before.codes
+    return replace(
+        peak,
+        parts=parts,
+        error_estimate=error + more,
+        interval=interval,
+        verdict="unconverged" if loose else peak.verdict,
+        note=peak.note.replace(before.text, after.text),
+        reasons=tuple(after.codes[0] if x == before.codes[0] else x for x in peak.reasons),
+    )
