@@ -158,12 +158,12 @@ def _solved(
     here = solution.loads.links.at(np.array([solution.instant]))
     contact = model.joined(pressing.at(here), pressing(here))
     comparison = compare(model, contact, solution.peak, asked)
-    peak = _with_cells(solution.peak, comparison.cells + pressing.missed, asked)
+    peak = with_cells(solution.peak, comparison.cells + pressing.missed, asked)
     joint = joint_result(contact, comparison.range)
     return LugSolution(replace(solution, peak=replace(peak, governing=here)), joint, pressing)
 
 
-def _with_cells(peak: Peak, relative: float, asked: Asked) -> Peak:
+def with_cells(peak: Peak, relative: float, asked: Asked) -> Peak:
     """With the error of the cells, relative, among its parts."""
     largest, error = peak.max_von_mises, peak.error_estimate
     if not largest or error is None or peak.parts is None:

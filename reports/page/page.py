@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from reports.data.results import PinShape, Point, Results
+from fea.core.dimensions import Point
+from reports.data.results import PinShape, Results
 from reports.format.file_names import SVG, drive_names, plot_name
 from reports.format.numbers import DASH, engineering, like, ratio, short
 from reports.format.ranges import error_words, factor_range

@@ -47,10 +47,8 @@ def _load(axes: Axes, band: BandContact) -> None:
     style = line_style(0)
     load = [q for _, q in band.line_load]
     if band.ends:
-        axes.stairs(load, band.ends, baseline=None, color=style["color"], linewidth=1.5)
-        axes.fill_between(
-            band.ends, [*load, load[-1]], step="post", color=style["color"], alpha=0.15, lw=0
-        )
+        axes.stairs(load, band.ends, color=style["color"], linewidth=1.5)
+        axes.stairs(load, band.ends, color=style["color"], fill=True, alpha=0.15)
     else:
         axes.plot([z for z, _ in band.line_load], load, **style)
 
