@@ -20,6 +20,7 @@ from fea.core.material import Material
 from fea.core.over_time import Between
 from fea.core.peak import Note, Peak
 from fea.core.pin_loads import Floats, PinLoads
+from fea.joint.cell_pressure import CellPressure
 from fea.joint.contact import Pressed
 from fea.joint.lug import Lug
 from fea.joint.pressure_loads import PressureLoads
@@ -55,11 +56,13 @@ class InLugs:
 class LugSolution:
     """A case: the solution of the pin under its pressures, what contact says at the governing
     instant, None where that failed, and what presses on the pin under other loads of its links.
+    pressure: of contact, with `joint`.
     """
 
     solution: Solution
     joint: JointResult | None
     pressed: Callable[[PinLoads], PinLoads]
+    pressure: CellPressure | None = None
 
 
 def solve_in_lugs(
@@ -160,7 +163,9 @@ def _solved(
     comparison = compare(model, contact, solution.peak, asked)
     peak = with_cells(solution.peak, comparison.cells + pressing.missed, asked)
     joint = joint_result(contact, comparison.range)
-    return LugSolution(replace(solution, peak=replace(peak, governing=here)), joint, pressing)
+    pressure = CellPressure(contact.bands, contact.contact[0].pressure)
+    solution = replace(solution, peak=replace(peak, governing=here))
+    return LugSolution(solution, joint, pressing, pressure)
 
 
 def with_cells(peak: Peak, relative: float, asked: Asked) -> Peak:

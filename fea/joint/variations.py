@@ -96,8 +96,8 @@ def _joints(model: JointModel) -> Iterator[tuple[str, str, float | None, JointMo
 
 def _in_words(lugs: Sequence[Lug], times: float) -> str:
     """A clearance of so many times `_clearance`."""
-    ways = ("as given, times 2" if lug.clearance else f"{FIT:g} of the diameter" for lug in lugs)
-    return ", ".join(dict.fromkeys(ways)) if times else "none"
+    ways = {"twice the given" if lug.clearance else f"{FIT:g} of the diameter" for lug in lugs}
+    return " or ".join(sorted(ways, reverse=True)) if times else "none"
 
 
 def _clearance(model: JointModel, lug: Lug) -> float:

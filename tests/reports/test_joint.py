@@ -3,26 +3,32 @@
 from __future__ import annotations
 
 import csv
+import json
+from base64 import b64decode
 from dataclasses import replace
 from io import StringIO
 from pathlib import Path
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 from rich.console import Console
 
 from pinstress.schema.units import SYSTEMS
 from reports.data.in_units import in_units
-from reports.data.results import Results
+from reports.data.results import Field, Results
+from reports.data.surface import Surface, SurfaceCase
 from reports.files import write_reports
 from reports.format.ranges import joint_range, part_words
 from reports.format.words import JOINT
+from reports.page.viewer import pin_views
 from reports.plots.all import save_plots
 from reports.plots.joint import joint_plot
 from reports.tables.joint import joint_json, joint_tables
 from reports.tables.safety_factors import shown_columns, shown_rows, write_safety_factors
 from reports.text.safety_factors import print_safety_factors
 from reports.text.summary import summary
+from reports.vtk.fields import point_data, surface
 from tests.support.html_page import EVIL, parse
 from tests.support.made_up_joint import in_lugs, make_joint
 
@@ -129,7 +135,7 @@ def test_the_page_has_a_section(small: Results, written: Path) -> None:
     text = parse(written).text
     assert text.count("Contact with the lugs") == 1
     assert "; errors of mesh, cells of contact); 1,100 to 1,900 psi over what is not" in text
-    assert "0.003 in (as given, times 2)" in text
+    assert "0.003 in (twice the given)" in text
     assert "half contact angle [°]" in text
     page = written.read_text(encoding="utf-8")
     assert f'alt="Pin A, {small.pins[0].case}: load per length from the lugs' in page
@@ -171,3 +177,40 @@ def test_plots_of_odd_contacts(small: Results, tmp_path: Path) -> None:
     )
     svg, _ = joint_plot("$a/b", "x" * 60, nothing, small.units, tmp_path)
     assert ElementTree.parse(svg).getroot().tag.endswith("svg")
+
+
+def test_the_pressure_is_a_field_of_the_surface(solid: Field, small: Results) -> None:
+    pressed = replace(solid, contact_pressure=np.arange(10.0))
+    assert "contact pressure [psi]" not in point_data(solid, small.units)
+    assert point_data(pressed, small.units)["contact pressure [psi]"].tolist() == list(range(10))
+    outside = surface(pressed)
+    assert outside.contact_pressure is not None
+    assert len(outside.contact_pressure) == len(outside.points)
+
+
+@pytest.mark.parametrize("pressed", [True, False])
+def test_the_view_has_the_pressure_of_the_cells(small: Results, pressed: bool) -> None:
+    cells = np.array([[1.0, 2.0, 3.0], [0.0, 7.5, 0.0]])
+    rings = np.array([-1, 0, 1])
+    shown = surface_in(small.pins[0].case, (rings, cells) if pressed else (None, None))
+    (view,) = pin_views(replace(small, surfaces=(shown,)), "A")
+    found = json.loads(str(view.data))["cases"][0]["pressure"]
+    assert view.pressed is pressed
+    if not pressed:
+        assert found is None
+        return
+    assert (found["sectors"], found["largest"]) == (3, 7.5)
+    assert np.frombuffer(b64decode(found["rings"]), "<i2").tolist() == rings.tolist()
+    assert np.frombuffer(b64decode(found["cells"]), "<f4").tolist() == cells.ravel().tolist()
+
+
+def surface_in(case: str, pressure: tuple[np.ndarray | None, np.ndarray | None]) -> Surface:
+    """A meridian of three points and one unit load."""
+    one = SurfaceCase(
+        case, None, 0, np.ones((1, 1, 2)), np.ones(1), np.zeros(3, bool), np.ones(3), *pressure
+    )
+    even = (True, True, True, False, False, True, False, True)
+    return Surface(
+        "A", np.array([[1.0, 0, 0], [1, 0, 1], [1, 0, 2]]), np.zeros((0, 3), np.int64),
+        np.zeros(1, np.int64), even, np.ones((3, 5, 1)), np.ones((3, 3, 1)), None, (one,),
+    )  # fmt: skip

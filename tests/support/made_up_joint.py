@@ -36,7 +36,7 @@ def joint_range() -> JointRange:
         RANGE,
         (
             Variation("clearance", "none", 1100.0, 0.0),
-            Variation("clearance", "as given, times 2", 1500.0, 0.003),
+            Variation("clearance", "twice the given", 1500.0, 0.003),
             Variation("tilt", "guided", 1900.0),
         ),
     )
