@@ -14,8 +14,6 @@ import pytest
 from pinstress.cli.commands import run_command_line
 from tests.support.clevis import CLEVIS
 
-pytestmark = pytest.mark.slow
-
 
 @pytest.fixture(scope="module")
 def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
@@ -32,6 +30,20 @@ def row(out: Path) -> dict[str, Any]:
     return dict(found[0])
 
 
+@pytest.mark.parametrize(
+    ("joints", "held"),
+    [("auto", "held by contact with its lugs"), ("prescribed", "clamped at nowhere")],
+)
+def test_check_says_what_holds_the_pin(
+    joints: str, held: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    study = tmp_path / "clevis.toml"
+    study.write_text(CLEVIS.replace("[analysis]", f'[analysis]\njoints = "{joints}"'))
+    assert run_command_line(["check", str(study)]) == 0
+    assert f"loaded at L, M, R; {held}" in capsys.readouterr().out
+
+
+@pytest.mark.slow
 def test_the_note_has_the_error_of_the_table(row: dict[str, Any]) -> None:
     stated = re.match(r"estimated error ([\d.]+)%", row["note"])
     assert stated is not None
@@ -41,6 +53,7 @@ def test_the_note_has_the_error_of_the_table(row: dict[str, Any]) -> None:
     assert sum(row["error_parts"].values()) == pytest.approx(row["error_estimate"])
 
 
+@pytest.mark.slow
 def test_clearances_are_in_the_units_of_the_study(row: dict[str, Any]) -> None:
     over = row["joint"]["range"]["over"]
     tried = [(v["value"], v["length"]) for v in over if v["what"] == "clearance"]
@@ -48,6 +61,7 @@ def test_clearances_are_in_the_units_of_the_study(row: dict[str, Any]) -> None:
     assert all(v["length"] is None for v in over if v["what"] != "clearance")
 
 
+@pytest.mark.slow
 def test_rings_fill_their_bands_and_carry_the_force(row: dict[str, Any]) -> None:
     for band, z in zip(row["joint"]["bands"], ((2, 12), (13, 33), (34, 44)), strict=True):
         ends = np.array(band["ends"])
@@ -57,6 +71,7 @@ def test_rings_fill_their_bands_and_carry_the_force(row: dict[str, Any]) -> None
         assert np.diff(ends) @ loads == pytest.approx(band["force"], rel=1e-6)
 
 
+@pytest.mark.slow
 def test_the_field_has_the_pressure_of_the_table(out: Path, row: dict[str, Any]) -> None:
     mesh = meshio.read(out / "vtk" / "P_pull.vtu")
     pressure = mesh.point_data["contact pressure [MPa]"]
