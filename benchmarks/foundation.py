@@ -86,7 +86,7 @@ def _compared(trial: JointTrial, contact: JointContact, stiffness: Stiffness) ->
         float(apart[0, 0, 0]) / truth,
         ends[0].ravel(),
         ends[1].ravel(),
-        moment_error(trial.pin, trial.lugs),
+        moment_error(trial.pin, trial.material, trial.lugs),
     )
 
 

@@ -1,11 +1,15 @@
-"""Contact of pins with their lugs: against three-dimensional contact, and what it takes."""
+"""Contact of pins with their lugs: against three-dimensional contact, how far it converges with
+cells, and what it takes.
+"""
 
 from __future__ import annotations
 
 import math
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
+from itertools import product
 from statistics import median
 from typing import TypeVar
 
@@ -17,7 +21,7 @@ from fea.core.pin_loads import Floats, PinLoads
 from fea.harmonic.evaluate import HarmonicAnswer
 from fea.harmonic.superposition import Circumference
 from fea.joint.lug import Lug
-from fea.joint.solve_joint import Cells, JointModel
+from fea.joint.solve_joint import Cells, JointContact, JointModel
 from fea.solve_pin import Asked, solve_pin
 from geometry import Pin, Segment
 
@@ -41,18 +45,17 @@ TRUTH = (
     (40, 20, 2, 0.05, 0.4197, 304.0),
 )
 INSTANTS = 201
-USUAL, FINE = Cells(), Cells(10, 48, 16)
+COARSE, USUAL, FINE = Cells(4, 24, 8), Cells(), Cells(12, 48, 16)
+RADII = (0.0, 0.01, 0.025, 0.05)  # of the edges, of the diameter
 
 
 def joint() -> str:
-    """Two tables."""
-    return f"{_accuracy()}\n\n{_times()}"
+    """Three tables."""
+    return f"{_accuracy()}\n\n{_convergence()}\n\n{_times()}"
 
 
-def _model(
-    inner: float, outer: float, gap: float, clearance: float, cells: Cells = USUAL
-) -> JointModel:
-    """A clevis, mm."""
+def _model(inner: float, outer: float, gap: float, of_all: Lug, cells: Cells = USUAL) -> JointModel:
+    """A clevis, mm, whose lugs are as `of_all` but for the tilt of the outer ones."""
     over, apart = Segment(0.002, D), Segment(gap / 1e3, D)
     left, middle, right = (
         Segment(t / 1e3, D, connection=name)
@@ -61,7 +64,7 @@ def _model(
     pin = Pin("P", (over, left, apart, middle, apart, right, over))
     shank = E * EYE * (outer / 1e3) ** 3 / (12.0 * ARM)
     tilt = dict(zip(NAMES, (shank, math.inf, shank), strict=True))
-    lugs = [Lug(name, EYE, STEEL, clearance / 1e3, tilt=k) for name, k in tilt.items()]
+    lugs = [replace(of_all, connection=name, tilt=k) for name, k in tilt.items()]
     return JointModel(pin, STEEL, lugs, cells)
 
 
@@ -74,23 +77,14 @@ def _pull(angle: Floats) -> PinLoads:
 def _accuracy() -> str:
     rows = []
     for inner, outer, gap, clearance, moment, stress in TRUTH:
-        model = _model(inner, outer, gap, clearance)
-        found = model.solve(_pull(np.zeros(1)))
-        middle = (2.0 + outer + gap + inner / 2.0) / 1e3
-        bending = abs(found.bending_moment(np.array([middle]))[0, 0, 0])
-        nominal = FORCE / 2.0 * (outer / 2.0 + gap + inner / 4.0) / 1e3
-        asked = Asked(model="harmonic", meshes=2)
-        (solution,) = solve_pin(found.pin, STEEL, (), (found.loads,), asked)
-        assert isinstance(solution.answer, HarmonicAnswer)
-        fields = solution.answer.fields
-        near = np.hypot(fields.points[:, 0] - D / 2.0, fields.points[:, 1] - middle)
-        square = Circumference(fields, found.loads).squares(np.array([near.argmin()]), 0.0)
-        ours = math.sqrt(float(square[0, 0])) / 1e6
+        lug = Lug("all", EYE, STEEL, clearance / 1e3)
+        found = _model(inner, outer, gap, lug).solve(_pull(np.zeros(1)))
+        bending, ours = _at_mid_span(found, inner, outer, gap)
         rows.append(
             (
                 f"{inner:g} / {outer:g}+{outer:g}, gap {gap:g}",
                 f"{clearance:g}",
-                f"{bending / nominal:.4f}",
+                f"{bending:.4f}",
                 f"{moment:.4f}",
                 f"{ours:.1f}",
                 f"{stress:.1f}",
@@ -101,11 +95,44 @@ def _accuracy() -> str:
     return table(head, rows)
 
 
+def _at_mid_span(
+    found: JointContact, inner: float, outer: float, gap: float
+) -> tuple[float, float]:
+    """Bending moment over the nominal one, and von Mises stress of the tension fibre, MPa."""
+    middle = (2.0 + outer + gap + inner / 2.0) / 1e3
+    bending = abs(found.bending_moment(np.array([middle]))[0, 0, 0])
+    nominal = FORCE / 2.0 * (outer / 2.0 + gap + inner / 4.0) / 1e3
+    (solution,) = solve_pin(found.pin, STEEL, (), (found.loads,), Asked(model="harmonic", meshes=2))
+    assert isinstance(solution.answer, HarmonicAnswer)
+    fields = solution.answer.fields
+    near = np.hypot(fields.points[:, 0] - D / 2.0, fields.points[:, 1] - middle)
+    square = Circumference(fields, found.loads).squares(np.array([near.argmin()]), 0.0)
+    return float(bending / nominal), math.sqrt(float(square[0, 0])) / 1e6
+
+
+def _convergence() -> str:
+    """Of the first clevis and the longest, by the radius of the lugs' edges."""
+    rows = []
+    for case, radius, cells in product((TRUTH[2], TRUTH[7]), RADII, (COARSE, USUAL, FINE)):
+        inner, outer, gap, clearance = case[:4]
+        lug = Lug("all", EYE, STEEL, clearance / 1e3, edge_radius=radius * D)
+        model = _model(inner, outer, gap, lug, cells)
+        found = model.solve(_pull(np.zeros(1)))
+        bending, stress = _at_mid_span(found, inner, outer, gap)
+        pressure = found.largest_pressure.max() / 1e6
+        about = f"{cells.rings}, {cells.sectors}, {cells.highest}"
+        clevis = f"{inner:g} / {outer:g}+{outer:g}"
+        numbers = f"{bending:.5f}", f"{stress:.1f}", f"{pressure:.0f}"
+        rows.append((clevis, f"{radius:g}", about, str(len(model.rings)), *numbers))
+    head = ("lugs [mm]", "edge radius / d", "rings, sectors, n", "all rings", "M / M0")
+    return table((*head, "mid-span [MPa]", "largest pressure [MPa]"), rows)
+
+
 def _times() -> str:
     """Of the first clevis; seconds, the median of three."""
     rows = []
     for cells in (USUAL, FINE):
-        first, model = _timed(partial(_model, 20, 10, 1, 0.05, cells))
+        first, model = _timed(partial(_model, 20, 10, 1, Lug("all", EYE, STEEL, 5e-5), cells))
         one, _ = _timed(partial(model.solve, _pull(np.zeros(1))))
         many, found = _timed(partial(model.solve, _pull(np.linspace(0.0, np.pi, INSTANTS))))
         steps = np.mean([c.steps for c in found.contact])

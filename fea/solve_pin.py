@@ -41,8 +41,8 @@ from geometry import ArgumentError, Pin, PinLike
 from geometry.mesh.solid_mesh import MeshError, MeshSize
 
 __all__ = [
-    "Asked", "Goal", "Model", "Solution", "count_loads", "decided", "enough", "ratio_of",
-    "singularities_of", "solve_pin", "unknowns_after",
+    "Asked", "Goal", "Model", "Solution", "count_loads", "decided", "enough", "imbalance",
+    "ratio_of", "singularities_of", "solve_pin", "unknowns_after",
 ]  # fmt: skip
 
 Progress = Callable[[str], None]
@@ -113,7 +113,7 @@ def solve_pin(
             if asked.model != "auto" or not isinstance(pin, Pin):
                 raise
             out |= _instead(job, pin, live, notes, str(error))
-    shares = {case: _imbalance(pin, balance) for case, balance in balances.items()}
+    shares = {case: imbalance(pin, balance) for case, balance in balances.items()}
     return tuple(_with_imbalance(out[c.case], shares.get(c.case)) for c in cases)
 
 
@@ -349,7 +349,7 @@ def _with(
     return Seen(pin, case, model, (*results, result), (*seconds, spent), ratio)
 
 
-def _imbalance(pin: PinLike, balance: Balance) -> tuple[float, float] | None:
+def imbalance(pin: PinLike, balance: Balance) -> tuple[float, float] | None:
     """Force and couple that the bands react, relative; None if negligible."""
     if not balance.largest:
         return None
@@ -364,7 +364,7 @@ def _with_imbalance(solution: Solution, share: tuple[float, float] | None) -> So
 
 def _reacted(pin: PinLike, balance: Balance) -> Note:
     """The imbalance that the bands react, as the end of a note."""
-    if (share := _imbalance(pin, balance)) is None:
+    if (share := imbalance(pin, balance)) is None:
         return NOTHING
     force, couple = share
     return Note(

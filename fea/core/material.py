@@ -14,7 +14,8 @@ from geometry import ArgumentError
 class Material:
     """youngs_modulus and yield_strength in Pa, density in kg/m^3.
 
-    Raises: ArgumentError outside -1 < poisson_ratio < 0.5 or for a modulus that is not positive.
+    Raises: ArgumentError outside -1 < poisson_ratio < 0.5 or for a modulus that is not positive and
+    finite.
     """
 
     name: str
@@ -24,9 +25,9 @@ class Material:
     yield_strength: float | None = None
 
     def __post_init__(self) -> None:
-        if not self.youngs_modulus > 0.0:
+        if not 0.0 < self.youngs_modulus < np.inf:
             raise ArgumentError(
-                f"material {self.name}: Young's modulus must be positive", "not-positive"
+                f"material {self.name}: Young's modulus must be positive and finite", "not-positive"
             )
         if not -1.0 < self.poisson_ratio < 0.5:
             raise ArgumentError(

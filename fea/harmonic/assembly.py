@@ -17,6 +17,7 @@ Source: Zienkiewicz & Taylor, The Finite Element Method, ch. on semi-analytical 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
@@ -35,10 +36,13 @@ Ints = NDArray[np.int64]
 
 
 class Section:
-    """Quadratic triangles on a section (m). Unknown 3 k + c belongs to node k: p, m or w."""
+    """Quadratic triangles on a section (m). Unknown 3 k + c belongs to node k: p, m or w.
 
-    def __init__(self, section: MeridianMesh) -> None:
-        self.section = section
+    parts: (M,) the number of each element's material, from 0 on; without them there is one.
+    """
+
+    def __init__(self, section: MeridianMesh, parts: Ints | None = None) -> None:
+        self.section, self._parts = section, parts
         self._samples = get_quadrature(RefTri, 2)[0]  # three, where strains are most exact
         X, W = get_quadrature(RefTri, 4)
         points = np.hstack([X, self._samples]), np.append(W, np.zeros(self._samples.shape[1]))
@@ -79,24 +83,32 @@ class Section:
     def _pattern(self) -> Pattern:
         return Pattern(self.elements, int(self.basis.N))
 
-    def stiffness(self, material: Material, n: int) -> sp.csr_matrix:
+    def stiffness(self, materials: Material | Sequence[Material], n: int) -> sp.csr_matrix:
         """Stiffness matrix of harmonic n, for displacements as above and around the whole axis. All
-        have the same pattern.
+        have the same pattern. materials: one, or that of each part.
         """
+        each = (materials,) if isinstance(materials, Material) else materials
         E = strain_map(n)
-        by = np.einsum("sca,st,tdb->abcd", E, around(n) * elasticity(material), E)
-        return self._pattern.matrix((self._products @ by.reshape(9, 9)).reshape(-1, 3, 3))
+        blocks = np.zeros((len(self._pattern), 9))
+        for products, material in zip(self._products, each, strict=True):
+            by = np.einsum("sca,st,tdb->abcd", E, around(n) * elasticity(material), E)
+            blocks += products @ by.reshape(9, 9)
+        return self._pattern.matrix(blocks.reshape(-1, 3, 3))
 
     @cached_property
-    def _products(self) -> Floats:
-        """Integrals (P, 9) of the products of a, b, c of one node with those of the other, for the
-        pairs of nodes, per radian.
+    def _products(self) -> list[Floats]:
+        """By part, integrals (P, 9) of the products of a, b, c of one node with those of the other,
+        for the pairs of nodes, per radian.
         """
         root = np.sqrt(self._weights[:, self._quadrature])
         parts = self._gradients[:, self._quadrature] * root[..., None, None]
         x = parts.reshape(len(parts), -1, 3, 6).transpose(0, 3, 2, 1).reshape(len(parts), 18, -1)
         products = (x @ x.swapaxes(1, 2)).reshape(-1, 6, 3, 6, 3).swapaxes(2, 3)
-        return self._pattern.sums(products).reshape(-1, 9)
+        if self._parts is None:
+            return [self._pattern.sums(products).reshape(-1, 9)]
+        masks = (self._parts == k for k in range(int(self._parts.max()) + 1))
+        each = (products * mask[:, None, None, None, None] for mask in masks)
+        return [self._pattern.sums(own).reshape(-1, 9) for own in each]
 
     @cached_property
     def integrals(self) -> Floats:

@@ -24,7 +24,81 @@ from geometry import Pin
 from geometry.mesh.section_mesh import MeridianMesh
 
 
-class HarmonicModel:
+class HarmonicBody:
+    """A body of revolution on one mesh of its section, held at surfaces (by name): how it moves.
+
+    material: one, or those of the section's parts. Without surfaces as many unknowns are
+    constrained as there are rigid motions, about `pivot` (0 to 1, of the length).
+    """
+
+    def __init__(
+        self,
+        pin: Pin,
+        space: Section,
+        material: Material | Sequence[Material],
+        clamps: tuple[str, ...] = (),
+        pivot: float = 0.0,
+    ) -> None:
+        self.pin, self.space, self.pivot = pin, space, pivot
+        self.clamps = tuple(pin.surface(name) for name in clamps)
+        self.outline = Outline(self.space)
+        self._materials = material
+        # one for all harmonics: constrained unknowns stay in it
+        self._system: _System | None = None
+
+    def forces(self, n: int, parts: Sequence[tuple[Traction, ...]]) -> Floats:
+        """Forces on the unknowns (unknowns, K) of K sums of tractions of harmonic n."""
+        return np.stack([_generalised(self.outline.forces(part, n)) for part in parts], axis=1)
+
+    def displace(self, n: int, forces: Floats) -> Floats:
+        """Unknowns (unknowns, K) of harmonic n under forces on them."""
+        fixed = np.concatenate([self._on_axis(n), self._held(n)])
+        K = self.space.stiffness(self._materials, n)
+        if n < 2:
+            self._require_equilibrium(K, n)
+        free = np.ones(K.shape[0])
+        free[fixed] = 0.0
+        if self._system is None:
+            self._system = _System(K)
+        return self._system.solve(K, free, forces)
+
+    def _require_equilibrium(self, K: sp.csr_matrix, n: int) -> None:
+        """A section that moves as a whole takes no force, so that whatever its displacements are,
+        the forces of its supports answer its loads.
+        """
+        modes = rigid_motions(self.space.nodes, n)
+        lost = np.abs(K @ modes).max(axis=0) / (np.abs(K.data).max() * np.abs(modes).max(axis=0))
+        if not lost.max() < 1e-9:
+            raise SolveError(
+                f"pin {self.pin.name}: the stiffness against rigid-body motion is {lost.max():.1e} "
+                "of the pin's, not zero, so the solution would not be in equilibrium",
+                "no-equilibrium",
+            )
+
+    def _on_axis(self, n: int) -> Ints:
+        """Unknowns that vanish on the axis, so that displacements are smooth there."""
+        axis = 3 * self.space.section.axis
+        p, m, w = axis, axis + 1, axis + 2
+        return np.concatenate({0: [p, m], 1: [p, w]}.get(n, [p, m, w]))
+
+    def _held(self, n: int) -> Ints:
+        if self.clamps:
+            edges = self.outline.nodes[self.outline.held(self.clamps)]
+            return (3 * np.unique(edges)[:, None] + np.arange(3)).ravel()
+        if n > 1:
+            return np.zeros(0, dtype=np.int64)
+        r, z = self.space.nodes.T
+        place = np.abs(z - self.pivot * self.pin.length)
+        if n == 0:  # shift along the axis, spin about it
+            outer = int(np.lexsort((place, -r))[0])
+            return np.array([3 * int(place.argmin()) + 2, 3 * outer])
+        innermost = np.flatnonzero(r <= r.min() * (1.0 + 1e-9))
+        near = int(innermost[place[innermost].argmin()])
+        far = int(innermost[np.abs(z[innermost] - z[near]).argmax()])
+        return np.array([3 * near + 1, 3 * far + 1])
+
+
+class HarmonicModel(HarmonicBody):
     """A pin on one mesh of its section, clamped at surfaces (by name).
 
     Without any, the loads' balance is closed by tractions on the bands (fea.core.tractions), and as
@@ -42,12 +116,8 @@ class HarmonicModel:
         clamps: tuple[str, ...],
         pivot: float = 0.0,
     ) -> None:
-        self.pin, self.material, self.pivot = pin, material, pivot
-        self.clamps = tuple(pin.surface(name) for name in clamps)
-        self.space = Section(section)
-        self.outline = Outline(self.space)
-        # one for all harmonics: constrained unknowns stay in it
-        self._system: _System | None = None
+        super().__init__(pin, Section(section), material, clamps, pivot)
+        self.material = material
 
     def solve(
         self,
@@ -100,10 +170,6 @@ class HarmonicModel:
             tractions[..., here] += spread @ share
         return forces, tractions
 
-    def forces(self, n: int, parts: Sequence[tuple[Traction, ...]]) -> Floats:
-        """Forces on the unknowns (unknowns, K) of K sums of tractions of harmonic n."""
-        return np.stack([_generalised(self.outline.forces(part, n)) for part in parts], axis=1)
-
     def _forces(self, n: int, parts: Sequence[tuple[Traction, ...]]) -> tuple[Floats, Floats]:
         return self.forces(n, parts), np.stack([self.outline.traction(p) for p in parts], axis=3)
 
@@ -116,53 +182,6 @@ class HarmonicModel:
             )
         amplitude = self.material.density * (ALONG_X if n else ALONG_Z)
         return _generalised(around(n) * self.space.integrals[:, None] * amplitude)
-
-    def displace(self, n: int, forces: Floats) -> Floats:
-        """Unknowns (unknowns, K) of harmonic n under forces on them."""
-        fixed = np.concatenate([self._on_axis(n), self._held(n)])
-        K = self.space.stiffness(self.material, n)
-        if n < 2:
-            self._require_equilibrium(K, n)
-        free = np.ones(K.shape[0])
-        free[fixed] = 0.0
-        if self._system is None:
-            self._system = _System(K)
-        return self._system.solve(K, free, forces)
-
-    def _require_equilibrium(self, K: sp.csr_matrix, n: int) -> None:
-        """A section that moves as a whole takes no force, so that whatever its displacements are,
-        the forces of its supports answer its loads.
-        """
-        modes = rigid_motions(self.space.nodes, n)
-        lost = np.abs(K @ modes).max(axis=0) / (np.abs(K.data).max() * np.abs(modes).max(axis=0))
-        if not lost.max() < 1e-9:
-            raise SolveError(
-                f"pin {self.pin.name}: the stiffness against rigid-body motion is {lost.max():.1e} "
-                "of the pin's, not zero, so the solution would not be in equilibrium",
-                "no-equilibrium",
-            )
-
-    def _on_axis(self, n: int) -> Ints:
-        """Unknowns that vanish on the axis, so that displacements are smooth there."""
-        axis = 3 * self.space.section.axis
-        p, m, w = axis, axis + 1, axis + 2
-        return np.concatenate({0: [p, m], 1: [p, w]}.get(n, [p, m, w]))
-
-    def _held(self, n: int) -> Ints:
-        if self.clamps:
-            edges = self.outline.nodes[self.outline.held(self.clamps)]
-            return (3 * np.unique(edges)[:, None] + np.arange(3)).ravel()
-        if n > 1:
-            return np.zeros(0, dtype=np.int64)
-        r, z = self.space.nodes.T
-        place = np.abs(z - self.pivot * self.pin.length)
-        if n == 0:  # shift along the axis, spin about it
-            outer = int(np.lexsort((place, -r))[0])
-            return np.array([3 * int(place.argmin()) + 2, 3 * outer])
-        innermost = np.flatnonzero(r <= r.min() * (1.0 + 1e-9))
-        near = int(innermost[place[innermost].argmin()])
-        far = int(innermost[np.abs(z[innermost] - z[near]).argmax()])
-        return np.array([3 * near + 1, 3 * far + 1])
 
 
 class _System:

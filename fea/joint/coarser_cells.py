@@ -6,12 +6,12 @@ import numpy as np
 
 from fea.core.pin_loads import Floats
 from fea.joint.contact import Bands, ContactProblem
-from fea.joint.solve_joint import JointModel
+from fea.joint.solve_joint import WAVES, JointModel
 
 
 def on_coarser_cells(model: JointModel) -> tuple[ContactProblem, Floats]:
-    """Contact with each two rings of a band as one, half the sectors and half the harmonics, and
-    the rings (R, C) of which the coarse ones consist, 1 or 0.
+    """Contact with each two rings of a band as one and half the sectors, and the rings (R, C) of
+    which the coarse ones consist, 1 or 0.
     """
     fine = model.contact
     group = _pairs(fine.bands.band)
@@ -25,11 +25,12 @@ def on_coarser_cells(model: JointModel) -> tuple[ContactProblem, Floats]:
         fine.bands.radius[first],
         fine.bands.band[first],
         mean.T @ fine.bands.gap,
+        fine.bands.link,
     )
-    flexible = (model.of_pin + model.of_lugs)[: model.cells.highest // 2 + 1]
-    coarse = np.einsum("rc,nrs,sd->ncd", mean, flexible, belongs)
+    sectors = model.cells.sectors // 2
+    coarse = np.einsum("rc,nrs,sd->ncd", mean, model.flexibility[: WAVES * sectors], belongs)
     tilt = [lug.tilt for lug in model.lugs]
-    problem = ContactProblem(bands, coarse, model.tail[first], tilt, model.cells.sectors // 2)
+    problem = ContactProblem(bands, coarse, model.tail[first], tilt, sectors)
     return problem, belongs
 
 

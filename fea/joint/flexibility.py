@@ -6,22 +6,33 @@ left open: the pin's by a support that is statically determinate, which balanced
 feel; the lug's by a reaction on its outer surface, of constant direction and linear along z, and
 by measuring from the mean motion of that surface in the same weight, so that it is guided.
 
-Beyond the last harmonic each ring has the half-plane's answer, u_n = 2 (1 - nu^2) R p_n / (E n).
+Beyond the last harmonic that is computed so, pressures are felt no deeper than R / n, and rings
+have a half-space's answer to p(z) cos n theta: the convolution of p with 2 (1 - nu^2) / (pi E)
+times the Bessel function K0(n z / R); for a long ring that is u_n = 2 (1 - nu^2) R p_n / (E n), the
+half-plane's. In a lug it is mirrored at its faces, and with a bushing it is a layer's.
+
+Sources: Johnson, Contact Mechanics, sec. 13.2 (a wavy pressure on a half-space); Nogi & Kato, J.
+Tribol. 119 (1997) 493 (the layer).
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.special import iti0k0, k1
 
 from fea.core.material import Material
 from fea.core.pin_loads import Floats
 from fea.core.tractions import ALONG_X, Traction
-from fea.harmonic.assembly import around
-from fea.harmonic.model import HarmonicModel, rigid_motions
+from fea.harmonic.assembly import Ints, Section, around
+from fea.harmonic.model import HarmonicBody, rigid_motions
+from fea.joint.eye_mesh import eye_mesh
+from fea.joint.lug import Lug
 from geometry import Pin
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
+from geometry.mesh.sizing import Grade
 
 NONE = np.zeros(3)
 OUTWARDS = np.array([1.0, 0.0, 0.0])
@@ -34,15 +45,34 @@ def pin_flexibility(
 
     across: elements over the diameter. Raises: MeshError, SolveError.
     """
-    model = HarmonicModel(pin, meridian_mesh(pin, SectionSize(across)), material, (), pivot=0.5)
-    return _flexibility(model, rings, -OUTWARDS, highest, guided=False)
+    size = SectionSize(across)
+    mesh = meridian_mesh(pin, size, finer=_grades(pin, rings, size.growth))
+    body = HarmonicBody(pin, Section(mesh), material, pivot=0.5)
+    return _flexibility(body, rings, -OUTWARDS, highest, guided=False)
 
 
-def lug_flexibility(lug: Pin, material: Material, across: float, highest: int) -> Floats:
-    """The same of the rings of a lug's bore, outwards under pressure."""
-    model = HarmonicModel(lug, meridian_mesh(lug, SectionSize(across)), material, (), pivot=0.5)
-    rings = [f"bore {name}" for name in lug.connections]
-    return _flexibility(model, rings, OUTWARDS, highest, guided=True)
+def _grades(pin: Pin, rings: Sequence[str], growth: float) -> list[Grade]:
+    """Elements at a ring's ends no longer than half of it."""
+    bands = (pin.band(name) for name in rings)
+    return [Grade(((b.radius, b.z0), (b.radius, b.z1)), b.length / 2.0, 0.0, growth) for b in bands]
+
+
+def lug_flexibility(eye: Pin, lug: Lug, across: float, highest: int) -> Floats:
+    """The same of the rings of a lug's bore, outwards under pressure; its annulus is `eye`
+    (fea.joint.rings). across: elements over the bore's diameter.
+    """
+    rings = [f"bore {name}" for name in eye.connections]
+    bushing = lug.bushing
+    if bushing is None:
+        body = HarmonicBody(eye, Section(eye_mesh(eye, across)), lug.material, pivot=0.5)
+    else:
+        interface = eye.segments[0].bore / 2.0 + bushing.thickness
+        mesh = eye_mesh(eye, across, interface)
+        middles = mesh.mesh.p[0, mesh.mesh.t].mean(axis=0)
+        parts = (middles > interface).astype(np.int64)
+        both = (bushing.material, lug.material)
+        body = HarmonicBody(eye, Section(mesh, parts), both, pivot=0.5)
+    return _flexibility(body, rings, OUTWARDS, highest, guided=True)
 
 
 def half_plane(material: Material, radius: float) -> float:
@@ -51,31 +81,77 @@ def half_plane(material: Material, radius: float) -> float:
     return 2.0 * (1.0 - nu * nu) * radius / E
 
 
+def wavy_flexibility(lug: Lug, pin: Material, radius: float, ends: Floats, waves: Ints) -> Floats:
+    """C_n (N, R, R), m/Pa, of a lug's rings with `ends` (R + 1,) m along z, for high harmonics
+    `waves` (N,): of the pin as a half-space, and of the lug as one that its faces end.
+    """
+    of_pin, of_lug = half_plane(pin, radius), half_plane(lug.bearing, radius)
+    out = []
+    for n in waves.tolist():
+        x = n * ends / radius
+        on, beyond = _half_space(x, x), _half_space(x, -x) + _half_space(x, 2.0 * x[-1] - x)
+        out.append((of_pin * on + of_lug * layered(lug, n / radius) * (on + beyond)) / n)
+    return np.stack(out)
+
+
+def _half_space(x: Floats, y: Floats) -> Floats:
+    """Mean over each ring of a pressure's response at wave number 1, over a plane's: (R, R), for
+    rings with ends x (R + 1,), under pressure on rings with ends y.
+    """
+    twice = _integral_of_k0(np.abs(x[:, None] - y))
+    both = twice[1:, :-1] + twice[:-1, 1:] - twice[1:, 1:] - twice[:-1, :-1]
+    return np.asarray(np.abs(both) / (np.pi * np.diff(x)[:, None]))
+
+
+def _integral_of_k0(x: Floats) -> Floats:
+    """From 0 to x of (x - t) K0(t)."""
+    positive = np.maximum(x, 1e-300)
+    return np.asarray(
+        np.where(x > 0.0, x * iti0k0(positive)[1] - 1.0 + positive * k1(positive), 0.0)
+    )
+
+
+def layered(lug: Lug, waves: float) -> float:
+    """What a wavy pressure does to a lug with a bushing, over what it does to a half-plane of the
+    bushing's material; waves: 2 pi / wavelength, 1/m.
+    """
+    if lug.bushing is None:
+        return 1.0
+    nu, below = lug.bearing.poisson_ratio, lug.material.poisson_ratio
+    stiffer = lug.bearing.lame[1] / lug.material.lame[1]
+    a = 1.0 - 4.0 * (1.0 - nu) / (1.0 + stiffer * (3.0 - 4.0 * below))
+    b = (stiffer - 1.0) / (stiffer + 3.0 - 4.0 * nu)
+    x = waves * lug.bushing.thickness
+    e = math.exp(-2.0 * x)
+    more, less = 1.0 + 4.0 * x * b * e, 1.0 - (a + b + 4.0 * b * x * x) * e
+    return (more - a * b * e * e) / (less + a * b * e * e)
+
+
 def _flexibility(
-    model: HarmonicModel, rings: Sequence[str], pushed: Floats, highest: int, guided: bool
+    body: HarmonicBody, rings: Sequence[str], pushed: Floats, highest: int, guided: bool
 ) -> Floats:
-    bands = [model.pin.band(name) for name in rings]
+    bands = [body.pin.band(name) for name in rings]
     area = np.array([b.radius * b.length for b in bands])
     parts = [(Traction(name, 0.0, pushed, NONE),) for name in rings]
     out = []
     for n in range(highest + 1):
-        forces = model.forces(n, parts)
+        forces = body.forces(n, parts)
         if guided and n == 1:
-            forces = _reacted(model, forces)
-        work = forces.T @ model.displace(n, forces) / around(n)
+            forces = _reacted(body, forces)
+        work = forces.T @ body.displace(n, forces) / around(n)
         out.append(0.5 * (work + work.T) / area[:, None])
     return np.stack(out)
 
 
-def _reacted(model: HarmonicModel, forces: Floats) -> Floats:
+def _reacted(body: HarmonicBody, forces: Floats) -> Floats:
     """With the reaction on the lug's outer surface, of constant direction."""
-    pin = model.pin
+    pin = body.pin
     middle = 0.5 * pin.length
     bands = [pin.band(name) for name in pin.connections]
     reactions = [
         tuple(Traction(b.name, middle, ALONG_X, NONE) for b in bands),
         tuple(Traction(b.name, middle, NONE, ALONG_X) for b in bands),
     ]
-    against = model.forces(1, reactions)
-    modes = rigid_motions(model.space.nodes, 1)
+    against = body.forces(1, reactions)
+    modes = rigid_motions(body.space.nodes, 1)
     return np.asarray(forces - against @ np.linalg.solve(modes.T @ against, modes.T @ forces))

@@ -30,11 +30,12 @@ from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.joint.bending import bending_moment, mass_per_length
 from fea.joint.contact import Bands
-from fea.joint.links import BALANCED, fitting, link_forces
+from fea.joint.fit import fitted
+from fea.joint.links import link_forces
 from fea.joint.lug import Lug
 from fea.joint.plane_contact import plane_stiffness
 from fea.joint.pressure_loads import ring_shares
-from fea.joint.rings import ring, ringed
+from fea.joint.rings import graded, ring, ringed
 from fea.joint.supported_beam import Response, SupportedBeam, refined, respond
 from geometry import Pin, Segment
 
@@ -51,6 +52,8 @@ LONG, LONG_ERROR = 1.8, 0.05  # a middle lug's thickness over the diameter; more
 THICKNESS = 0.3, 3.0  # limits of what was measured, over the smallest diameter
 WIDTH = 1.6, 4.0  # of the lug, over the diameter
 BORE = 0.0, 0.7  # over the diameter
+MODULI = 1.0 / 3.0, 3.0  # of the lug, over the pin's
+BALANCED = 1e-6  # of the largest force and the length: a couple below it is none
 ROUND_OFF = 1e-9
 
 Ints = NDArray[np.int64]
@@ -105,9 +108,11 @@ class FoundationModel:
         rings: int = 8,
         stiffness: Stiffness = foundation_stiffness,
     ) -> None:
-        self.lugs = fitting(pin, lugs)
+        self.lugs = fitted(pin, material, lugs)
         self.whole, self.material = pin, material
-        self.pin = ringed(pin, pin.connections, rings)
+        self.pin = ringed(
+            pin, {name: graded(pin.band(name).length, rings) for name in pin.connections}
+        )
         self.rings = tuple(ring(lug.connection, i) for lug in self.lugs for i in range(rings))
         self.bands = _bands(self.pin, self.rings, rings)
         self.mass = mass_per_length(self.pin, material.density)
@@ -183,22 +188,23 @@ class FoundationModel:
                 )
 
 
-def moment_error(pin: Pin, lugs: Sequence[Lug]) -> float:
+def moment_error(pin: Pin, material: Material, lugs: Sequence[Lug]) -> float:
     """Relative error of the largest bending moment of FoundationModel, of frictionless contact
-    without clearance, for lugs with 1/3 to 3 times the pin's modulus; inf outside of what else was
-    measured.
+    without clearance; inf outside of what was measured.
 
     Raises: ValueError as FoundationModel.
     """
-    fitted = fitting(pin, lugs)
-    bands = [pin.band(lug.connection) for lug in fitted]
+    every = fitted(pin, material, lugs)
+    bands = [pin.band(lug.connection) for lug in every]
+    stiff = [lug.material.youngs_modulus / material.youngs_modulus for lug in every]
     thick = [band.length / pin.smallest_diameter for band in bands]
-    wide = [lug.outer_diameter / 2.0 / b.radius for lug, b in zip(fitted, bands, strict=True)]
+    wide = [lug.outer_diameter / 2.0 / b.radius for lug, b in zip(every, bands, strict=True)]
     bore = max(s.bore / s.diameter for s in pin.segments)
-    inside = _within(thick, THICKNESS) and _within(wide, WIDTH) and _within([bore], BORE)
-    if len(fitted) < 2 or not inside:
+    measured = (thick, THICKNESS), (wide, WIDTH), ([bore], BORE), (stiff, MODULI)
+    inside = all(_within(values, limits) for values, limits in measured)
+    if len(every) < 2 or not inside:
         return math.inf
-    error = PLAIN_ERROR + (SINGLE_SHEAR if len(fitted) == 2 else 0.0)
+    error = PLAIN_ERROR + (SINGLE_SHEAR if len(every) == 2 else 0.0)
     error += TUBE_ERROR if bore > TUBE else 0.0
     return error + (LONG_ERROR if max(thick[1:-1], default=0.0) > LONG else 0.0)
 

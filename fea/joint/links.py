@@ -1,47 +1,61 @@
-"""What links ask of a pin in its lugs: one lug for each band, forces in balance with the body's."""
+"""What links ask of a pin in its lugs: one lug for each band, forces in balance with the body's.
+
+Lugs on bands where no link bears are those of a structure, which holds still: together they take
+what the links leave over.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
+from fea.core.equilibrium import MOST
 from fea.core.linear_solver import SolveError
 from fea.core.pin_loads import Floats, PinLoads
 from fea.joint.lug import Lug
 from geometry import Pin
 
-BALANCED = 1e-6  # of the largest force: what links and the body force may leave over
 
-
-def fitting(pin: Pin, lugs: Sequence[Lug]) -> tuple[Lug, ...]:
-    """The lugs in the order of the pin's bands.
-
-    Raises: ValueError for a lug where no link bears, a band without one, or one no wider than it.
+def on_structure(pin: Pin, lugs: Sequence[Lug]) -> Pin:
+    """The same pin, its bands in lugs of the structure (by the segments' names) among its
+    connections.
     """
-    named = {lug.connection: lug for lug in lugs}
-    if len(named) < len(lugs) or set(named) != set(pin.connections):
-        raise ValueError(f"pin {pin.name} needs one lug for each of {', '.join(pin.connections)}")
-    for lug in lugs:
-        if lug.outer_diameter <= 2.0 * pin.band(lug.connection).radius:
-            raise ValueError(f"lug {lug.connection}: it must be wider than the pin")
-    return tuple(named[connection] for connection in pin.connections)
+    held = {lug.connection for lug in lugs} - set(pin.connections)
+    segments = tuple(
+        replace(s, connection=s.name) if s.connection is None and s.name in held else s
+        for s in pin.segments
+    )
+    return replace(pin, segments=segments)
 
 
-def link_forces(pin: Pin, mass: float, loads: PinLoads) -> Floats:
-    """Of the links along x and y by connection, (T, B, 2) N; mass: of the pin, kg.
+def link_numbers(connections: Sequence[str], links: Sequence[str]) -> NDArray[np.int64]:
+    """Of each band (B,) the number of its link, after the last for the structure."""
+    number = {name: k for k, name in enumerate(links)}
+    return np.array([number.get(name, len(links)) for name in connections], dtype=np.int64)
 
-    Raises: SolveError where they are not in balance with the body force.
+
+def link_forces(pin: Pin, mass: float, loads: PinLoads, structure: bool = False) -> Floats:
+    """Of the links along x and y by connection, (T, L, 2) N, and last of the structure, if any of
+    the lugs is its; mass: of the pin, kg. A small imbalance with the body force, as where a weight
+    is rounded, is shared by the links.
+
+    Raises: SolveError where it is not small.
     """
     out = np.zeros((len(loads), len(pin.connections), 2))
     for b, connection in enumerate(pin.connections):
         if connection in loads.surfaces:
             out[:, b] = loads.forces[:, loads.surfaces.index(connection), :2]
-    left = np.linalg.norm(out.sum(axis=1) + loads.body[:, :2] * mass, axis=1).max()
-    if left > BALANCED * np.abs(out).max(initial=1e-300):
+    left = out.sum(axis=1) + loads.body[:, :2] * mass
+    if structure:
+        return np.concatenate([out, -left[:, None]], axis=1)
+    largest = np.linalg.norm(left, axis=1).max()
+    if largest > MOST * np.linalg.norm(out, axis=2).max(initial=1e-300):
         raise SolveError(
             f"pin {pin.name}, case {loads.case}: the forces of its links have "
-            f"a resultant of {left:.3g} N, which no contact reacts",
+            f"a resultant of {largest:.3g} N, which no contact reacts",
             "not-in-equilibrium",
         )
-    return out
+    return np.asarray(out - left[:, None] / out.shape[1])

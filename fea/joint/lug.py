@@ -1,4 +1,4 @@
-"""What surrounds a band of a pin: the eye of a link."""
+"""What surrounds a band of a pin: the eye of a link, with a bushing or without."""
 
 from __future__ import annotations
 
@@ -9,6 +9,22 @@ import numpy as np
 
 from fea.core.material import Material
 from fea.core.pin_loads import Floats
+from geometry import ArgumentError
+
+
+@dataclass(frozen=True)
+class Bushing:
+    """A ring of its own material, bonded in an eye; thickness in m.
+
+    Raises: ArgumentError for a thickness that is not positive.
+    """
+
+    thickness: float
+    material: Material
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.thickness) and self.thickness > 0.0):
+            raise ArgumentError("the thickness of a bushing must be positive", "not-positive")
 
 
 @dataclass(frozen=True)
@@ -17,8 +33,9 @@ class Lug:
 
     clearance: of the diameters, negative for interference. edge_radius: of the bore's edges. tilt:
     N m/rad, of the link against the others about any axis across the pin; inf: guided, 0: free.
+    The pin bears on the bushing, if there is one.
 
-    Raises: ValueError for what cannot be.
+    Raises: ArgumentError for what cannot be; fea.joint.fit has what depends on the pin.
     """
 
     connection: str
@@ -27,17 +44,25 @@ class Lug:
     clearance: float = 0.0
     edge_radius: float = 0.0
     tilt: float = math.inf
+    bushing: Bushing | None = None
 
     def __post_init__(self) -> None:
         what = f"lug {self.connection}"
         if not (math.isfinite(self.outer_diameter) and self.outer_diameter > 0.0):
-            raise ValueError(f"{what}: its outer diameter must be positive")
+            raise ArgumentError(f"{what}: its outer diameter must be positive", "not-positive")
         if not math.isfinite(self.clearance):
-            raise ValueError(f"{what}: its clearance must be a number")
+            raise ArgumentError(f"{what}: its clearance must be a number", "not-a-number")
         if not (math.isfinite(self.edge_radius) and self.edge_radius >= 0.0):
-            raise ValueError(f"{what}: its edge radius must not be negative")
+            raise ArgumentError(f"{what}: its edge radius must not be negative", "negative")
         if not self.tilt >= 0.0:
-            raise ValueError(f"{what}: the stiffness of its tilt must not be negative")
+            raise ArgumentError(
+                f"{what}: the stiffness of its tilt must not be negative", "negative"
+            )
+
+    @property
+    def bearing(self) -> Material:
+        """What the pin bears on: the bushing's material or the lug's."""
+        return self.material if self.bushing is None else self.bushing.material
 
     def gap(self, ends: Floats) -> Floats:
         """Gap on the radius, (R,) m, on the mean over each ring with `ends` (R + 1,) m along z,

@@ -2,14 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Mapping
 from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
 from fea.core.pin_loads import Floats
-from geometry import Pin, Segment
+from geometry import Band, Pin, Segment
+
+USUAL = 8  # rings of a band with sharp edges, if it is not long
+LONGEST = 0.25  # ring, of the diameter, if there are so many
+GROWTH = 1.6  # of each ring over the one before, from there on
+
+
+def ring_ends(band: Band, edge_radius: float, count: int, beside: float) -> Floats:
+    """Ends of the rings of a band, (R + 1,) m from its start on, as fine as `count` says: so many
+    where the bore has sharp edges, but for long bands; where it has rounded ones as many as lead
+    from their radius to the middle, the first of `beside` times the radius for the usual count.
+    """
+    coarser = USUAL / count
+    longest = 2.0 * LONGEST * band.radius * coarser
+    if edge_radius == 0.0:
+        least = math.ceil(0.5 * math.pi * band.length / longest - 1e-9)
+        return graded(band.length, max(count, least))
+    first, growth = beside * edge_radius * coarser, GROWTH**coarser
+    outside = _growing(edge_radius, first, growth, longest)[::-1]
+    flat = _growing(band.length / 2.0 - edge_radius, first, growth, longest)
+    ends = np.cumsum([0.0, *outside, *flat])
+    return np.concatenate([ends[:-1], [band.length / 2.0], band.length - ends[-2::-1]])
 
 
 def graded(length: float, count: int) -> Floats:
@@ -17,39 +39,56 @@ def graded(length: float, count: int) -> Floats:
     return np.asarray(length * (1.0 - np.cos(np.linspace(0.0, np.pi, count + 1))) / 2.0)
 
 
+def _growing(length: float, first: float, growth: float, longest: float) -> Floats:
+    """Lengths that add up to `length`, m: from about `first` on each `growth` times the one before,
+    up to `longest`.
+    """
+    most = math.ceil(length / longest) + math.ceil(
+        max(0.0, math.log(longest / first) / math.log(growth))
+    )
+    parts = np.minimum(first * growth ** np.arange(most + 1), longest)
+    parts = parts[: int(np.searchsorted(np.cumsum(parts), length * (1.0 - 1e-9))) + 1]
+    return np.asarray(parts * (length / parts.sum())) if length > 0.0 else np.zeros(0)
+
+
 def ring(connection: str, i: int) -> str:
     """Name of a ring's surface, i from 0 on."""
     return f"{connection} ring {i + 1}"
 
 
-def ringed(pin: Pin, connections: Iterable[str], count: int) -> Pin:
-    """The same shape with the bands of some connections cut into `count` rings each.
+def rings(connection: str, ends: Floats) -> list[str]:
+    """Names of all that have these ends."""
+    return [ring(connection, i) for i in range(len(ends) - 1)]
+
+
+def ringed(pin: Pin, ends: Mapping[str, Floats]) -> Pin:
+    """The same shape with the bands of some connections cut into rings, whose ends (R + 1,) are in
+    m from the band's start.
 
     A ring is cut where the band is, between its fillets: what a fillet takes stays plain.
     """
-    wanted = set(connections)
     segments: list[Segment] = []
     for i, (s, band) in enumerate(zip(pin.segments, pin.bands, strict=True)):
-        if s.connection not in wanted:
+        if s.connection is None or s.connection not in ends:
             segments.append(s)
             continue
-        ends = [pin.stations[i], *(band.z0 + graded(band.length, count))[1:-1], pin.stations[i + 1]]
+        inner = (band.z0 + ends[s.connection])[1:-1]
         parts = [
             replace(s, length=float(b - a), name=None, connection=ring(s.connection, k), fillet=0.0)
-            for k, (a, b) in enumerate(pairwise(ends))
+            for k, (a, b) in enumerate(pairwise([pin.stations[i], *inner, pin.stations[i + 1]]))
         ]
         parts[-1] = replace(parts[-1], fillet=s.fillet)
         segments += parts
     return replace(pin, segments=tuple(segments))
 
 
-def annulus(pin: Pin, connection: str, outer_diameter: float, count: int) -> Pin:
+def annulus(pin: Pin, connection: str, outer_diameter: float, ends: Floats) -> Pin:
     """A lug's eye, as a body of revolution from z = 0 on, whose bore has the rings of the band on
     which it bears.
     """
     band = pin.band(connection)
     segments = tuple(
         Segment(float(b - a), outer_diameter, 2.0 * band.radius, connection=ring(connection, k))
-        for k, (a, b) in enumerate(pairwise(graded(band.length, count)))
+        for k, (a, b) in enumerate(pairwise(ends))
     )
     return Pin(f"lug {connection}", segments)

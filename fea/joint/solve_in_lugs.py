@@ -15,6 +15,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from fea.asked import Asked
+from fea.core.equilibrium import out_of_balance
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.over_time import Between
@@ -28,7 +29,7 @@ from fea.joint.records import JointResult
 from fea.joint.solve_joint import Cells, JointModel
 from fea.joint.variations import compare
 from fea.joint.what_contact_says import joint_result
-from fea.solve_pin import Progress, Solution, solve_pin
+from fea.solve_pin import Progress, Solution, imbalance, solve_pin
 from fea.verdict import accuracy
 from geometry import Pin
 
@@ -164,8 +165,15 @@ def _solved(
     peak = with_cells(solution.peak, comparison.cells + pressing.missed, asked)
     joint = joint_result(contact, comparison.range)
     pressure = CellPressure(contact.bands, contact.contact[0].pressure)
-    solution = replace(solution, peak=replace(peak, governing=here))
-    return LugSolution(solution, joint, pressing, pressure)
+    peak = replace(peak, governing=here, imbalance=_imbalance(model, case))
+    return LugSolution(replace(solution, peak=peak), joint, pressing, pressure)
+
+
+def _imbalance(model: JointModel, case: PinLoads) -> tuple[float, float] | None:
+    """Force and couple that links leave over, relative; a structure takes them."""
+    if model.on_structure:
+        return None
+    return imbalance(model.given, out_of_balance(model.given, case, model.material.density))
 
 
 def with_cells(peak: Peak, relative: float, asked: Asked) -> Peak:

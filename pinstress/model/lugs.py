@@ -16,7 +16,8 @@ HELD = 0.8  # of the outer diameter: how far from the bore's middle the link hol
 
 
 def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]:
-    """Those of a pin, one for every connection, if contact with them holds it; else none.
+    """Those of a pin, one for every connection and those of a structure that are named, if contact
+    with them holds it; else none.
 
     Raises: InputError for lugs that cannot be, and for a pin that contact cannot hold.
     """
@@ -41,7 +42,8 @@ def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]
         )
     made_of = material(study, table.material)
     out = []
-    for connection in pin.connections:
+    structure = [name for name in table.lug if name not in pin.connections]
+    for connection in (*pin.connections, *structure):
         try:
             given = table.lug.get(connection, LugTable())
             out.append(_lug(study, pin, connection, given, made_of))

@@ -98,7 +98,9 @@ class BushingTable(StrictTable):
 
 
 class LugTable(StrictTable):
-    """The eye of the link at a connection, in which the pin sits: a ring about its band."""
+    """The eye in which the pin sits, a ring about its band: of the link at a connection, or of the
+    structure at a segment of that name, where no link bears; the structure holds still.
+    """
 
     outer_diameter: PositiveLength | None = None
     """Of the eye; absent: 2.5 times the band's diameter."""
@@ -136,8 +138,9 @@ class PinTable(StrictTable):
     band: dict[str, BandTable] = {}
     """Bands of a pin from a file, by name. With `geometry` only."""
     lug: dict[str, LugTable] = {}
-    """What surrounds its bands, by connection; an empty table takes all defaults. With any, the pin
-    is held by contact with its lugs (`analysis.joints`). With a profile only."""
+    """What surrounds its bands, by connection or by the name of a segment; an empty table takes all
+    defaults. With any, the pin is held by contact with its lugs (`analysis.joints`). With a profile
+    only."""
     clamp: list[str] = []
     """Clamped surfaces: "start" and "end" (faces), a segment's name or connection (its outer
     surface), "hole 1", "flat 1", a band. Empty: none, and the loads must be nearly in balance."""

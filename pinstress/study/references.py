@@ -18,9 +18,10 @@ def cross_references(table: StudyTable) -> Iterator[Wrong]:
     for name, pin in table.pin.items():
         yield from _known(f"pin.{name}.material", "material", pin.material, table.material)
         own = dict.fromkeys(connection for _, connection in pin.connections)
+        own |= dict.fromkeys(s.name for s in pin.profile or () if s.name)
         for connection, lug in pin.lug.items():
             key = f"pin.{name}.lug.{connection}"
-            yield from _known(key, "connection of this pin", connection, own)
+            yield from _known(key, "connection or segment of this pin", connection, own)
             for at, made_of in (
                 ("material", lug.material),
                 ("bushing.material", None if lug.bushing is None else lug.bushing.material),

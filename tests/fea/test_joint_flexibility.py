@@ -13,6 +13,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import Floats
 from fea.joint.contact import Bands, ContactProblem, Pressed
 from fea.joint.flexibility import half_plane, lug_flexibility, pin_flexibility
+from fea.joint.lug import Lug
 from fea.joint.rings import annulus, graded, ring, ringed
 from geometry import Pin, Segment
 
@@ -26,11 +27,11 @@ def test_rings_fill_the_band_and_keep_the_shape() -> None:
         (Segment(0.03, 0.05), Segment(0.04, 0.03, 0.01, connection="A"), Segment(0.02, 0.05)),
         fillet=0.004,
     )
-    cut = ringed(pin, ["A"], 6)
+    whole = pin.band("A")
+    cut = ringed(pin, {"A": graded(whole.length, 6)})
     assert cut.volume == pytest.approx(pin.volume, rel=1e-12)
     assert cut.length == pytest.approx(pin.length)
     bands = [cut.band(ring("A", i)) for i in range(6)]
-    whole = pin.band("A")
     assert (bands[0].z0, bands[-1].z1) == pytest.approx((whole.z0, whole.z1))
     assert [b.z0 for b in bands[1:]] == pytest.approx([b.z1 for b in bands[:-1]])
     assert bands[0].length < bands[2].length
@@ -51,8 +52,8 @@ def test_a_thin_disc_is_the_plane_ones(n: int) -> None:
 def test_an_even_pressure_in_a_lug_is_lames() -> None:
     """u = p r / E [(D^2 + d^2) / (D^2 - d^2) + nu] with free faces, whatever the length."""
     pin = Pin("P", (Segment(0.02, 0.02, connection="A"),))
-    lug = annulus(pin, "A", 0.05, 4)
-    flexible = lug_flexibility(lug, STEEL, 8.0, 0)[0]
+    lug = Lug("A", 0.05, STEEL)
+    flexible = lug_flexibility(annulus(pin, "A", 0.05, graded(0.02, 4)), lug, 8.0, 0)[0]
     moved = flexible.sum(axis=1)  # an even pressure on all rings
     ratio = (0.05**2 + 0.02**2) / (0.05**2 - 0.02**2)
     assert moved == pytest.approx(0.01 / E * (ratio + NU), rel=1e-4)
@@ -62,9 +63,10 @@ def test_flexibilities_are_symmetric_and_positive() -> None:
     """By Betti, in the work of pressures: C times the length of the ring that moves."""
     whole = Pin("P", (Segment(0.01, 0.02), Segment(0.03, 0.02, connection="A")))
     rings = [ring("A", i) for i in range(5)]
-    lengths = np.diff(graded(0.03, 5))
-    pin = pin_flexibility(ringed(whole, ["A"], 5), rings, STEEL, 8.0, 4)
-    lug = lug_flexibility(annulus(whole, "A", 0.05, 5), STEEL, 6.0, 4)
+    ends = graded(0.03, 5)
+    lengths = np.diff(ends)
+    pin = pin_flexibility(ringed(whole, {"A": ends}), rings, STEEL, 8.0, 4)
+    lug = lug_flexibility(annulus(whole, "A", 0.05, ends), Lug("A", 0.05, STEEL), 6.0, 4)
     for found in (pin, lug):
         work = found * lengths[None, :, None]
         assert work == pytest.approx(work.swapaxes(1, 2), rel=1e-12)
@@ -97,14 +99,14 @@ def clevis(inner: float, outer: float, gap: float) -> tuple[Pin, Bands, Floats]:
         Segment(t, D, connection=name) for t, name in zip((outer, inner, outer), LUGS, strict=True)
     )
     pin = Pin("P", (over, left, apart, middle, apart, right, over))
-    cut = ringed(pin, LUGS, RINGS)
+    ends = {name: graded(pin.band(name).length, RINGS) for name in LUGS}
+    cut = ringed(pin, ends)
     rings = [ring(name, i) for name in LUGS for i in range(RINGS)]
     flexible = pin_flexibility(cut, rings, STEEL, 10.0, HIGHEST)
     for b, name in enumerate(LUGS):
         own = slice(b * RINGS, (b + 1) * RINGS)
-        flexible[:, own, own] += lug_flexibility(
-            annulus(pin, name, EYE, RINGS), STEEL, 5.0, HIGHEST
-        )
+        eye = annulus(pin, name, EYE, ends[name])
+        flexible[:, own, own] += lug_flexibility(eye, Lug(name, EYE, STEEL), 5.0, HIGHEST)
     bands = [cut.band(name) for name in rings]
     z, length = np.array([b.middle for b in bands]), np.array([b.length for b in bands])
     radius = np.full(len(rings), D / 2.0)

@@ -10,6 +10,7 @@ from fea.core.tractions import Traction
 from fea.harmonic.assembly import around
 from fea.harmonic.model import HarmonicModel
 from fea.joint.flexibility import half_plane, lug_flexibility, pin_flexibility
+from fea.joint.lug import Lug
 from fea.joint.plane_contact import HIGHEST, lug_harmonics, pin_harmonics, plane_stiffness
 from fea.joint.rings import annulus
 from geometry import Pin, Segment
@@ -22,7 +23,9 @@ SOLID = Pin("P", (Segment(0.02, 0.02, connection="A"),))
 
 
 def test_a_lug_is_that_of_finite_elements() -> None:
-    found = lug_flexibility(annulus(TUBE, "A", 0.05, 1), EVEN, 20.0, 6)[:, 0, 0]
+    found = lug_flexibility(
+        annulus(TUBE, "A", 0.05, np.array([0.0, 0.02])), Lug("A", 0.05, EVEN), 20.0, 6
+    )[:, 0, 0]
     assert lug_harmonics(0.01, 0.025, EVEN)[:7] == pytest.approx(found, rel=1e-3)
 
 
