@@ -16,7 +16,8 @@ class BandContact:
     """A band in its lug. force: of the link on the pin. contact_angle: half of the arc in contact,
     degrees, where it is widest. line_load: pairs of z and of the load per length there (mean over a
     ring) in the direction of the force; negative: the other side of the bore carries. couple: what
-    the lug's tilt reacts, a moment on the link. clearance, outer_diameter: of the lug.
+    the lug's tilt reacts, a moment on the link. clearance, outer_diameter: of the lug. ends: z of
+    the rings' ends, one more than there are rings; none where load is not given by rings.
     """
 
     name: str
@@ -27,15 +28,19 @@ class BandContact:
     couple: Couple
     clearance: Length
     outer_diameter: Length
+    ends: tuple[Length, ...] = ()
 
 
 @dataclass(frozen=True)
 class Variation:
-    """The maximum with something of the joint changed: what, and to what value or way."""
+    """The maximum with something of the joint changed: what, and to what value or way, in words;
+    length: the value where it is one, the largest if it differs from lug to lug.
+    """
 
     what: str
     value: str
     max_von_mises: Stress
+    length: Length | None = None
 
 
 @dataclass(frozen=True)

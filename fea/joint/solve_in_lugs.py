@@ -21,6 +21,7 @@ from fea.core.material import Material
 from fea.core.over_time import Between
 from fea.core.peak import Note, Peak
 from fea.core.pin_loads import Floats, PinLoads
+from fea.joint.cell_pressure import CellPressure
 from fea.joint.contact import Pressed
 from fea.joint.lug import Lug
 from fea.joint.pressure_loads import PressureLoads
@@ -57,11 +58,13 @@ class InLugs:
 class LugSolution:
     """A case: the solution of the pin under its pressures, what contact says at the governing
     instant, None where that failed, and what presses on the pin under other loads of its links.
+    pressure: of contact, with `joint`.
     """
 
     solution: Solution
     joint: JointResult | None
     pressed: Callable[[PinLoads], PinLoads]
+    pressure: CellPressure | None = None
 
 
 def solve_in_lugs(
@@ -167,10 +170,11 @@ def _solved(
     here = solution.loads.links.at(np.array([solution.instant]))
     contact = model.joined(pressing.at(here), pressing(here))
     comparison = compare(model, contact, solution.peak, asked)
-    peak = _with_cells(solution.peak, comparison.cells + pressing.missed, asked)
+    peak = with_cells(solution.peak, comparison.cells + pressing.missed, asked)
     joint = joint_result(contact, comparison.range)
+    pressure = CellPressure(contact.bands, contact.contact[0].pressure)
     peak = replace(peak, governing=here, imbalance=_imbalance(model, case))
-    return LugSolution(replace(solution, peak=peak), joint, pressing)
+    return LugSolution(replace(solution, peak=peak), joint, pressing, pressure)
 
 
 def _imbalance(model: JointModel, case: PinLoads) -> tuple[float, float] | None:
@@ -180,7 +184,7 @@ def _imbalance(model: JointModel, case: PinLoads) -> tuple[float, float] | None:
     return imbalance(model.given, out_of_balance(model.given, case, model.material.density))
 
 
-def _with_cells(peak: Peak, relative: float, asked: Asked) -> Peak:
+def with_cells(peak: Peak, relative: float, asked: Asked) -> Peak:
     """With the error of the cells, relative, among its parts."""
     largest, error = peak.max_von_mises, peak.error_estimate
     if not largest or error is None or peak.parts is None:
@@ -188,8 +192,15 @@ def _with_cells(peak: Peak, relative: float, asked: Asked) -> Peak:
     more = relative * largest
     interval = peak.interval and (peak.interval[0] - more, peak.interval[1] + more)
     parts = replace(peak.parts, cells=more)
-    peak = replace(peak, parts=parts, error_estimate=error + more, interval=interval)
-    if peak.verdict != "converged" or parts.total <= asked.tolerance * largest:
-        return peak
-    note = accuracy(parts.total / largest, asked.tolerance, False)
-    return replace(peak, verdict="unconverged", note=note.text, reasons=peak.reasons + note.codes)
+    ratios = [x.total / largest for x in (peak.parts, parts)]
+    before, after = (accuracy(x, asked.tolerance, x <= asked.tolerance) for x in ratios)
+    loose = peak.verdict == "converged" and after.codes != before.codes
+    return replace(
+        peak,
+        parts=parts,
+        error_estimate=error + more,
+        interval=interval,
+        verdict="unconverged" if loose else peak.verdict,
+        note=peak.note.replace(before.text, after.text),
+        reasons=tuple(after.codes[0] if x == before.codes[0] else x for x in peak.reasons),
+    )

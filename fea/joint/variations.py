@@ -41,17 +41,18 @@ def compare(model: JointModel, contact: JointContact, peak: Peak, asked: Asked) 
     """At one instant. peak: the maximum there."""
     links = contact.loads.links
     found = [np.stack([x.pressure for x in contact.contact]), _on_coarser_cells(model, contact)]
-    names: list[tuple[str, str]] = []
-    for what, to, other in _joints(model):
+    names: list[tuple[str, str, float | None]] = []
+    for what, to, length, other in _joints(model):
         try:
             found.append(np.stack([x.pressure for x in other.pressed(links)]))
         except SolveError:
             continue  # a lug that is free to tilt may leave a couple on the pin
-        names.append((what, to))
+        names.append((what, to, length))
     maxima = _maxima(model, contact, found, asked)
     largest = (peak.max_von_mises or 0.0) * maxima / maxima[0]
     over = tuple(
-        Variation(what, to, float(x)) for (what, to), x in zip(names, largest[2:], strict=True)
+        Variation(what, to, float(x), length)
+        for (what, to, length), x in zip(names, largest[2:], strict=True)
     )
     ends = [float(largest[0]), *(v.max_von_mises for v in over)]
     return Comparison(
@@ -79,17 +80,24 @@ def _on_coarser_cells(model: JointModel, contact: JointContact) -> Floats:
     return np.asarray((belongs @ pressed.pressure)[None])
 
 
-def _joints(model: JointModel) -> Iterator[tuple[str, str, JointModel]]:
-    """What is changed, to what, and the joint with it."""
+def _joints(model: JointModel) -> Iterator[tuple[str, str, float | None, JointModel]]:
+    """What is changed, to what in words, as a length in m if it is one, and the joint with it."""
     lugs = model.lugs
     for times in (0.0, 2.0):
         changed = tuple(replace(lug, clearance=times * _clearance(model, lug)) for lug in lugs)
         size = max(lug.clearance for lug in changed)
-        yield "clearance", f"{size:.6g} m" if size else "0", model.varied(changed)
+        yield "clearance", _in_words(lugs, times), size, model.varied(changed)
     for softness in (1.0 / SOFTER, SOFTER):
-        yield "stiffness of the lugs", f"times {1.0 / softness:g}", model.varied(lugs, softness)
+        times = 1.0 / softness
+        yield "stiffness of the lugs", f"times {times:g}", None, model.varied(lugs, softness)
     for tilt, name in ((0.0, "free"), (math.inf, "guided")):
-        yield "tilt", name, model.varied(tuple(replace(lug, tilt=tilt) for lug in lugs))
+        yield "tilt", name, None, model.varied(tuple(replace(lug, tilt=tilt) for lug in lugs))
+
+
+def _in_words(lugs: Sequence[Lug], times: float) -> str:
+    """A clearance of so many times `_clearance`."""
+    ways = {"twice the given" if lug.clearance else f"{FIT:g} of the diameter" for lug in lugs}
+    return " or ".join(sorted(ways, reverse=True)) if times else "none"
 
 
 def _clearance(model: JointModel, lug: Lug) -> float:

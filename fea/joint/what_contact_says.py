@@ -40,6 +40,8 @@ def _band(contact: JointContact, b: int) -> BandContact:
     along = force / size if size else np.array([1.0, 0.0])
     arm = bands.z[own] - bands.middles[b]
     couple = np.linalg.norm((bands.length[own] * arm) @ line)
+    half = bands.length[own] / 2.0
+    ends = [*(bands.z[own] - half).tolist(), float((bands.z[own] + half)[-1])]
     pairs = zip(bands.z[own].tolist(), (line @ along).tolist(), strict=True)
     return BandContact(
         name=lug.connection,
@@ -50,4 +52,5 @@ def _band(contact: JointContact, b: int) -> BandContact:
         couple=float(couple),
         clearance=lug.clearance,
         outer_diameter=lug.outer_diameter,
+        ends=tuple(ends),
     )

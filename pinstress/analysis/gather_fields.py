@@ -13,6 +13,7 @@ from fea.core.solution import Answer
 from fea.core.voigt import von_mises
 from fea.harmonic.evaluate import HarmonicAnswer
 from fea.harmonic.revolve import revolve_solid
+from fea.joint.cell_pressure import CellPressure
 from fea.solve_pin import Solution
 from pinstress.model.cases import CaseLoads
 from pinstress.model.tasks import Task
@@ -22,10 +23,17 @@ Also = Literal["motion", "solid"] | None
 STILLS = 50  # of a motion, besides the governing instant
 
 
-def field(task: Task, solution: Solution, case: CaseLoads, also: Also = None) -> plain.Field | None:
+def field(
+    task: Task,
+    solution: Solution,
+    case: CaseLoads,
+    also: Also = None,
+    pressure: CellPressure | None = None,
+) -> plain.Field | None:
     """A pin's field at its governing instant; None if not solved, or if the model has none.
 
-    also: with the other instants, at most STILLS of them, or with all of a revolved pin.
+    also: with the other instants, at most STILLS of them, or with all of a revolved pin. pressure:
+    of contact with its lugs.
     """
     peak = solution.peak
     solution = shown_at(solution, case)
@@ -56,6 +64,7 @@ def field(task: Task, solution: Solution, case: CaseLoads, also: Also = None) ->
             for i in instants(len(loads), governing)
         ),
         volume=_volume(solution.answer, loads, governing) if also == "solid" else None,
+        contact_pressure=pressure.at(shown.points) if pressure else None,
     )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from fea.core.pin_loads import Floats
 from fea.core.solution import Answer
+from fea.joint.cell_pressure import CellPressure
 from fea.solve_pin import Solution
 from fea.surface_fields import UnitSurface, amounts, excluded, largest_there, unit_surface
 from pinstress.analysis.gather_fields import shown_at
@@ -20,16 +21,25 @@ APART = 0.1  # of a zone's size: nearer points show nothing where nothing is to 
 
 
 def surface_of(
-    loads: dict[str, CaseLoads], task: Task, solutions: Sequence[Solution]
+    loads: dict[str, CaseLoads],
+    task: Task,
+    solutions: Sequence[Solution],
+    pressures: Sequence[CellPressure | None],
 ) -> Surface | None:
-    """A pin's surface with all the cases that some model with fields solved; None without any."""
-    found = [(s, s.answer) for s in solutions if s.answer is not None]
-    with_fields = [(s, a) for s, a in found if unit_surface(a) is not None]
+    """A pin's surface with all the cases that some model with fields solved; None without any.
+
+    pressures: of contact with its lugs, by solution.
+    """
+    each = zip(solutions, pressures, strict=True)
+    found = [(s, s.answer, p) for s, p in each if s.answer is not None]
+    with_fields = [(s, a, p) for s, a, p in found if unit_surface(a) is not None]
     if not with_fields:
         return None
     surface = unit_surface(with_fields[0][1])  # on one mesh, whichever the case
     assert surface is not None
-    cases = [_case(loads[s.peak.case], s, a) for s, a in with_fields]
+    cases = [
+        _pressed(_case(loads[s.peak.case], s, a), surface.points, p) for s, a, p in with_fields
+    ]
     if surface.revolved:
         keep = _thinned(surface, np.all([c.excluded for c in cases], axis=0))
     else:
@@ -61,6 +71,12 @@ def _case(case: CaseLoads, solution: Solution, answer: Answer) -> SurfaceCase:
     )
 
 
+def _pressed(case: SurfaceCase, points: Floats, pressure: CellPressure | None) -> SurfaceCase:
+    if pressure is None:
+        return case
+    return replace(case, rings=pressure.rings(points), pressure=pressure.pressure)
+
+
 def _thinned(surface: UnitSurface, excluded: Mask) -> Mask:
     """Which points (P,) to keep: all outside of what every case excludes, and inside those that
     are apart; a mesh has most of its points there.
@@ -82,4 +98,5 @@ def _length(points: Floats) -> Floats:
 
 
 def _kept(case: SurfaceCase, keep: Mask) -> SurfaceCase:
-    return replace(case, excluded=case.excluded[keep], largest=case.largest[keep])
+    rings = None if case.rings is None else case.rings[keep]
+    return replace(case, excluded=case.excluded[keep], largest=case.largest[keep], rings=rings)

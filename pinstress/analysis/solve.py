@@ -133,9 +133,10 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
     found = tuple(j.solution for j in joined) or solve_pin(
         task.pin, task.material, task.clamps, task.loads, plan.asked, tell, task.between
     )
-    for solution in found:
+    pressures = [j.pressure for j in joined] or [None] * len(found)
+    for solution, pressure in zip(found, pressures, strict=True):
         case = plan.loads[solution.peak.case]
-        field = gather_fields.field(task, solution, case, plan.also)
+        field = gather_fields.field(task, solution, case, plan.also, pressure)
         if field is not None:
             tell(f"pin {task.pin.name}, pictures")
             keep(field)
@@ -151,7 +152,8 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
         tell(f"pin {task.pin.name}, beam check")
         beam = checks.beam_check(study, task)
     joints = tuple(j.joint for j in joined)
-    return Solved(peaks, landing, beam, surface_of(plan.loads, task, found), joints=joints)
+    surface = surface_of(plan.loads, task, found, pressures)
+    return Solved(peaks, landing, beam, surface, joints=joints)
 
 
 def _in_lugs(plan: Plan, task: Task, tell: Tell) -> tuple[LugSolution, ...]:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from functools import partial
 
+from geometry import PinLike
 from loads import Linkage
 from loads.closed_form.four_bar import four_bar
 from pinstress.model.cases import case_loads
 from pinstress.model.linkage import determined, linkage, span
+from pinstress.model.lugs import lugs
 from pinstress.model.pins import lost_shape, weight
 from pinstress.model.pins import pin as pin_of
 from pinstress.schema.cases import GivenCase, LegCase, MotionCase
@@ -44,16 +46,22 @@ def describe(study: Study) -> str:
 def _pin(study: Study, name: str) -> str:
     pin, p, system = pin_of(study, name), study.table.pin[name], study.system
     ways = dict.fromkeys(study.clamps(name, case) for case in study.table.case)
-    clamped = " or ".join(", ".join(w) or "nowhere (loads must balance)" for w in ways)
+    held = dict.fromkeys(_held(study, pin, way) for way in ways)
     density = study.table.material[p.material].density
     heavy = ""
     if density:
         heavy = f", {weight(pin, density) / system.factor('force'):.4g} {system.force}"
     return (
         f"pin {name}: {p.material}, {_form(p)}{heavy}; "
-        f"loaded at {', '.join(pin.connections) or 'nothing'}; clamped at {clamped}"
+        f"loaded at {', '.join(pin.connections) or 'nothing'}; {' or '.join(held)}"
         + (f"; {lost}" if (lost := lost_shape(pin)) else "")
     )
+
+
+def _held(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> str:
+    if lugs(study, pin, clamps):
+        return "held by contact with its lugs"
+    return f"clamped at {', '.join(clamps) or 'nowhere (loads must balance)'}"
 
 
 def _form(pin: PinTable) -> str:

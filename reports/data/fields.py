@@ -72,7 +72,7 @@ class Field:
     inside. yield_strength: for the factor of safety at each point, None without one. outside: of a
     `singular` pin the largest stress outside the excluded zones and where it is (x, y, z). time:
     None without a motion. loads: what acts at this instant. stills: along the motion, and
-    volume: all of a revolved pin, if wanted.
+    volume: all of a revolved pin, if wanted. contact_pressure: (N,) of its lugs, None without.
     """
 
     pin: str
@@ -91,3 +91,4 @@ class Field:
     loads: tuple[BandLoad, ...] = ()
     stills: tuple[Still, ...] = ()
     volume: Volume | None = None
+    contact_pressure: Stresses | None = None

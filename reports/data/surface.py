@@ -20,7 +20,9 @@ class SurfaceCase:
     amounts: (T, K, 2) of the unit loads, by phase. maxima: (T,) largest von Mises stress outside of
     what is excluded, as the analysis found it; `instant` governs. times: None without a motion.
     excluded: (P,) whether no stress is read there. largest: (P,) von Mises stress at the governing
-    instant, of a meridian the maximum over the circumference.
+    instant, of a meridian the maximum over the circumference. pressure: (R, M) of contact with lugs
+    at that instant, on M sectors of R rings, the first about x; rings: (P,) on which of them a
+    point is, -1 on none; None without contact.
     """
 
     case: str
@@ -30,6 +32,8 @@ class SurfaceCase:
     maxima: Stresses
     excluded: Mask
     largest: Stresses
+    rings: Ints | None = None
+    pressure: Stresses | None = None
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,13 @@ from reports.data.results import PinResult
 from reports.format.numbers import DASH, engineering
 
 END = 3  # digits of an interval's ends
+PARTS = {  # of an error, in words
+    "mesh": "mesh",
+    "time": "time",
+    "series": "terms of the bearing pressure",
+    "model": "beam",
+    "cells": "cells of contact",
+}
 
 
 def error_range(pin: PinResult, to: str = " to ") -> str:
@@ -25,6 +32,17 @@ def factor_range(pin: PinResult, to: str = " to ") -> str:
         return engineering(pin.safety_factor)
     low, high = interval
     return to.join([engineering(low, END), DASH if high is None else engineering(high, END)])
+
+
+def joint_range(pin: PinResult, to: str = " to ") -> str:
+    """The maximum over what is not known of the joint; a dash where that was not found."""
+    over = pin.joint.range if pin.joint else None
+    return to.join(engineering(end, END) for end in over.max_von_mises) if over else DASH
+
+
+def part_words(pin: PinResult) -> str:
+    """What the error of a maximum comes from, without what adds nothing."""
+    return ", ".join(PARTS[part] for part, value in pin.error_parts.items() if value > 0.0)
 
 
 def error_words(pin: PinResult) -> str:

@@ -15,6 +15,11 @@ READING = (
     "loads about the axis; pictures and VTU files show one orientation, so their maximum may "
     "differ by up to the ±."
 )
+JOINT = (
+    "Joint is the range of the maximum over what is seldom known of a joint: other clearances of "
+    "the lugs, lugs of half and twice the stiffness, and lugs that are guided or free to tilt. It "
+    "is not part of the ±, and the result is decided without it."
+)
 RESULTS = {
     SAFE: "the pin meets its required safety factor.",
     FAILS: "the pin does not meet its required safety factor.",

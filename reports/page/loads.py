@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from reports.data.results import PinResult, Results, Units
@@ -29,14 +31,15 @@ def loads_at(pin: PinResult, units: Units) -> Grid | None:
     for load in pin.loads:
         row = [load.connection, load.body or DASH]
         row += [engineering(float(np.linalg.norm(load.force)))]
-        row += _components(load.force.tolist(), force)
+        row += components(load.force.tolist(), force)
         if turns:
-            row += _components(load.moment.tolist(), moment)
+            row += components(load.moment.tolist(), moment)
         body.append(row)
     return Grid(head, body, [False, False, *[True] * (len(head) - 2)])
 
 
-def _components(values: list[float], largest: float) -> list[str]:
+def components(values: Sequence[float], largest: float) -> list[str]:
+    """Numbers of a vector as text; what is round-off beside the largest is zero."""
     return [engineering(v if abs(v) > ROUNDING * largest else 0.0) for v in values]
 
 

@@ -8,13 +8,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from fea.core.dimensions import Point
 from reports.data.results import PinShape, Results
 from reports.format.file_names import SVG, drive_names, plot_name
 from reports.format.numbers import DASH, engineering, like, ratio, short
 from reports.format.ranges import error_words, factor_range
 from reports.format.template import environment
-from reports.format.words import BEYOND, MEANING, READING, RESULTS, outcome, verdict_words
-from reports.page.loads import timings
+from reports.format.words import BEYOND, MEANING, RESULTS, outcome, verdict_words
+from reports.page.loads import components, timings
 from reports.page.motion import motion_parts
 from reports.page.pin_drawing import draw_pin
 from reports.page.pins import pin_parts, reaction_tables
@@ -23,6 +24,7 @@ from reports.tables.landing import NOTE, landing_blocks
 from reports.tables.published_reactions import published_reactions
 from reports.tables.safety_factors import (
     TEXTS,
+    reading,
     safety_factor_rows,
     shown,
     shown_columns,
@@ -74,7 +76,12 @@ def render(
 
     templates = environment()
     templates.filters.update(
-        eng=engineering, short=_short, like=like, error=error_words, factor=factor_range
+        eng=engineering,
+        short=_short,
+        like=like,
+        error=error_words,
+        factor=factor_range,
+        place=_place,
     )
     template = templates.get_template("report.html.j2")
     drawings: dict[str, str] = {s.pin: Markup(_drawing(s, results)) for s in results.shapes}
@@ -85,7 +92,6 @@ def render(
         headline=headline(results),
         summary=summary(results),
         timings=timings(results),
-        reading=READING,
         meaning=MEANING,
         explained=RESULTS,
         beyond=BEYOND,
@@ -119,6 +125,7 @@ def _safety_factors(results: Results) -> dict[str, Any]:
     columns.pop("meets_required")  # the outcome says it
     return {
         "columns": columns,
+        "reading": reading(columns),
         "numeric": [name for name in columns if name not in TEXTS],
         "rows": [
             {
@@ -140,6 +147,10 @@ def _plain(value: str | float | None) -> str:
 def data_uri(path: Path) -> str:
     """A picture as a data URI."""
     return f"data:{TYPES[path.suffix]};base64,{b64encode(path.read_bytes()).decode('ascii')}"
+
+
+def _place(location: Point) -> str:
+    return ", ".join(components(location, max(map(abs, location))))
 
 
 def _short(value: float | None) -> str:

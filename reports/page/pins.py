@@ -8,6 +8,7 @@ from reports.data.results import PinResult, PinShape, ReactionTable, Results, Un
 from reports.format.grid import Grid
 from reports.format.numbers import ratio
 from reports.format.words import outcome
+from reports.page.joint import JointPart, joint_part
 from reports.page.loads import loads_at
 from reports.page.viewer import PinView, pin_views
 from reports.tables.hand_checks import hand_check_table
@@ -19,7 +20,7 @@ ZONE_NUMBERS = ("zone", "exponent")
 @dataclass(frozen=True)
 class PinCase:
     """A pin in one case: result, outcome, picture address, unit of the drive position, singular
-    zones, hand checks, loads, and our maximum over the published one.
+    zones, hand checks, loads, contact with lugs, and our maximum over the published one.
     """
 
     result: PinResult
@@ -29,6 +30,7 @@ class PinCase:
     zones: Grid | None
     checks: Grid | None
     loads: Grid | None
+    joint: JointPart | None
     ratio: float | None
 
 
@@ -73,6 +75,7 @@ def pin_parts(
                     _zones(zones[name][p.case], results.units),
                     Grid(*hand_check_table(p, results.units)) if p.hand_checks else None,
                     loads_at(p, results.units),
+                    joint_part(p, results.units),
                     ratio(p.max_von_mises, p.published_max_von_mises),
                 )
                 for p in results.pins

@@ -23,12 +23,15 @@ BENEATH = 0.999  # of the maximum; if the whole surface is below it, the maximum
 
 @dataclass(frozen=True)
 class PinView:
-    """A 3D view: its cases, whether any has a motion, whether there is a yield strength."""
+    """A 3D view: its cases, whether any has a motion, whether there is a yield strength, whether
+    any case has contact pressure.
+    """
 
     pin: str
     cases: tuple[str, ...]
     moving: bool
     factors: bool
+    pressed: bool
     data: Markup
 
 
@@ -41,6 +44,7 @@ def pin_views(results: Results, pin: str) -> list[PinView]:
             cases=tuple(c.case for c in surface.cases),
             moving=any(c.times is not None for c in surface.cases),
             factors=surface.yield_strength is not None,
+            pressed=any(c.pressure is not None for c in surface.cases),
             data=script_json(_data(surface, found, results)),
         )
         for surface in results.surfaces
@@ -100,6 +104,18 @@ def _case(case: SurfaceCase, pin: PinResult, revolved: bool) -> dict[str, Any]:
         "beneath": on_surface < least,
         "zoned": bool(case.excluded.any()),
         "excluded": _packed(case.excluded, "u1"),
+        "pressure": _pressure(case),
+    }
+
+
+def _pressure(case: SurfaceCase) -> dict[str, Any] | None:
+    if case.pressure is None or case.rings is None:
+        return None
+    return {
+        "sectors": case.pressure.shape[1],
+        "largest": float(case.pressure.max()),
+        "rings": _packed(case.rings, "<i2"),
+        "cells": _packed(case.pressure, "<f4"),
     }
 
 

@@ -10,6 +10,7 @@ from reports.data.results import PinResult, ReactionTable, Results
 from reports.plots.checks import beam_plots, motion_plot
 from reports.plots.drive import drive_plot
 from reports.plots.jobs import Draw, Plot, in_turn
+from reports.plots.joint import joint_plot
 from reports.plots.landing import landing_plot
 from reports.plots.leg import leg_plots
 from reports.plots.linkage import linkage_plot
@@ -61,6 +62,9 @@ def _pins(results: Results, directory: Path) -> Iterator[Plot]:
         # A single mesh says nothing about others.
         if any(len(pin.history) > 1 for pin in refined):
             yield partial(pin_refinement_plot, name, refined, units, directory)
+    for pin in results.pins:
+        if pin.joint is not None:
+            yield partial(joint_plot, pin.pin, pin.case, pin.joint, units, directory)
     found = {(p.pin, p.case): p for p in results.pins}
     shapes = {s.pin: s for s in results.shapes}
     for surface in results.surfaces:

@@ -87,10 +87,10 @@ def _mark(axes: Axes, z: float, value: float, pin: PinResult) -> None:
     axes.annotate(
         f"max {engineering(value)} {error_text}",
         (z, value),
-        xytext=(8, 0) if left else (-8, 0),
+        xytext=(8, 3) if left else (-8, 3),
         textcoords="offset points",
         ha="left" if left else "right",
-        va="center",
+        va="bottom",
         color=RED,
         fontsize=8.5,
     )  # fmt: skip

@@ -15,8 +15,14 @@ BANDS = (
     *("pin", "case", "connection", "force", "contact_angle", "largest_pressure", "couple"),
     *("clearance", "outer_diameter", "length_unit", "force_unit", "stress_unit"),
 )
-LINES = ("pin", "case", "connection", "z", "line_load", "length_unit", "force_unit")
-RANGES = ("pin", "case", "what", "value", "max_von_mises", "stress_unit")
+LINES = (
+    *("pin", "case", "connection", "z", "line_load", "length_unit", "force_unit"),
+    *("z_start", "z_end"),
+)
+RANGES = (
+    *("pin", "case", "what", "value", "max_von_mises", "stress_unit"),
+    *("length", "length_unit"),
+)
 
 
 def joint_tables(results: Results) -> list[Table]:
@@ -47,6 +53,7 @@ def joint_json(joint: JointResult | None) -> dict[str, Any] | None:
                 "clearance": finite(band.clearance),
                 "outer_diameter": finite(band.outer_diameter),
                 "line_load": [[finite(z), finite(load)] for z, load in band.line_load],
+                "ends": [finite(z) for z in band.ends],
             }
             for band in joint.bands
         ],
@@ -56,7 +63,12 @@ def joint_json(joint: JointResult | None) -> dict[str, Any] | None:
         and {
             "max_von_mises": [finite(x) for x in over.max_von_mises],
             "over": [
-                {"what": v.what, "value": v.value, "max_von_mises": finite(v.max_von_mises)}
+                {
+                    "what": v.what,
+                    "value": v.value,
+                    "length": finite(v.length),
+                    "max_von_mises": finite(v.max_von_mises),
+                }
                 for v in over.variations
             ],
         },
@@ -78,21 +90,18 @@ def _bands(results: Results) -> Iterator[list[Cell]]:
 
 
 def _lines(results: Results) -> Iterator[list[Cell]]:
+    u = results.units
     for pin, joint in _joined(results):
         for band in joint.bands:
-            for z, load in band.line_load:
-                yield [
-                    pin.pin,
-                    pin.case,
-                    band.name,
-                    z,
-                    load,
-                    results.units.length,
-                    results.units.force,
-                ]
+            none = (None,) * len(band.line_load)
+            rings = zip(band.line_load, band.ends[:-1] or none, band.ends[1:] or none, strict=True)
+            for (z, load), start, end in rings:
+                yield [pin.pin, pin.case, band.name, z, load, u.length, u.force, start, end]
 
 
 def _ranges(results: Results) -> Iterator[list[Cell]]:
+    u = results.units
     for pin, joint in _joined(results):
         for v in joint.range.variations if joint.range else ():
-            yield [pin.pin, pin.case, v.what, v.value, v.max_von_mises, results.units.stress]
+            unit = None if v.length is None else u.length
+            yield [pin.pin, pin.case, v.what, v.value, v.max_von_mises, u.stress, v.length, unit]

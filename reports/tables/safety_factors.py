@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 from reports.data.results import PinResult, Results, Units
 from reports.format import markdown
 from reports.format.numbers import DASH, engineering, finite, ratio, short
-from reports.format.ranges import error_range, factor_range
-from reports.format.words import MEANING, READING, verdict_words
+from reports.format.ranges import error_range, factor_range, joint_range
+from reports.format.words import JOINT, MEANING, READING, verdict_words
 from reports.tables.table import Table
 
 Row = dict[str, str | float | None]
@@ -37,6 +38,7 @@ LATER = (
 )
 TEXTS = ("pin", "case", "meets_required", "verdict", "model")
 PUBLISHED = ("published_max_von_mises", "ratio", "published_safety_factor")
+OVER_JOINT = "joint_high"  # in whose place the whole range is shown
 
 
 def safety_factor_rows(results: Results) -> list[Row]:
@@ -48,7 +50,12 @@ def safety_factor_rows(results: Results) -> list[Row]:
 def shown_rows(results: Results) -> list[Row]:
     """The same for display: text where a number is an interval."""
     return [
-        {**row, "error_estimate": error_range(pin), "safety_factor": factor_range(pin)}
+        {
+            **row,
+            "error_estimate": error_range(pin),
+            "safety_factor": factor_range(pin),
+            OVER_JOINT: joint_range(pin),
+        }
         for pin, row in zip(results.pins, safety_factor_rows(results), strict=True)
     ]
 
@@ -94,13 +101,16 @@ def _yes(value: bool) -> str:
 
 
 def shown_columns(rows: list[Row], units: Units) -> dict[str, str]:
-    """Columns for display with their headings: no note, published values only if there are any."""
+    """Columns for display with their headings: no note, published values and the range over the
+    joint only if there are any.
+    """
     headings = {
         "pin": "pin",
         "case": "case",
         "time": f"time [{units.time}]",
         "max_von_mises": f"max von Mises [{units.stress}]",
         "error_estimate": f"± [{units.stress}]",
+        OVER_JOINT: f"joint [{units.stress}]",
         "safety_factor": "safety factor",
         "required": "required",
         "meets_required": "meets required",
@@ -110,7 +120,8 @@ def shown_columns(rows: list[Row], units: Units) -> dict[str, str]:
         "ratio": "ours / published",
         "published_safety_factor": "published factor",
     }
-    empty = [name for name in PUBLISHED if all(row[name] is None for row in rows)]
+    optional = (*PUBLISHED, OVER_JOINT)
+    empty = [name for name in optional if all(row[name] in (None, DASH) for row in rows)]
     return {name: text for name, text in headings.items() if name not in empty}
 
 
@@ -161,7 +172,7 @@ def _markdown(results: Results, rows: list[Row]) -> str:
             [[shown(name, row) for name in columns] for row in rows],
             [name not in TEXTS for name in columns],
         ),
-        READING,
+        *reading(columns),
         "\n".join(f"- {name}: {sentence}" for name, sentence in MEANING.items()),
     ]
     if results.published_source:
@@ -170,6 +181,11 @@ def _markdown(results: Results, rows: list[Row]) -> str:
     if notes:
         parts += ["## Notes", "\n".join(notes)]
     return "\n\n".join(parts) + "\n"
+
+
+def reading(columns: Iterable[str]) -> list[str]:
+    """How the table with these columns is to be read, a paragraph each."""
+    return [READING, JOINT] if OVER_JOINT in columns else [READING]
 
 
 def _note(pin: PinResult) -> str:

@@ -27,7 +27,7 @@ DIMENSIONS = {
         ("error_mesh", "error_time", "error_series", "error_model", "error_cells"), "stress"
     ),
     **dict.fromkeys(("joint_low", "joint_high", "largest_pressure"), "stress"),
-    **dict.fromkeys(("clearance", "outer_diameter"), "length"),
+    **dict.fromkeys(("clearance", "outer_diameter", "length", "z_start", "z_end"), "length"),
     "contact_angle": "degrees",
     "line_load": "force per length",
     **dict.fromkeys(("stress", "strength", "beam_axial_stress"), "stress"),

@@ -37,10 +37,13 @@ const startView = (root, paint) => {
   const reset = () => { turn = chosen.turn; zoom = 1; };
   const instant = () => (chosen.times ? Number(one("time").value) : chosen.instant);
   const factors = () => one("colour").value === "factor";
+  const pressed = () => one("colour").value === "pressure";
 
   const compute = () => {
+    if (pressed() && !(chosen.pressure && instant() === chosen.instant)) one("colour").value = "stress";
     const found = superposed(surface, chosen, instant());
-    shape.set("value", found.value);
+    shape.set("value", pressed() ? pressing(surface, chosen.pressure) : found.value);
+    shape.set("excluded", Float32Array.from({ length: surface.count * surface.around }, (_, v) => (pressed() ? 0 : chosen.excluded[Math.floor(v / surface.around)])));
     shape.set("moved", found.moved);
     return found;
   };
@@ -52,7 +55,6 @@ const startView = (root, paint) => {
       one("time").max = chosen.times.length - 1;
       one("time").value = chosen.instant;
     }
-    shape.set("excluded", Float32Array.from({ length: surface.count * surface.around }, (_, v) => chosen.excluded[Math.floor(v / surface.around)]));
     const { moved } = compute();
     largestMoved = 0;
     for (let v = 0; v < moved.length; v += 3) largestMoved = Math.max(largestMoved, Math.hypot(moved[v], moved[v + 1], moved[v + 2]));
@@ -69,20 +71,21 @@ const startView = (root, paint) => {
     const largest = when ? "maximum" : "Maximum";
     one("told").textContent = `${when}${largest} von Mises stress${where} ${written(value)} ${units.stress}${error}${factor}.`;
     one("told").dataset.maximum = value;
-    one("beneath").hidden = !(chosen.beneath && governs);
-    one("zones").hidden = !chosen.zoned;
+    one("beneath").hidden = !(chosen.beneath && governs) || pressed();
+    one("zones").hidden = !chosen.zoned || pressed();
     if (chosen.times) one("time").setAttribute("aria-valuetext", `${short(chosen.times[k])} ${units.time}`);
     scale();
     draw();
   };
 
-  const top = () => chosen.maxima[chosen.instant] || 1;
+  const top = () => (pressed() ? chosen.pressure.largest : chosen.maxima[chosen.instant]) || 1;
   const scale = () => {
     const ticks = [0, 0.25, 0.5, 0.75, 1].map((part) => {
       if (!factors()) return written(part * top(), 3);
       return (part === 0 ? "≥ " : "") + written((data.strength / top()) * 10 ** (DECADES * (1 - part)), 3);
     });
-    one("unit").textContent = factors() ? `safety factor (${chosen.verdict})` : `von Mises stress [${data.units.stress}]`;
+    const shown = pressed() ? "contact pressure" : "von Mises stress";
+    one("unit").textContent = factors() ? `safety factor (${chosen.verdict})` : `${shown} [${data.units.stress}]`;
     one("ticks").replaceChildren(...ticks.map((t) => Object.assign(document.createElement("span"), { textContent: t })));
     exaggeration = largestMoved > 0 ? (0.15 * data.size * Number(one("deform").value)) / 100 / largestMoved : 0;
     one("deformed").textContent = exaggeration ? `× ${written(exaggeration, 3)}` : "not shown";
@@ -106,7 +109,7 @@ const startView = (root, paint) => {
     flat.drawImage(paint.draw(shape, width, height, {
       turn, centre: data.centre, scale, exaggerated: exaggeration, top: top(), decades: factors() ? DECADES : 0,
     }), 0, 0);
-    if (instant() === chosen.instant && !exaggeration) mark(width, height, scale, ratio);
+    if (instant() === chosen.instant && !exaggeration && !pressed()) mark(width, height, scale, ratio);
   };
 
   // A dot at the maximum; a ring when it is on the far side.
@@ -140,7 +143,11 @@ const startView = (root, paint) => {
     act();
   });
   one("case").addEventListener("change", choose);
-  one("colour").addEventListener("change", tell);
+  one("colour").addEventListener("change", () => {
+    if (pressed() && chosen.times) one("time").value = chosen.instant; // no other is known
+    compute();
+    tell();
+  });
   one("deform").addEventListener("input", tell);
   one("time").addEventListener("input", () => { compute(); tell(); });
   one("governs").addEventListener("click", () => { one("time").value = chosen.instant; compute(); tell(); });

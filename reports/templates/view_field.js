@@ -18,7 +18,10 @@ const surfaceOf = (data) => {
     stress: scaled(unpacked(Int16Array, data.stress), unpacked(Float32Array, data.stress_scale)),
     moved: scaled(unpacked(Int16Array, data.moved), [data.moved_scale]),
     waves: [...new Set(data.n)],
-    cases: data.cases.map((c) => ({ ...c, amounts: unpacked(Float32Array, c.amounts), excluded: unpacked(Uint8Array, c.excluded) })),
+    cases: data.cases.map((c) => ({
+      ...c, amounts: unpacked(Float32Array, c.amounts), excluded: unpacked(Uint8Array, c.excluded),
+      pressure: c.pressure && { ...c.pressure, rings: unpacked(Int16Array, c.pressure.rings), cells: unpacked(Float32Array, c.pressure.cells) },
+    })),
   };
   surface.places = revolved(surface);
   surface.triangles = data.triangles ? unpacked(Uint32Array, data.triangles) : strips(count, around);
@@ -68,6 +71,12 @@ const normals = ({ places: x, triangles }) => {
   }
   return out;
 };
+
+// Contact pressure of all vertices at the governing instant of a case.
+const pressing = ({ count, around }, { sectors, rings, cells }) => Float32Array.from({ length: count * around }, (_, v) => {
+  const ring = rings[Math.floor(v / around)];
+  return ring < 0 ? 0 : cells[ring * sectors + (Math.round(((v % around) * sectors) / around) % sectors)];
+});
 
 // Von Mises stress and displacement (x, y, z) of all vertices at an instant of a case.
 const superposed = (surface, chosen, instant) => {

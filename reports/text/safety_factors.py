@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from reports.data.results import PinResult, Results
 from reports.format.numbers import DASH, engineering, ratio, short
-from reports.format.ranges import error_range, factor_range
+from reports.format.ranges import error_range, factor_range, joint_range
 from reports.format.words import BELOW, FAILS, SAFE, YIELDS, outcome
 from reports.text.summary import summary
 
@@ -39,7 +39,9 @@ def _table(results: Results) -> Table:
     error = "± or\nrange" if ranges else "±"
     required = results.required_safety_factor
     factor = "FoS" if required is None else f"FoS\n≥ {short(required)}"
-    for heading in (f"t\n[{time}]", f"max von\nMises\n[{stress}]", error, factor):
+    joint = any(joint_range(pin) != DASH for pin in results.pins)
+    over = [f"joint\n[{stress}]"] * joint
+    for heading in (f"t\n[{time}]", f"max von\nMises\n[{stress}]", error, *over, factor):
         # As Text: a unit in square brackets is no markup.
         table.add_column(Text(heading), justify="right", no_wrap=True)
     table.add_column("verdict", no_wrap=True)
@@ -47,11 +49,11 @@ def _table(results: Results) -> Table:
     for heading in ("published", "ratio") if published else ():
         table.add_column(heading, justify="right", no_wrap=True)
     for pin in results.pins:
-        table.add_row(*_cells(pin, published))
+        table.add_row(*_cells(pin, published, joint))
     return table
 
 
-def _cells(pin: PinResult, published: bool) -> list[RenderableType]:
+def _cells(pin: PinResult, published: bool, joint: bool) -> list[RenderableType]:
     from rich.text import Text
 
     cells: list[RenderableType] = [
@@ -60,6 +62,7 @@ def _cells(pin: PinResult, published: bool) -> list[RenderableType]:
         DASH if pin.time is None else short(pin.time),
         engineering(pin.max_von_mises),
         error_range(pin, "–\n"),
+        *[joint_range(pin, "–\n")] * joint,
         factor_range(pin, "–\n"),
         Text(pin.verdict, "" if pin.verdict == "converged" else "yellow"),
         Text(_result(pin), COLOURS.get(outcome(pin), "yellow")),

@@ -21,8 +21,8 @@ def summary(results: Results) -> str:
     """How many pins are safe, the lowest factors, and the rows without a maximum."""
     if not results.pins:
         return "No pin was solved."
-    parts = [_against_required(results), _lowest(results), _yielding(results), _unknown(results)]
-    return " ".join(part for part in parts if part)
+    ways = (_against_required, _lowest, _over_joints, _yielding, _unknown)
+    return " ".join(part for part in (way(results) for way in ways) if part)
 
 
 def _against_required(results: Results) -> str:
@@ -76,6 +76,22 @@ def _size(pin: PinResult) -> float:
 
 def _factor(pin: PinResult) -> str:
     return f"{factor_range(pin)}, pin {pin.pin}, case {pin.case}"
+
+
+def _over_joints(results: Results) -> str:
+    """The rows on which another joint, as likely, would decide otherwise."""
+    limit = 1.0 if results.required_safety_factor is None else results.required_safety_factor
+    rows = [f"{p.pin} ({p.case})" for p in results.pins if _depends_on_joint(p, limit)]
+    return f"The result changes within the range of the joint: {', '.join(rows)}." if rows else ""
+
+
+def _depends_on_joint(pin: PinResult, limit: float) -> bool:
+    over = pin.joint.range if pin.joint else None
+    if over is None or outcome(pin) == NOT_DECIDED:
+        return False
+    low, high = over.max_von_mises
+    strength = (pin.safety_factor or 0.0) * (pin.max_von_mises or 0.0)
+    return (strength >= limit * low) != (strength >= limit * high)
 
 
 def _yielding(results: Results) -> str:

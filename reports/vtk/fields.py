@@ -35,7 +35,8 @@ AROUND = 60  # quads around a band
 def point_data(field: Field, units: Units) -> dict[str, Floats]:
     """Arrays at the nodes under names with units: displacement (N, 3), stress (N, 6: XX, YY, ZZ,
     XY, YZ, XZ, as ParaView names the components of a symmetric tensor), von Mises (N,), von Mises
-    envelope (N,; NaN inside) and, with a yield strength, the factor of safety that follows from it.
+    envelope (N,; NaN inside), with a yield strength the factor of safety that follows from it, and
+    the contact pressure of a pin in lugs.
     """
     stress = units.stress
     data = {
@@ -47,6 +48,8 @@ def point_data(field: Field, units: Units) -> dict[str, Floats]:
     if field.yield_strength is not None:
         lowest = np.finfo(np.float32).tiny * field.yield_strength  # a factor that is no infinity
         data["factor of safety"] = field.yield_strength / np.maximum(field.envelope, lowest)
+    if field.contact_pressure is not None:
+        data[f"contact pressure [{stress}]"] = field.contact_pressure
     return data
 
 
@@ -160,6 +163,7 @@ def surface(field: Field) -> Field:
     )
     outer = faces[np.sort(first[count == 1])]
     nodes, numbers = np.unique(outer, return_inverse=True)
+    pressure = field.contact_pressure
     return replace(
         field,
         points=field.points[nodes],
@@ -169,6 +173,7 @@ def surface(field: Field) -> Field:
         stress=field.stress[nodes],
         von_mises=field.von_mises[nodes],
         envelope=field.envelope[nodes],
+        contact_pressure=None if pressure is None else pressure[nodes],
         stills=tuple(
             replace(s, displacement=s.displacement[nodes], von_mises=s.von_mises[nodes])
             for s in field.stills

@@ -12,6 +12,8 @@ from typing import Any
 
 import pytest
 
+from tests.support.clevis import CLEVIS
+
 ROOT = Path(__file__).parents[2]
 STUDIES = ROOT / "studies"
 ODD = 'Ünit <img src=x onerror="document.title=1"> & "q" \' 😀 שלום {{ 1 }}'
@@ -71,6 +73,23 @@ def odd_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
         text = text.replace(old, new)
     study = directory / "odd.toml"
     study.write_text(text, encoding="utf-8")
+    return _run(study, directory / "out", "--no-pictures")
+
+
+@pytest.fixture(scope="session")
+def clevis_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a pin in its lugs under loads at three instants; the second governs."""
+    directory = tmp_path_factory.mktemp("clevis")
+    stated = next(line for line in CLEVIS.splitlines() if line.startswith("forces"))
+    study = directory / "clevis.toml"
+    study.write_text(CLEVIS.replace(stated, 'table = "loads.csv"'), encoding="utf-8")
+    rows = [
+        f"{name},{part * size},0,{time}"
+        for time, size in enumerate((20000, 50000, 10000))
+        for name, part in (("L", -0.5), ("M", 1.0), ("R", -0.5))
+    ]
+    table = "\n".join(["connection,fx,fy,time", *rows])
+    (directory / "loads.csv").write_text(table + "\n", encoding="utf-8")
     return _run(study, directory / "out", "--no-pictures")
 
 

@@ -104,6 +104,7 @@ def test_json_holds_the_contract(results: Results) -> None:
         "history",
         "singular_at",
         "hand_checks",
+        "joint",
         "held",
         "left_out",
     }

@@ -1,0 +1,216 @@
+"""Contact of a pin with its lugs in tables, plots, page and terminal."""
+
+from __future__ import annotations
+
+import csv
+import json
+from base64 import b64decode
+from dataclasses import replace
+from io import StringIO
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from pinstress.schema.units import SYSTEMS
+from reports.data.in_units import in_units
+from reports.data.results import Field, Results
+from reports.data.surface import Surface, SurfaceCase
+from reports.files import write_reports
+from reports.format.ranges import joint_range, part_words
+from reports.format.words import JOINT
+from reports.page.viewer import pin_views
+from reports.plots.all import save_plots
+from reports.plots.joint import joint_plot
+from reports.tables.joint import joint_json, joint_tables
+from reports.tables.safety_factors import shown_columns, shown_rows, write_safety_factors
+from reports.text.safety_factors import print_safety_factors
+from reports.text.summary import summary
+from reports.vtk.fields import point_data, surface
+from tests.support.html_page import EVIL, parse
+from tests.support.made_up_joint import in_lugs, make_joint
+
+CONTACT = make_joint()
+
+
+@pytest.fixture(scope="module")
+def small(results: Results) -> Results:
+    """Two rows, the first in contact."""
+    few = replace(results, pins=results.pins[:2], shapes=(), reactions=(), motion=(), drive=())
+    few = replace(few, beam_check=None, motion_check=None, published=())
+    return in_lugs(few, CONTACT)
+
+
+@pytest.fixture(scope="module")
+def written(small: Results, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_reports(small, tmp_path_factory.mktemp("joint"), {})
+
+
+def test_lengths_of_a_joint_are_converted() -> None:
+    found = in_units(CONTACT, SYSTEMS["mm-N-s"].factor)
+    assert found.range is not None
+    assert [v.length for v in found.range.variations] == pytest.approx([0.0, 3.0, None])
+    assert found.bands[0].ends == pytest.approx((0.0, 500.0, 1000.0))
+    assert found.bands[0].line_load[0] == pytest.approx((250.0, 0.3))  # N/mm
+
+
+def test_tables_and_json_have_the_same_numbers(small: Results, tmp_path: Path) -> None:
+    for table in joint_tables(small):
+        assert all(len(row) == len(table.columns) for row in table.rows)
+        table.write_csv(tmp_path)
+    with (tmp_path / "joint_range.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    found = joint_json(small.pins[0].joint)
+    assert found is not None
+    for row, entry in zip(rows, found["range"]["over"], strict=True):
+        assert (float(row["length"]) if row["length"] else None) == entry["length"]
+        assert row["length_unit"] == ("in" if row["length"] else "")
+        assert row["value"] == entry["value"]
+    with (tmp_path / "line_loads.csv").open(encoding="utf-8", newline="") as file:
+        first = next(csv.DictReader(file))
+    ends = [float(first["z_start"]), float(first["z_end"])]
+    assert ends == found["bands"][0]["ends"][:2]
+
+
+def test_loads_without_rings_have_no_ends(small: Results) -> None:
+    smooth = replace(CONTACT, bands=(replace(CONTACT.bands[0], ends=()),))
+    lines = joint_tables(in_lugs(small, smooth))[1]
+    assert [row[-2:] for row in lines.rows] == [[None, None], [None, None]]
+
+
+def test_a_column_only_where_a_range_was_found(small: Results, tmp_path: Path) -> None:
+    heading = shown_columns(shown_rows(small), small.units)
+    assert heading["joint_high"] == "joint [psi]"
+    assert [row["joint_high"] for row in shown_rows(small)] == ["1,100 to 1,900", "–"]
+    bare = in_lugs(small, make_joint(over=False))
+    assert "joint_high" not in shown_columns(shown_rows(bare), bare.units)
+    for some, has in ((small, True), (bare, False)):
+        write_safety_factors(some, tmp_path)
+        text = (tmp_path / "safety_factors.md").read_text(encoding="utf-8")
+        assert ("joint [psi] |" in text) is has
+        assert (JOINT in text) is has
+
+
+@pytest.mark.parametrize("over", [True, False])
+def test_the_terminal_shows_the_range(small: Results, over: bool) -> None:
+    out = StringIO()
+    shown = in_lugs(small, make_joint(over))
+    print_safety_factors(shown, Console(file=out, width=80, no_color=True))
+    text = out.getvalue()
+    assert max(len(line) for line in text.splitlines()) <= 80
+    assert ("joint" in text) is over
+    assert ("1,100–" in text) is over
+
+
+@pytest.mark.parametrize(("verdict", "factor", "changes"), [
+    ("converged", 1.6, True), ("converged", 3.2, False), ("singular", 1.6, False),
+])  # fmt: skip
+def test_a_result_that_the_joint_changes_is_named(
+    small: Results, verdict: str, factor: float, changes: bool
+) -> None:
+    odd = in_lugs(
+        small, CONTACT, verdict=verdict, max_von_mises=1500.0, safety_factor=factor,
+        meets_required=True, yields=False,
+    )  # fmt: skip
+    sentence = "The result changes within the range of the joint: A (retract)."
+    assert (sentence in summary(odd)) is changes
+
+
+def test_without_a_required_factor_yield_is_the_limit(small: Results) -> None:
+    odd = in_lugs(
+        replace(small, required_safety_factor=None), CONTACT, max_von_mises=1500.0,
+        safety_factor=1.1, meets_required=None, yields=False,
+    )  # fmt: skip
+    assert "changes within the range of the joint" in summary(odd)
+
+
+def test_words_of_a_row(small: Results) -> None:
+    assert [joint_range(pin) for pin in small.pins] == ["1,100 to 1,900", "–"]
+    assert part_words(small.pins[0]) == "mesh, cells of contact"
+
+
+def test_the_page_has_a_section(small: Results, written: Path) -> None:
+    text = parse(written).text
+    assert text.count("Contact with the lugs") == 1
+    assert "; errors of mesh, cells of contact); 1,100 to 1,900 psi over what is not" in text
+    assert "0.003 in (twice the given)" in text
+    assert "half contact angle [°]" in text
+    page = written.read_text(encoding="utf-8")
+    assert f'alt="Pin A, {small.pins[0].case}: load per length from the lugs' in page
+    assert "<dt>Held by</dt>" in page
+    assert "<dt>Clamped</dt>" in page  # of the other row
+
+
+def test_the_page_without_a_range(small: Results, tmp_path: Path) -> None:
+    text = parse(write_reports(in_lugs(small, make_joint(over=False)), tmp_path, {}, False)).text
+    assert "cells of contact)." in text
+    assert "what is not known" not in text
+
+
+def test_names_of_lugs_are_shown_and_not_run(small: Results, tmp_path: Path) -> None:
+    odd = replace(CONTACT, bands=(replace(CONTACT.bands[0], name=EVIL), *CONTACT.bands[1:]))
+    page = parse(write_reports(in_lugs(small, odd), tmp_path, {}, False))
+    assert EVIL in page.text
+
+
+def test_a_plot_for_every_pin_in_contact(small: Results, tmp_path: Path) -> None:
+    names = {path.name for path in save_plots(small, tmp_path)}
+    case = small.pins[0].case
+    assert {name for name in names if name.startswith("joint")} == {
+        f"joint.{case}.A.svg",
+        f"joint.{case}.A.png",
+    }
+
+
+def test_plots_of_odd_contacts(small: Results, tmp_path: Path) -> None:
+    """No load, a curve in place of rings, and no moment."""
+    nothing = replace(
+        CONTACT,
+        bands=tuple(
+            replace(b, ends=(), line_load=tuple((z, 0.0) for z, _ in b.line_load))
+            for b in CONTACT.bands
+        ),
+        bending_moment=0.0,
+        bending_moments=((0.0, 0.0), (4.5, 0.0)),
+    )
+    svg, _ = joint_plot("$a/b", "x" * 60, nothing, small.units, tmp_path)
+    assert ElementTree.parse(svg).getroot().tag.endswith("svg")
+
+
+def test_the_pressure_is_a_field_of_the_surface(solid: Field, small: Results) -> None:
+    pressed = replace(solid, contact_pressure=np.arange(10.0))
+    assert "contact pressure [psi]" not in point_data(solid, small.units)
+    assert point_data(pressed, small.units)["contact pressure [psi]"].tolist() == list(range(10))
+    outside = surface(pressed)
+    assert outside.contact_pressure is not None
+    assert len(outside.contact_pressure) == len(outside.points)
+
+
+@pytest.mark.parametrize("pressed", [True, False])
+def test_the_view_has_the_pressure_of_the_cells(small: Results, pressed: bool) -> None:
+    cells = np.array([[1.0, 2.0, 3.0], [0.0, 7.5, 0.0]])
+    rings = np.array([-1, 0, 1])
+    shown = surface_in(small.pins[0].case, (rings, cells) if pressed else (None, None))
+    (view,) = pin_views(replace(small, surfaces=(shown,)), "A")
+    found = json.loads(str(view.data))["cases"][0]["pressure"]
+    assert view.pressed is pressed
+    if not pressed:
+        assert found is None
+        return
+    assert (found["sectors"], found["largest"]) == (3, 7.5)
+    assert np.frombuffer(b64decode(found["rings"]), "<i2").tolist() == rings.tolist()
+    assert np.frombuffer(b64decode(found["cells"]), "<f4").tolist() == cells.ravel().tolist()
+
+
+def surface_in(case: str, pressure: tuple[np.ndarray | None, np.ndarray | None]) -> Surface:
+    """A meridian of three points and one unit load."""
+    one = SurfaceCase(
+        case, None, 0, np.ones((1, 1, 2)), np.ones(1), np.zeros(3, bool), np.ones(3), *pressure
+    )
+    even = (True, True, True, False, False, True, False, True)
+    return Surface(
+        "A", np.array([[1.0, 0, 0], [1, 0, 1], [1, 0, 2]]), np.zeros((0, 3), np.int64),
+        np.zeros(1, np.int64), even, np.ones((3, 5, 1)), np.ones((3, 3, 1)), None, (one,),
+    )  # fmt: skip

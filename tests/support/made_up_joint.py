@@ -1,0 +1,49 @@
+"""A made-up pin in contact with three lugs, for all tests of what is drawn and written of one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from fea.joint.records import BandContact, JointRange, JointResult, Variation
+from reports.data.results import Results
+
+RANGE = (1100.0, 1900.0)
+
+
+def make_joint(over: bool = True) -> JointResult:
+    """Two rings a band; the outer lugs also press on the other side."""
+    starts = {"left": 0.0, "middle": 1.25, "right": 3.5}
+    bands = tuple(
+        BandContact(
+            name=name,
+            force=400.0 if name == "middle" else 200.0,
+            contact_angle=81.25,
+            largest_pressure=987.6,
+            line_load=((z + 0.25, 300.0), (z + 0.75, -100.0 if name == "left" else 100.0)),
+            couple=12.5,
+            clearance=0.0015,
+            outer_diameter=2.5,
+            ends=(z, z + 0.5, z + 1.0),
+        )
+        for name, z in starts.items()
+    )
+    moments = ((0.0, 0.0), (1.5, 80.0), (2.0, 123.4), (4.5, 0.0))
+    return JointResult("contact", bands, 123.4, moments, joint_range() if over else None)
+
+
+def joint_range() -> JointRange:
+    return JointRange(
+        RANGE,
+        (
+            Variation("clearance", "none", 1100.0, 0.0),
+            Variation("clearance", "twice the given", 1500.0, 0.003),
+            Variation("tilt", "guided", 1900.0),
+        ),
+    )
+
+
+def in_lugs(results: Results, joint: JointResult, **changes: object) -> Results:
+    """The first pin of some results with this contact, and other changes."""
+    changes |= {"error_parts": {"mesh": 5.0, "time": 0.0, "cells": 1.0}}
+    first = replace(results.pins[0], joint=joint, **changes)  # type: ignore[arg-type]
+    return replace(results, pins=(first, *results.pins[1:]))
