@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from fea.core.material import Material
-from fea.joint.lug import Lug
+from fea.joint.lug import Bushing, Lug
 from geometry import ArgumentError, Pin, PinLike
 from pinstress.model.pins import material
 from pinstress.schema.pins import LugTable
@@ -61,7 +61,9 @@ def _lug(study: Study, pin: Pin, connection: str, given: LugTable, of_pin: Mater
         tilt = (
             given.tilt if isinstance(given.tilt, float) else _bending(made_of, outer, band.length)
         )
-    return Lug(connection, outer, made_of, given.clearance, given.edge_radius, tilt)
+    ring = given.bushing
+    bushing = None if ring is None else Bushing(ring.thickness, material(study, ring.material))
+    return Lug(connection, outer, made_of, given.clearance, given.edge_radius, tilt, bushing)
 
 
 def _bending(material: Material, outer: float, thickness: float) -> float:
