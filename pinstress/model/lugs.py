@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 
 from fea.core.material import Material
+from fea.joint.fit import fitted
+from fea.joint.links import on_structure
 from fea.joint.lug import Bushing, Lug
 from geometry import ArgumentError, Pin, PinLike
 from pinstress.model.pins import material
@@ -49,6 +51,10 @@ def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]
             out.append(_lug(study, pin, connection, given, made_of))
         except ArgumentError as error:
             raise study.error(str(error), f"{at}.{connection}", error.code) from None
+    try:
+        fitted(on_structure(pin, out), made_of, out)
+    except ArgumentError as error:
+        raise study.error(str(error), at, error.code) from None
     return tuple(out)
 
 

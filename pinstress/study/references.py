@@ -21,7 +21,7 @@ def cross_references(table: StudyTable) -> Iterator[Wrong]:
         own |= dict.fromkeys(s.name for s in pin.profile or () if s.name)
         for connection, lug in pin.lug.items():
             key = f"pin.{name}.lug.{connection}"
-            yield from _known(key, "connection or segment of this pin", connection, own)
+            yield from _known(key, "connection or segment", connection, own)
             for at, made_of in (
                 ("material", lug.material),
                 ("bushing.material", None if lug.bushing is None else lug.bushing.material),

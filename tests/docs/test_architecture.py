@@ -94,7 +94,15 @@ def test_the_path_is_walked_as_told(tmp_path: Path) -> None:
             called.add((frame.f_code.co_filename, frame.f_code.co_qualname))
 
     command = ["run", str(ROOT / "studies" / "grenier2008.toml"), "--pins", "E"]
-    command += ["--cases", "retract", "--no-pictures", "--jobs", "1", "--out", str(tmp_path / "out")]
+    command += [
+        "--cases",
+        "retract",
+        "--no-pictures",
+        "--jobs",
+        "1",
+        "--out",
+        str(tmp_path / "out"),
+    ]
     sys.setprofile(note)
     try:
         assert run_command_line(command) == 1  # singular

@@ -1,0 +1,141 @@
+"""Lugs in a study: what a table of them means, and what is refused."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from fea.joint.lug import Bushing, Lug
+from pinstress import InputError, load_study, prepare
+from tests.support.errors import raises
+
+STUDY = """
+title = "A pin in double shear"
+units = "mm-N-s"
+
+[material.steel]
+youngs_modulus = "210 GPa"
+poisson_ratio = 0.3
+yield_strength = "900 MPa"
+
+[material.bronze]
+youngs_modulus = "110 GPa"
+poisson_ratio = 0.34
+
+[analysis]
+tolerance = 0.1
+{analysis}
+
+[case.pull]
+kind = "given"
+forces = {{ L = [-25000, 0], M = [50000, 0], R = [-25000, 0] }}
+
+[pin.P]
+material = "steel"
+profile = [
+  {{ length = 10, diameter = 20, connection = "L" }},
+  {{ length = 1, diameter = 20, name = "gap" }},
+  {{ length = 20, diameter = 20, connection = "M" }},
+  {{ length = 1, diameter = 20 }},
+  {{ length = 10, diameter = 20, connection = "R" }},
+]
+{pin}
+"""
+
+
+def study(folder: Path, pin: str = "", analysis: str = "") -> Path:
+    path = folder / "study.toml"
+    path.write_text(STUDY.format(pin=pin, analysis=analysis))
+    return path
+
+
+def lugs(folder: Path, pin: str = "", analysis: str = "") -> tuple[Lug, ...]:
+    (task,) = prepare(load_study(study(folder, pin, analysis))).tasks
+    return task.lugs
+
+
+def test_every_key_of_a_lug(tmp_path: Path) -> None:
+    given = """
+[pin.P.lug.L]
+outer_diameter = 60
+material = "bronze"
+clearance = 0.02
+edge_radius = 0.5
+tilt = "free"
+bushing = { thickness = 2, material = "steel" }
+[pin.P.lug.M]
+tilt = "guided"
+[pin.P.lug.R]
+tilt = "2e5 N m/rad"
+clearance = -0.01
+"""
+    left, middle, right = lugs(tmp_path, given)
+    steel = middle.material
+    assert (left.connection, left.outer_diameter, left.material.name) == ("L", 0.06, "bronze")
+    assert (left.clearance, left.edge_radius, left.tilt) == pytest.approx((2e-5, 5e-4, 0.0))
+    assert left.bushing == Bushing(0.002, steel)
+    assert (middle.tilt, right.tilt) == (math.inf, 2e5)
+    assert right.clearance == pytest.approx(-1e-5)
+
+
+def test_what_is_not_given(tmp_path: Path) -> None:
+    """An eye of 2.5 diameters of the pin's material that fits, and tilts as its own shank bends."""
+    (left, middle, right) = lugs(tmp_path, "lug.M = {}")
+    assert left.outer_diameter == middle.outer_diameter == pytest.approx(0.05)
+    assert (left.clearance, left.edge_radius, left.bushing) == (0.0, 0.0, None)
+    assert left.material.name == "steel"
+    assert left.tilt == pytest.approx(right.tilt)
+    assert left.tilt == pytest.approx(210e9 * 0.05 * 0.01**3 / (12.0 * 0.04))
+    assert middle.tilt == pytest.approx(8.0 * left.tilt)
+
+
+@pytest.mark.parametrize(
+    ("pin", "joints", "held"),
+    [
+        ("", "auto", 0),
+        ("lug.M = {}", "auto", 3),
+        ("lug.M = {}", "prescribed", 0),
+        ("", "contact", 3),
+    ],
+)
+def test_whose_pins_are_in_contact(tmp_path: Path, pin: str, joints: str, held: int) -> None:
+    assert len(lugs(tmp_path, pin, f'joints = "{joints}"')) == held
+
+
+def test_a_lug_of_the_structure_by_the_name_of_a_segment(tmp_path: Path) -> None:
+    assert [lug.connection for lug in lugs(tmp_path, "lug.gap = {}")] == ["L", "M", "R", "gap"]
+
+
+@pytest.mark.parametrize(
+    ("pin", "code", "said"),
+    [
+        ("lug.X = {}", "unknown-segment", "pin.P.lug.X"),
+        ('lug.M = { material = "brass" }', "unknown-material", "pin.P.lug.M.material"),
+        (
+            'lug.M = { bushing = { thickness = 1, material = "brass" } }',
+            "unknown-material",
+            "pin.P.lug.M.bushing.material",
+        ),
+        ("lug.M = { outer_diameter = 20 }", "lug-too-narrow", "lug M"),
+        ("lug.M = { clearance = 5 }", "clearance-too-large", "lug M"),
+        ("lug.M = { clearance = -2 }", "interference-too-large", "lug M"),
+        ("lug.M = { edge_radius = 15 }", "edge-radius-too-large", "lug M"),
+        ('lug.M = { tilt = "loose" }', None, "pin.P.lug.M.tilt"),
+        ("lug.M = { tilt = -1 }", None, "pin.P.lug.M.tilt"),
+        ('clamp = ["start"]\nlug.M = {}', "clamped-in-lugs", "clamped at start"),
+        ("lug.M = {}\nhole = [{ z = 20, diameter = 4 }]", "not-axisymmetric", "cut"),
+    ],
+)
+def test_what_cannot_be_is_refused_before_anything_is_solved(
+    tmp_path: Path, pin: str, code: str | None, said: str
+) -> None:
+    path = study(tmp_path, pin)
+    if code is None:
+        with pytest.raises(InputError, match=said):
+            prepare(load_study(path))
+        return
+    with raises(InputError, code) as caught:
+        prepare(load_study(path))
+    assert said in str(caught.value)
