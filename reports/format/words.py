@@ -9,11 +9,11 @@ BELOW, YIELDS = "below yield", "yields"  # where no factor is required
 BEYOND = "beyond yield"
 
 READING = (
-    "One row per pin and case. The maximum is the largest von Mises stress anywhere in the pin at "
-    "any instant; ± is its estimated error, from successive meshes; the safety factor is the yield "
-    "strength divided by the maximum. A solid model reports the mean over several rotations of the "
-    "loads about the axis; pictures and VTU files show one orientation, so their maximum may "
-    "differ by up to the ±."
+    "One row per pin and case. The maximum is the largest von Mises stress anywhere in the pin, "
+    "except in excluded zones, at any instant; ± is its estimated error, from successive meshes; "
+    "the safety factor is the yield strength divided by the maximum. A solid model reports the "
+    "mean over several rotations of the loads about the axis; pictures and VTU files show one "
+    "orientation, so their maximum may differ by up to the ±."
 )
 JOINT = (
     "Joint is the range of the maximum over what is seldom known of a joint: other clearances of "

@@ -21,7 +21,7 @@ def summary(results: Results) -> str:
     """How many pins are safe, the lowest factors, and the rows without a maximum."""
     if not results.pins:
         return "No pin was solved."
-    ways = (_against_required, _lowest, _over_joints, _yielding, _unknown)
+    ways = (_against_required, _lowest, _over_joints, _left_out, _yielding, _unknown)
     return " ".join(part for part in (way(results) for way in ways) if part)
 
 
@@ -83,6 +83,21 @@ def _over_joints(results: Results) -> str:
     limit = 1.0 if results.required_safety_factor is None else results.required_safety_factor
     rows = [f"{p.pin} ({p.case})" for p in results.pins if _depends_on_joint(p, limit)]
     return f"The result changes within the range of the joint: {', '.join(rows)}." if rows else ""
+
+
+def _left_out(results: Results) -> str:
+    """The rows whose stress is larger at the rounded edges of lugs, which are excluded."""
+    rows = [
+        f"{p.pin} ({p.case})"
+        for p in results.pins
+        if any(
+            zone.kind.endswith("rounded edge of a lug")
+            and zone.max_von_mises > (p.max_von_mises or 0.0)
+            for zone in p.singular_at
+        )
+    ]
+    text = "Larger contact stress at the rounded edges of lugs is local and left out"
+    return f"{text}: {', '.join(rows)}." if rows else ""
 
 
 def _depends_on_joint(pin: PinResult, limit: float) -> bool:

@@ -23,6 +23,7 @@ MECHANISMS = ["grenier2008", "bowman2019", "matrix_four_bar", "slider_crank", "e
         ("bowman2019", "A", "converged"),
         ("matrix_four_bar", "C", "converged"),
         ("slider_crank", "A", "converged"),
+        ("clevis", "P", "converged"),
         ("kuleuven2014", "trunnion", "singular"),
     ],
 )
