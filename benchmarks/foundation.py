@@ -15,8 +15,13 @@ from benchmarks.random_joints import JointTrial, joint_trials
 from benchmarks.timing import seconds, table
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.joint.foundation import FoundationModel, Stiffness, foundation_stiffness, moment_error
-from fea.joint.lug import Lug
+from fea.joint.foundation.foundation_model import (
+    FoundationModel,
+    Stiffness,
+    foundation_stiffness,
+    moment_error,
+)
+from fea.joint.lugs.lug import Lug
 from fea.joint.solve_joint import Cells, JointContact, JointModel
 from geometry import Pin, Segment
 

@@ -29,8 +29,8 @@ from fea.checks.calculix_joint_mesh import Fineness, Hexahedra, annulus_mesh, pi
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.voigt import von_mises
-from fea.joint.lug import Lug
-from fea.joint.rings import graded
+from fea.joint.lugs.lug import Lug
+from fea.joint.lugs.rings import graded
 from geometry import ArgumentError, Pin
 
 Ints = NDArray[np.int64]

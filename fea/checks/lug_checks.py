@@ -28,7 +28,7 @@ import numpy as np
 
 from fea.checks.records import HandCheck
 from fea.core.pin_loads import PinLoads
-from fea.joint.lug import Lug
+from fea.joint.lugs.lug import Lug
 from geometry import ArgumentError, Pin
 
 SHIGLEY = "Budynas & Nisbett, Shigley's Mechanical Engineering Design, 8-12"

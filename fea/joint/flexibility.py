@@ -28,8 +28,8 @@ from fea.core.pin_loads import Floats
 from fea.core.tractions import ALONG_X, Traction
 from fea.harmonic.assembly import Ints, Section, around
 from fea.harmonic.model import HarmonicBody, rigid_motions
-from fea.joint.eye_mesh import eye_mesh
-from fea.joint.lug import Lug
+from fea.joint.lugs.eye_mesh import eye_mesh
+from fea.joint.lugs.lug import Lug
 from geometry import Pin
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
 from geometry.mesh.sizing import Grade
@@ -59,7 +59,7 @@ def _grades(pin: Pin, rings: Sequence[str], growth: float) -> list[Grade]:
 
 def lug_flexibility(eye: Pin, lug: Lug, across: float, highest: int) -> Floats:
     """The same of the rings of a lug's bore, outwards under pressure; its annulus is `eye`
-    (fea.joint.rings). across: elements over the bore's diameter.
+    (fea.joint.lugs.rings). across: elements over the bore's diameter.
     """
     rings = [f"bore {name}" for name in eye.connections]
     bushing = lug.bushing

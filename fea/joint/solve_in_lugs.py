@@ -23,7 +23,7 @@ from fea.core.peak import Note, Peak
 from fea.core.pin_loads import Floats, PinLoads
 from fea.joint.cell_pressure import CellPressure
 from fea.joint.contact import Pressed
-from fea.joint.lug import Lug
+from fea.joint.lugs.lug import Lug
 from fea.joint.pressure_loads import PressureLoads
 from fea.joint.records import JointResult
 from fea.joint.solve_joint import Cells, JointModel

@@ -18,17 +18,17 @@ from fea.core.material import Material
 from fea.core.pin_loads import Floats, LugEdge, PinLoads
 from fea.joint.bending import bending_moment, mass_per_length
 from fea.joint.contact import Bands, ContactProblem, Pressed
-from fea.joint.fit import fitted
 from fea.joint.flexibility import (
     half_plane,
     lug_flexibility,
     pin_flexibility,
     wavy_flexibility,
 )
-from fea.joint.links import link_forces, link_numbers, on_structure
-from fea.joint.lug import Lug
+from fea.joint.lugs.fit import fitted
+from fea.joint.lugs.links import link_forces, link_numbers, on_structure
+from fea.joint.lugs.lug import Lug
+from fea.joint.lugs.rings import annulus, ring_ends, ringed, rings
 from fea.joint.pressure_loads import Patterns, PressureLoads, patterns_of
-from fea.joint.rings import annulus, ring_ends, ringed, rings
 from fea.singular.lug_edge import lug_edge_exponent
 from geometry import Pin
 
@@ -38,7 +38,7 @@ WAVES = 4  # times the sectors: harmonics in which neighbouring rings feel each 
 
 @dataclass(frozen=True)
 class Cells:
-    """How finely contact is resolved. rings: of a band with sharp edges (fea.joint.rings); sectors:
+    """How finely contact is resolved. rings: of a band with sharp edges (lugs.rings); sectors:
     round it; highest: harmonic of elasticity that is computed; across: elements over the pin's
     diameter where flexibilities are found; beside: length of the rings beside the place where a
     rounded edge begins, of its radius.

@@ -19,7 +19,7 @@ from fea.core.peak import Peak
 from fea.core.pin_loads import Floats
 from fea.harmonic.evaluate import HarmonicAnswer, harmonic_solution
 from fea.joint.coarser_cells import on_coarser_cells
-from fea.joint.lug import Lug
+from fea.joint.lugs.lug import Lug
 from fea.joint.pressure_loads import stacked
 from fea.joint.records import JointRange, Variation
 from fea.joint.solve_joint import JointContact, JointModel

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 from fea.core.material import Material
-from fea.joint.fit import fitted
-from fea.joint.links import on_structure
-from fea.joint.lug import Bushing, Lug
+from fea.joint.lugs.fit import fitted
+from fea.joint.lugs.links import on_structure
+from fea.joint.lugs.lug import Bushing, Lug
 from geometry import ArgumentError, Pin, PinLike
 from pinstress.model.pins import material
 from pinstress.schema.pins import LugTable

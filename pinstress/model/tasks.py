@@ -11,7 +11,7 @@ import numpy as np
 from fea.core.material import Material
 from fea.core.over_time import Between
 from fea.core.pin_loads import Distribution, Floats, PinLoads
-from fea.joint.lug import Lug
+from fea.joint.lugs.lug import Lug
 from geometry import PinLike
 from loads import Reactions
 from pinstress.model.cases import CaseLoads

@@ -8,10 +8,10 @@ import pytest
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.harmonic.assembly import Section
-from fea.joint.eye_mesh import eye_mesh
 from fea.joint.flexibility import half_plane, layered, lug_flexibility, wavy_flexibility
-from fea.joint.lug import Bushing, Lug
-from fea.joint.rings import annulus, graded
+from fea.joint.lugs.eye_mesh import eye_mesh
+from fea.joint.lugs.lug import Bushing, Lug
+from fea.joint.lugs.rings import annulus, graded
 from fea.joint.solve_joint import JointModel
 from geometry import Pin, Segment
 from tests.support.layered_annulus import widening

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fea.joint.eye_mesh import eye_mesh
-from fea.joint.rings import annulus, graded
+from fea.joint.lugs.eye_mesh import eye_mesh
+from fea.joint.lugs.rings import annulus, graded
 from geometry import Pin, Segment
 
 PIN = Pin("P", (Segment(0.02, 0.02, connection="A"),))

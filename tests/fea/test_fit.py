@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 from fea.core.material import Material
-from fea.joint.fit import fitted, yielding_interference
-from fea.joint.lug import Bushing, Lug
+from fea.joint.lugs.fit import fitted, yielding_interference
+from fea.joint.lugs.lug import Bushing, Lug
 from geometry import ArgumentError, GeometryError, Pin, Segment
 
 D, EYE = 0.02, 0.05

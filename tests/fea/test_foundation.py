@@ -13,7 +13,7 @@ from benchmarks.random_joints import JointTrial, joint_trials
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.joint.foundation import (
+from fea.joint.foundation.foundation_model import (
     LONG_ERROR,
     PLAIN_ERROR,
     SINGLE_SHEAR,
@@ -23,9 +23,9 @@ from fea.joint.foundation import (
     foundation_stiffness,
     moment_error,
 )
-from fea.joint.lug import Lug
+from fea.joint.foundation.supported_beam import SupportedBeam, refined, respond
+from fea.joint.lugs.lug import Lug
 from fea.joint.solve_joint import JointModel
-from fea.joint.supported_beam import SupportedBeam, refined, respond
 from fea.solve_pin import Asked, solve_pin
 from geometry import Pin, Segment
 

@@ -11,7 +11,7 @@ from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.harmonic.superposition import Circumference
-from fea.joint.lug import Lug
+from fea.joint.lugs.lug import Lug
 from fea.joint.solve_joint import Cells, JointContact, JointModel
 from fea.solve_pin import Asked, Solution, solve_pin
 from geometry import Pin, Segment

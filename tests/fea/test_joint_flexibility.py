@@ -13,8 +13,8 @@ from fea.core.material import Material
 from fea.core.pin_loads import Floats
 from fea.joint.contact import Bands, ContactProblem, Pressed
 from fea.joint.flexibility import half_plane, lug_flexibility, pin_flexibility
-from fea.joint.lug import Lug
-from fea.joint.rings import annulus, graded, ring, ringed
+from fea.joint.lugs.lug import Lug
+from fea.joint.lugs.rings import annulus, graded, ring, ringed
 from geometry import Pin, Segment
 
 E, NU = 210e9, 0.3

@@ -10,7 +10,7 @@ import pytest
 
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.joint.lug import Bushing, Lug
+from fea.joint.lugs.lug import Bushing, Lug
 from fea.joint.solve_joint import Cells, JointContact, JointModel
 from geometry import Pin, Segment
 from tests.support.layered_annulus import widening

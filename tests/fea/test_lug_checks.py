@@ -18,7 +18,7 @@ from fea.checks.lug_checks import (
 )
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.joint.lug import Lug
+from fea.joint.lugs.lug import Lug
 from geometry import ArgumentError
 from tests.support.errors import raises
 from tests.support.plain_pins import double_shear

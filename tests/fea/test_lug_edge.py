@@ -19,7 +19,7 @@ from fea.core.tractions import Traction
 from fea.harmonic.assembly import around
 from fea.harmonic.model import HarmonicModel
 from fea.joint.contact import Bands, ContactProblem
-from fea.joint.lug import Lug
+from fea.joint.lugs.lug import Lug
 from fea.joint.solve_joint import Cells, JointModel
 from fea.singular.lug_edge import edge_exponent, lug_edge_exponent
 from fea.singular.williams import plane_exponent

@@ -10,9 +10,14 @@ from fea.core.tractions import Traction
 from fea.harmonic.assembly import around
 from fea.harmonic.model import HarmonicModel
 from fea.joint.flexibility import half_plane, lug_flexibility, pin_flexibility
-from fea.joint.lug import Lug
-from fea.joint.plane_contact import HIGHEST, lug_harmonics, pin_harmonics, plane_stiffness
-from fea.joint.rings import annulus
+from fea.joint.foundation.plane_contact import (
+    HIGHEST,
+    lug_harmonics,
+    pin_harmonics,
+    plane_stiffness,
+)
+from fea.joint.lugs.lug import Lug
+from fea.joint.lugs.rings import annulus
 from geometry import Pin, Segment
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
 

@@ -11,8 +11,8 @@ from scipy.optimize import brentq
 
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.joint.lug import Lug
-from fea.joint.rings import LONGEST, graded, ring_ends, ringed, rings
+from fea.joint.lugs.lug import Lug
+from fea.joint.lugs.rings import LONGEST, graded, ring_ends, ringed, rings
 from fea.joint.solve_joint import Cells, JointModel
 from geometry import Band, Pin, Segment
 

@@ -11,7 +11,7 @@ import pytest
 from fea.asked import Asked
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.joint.lug import Lug
+from fea.joint.lugs.lug import Lug
 from fea.joint.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
 from fea.joint.solve_joint import JointModel
 from geometry import Pin, Segment

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from fea.joint.lug import Bushing, Lug
+from fea.joint.lugs.lug import Bushing, Lug
 from pinstress import InputError, load_study, prepare
 from tests.support.errors import raises
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from fea.core.equilibrium import MOST
 from fea.core.linear_solver import SolveError
 from fea.core.pin_loads import Floats, PinLoads
-from fea.joint.lug import Lug
+from fea.joint.lugs.lug import Lug
 from geometry import Pin
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from fea.core.material import Material
 from fea.core.pin_loads import Floats
-from fea.joint.lug import Lug
+from fea.joint.lugs.lug import Lug
 from geometry import ArgumentError, Band, Pin
 
 MOST_CLEARANCE = 0.1  # of the pin's diameter

@@ -2,10 +2,10 @@
 
 Every lug is a row of springs between its bore and the pin's section, guided along the pin by the
 lug, which shifts freely, so that its link's force is exact, and tilts with its stiffness. The
-springs are those of frictionless contact in plane strain (fea.joint.plane_contact), of the pin's
-bore and the lug's width; in three dimensions the neighbourhood shares a local load, which one
-number, SHARE, accounts for. All is linear: a pin is factorised once, and serves any number of
-instants, directions and cases.
+springs are those of frictionless contact in plane strain (plane_contact), of the pin's bore and the
+lug's width; in three dimensions the neighbourhood shares a local load, which one number, SHARE,
+accounts for. All is linear: a pin is factorised once, and serves any number of instants, directions
+and cases.
 
 The springs act both ways, as a pin that fits its bore without clearance bears on one side or the
 other. Clearance and the rounding of edges are left out: at a mean pressure of 100 MPa a clearance
@@ -30,13 +30,13 @@ from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.joint.bending import bending_moment, mass_per_length
 from fea.joint.contact import Bands
-from fea.joint.fit import fitted
-from fea.joint.links import link_forces
-from fea.joint.lug import Lug
-from fea.joint.plane_contact import plane_stiffness
+from fea.joint.foundation.plane_contact import plane_stiffness
+from fea.joint.foundation.supported_beam import Response, SupportedBeam, refined, respond
+from fea.joint.lugs.fit import fitted
+from fea.joint.lugs.links import link_forces
+from fea.joint.lugs.lug import Lug
+from fea.joint.lugs.rings import graded, ring, ringed
 from fea.joint.pressure_loads import ring_shares
-from fea.joint.rings import graded, ring, ringed
-from fea.joint.supported_beam import Response, SupportedBeam, refined, respond
 from geometry import Pin, Segment
 
 SHARE = 0.70  # of the plane's compliance, fitted to the largest moments of 60 pins at random

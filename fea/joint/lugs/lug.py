@@ -35,7 +35,7 @@ class Lug:
     N m/rad, of the link against the others about any axis across the pin; inf: guided, 0: free.
     The pin bears on the bushing, if there is one.
 
-    Raises: ArgumentError for what cannot be; fea.joint.fit has what depends on the pin.
+    Raises: ArgumentError for what cannot be; fea.joint.lugs.fit has what depends on the pin.
     """
 
     connection: str

@@ -1,0 +1,1 @@
+"""What surrounds a pin: eyes, their fit, their links, and the rings into which bands are cut."""
