@@ -24,6 +24,7 @@ from fea.core.pin_loads import Floats, PinLoads
 from fea.joint.cell_pressure import CellPressure
 from fea.joint.contact import Pressed
 from fea.joint.lugs.lug import Lug
+from fea.joint.lugs.rings import whole_names
 from fea.joint.pressure_loads import PressureLoads
 from fea.joint.records import JointResult
 from fea.joint.solve_joint import Cells, JointModel
@@ -170,11 +171,21 @@ def _solved(
     here = solution.loads.links.at(np.array([solution.instant]))
     contact = model.joined(pressing.at(here), pressing(here))
     comparison = compare(model, contact, solution.peak, asked)
-    peak = with_cells(solution.peak, comparison.cells + pressing.missed, asked)
+    peak = with_cells(_named(model, solution.peak), comparison.cells + pressing.missed, asked)
     joint = joint_result(contact, comparison.range)
     pressure = CellPressure(contact.bands, contact.contact[0].pressure)
     peak = replace(peak, governing=here, imbalance=_imbalance(model, case))
     return LugSolution(replace(solution, peak=peak), joint, pressing, pressure)
+
+
+def _named(model: JointModel, peak: Peak) -> Peak:
+    """With the names of the whole pin's surfaces, for those of its rings."""
+    names, note, zones = whole_names(model.whole, model.ends), peak.note, []
+    for zone in peak.singular_at:
+        first, second = (names.get(name, name) for name in zone.between)
+        note = note.replace(" / ".join(zone.between), f"{first} / {second}")
+        zones.append(replace(zone, between=(first, second)))
+    return replace(peak, note=note, singular_at=tuple(zones))
 
 
 def _imbalance(model: JointModel, case: PinLoads) -> tuple[float, float] | None:

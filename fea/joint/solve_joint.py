@@ -24,8 +24,8 @@ from fea.joint.flexibility import (
     pin_flexibility,
     wavy_flexibility,
 )
-from fea.joint.lugs.fit import fitted
-from fea.joint.lugs.links import link_forces, link_numbers, on_structure
+from fea.joint.lugs.fit import fitted, on_structure
+from fea.joint.lugs.links import link_forces, link_numbers
 from fea.joint.lugs.lug import Lug
 from fea.joint.lugs.rings import annulus, ring_ends, ringed, rings
 from fea.joint.pressure_loads import Patterns, PressureLoads, patterns_of

@@ -49,6 +49,8 @@ def compare(model: JointModel, contact: JointContact, peak: Peak, asked: Asked) 
             continue  # a lug that is free to tilt may leave a couple on the pin
         names.append((what, to, length))
     maxima = _maxima(model, contact, found, asked)
+    if not maxima[0]:  # nothing loads the pin
+        return Comparison(0.0, JointRange((0.0, 0.0), ()))
     largest = (peak.max_von_mises or 0.0) * maxima / maxima[0]
     over = tuple(
         Variation(what, to, float(x), length)

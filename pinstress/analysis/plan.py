@@ -96,6 +96,14 @@ def prepare(
                 f"{asked.model} model needs: use auto or solid",
                 at=f"pin.{task.pin.name}",
             )
+        if asked.model in ("beam", "solid") and task.lugs:
+            raise study.error(
+                f"pin {task.pin.name} is held by contact with its lugs, which the harmonic model "
+                f'finds: use auto or harmonic, or analysis.joints = "prescribed" for the '
+                f"{asked.model} model",
+                at=f"pin.{task.pin.name}",
+                code="model-without-contact",
+            )
     return Plan(study, asked, loads, todo, published, checked, also)
 
 

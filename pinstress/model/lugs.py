@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 
 from fea.core.material import Material
-from fea.joint.lugs.fit import fitted
-from fea.joint.lugs.links import on_structure
+from fea.joint.lugs.fit import fitted, on_structure
 from fea.joint.lugs.lug import Bushing, Lug
 from geometry import ArgumentError, Pin, PinLike
 from pinstress.model.pins import material

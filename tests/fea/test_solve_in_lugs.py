@@ -217,3 +217,32 @@ def test_a_softer_joint_is_that_of_softer_lugs() -> None:
     assert ours == pytest.approx(theirs, rel=1e-9)
     tilted = model.varied(tuple(replace(lug, tilt=math.inf) for lug in model.lugs))
     assert abs(tilted.solve(STEADY).bending_moment(z)[0, 0, 0]) < abs(ours)
+
+
+def test_nothing_is_in_contact_without_loads() -> None:
+    (found,) = solve_in_lugs(InLugs(PIN, STEEL, LUGS, (pull(np.zeros((1, 2))),)), QUICK)
+    peak = found.solution.peak
+    assert (peak.verdict, peak.max_von_mises, peak.error_estimate) == ("converged", 0.0, 0.0)
+    assert found.joint is not None
+    assert all(band.largest_pressure == 0.0 for band in found.joint.bands)
+
+
+def test_moments_across_the_axis_are_refused() -> None:
+    moments = np.zeros((1, 3, 3))
+    moments[0, 1, 0] = 1.0
+    (found,) = solve_in_lugs(InLugs(PIN, STEEL, LUGS, (replace(STEADY, moments=moments),)), QUICK)
+    assert found.solution.peak.verdict == "failed"
+    assert "moments of links across the axis" in found.solution.peak.note
+
+
+def test_surfaces_have_the_names_of_the_whole_pin() -> None:
+    """Also the corners between bores, and those of its rings."""
+    tube = replace(
+        PIN, segments=tuple(replace(s, bore=0.012) if s.connection else s for s in PIN.segments)
+    )
+    (found,) = solve_in_lugs(InLugs(tube, STEEL, LUGS, (STEADY,)), replace(QUICK, meshes=1))
+    names = {name for zone in found.solution.peak.singular_at for name in zone.between}
+    steps = {f"bore step {i}" for i in range(1, 7)}
+    assert names <= {*"LMR", "its lug", "bore L", "bore M", "bore R", *steps}
+    assert {"bore M", "bore step 3"} <= names
+    assert "ring" not in found.solution.peak.note

@@ -139,3 +139,10 @@ def test_what_cannot_be_is_refused_before_anything_is_solved(
     with raises(InputError, code) as caught:
         prepare(load_study(path))
     assert said in str(caught.value)
+
+
+@pytest.mark.parametrize("model", ["beam", "solid"])
+def test_contact_is_found_by_the_harmonic_model_alone(tmp_path: Path, model: str) -> None:
+    path = study(tmp_path, "lug.M = {}", f'model = "{model}"')
+    with raises(InputError, "model-without-contact", "pin P", "harmonic"):
+        prepare(load_study(path))

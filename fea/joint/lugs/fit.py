@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -22,6 +23,18 @@ MOST_INTERFERENCE = 5.0  # times what yields pin, bushing or lug
 LEAST_WALL = 1e-3  # of an eye or a bushing, of the pin's diameter
 
 Wall = tuple[float, float, Material]  # inner and outer radius, m
+
+
+def on_structure(pin: Pin, lugs: Sequence[Lug]) -> Pin:
+    """The same pin, its bands in lugs of the structure (by the segments' names) among its
+    connections.
+    """
+    held = {lug.connection for lug in lugs} - set(pin.connections)
+    segments = tuple(
+        replace(s, connection=s.name) if s.connection is None and s.name in held else s
+        for s in pin.segments
+    )
+    return replace(pin, segments=segments)
 
 
 def fitted(pin: Pin, material: Material, lugs: Sequence[Lug]) -> tuple[Lug, ...]:

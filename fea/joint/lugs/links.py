@@ -7,7 +7,6 @@ what the links leave over.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,20 +14,7 @@ from numpy.typing import NDArray
 from fea.core.equilibrium import MOST
 from fea.core.linear_solver import SolveError
 from fea.core.pin_loads import Floats, PinLoads
-from fea.joint.lugs.lug import Lug
 from geometry import Pin
-
-
-def on_structure(pin: Pin, lugs: Sequence[Lug]) -> Pin:
-    """The same pin, its bands in lugs of the structure (by the segments' names) among its
-    connections.
-    """
-    held = {lug.connection for lug in lugs} - set(pin.connections)
-    segments = tuple(
-        replace(s, connection=s.name) if s.connection is None and s.name in held else s
-        for s in pin.segments
-    )
-    return replace(pin, segments=segments)
 
 
 def link_numbers(connections: Sequence[str], links: Sequence[str]) -> NDArray[np.int64]:
@@ -42,8 +28,14 @@ def link_forces(pin: Pin, mass: float, loads: PinLoads, structure: bool = False)
     the lugs is its; mass: of the pin, kg. A small imbalance with the body force, as where a weight
     is rounded, is shared by the links.
 
-    Raises: SolveError where it is not small.
+    Raises: SolveError where it is not small, and for moments of links across the axis.
     """
+    if np.any(loads.moments[:, :, :2]):
+        raise SolveError(
+            f"pin {pin.name}, case {loads.case}: moments of links across the axis tilt their lugs, "
+            'and contact finds them: leave them out, or take analysis.joints = "prescribed"',
+            "moment-across",
+        )
     out = np.zeros((len(loads), len(pin.connections), 2))
     for b, connection in enumerate(pin.connections):
         if connection in loads.surfaces:

@@ -82,6 +82,20 @@ def ringed(pin: Pin, ends: Mapping[str, Floats]) -> Pin:
     return replace(pin, segments=tuple(segments))
 
 
+def whole_names(pin: Pin, ends: Mapping[str, Floats]) -> dict[str, str]:
+    """The pin's own names of the surfaces of `ringed`, by the names there."""
+    cut, k, names = ringed(pin, ends), 0, {}
+    for i, s in enumerate(pin.segments):
+        own = ends.get(s.connection or "")
+        for _ in range(1 if own is None else len(own) - 1):
+            for bore in ("", "bore "):
+                names[f"{bore}{cut.labels[k]}"] = f"{bore}{pin.labels[i]}"
+            k += 1
+        for corner in ("shoulder", "bore step"):
+            names[f"{corner} {k}"] = f"{corner} {i + 1}"
+    return names
+
+
 def annulus(pin: Pin, connection: str, outer_diameter: float, ends: Floats) -> Pin:
     """A lug's eye, as a body of revolution from z = 0 on, whose bore has the rings of the band on
     which it bears.
