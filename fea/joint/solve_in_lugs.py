@@ -147,25 +147,30 @@ def _solved(
 ) -> LugSolution:
     progress(f"pin {given.pin.name}, case {case.case}, contact")
     try:
-        between = given.between.get(case.case)
-        pressing = _Pressing(model, _instants(case, between), given.besides.get(case.case))
-        loads = pressing(case)
-        through: dict[str, Between] = {}
-        if between is not None:
-            of_links = between
-            through[case.case] = lambda times: pressing(of_links(times))
-        (solution,) = solve_pin(
-            model.pin,
-            given.material,
-            (),
-            (loads,),
-            replace(asked, model="harmonic", because=CONTACT),
-            progress,
-            through,
-        )
+        return _of_case(model, given, case, asked, progress)
     except SolveError as error:
         peak = Peak(given.pin.name, case.case, "harmonic", "failed", str(error))
         return LugSolution(Solution(peak, None, case), None, lambda links: links)
+
+
+def _of_case(
+    model: JointModel, given: InLugs, case: PinLoads, asked: Asked, progress: Progress
+) -> LugSolution:
+    between = given.between.get(case.case)
+    pressing = _Pressing(model, _instants(case, between), given.besides.get(case.case))
+    through: dict[str, Between] = {}
+    if between is not None:
+        of_links = between
+        through[case.case] = lambda times: pressing(of_links(times))
+    (solution,) = solve_pin(
+        model.pin,
+        given.material,
+        (),
+        (pressing(case),),
+        replace(asked, model="harmonic", because=CONTACT),
+        progress,
+        through,
+    )
     if solution.answer is None:
         return LugSolution(solution, None, pressing)
     here = solution.loads.links.at(np.array([solution.instant]))

@@ -9,6 +9,7 @@ from importlib.metadata import version
 import numpy as np
 
 from fea.checks.hand_checks import hand_checks
+from fea.checks.lug_checks import lug_checks
 from fea.checks.records import BeamCheck, HandCheck
 from fea.core.peak import Peak, decides
 from fea.core.pin_loads import PinLoads
@@ -133,7 +134,7 @@ def _pin_result(
         published_safety_factor=theirs[1],
         why=peak.why,
         singular_at=peak.singular_at,
-        hand_checks=_hand_checks(task, peak.case),
+        hand_checks=_hand_checks(study, task, peak.case),
         max_von_mises_interval=peak.interval,
         safety_factor_interval=_factors(peak, strength),
         error_parts={} if peak.parts is None else asdict(peak.parts),
@@ -171,13 +172,25 @@ def _meets(peak: Peak, strength: float | None, required: float | None) -> bool |
     return decides(peak, strength / required)
 
 
-def _hand_checks(task: Task, case: str) -> tuple[HandCheck, ...]:
-    """Of a pin with a profile; a pin that is cut is checked as if it were not."""
+def _hand_checks(study: Study, task: Task, case: str) -> tuple[HandCheck, ...]:
+    """Of a pin with a profile, and of its lugs whose size is given; a pin that is cut is checked as
+    if it were not. What a structure's lugs take of the loads is not known to a hand check.
+    """
     pin = task.pin.profile if isinstance(task.pin, CutPin) else task.pin
     if not isinstance(pin, Pin):
         return ()
     loads = next(x for x in task.loads if x.case == case)
-    return hand_checks(pin, task.material, loads, task.clamps)
+    given = study.table.pin[pin.name].lug
+    sized = [x for x in task.lugs if x.connection in given and given[x.connection].outer_diameter]
+    bores = {
+        lug.connection: 2.0 * (pin.band(lug.connection).radius + lug.bushing.thickness)
+        for lug in sized
+        if lug.bushing is not None
+    }
+    of_lugs = lug_checks(pin, sized, loads, bores)
+    if any(lug.connection not in pin.connections for lug in task.lugs):
+        return of_lugs
+    return hand_checks(pin, task.material, loads, task.clamps) + of_lugs
 
 
 def _shape(task: Task) -> plain.PinShape:

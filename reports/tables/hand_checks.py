@@ -8,7 +8,7 @@ from pathlib import Path
 from reports.data.results import HandCheck, PinResult, Results, Units
 from reports.format import markdown
 from reports.format.csv import Cell
-from reports.format.numbers import DASH, engineering, short
+from reports.format.numbers import DASH, components, engineering, short
 from reports.format.ranges import factor_range
 from reports.format.words import verdict_words
 from reports.tables.table import Table
@@ -74,7 +74,8 @@ def hand_check_table(pin: PinResult, units: Units) -> tuple[list[str], list[list
 def _model(pin: PinResult, units: Units) -> dict[str, str]:
     where = DASH
     if pin.location is not None:
-        where = f"x, y, z = {', '.join(map(engineering, pin.location))} {units.length}"
+        place = components(pin.location, max(map(abs, pin.location)))
+        where = f"x, y, z = {', '.join(place)} {units.length}"
     outside = ", outside the excluded zones" if pin.verdict == "singular" else ""
     verdict = verdict_words(pin.verdict, pin.yields)
     return {

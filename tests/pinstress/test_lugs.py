@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from fea.joint.lugs.lug import Bushing, Lug
-from pinstress import InputError, load_study, prepare
+from pinstress import InputError, load_study, prepare, run
 from tests.support.errors import raises
 
 STUDY = """
@@ -146,3 +146,30 @@ def test_contact_is_found_by_the_harmonic_model_alone(tmp_path: Path, model: str
     path = study(tmp_path, "lug.M = {}", f'model = "{model}"')
     with raises(InputError, "model-without-contact", "pin P", "harmonic"):
         prepare(load_study(path))
+
+
+def test_lugs_whose_size_is_given_are_checked_by_hand(tmp_path: Path) -> None:
+    """Net section F / ((W - D) t), with the bore that holds a bushing; others are not checked."""
+    given = """
+[pin.P.lug.L]
+outer_diameter = 60
+bushing = { thickness = 2, material = "bronze" }
+[pin.P.lug.M]
+"""
+    found = run(load_study(study(tmp_path, given)))["P", "pull"]
+    checks = {(c.name, c.at): c.stress for c in found.hand_checks if c.name.startswith("lug")}
+    assert set(checks) == {
+        ("lug, net section", "L"), ("lug, shear-out", "L"), ("lug, bearing", "L"),
+    }  # fmt: skip
+    assert checks["lug, net section", "L"] == pytest.approx(25000.0 / ((60.0 - 24.0) * 10.0))
+    assert "bending" in {c.name for c in found.hand_checks}
+
+
+def test_a_pin_on_a_structure_has_hand_checks_of_its_lugs_alone(tmp_path: Path) -> None:
+    """What the structure takes, and so the pin's bending, is not known to a formula."""
+    path = study(tmp_path, "lug.gap = {}\nlug.M = { outer_diameter = 50 }")
+    found = run(load_study(path))["P", "pull"]
+    assert {c.name for c in found.hand_checks} == {
+        "lug, net section", "lug, shear-out", "lug, bearing",
+    }  # fmt: skip
+    assert found.held == "its lugs (contact)"
