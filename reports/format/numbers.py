@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from decimal import Decimal
 
 DASH = "–"
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+ROUNDING = 1e-9  # of the largest component; anything smaller is round-off
 
 
 def engineering(value: float | None, digits: int = 4) -> str:
@@ -63,3 +65,8 @@ def ratio(ours: float | None, published: float | None) -> float | None:
     if ours is None or published is None or published == 0.0:
         return None
     return finite(ours / published)
+
+
+def components(values: Sequence[float], largest: float) -> list[str]:
+    """Numbers of a vector as text; what is round-off beside the largest is zero."""
+    return [engineering(v if abs(v) > ROUNDING * largest else 0.0) for v in values]

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from reports.data.results import PinResult, Results, Units
 from reports.format.grid import Grid
-from reports.format.numbers import DASH, engineering
+from reports.format.numbers import DASH, components, engineering
 
-ROUNDING = 1e-9  # of the largest component; anything smaller is round-off
 TIMINGS = (True, True, True, False, False, False)
 
 
@@ -36,11 +33,6 @@ def loads_at(pin: PinResult, units: Units) -> Grid | None:
             row += components(load.moment.tolist(), moment)
         body.append(row)
     return Grid(head, body, [False, False, *[True] * (len(head) - 2)])
-
-
-def components(values: Sequence[float], largest: float) -> list[str]:
-    """Numbers of a vector as text; what is round-off beside the largest is zero."""
-    return [engineering(v if abs(v) > ROUNDING * largest else 0.0) for v in values]
 
 
 def timings(results: Results) -> Grid | None:

@@ -11,11 +11,11 @@ from typing import Any
 from fea.core.dimensions import Point
 from reports.data.results import PinShape, Results
 from reports.format.file_names import SVG, drive_names, plot_name
-from reports.format.numbers import DASH, engineering, like, ratio, short
+from reports.format.numbers import DASH, components, engineering, like, ratio, short
 from reports.format.ranges import error_words, factor_range
 from reports.format.template import environment
 from reports.format.words import BEYOND, MEANING, RESULTS, outcome, verdict_words
-from reports.page.loads import components, timings
+from reports.page.loads import timings
 from reports.page.motion import motion_parts
 from reports.page.pin_drawing import draw_pin
 from reports.page.pins import pin_parts, reaction_tables
