@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from fea.core.pin_loads import Floats, LugEdge, PinLoads, UnitLoad
 from geometry import Pin
 
-NEGLIGIBLE = 1e-10  # of the largest amplitude: patterns below it are round-off
+NEGLIGIBLE = 1e-4  # of the largest amplitude: what a pattern must add to any instant's at most
 
 
 @dataclass(frozen=True)

@@ -226,16 +226,16 @@ def test_contact_has_the_exponent(lug_over_pin: float) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("lug_over_pin", [0.1, 1 / 3, 1.0, 3.0, 10.0])
 def test_a_joint_has_the_exponent(lug_over_pin: float) -> None:
-    """As far as its rings go: the four that are nearer than 0.2 diameters, to 0.01."""
+    """In the rings next to the first, whose mean pressure is not that in its middle, to 0.01."""
     pin_material, lug_material = Material("pin", E, NU), Material("lug", lug_over_pin * E, NU)
     over = Segment(D, D)
     pin = Pin("P", (over, Segment(2.0 * D, D, connection="L"), over))
     lug = Lug("L", 3.0 * D, lug_material, clearance=-2e-5)
-    model = JointModel(pin, pin_material, [lug], Cells(20, 4, 0, 60.0))
+    model = JointModel(pin, pin_material, [lug], Cells(60, 4, 0, 60.0))
     found = model.solve(PinLoads("pressed on", ("L",), np.zeros((1, 1, 3))))
-    near = slice(0, 4)
+    near = slice(1, 4)
     distance = found.bands.z[near] - D
-    assert distance[-1] < 0.2 * D
+    assert distance[-1] < 0.01 * D
     pressure = found.contact[0].pressure[near, 0]
     slope = np.polyfit(np.log(distance), np.log(pressure), 1)[0]
     assert -slope == pytest.approx(lug_edge_exponent(pin_material, lug_material), abs=0.01)
