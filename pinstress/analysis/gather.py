@@ -44,7 +44,7 @@ def results_of(plan: Plan, found: list[Solved]) -> plain.Results:
     results = replace(
         results,
         landing=tuple(r for made in found for r in made.landing),
-        surfaces=tuple(made.surface for made in found if made.surface is not None),
+        surfaces=tuple(surface for made in found for surface in made.surfaces),
     )
     return _in_study_units(results, study)
 

@@ -9,7 +9,9 @@ import numpy as np
 
 from fea.core.pin_loads import Floats
 from fea.core.solution import Answer
+from fea.harmonic.evaluate import HarmonicAnswer
 from fea.joint.cell_pressure import CellPressure
+from fea.solid.evaluate import SolidAnswer
 from fea.solve_pin import Solution
 from fea.surface_fields import UnitSurface, amounts, excluded, largest_there, unit_surface
 from pinstress.analysis.gather_fields import shown_at
@@ -20,22 +22,43 @@ from reports.data.surface import Mask, Surface, SurfaceCase
 APART = 0.1  # of a zone's size: nearer points show nothing where nothing is to be read
 
 
-def surface_of(
+def surfaces_of(
     loads: dict[str, CaseLoads],
     task: Task,
     solutions: Sequence[Solution],
     pressures: Sequence[CellPressure | None],
-) -> Surface | None:
-    """A pin's surface with all the cases that some model with fields solved; None without any.
+) -> tuple[Surface, ...]:
+    """A pin's surfaces with all the cases that some model with fields solved, one for each mesh:
+    cases in contact have their own.
 
     pressures: of contact with its lugs, by solution.
     """
-    each = zip(solutions, pressures, strict=True)
+    together: dict[int, list[tuple[Solution, CellPressure | None]]] = {}
+    for solution, pressure in zip(solutions, pressures, strict=True):
+        own = id(_unit_fields(solution.answer))
+        together.setdefault(own, []).append((solution, pressure))
+    found = (_surface(loads, task, each) for each in together.values())
+    return tuple(surface for surface in found if surface is not None)
+
+
+def _unit_fields(answer: Answer | None) -> object:
+    """What answers from one mesh share."""
+    if isinstance(answer, SolidAnswer):
+        return answer.solution.fields
+    return answer.fields if isinstance(answer, HarmonicAnswer) else None
+
+
+def _surface(
+    loads: dict[str, CaseLoads],
+    task: Task,
+    each: Sequence[tuple[Solution, CellPressure | None]],
+) -> Surface | None:
+    """Of cases solved on one mesh; None where no model has fields."""
     found = [(s, s.answer, p) for s, p in each if s.answer is not None]
     with_fields = [(s, a, p) for s, a, p in found if unit_surface(a) is not None]
     if not with_fields:
         return None
-    surface = unit_surface(with_fields[0][1])  # on one mesh, whichever the case
+    surface = unit_surface(with_fields[0][1])
     assert surface is not None
     cases = [
         _pressed(_case(loads[s.peak.case], s, a), surface.points, p) for s, a, p in with_fields

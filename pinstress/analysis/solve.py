@@ -14,7 +14,7 @@ from fea.joint.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
 from fea.solve_pin import MOST_UNKNOWNS, solve_pin
 from geometry import Pin
 from pinstress.analysis import checks, gather, gather_fields
-from pinstress.analysis.gather_surface import surface_of
+from pinstress.analysis.gather_surface import surfaces_of
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import Entry, Solved, lasting, question
 from pinstress.cache.store import Cache
@@ -152,8 +152,8 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
         tell(f"pin {task.pin.name}, beam check")
         beam = checks.beam_check(study, task)
     joints = tuple(j.joint for j in joined)
-    surface = surface_of(plan.loads, task, found, pressures)
-    return Solved(peaks, landing, beam, surface, joints=joints)
+    surfaces = surfaces_of(plan.loads, task, found, pressures)
+    return Solved(peaks, landing, beam, surfaces, joints=joints)
 
 
 def _in_lugs(plan: Plan, task: Task, tell: Tell) -> tuple[LugSolution, ...]:

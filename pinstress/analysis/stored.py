@@ -30,7 +30,7 @@ class Solved:
     peaks: tuple[Peak, ...]
     landing: tuple[LandingRange, ...] = ()
     beam: BeamCheck | None = None
-    surface: Surface | None = None
+    surfaces: tuple[Surface, ...] = ()
     opinions: tuple[Opinion, ...] = ()
     joints: tuple[JointResult | None, ...] = ()
     before: bool = False

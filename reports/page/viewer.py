@@ -36,7 +36,7 @@ class PinView:
 
 
 def pin_views(results: Results, pin: str) -> list[PinView]:
-    """The 3D views of a pin, one for each set of clamps."""
+    """The 3D views of a pin, one for each mesh on which its cases were solved."""
     found = {p.case: p for p in results.pins if p.pin == pin}
     return [
         PinView(

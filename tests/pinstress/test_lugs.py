@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from fea.joint.lugs.lug import Bushing, Lug
@@ -163,6 +164,27 @@ bushing = { thickness = 2, material = "bronze" }
     }  # fmt: skip
     assert checks["lug, net section", "L"] == pytest.approx(25000.0 / ((60.0 - 24.0) * 10.0))
     assert "bending" in {c.name for c in found.hand_checks}
+
+
+def test_every_case_in_contact_has_its_own_surface(tmp_path: Path) -> None:
+    """Cases have other patterns of pressure, so that unit fields of one say nothing of another: at
+    the angle of the maximum each surface has the stress that its case has there.
+    """
+    path = study(tmp_path, "lug.M = {}")
+    more = '[case.push]\nkind = "given"\nforces = { L = [0, -9e3], M = [0, 1e4], R = [0, -1e3] }\n'
+    path.write_text(path.read_text().replace("[pin.P]", f"{more}\n[pin.P]"))
+    found = run(load_study(path))
+    assert [[c.case for c in s.cases] for s in found.surfaces] == [["pull"], ["push"]]
+    turns = np.linspace(0.0, 2.0 * np.pi, 361)
+    for surface in found.surfaces:
+        (case,) = surface.cases
+        first, second = case.amounts[case.instant].T
+        even, n = np.array(surface.even[:5]), surface.n[:, None]
+        c, s = np.cos(n * turns), np.sin(n * turns)
+        back = surface.stress @ (c * first[:, None] + s * second[:, None])
+        forth = surface.stress @ (s * first[:, None] - c * second[:, None])
+        stress = np.linalg.norm(np.where(even[:, None], back, forth), axis=1).max(axis=1)
+        assert stress == pytest.approx(case.largest, rel=1e-3)
 
 
 def test_a_pin_on_a_structure_has_hand_checks_of_its_lugs_alone(tmp_path: Path) -> None:
