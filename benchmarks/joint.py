@@ -106,8 +106,8 @@ def _at_mid_span(
     assert isinstance(solution.answer, HarmonicAnswer)
     fields = solution.answer.fields
     near = np.hypot(fields.points[:, 0] - D / 2.0, fields.points[:, 1] - middle)
-    square = Circumference(fields, found.loads).squares(np.array([near.argmin()]), 0.0)
-    return float(bending / nominal), math.sqrt(float(square[0, 0])) / 1e6
+    stress = Circumference(fields, found.loads).envelope(np.array([near.argmin()]), np.zeros(1))
+    return float(bending / nominal), float(stress[0, 0]) / 1e6
 
 
 def _convergence() -> str:

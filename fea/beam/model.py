@@ -36,7 +36,7 @@ class BeamAnswer:
         """Of the largest stress of the case."""
         return beam_estimate(self._beam, self.case, self.clamps)
 
-    def maxima(self, loads: PinLoads) -> Floats:
+    def maxima(self, loads: AnyLoads, _: float = 0.0) -> Floats:
         """Largest von Mises stress (T,) Pa at every instant."""
         return np.asarray(highest(harmonics(self._beam, loads)).von_mises.max(axis=0))
 

@@ -3,7 +3,8 @@
 Stress is linear in the amounts of unit loads and von Mises stress is a norm. So between two
 instants it exceeds the larger of both by no more than the von Mises stress of what the amounts
 differ from their chord there: a bound that unit fields give at once for all intervals. Instants are
-added until it is small; about the one that governs, until the maximum stands.
+added where it may exceed the maximum, until it does so by little; about the one that governs, until
+the maximum stands.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fea.core.pin_loads import Amounts, Floats, PinLoads, off_chord
 from fea.core.solution import Answer
@@ -22,7 +24,6 @@ ENOUGH = 0.05  # of the tolerance: what the time may add to the error
 MOST = 4096  # instants
 FACTOR = 1.25  # what differs from a chord most, over that in the middle of it
 JUMP = 1e-5  # of the whole time: in a shorter interval there is a jump or nothing
-WORST = 0.25  # of what differs most, of any load: from there on an interval is halved
 POINTS = 9  # in the interval about the maximum, which becomes a quarter each time
 SAME = 1e-12  # relative: so little more is nothing, a crest being flat
 STANDS = 2  # times that nothing was gained
@@ -30,7 +31,22 @@ STANDS = 2  # times that nothing was gained
 
 def rise_between(answer: Answer, loads: PinLoads, between: Between) -> float:
     """By how much the maximum between instants may exceed that at instants, Pa."""
-    return FACTOR * answer.largest(_off_chord(loads, between))[0] if len(loads) > 1 else 0.0
+    if len(loads) < 2:
+        return 0.0
+    largest = answer.largest(loads)[0]
+    reached = _reached(answer, loads, _off_chord(loads, between), largest)[1]
+    return max(0.0, float(reached.max(initial=0.0)) - largest)
+
+
+def _reached(
+    answer: Answer, loads: PinLoads, off: Amounts, largest: float
+) -> tuple[NDArray[np.int64], Floats]:
+    """Intervals in which the largest at instants, Pa, may be exceeded, and what they may reach."""
+    rise = FACTOR * answer.largest(off)[0]
+    at = answer.maxima(loads, largest - rise)
+    ends = np.maximum(at[1:], at[:-1])
+    near = np.flatnonzero(ends + rise > largest)
+    return near, ends[near] + FACTOR * answer.maxima(off.at(near))
 
 
 def _off_chord(loads: PinLoads, between: Between) -> Amounts:
@@ -45,17 +61,15 @@ def _off_chord(loads: PinLoads, between: Between) -> Amounts:
 
 
 def through_time(answer: Answer, loads: PinLoads, between: Between, tolerance: float) -> PinLoads:
-    """The loads with more instants, so many that what is between them is small compared with a
-    `tolerance`, relative, of the maximum; the governing one among them.
+    """The loads with more instants, so many that what is between them exceeds the maximum by little
+    compared with a `tolerance`, relative; the governing one among them.
     """
     while len(loads) < MOST:
-        off = _off_chord(loads, between)
-        if FACTOR * answer.largest(off)[0] <= ENOUGH * tolerance * answer.largest(loads)[0]:
+        largest = answer.largest(loads)[0]
+        near, reached = _reached(answer, loads, _off_chord(loads, between), largest)
+        worst = near[reached > (1.0 + ENOUGH * tolerance) * largest]
+        if not len(worst):
             break
-        parts = [
-            np.abs(both).max(axis=1) / (np.abs(both).max() or 1.0) for both in off.acting.values()
-        ]
-        worst = np.flatnonzero(np.max(parts, axis=0) >= WORST)
         times = _times(loads)
         loads = loads.merged(between(0.5 * (times[worst] + times[worst + 1])))
     return with_crest(answer, loads, between)

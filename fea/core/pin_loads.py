@@ -186,6 +186,11 @@ class Amounts:
         """How much of each unit load acts, (T, 2) by phase."""
         return self.acting
 
+    def at(self, instants: NDArray[np.int64]) -> Amounts:
+        """Those of some instants, by their numbers."""
+        acting = {load: both[instants] for load, both in self.acting.items()}
+        return Amounts(self.case, acting, len(instants))
+
     def turned(self, angle: float) -> Amounts:
         """The same, all turned about the pin's axis by `angle` (rad)."""
         acting = {}

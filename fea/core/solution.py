@@ -29,8 +29,10 @@ class Picture:
 class Answer(Protocol):
     """What a model found for a pin, for any loads made of the same unit loads."""
 
-    def maxima(self, loads: PinLoads) -> Floats:
-        """Largest von Mises stress (T,) Pa at every instant outside all singularities."""
+    def maxima(self, loads: AnyLoads, least: float = 0.0) -> Floats:
+        """Largest von Mises stress (T,) Pa at every instant outside all singularities; where it
+        does not exceed `least`, Pa, any value up to that.
+        """
         ...
 
     def largest(self, loads: AnyLoads) -> tuple[float, int]:

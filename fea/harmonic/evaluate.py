@@ -162,9 +162,12 @@ class HarmonicAnswer:
     def __init__(self, solution: HarmonicSolution, singularities: tuple[Singularity, ...]) -> None:
         self.fields, self.singularities = solution.fields, singularities
 
-    def maxima(self, loads: PinLoads) -> Floats:
-        """Largest von Mises stress (T,) Pa at every instant outside the singularities."""
-        return Circumference(self.fields, loads).largest(self.fields.outside(self.singularities))[0]
+    def maxima(self, loads: AnyLoads, least: float = 0.0) -> Floats:
+        """Largest von Mises stress (T,) Pa at every instant outside the singularities; `least`
+        where it does not exceed that.
+        """
+        among = self.fields.outside(self.singularities)
+        return Circumference(self.fields, loads).maxima(among, least)
 
     def largest(self, loads: AnyLoads) -> tuple[float, int]:
         """The largest of these (Pa), and the number of its instant."""

@@ -109,5 +109,5 @@ def _moved(
 def _envelope(around: Circumference, rows: Ints, theta: Floats) -> Floats:
     """Largest von Mises stress over all instants at rows x angles, flat."""
     turn = len(theta) // 2 if around.odd else len(theta)  # odd harmonics: half a turn says it all
-    found = np.stack([around.squares(rows, float(a)).max(axis=1) for a in theta[:turn]], axis=1)
-    return np.tile(np.sqrt(np.maximum(found, 0.0)), len(theta) // turn).ravel()
+    found = around.envelope(rows, theta[:turn])
+    return np.tile(found, len(theta) // turn).ravel()

@@ -32,11 +32,13 @@ from geometry import ArgumentError
 
 Ints = NDArray[np.int64]
 Mask = NDArray[np.bool_]
+Instants = slice | Ints
 
 SAMPLES_PER_WAVE = 5  # of von Mises squared
 FIRST = 16  # pairs of points and instants that are sampled to begin with
 CHUNK = 4096  # pairs sampled at once
 POINTS = 64  # points looked at together
+FEW = 4  # unit loads of a harmonic: up to so many, quadratic forms of them take less than sums
 EVERY = slice(None)
 EVEN = 3  # so many of the five numbers go as cos psi, the others as sin psi
 _EVEN, _ODD = slice(0, EVEN), slice(EVEN, None)
@@ -92,7 +94,7 @@ class Circumference:
         """Whether only odd harmonics act, so that half a turn changes the signs of stresses."""
         return bool((self._n % 2 == 1).all())
 
-    def bound(self, points: Ints, instants: slice = EVERY) -> Floats:
+    def bound(self, points: Ints, instants: Instants = EVERY) -> Floats:
         """At least the largest von Mises stress over the circumference, (J, T) Pa, at points (J,)
         and instants; exactly it where only one harmonic acts.
         """
@@ -108,9 +110,11 @@ class Circumference:
         wave = self._waves[-1]
         return int(self._n[wave.start]), self._alone(points, wave)
 
-    def _alone(self, points: Ints, wave: slice, instants: slice = EVERY) -> Floats:
-        first, second, mixed = (x[instants] for x in self._products(wave))
+    def _alone(self, points: Ints, wave: slice, instants: Instants = EVERY) -> Floats:
         five = self._five[points, :, wave]
+        if wave.stop - wave.start > FEW:
+            return self._summed(five, wave, instants)
+        first, second, mixed = (x[instants] for x in self._products(wave))
         even, odd = (x.swapaxes(1, 2) @ x for x in (five[:, _EVEN], five[:, _ODD]))
         if self._n[wave.start] == 0:
             square = _forms(even, first) + _forms(odd, second)
@@ -119,6 +123,20 @@ class Circumference:
             total = _forms(even + odd, first + second)
             square = _closed(total, _forms(apart, first - second), _forms(apart, mixed))
         return np.sqrt(np.maximum(square, 0.0, out=square), out=square)
+
+    def _summed(self, five: Floats, wave: slice, instants: Instants) -> Floats:
+        """The same, of stresses (J, 5, K) that are summed over the unit loads first."""
+        first, second = self._first[instants, wave].T, self._second[instants, wave].T
+        flat = np.ascontiguousarray(five).reshape(-1, five.shape[2])
+        shape = (len(five), 5, first.shape[1])
+        one, other = ((flat @ x).reshape(shape) for x in (first, second))
+        if self._n[wave.start] == 0:
+            square = np.square(one[:, _EVEN]).sum(axis=1) + np.square(other[:, _ODD]).sum(axis=1)
+        else:
+            one[:, _ODD], other[:, _ODD] = -other[:, _ODD], one[:, _ODD].copy()
+            A, C = np.square(one).sum(axis=1), np.square(other).sum(axis=1)
+            square = _closed(A + C, A - C, np.einsum("jit,jit->jt", one, other))
+        return np.asarray(np.sqrt(np.maximum(square, 0.0)))
 
     def _products(self, wave: slice) -> tuple[Floats, Floats, Floats]:
         """Of two loads' amounts at an instant: of the first phases, the second ones, one of each;
@@ -135,6 +153,10 @@ class Circumference:
         value, point = self._search(among, together=False)
         return value, point, self.round(point, np.arange(self.count))[1]
 
+    def maxima(self, among: Mask, least: float = 0.0) -> Floats:
+        """The same values (T,) Pa alone; `least` where they do not exceed that."""
+        return self._search(among, together=False, least=least)[0]
+
     def top(self, among: Mask) -> Top:
         """Over the points of a mask (S,) and all instants."""
         value, point = self._search(among, together=True)
@@ -142,20 +164,24 @@ class Circumference:
         angle = self.round(point[[instant]], np.array([instant]))[1]
         return Top(float(value[instant]), int(point[instant]), instant, float(angle[0]))
 
-    def _search(self, among: Mask, together: bool) -> tuple[Floats, Ints]:
-        """At every instant the maximum (T,) Pa and its point (T,); `together`: the largest of all
-        is right, those of other instants need not be.
+    def _search(self, among: Mask, together: bool, least: float = 0.0) -> tuple[Floats, Ints]:
+        """At every instant the maximum (T,) Pa, at least `least`, and its point (T,); `together`:
+        the largest of all is right, those of other instants need not be.
 
         Points are looked at in the order of what they can reach at most.
         """
         rows, reach = self._in_order(np.flatnonzero(among))
-        best = np.zeros(self.count)
+        best = np.full(self.count, least)
         point = np.full(self.count, rows[0] if len(rows) else 0)
         for k in range(0, len(rows), POINTS):
             if reach[k] <= (best.max() if together else best.min()):
                 break
             here = rows[k : k + POINTS]
-            bound = self.bound(here)
+            hopeful = self.reach(here).max(axis=0) > (best.max() if together else best)
+            if not hopeful.any():
+                continue
+            bound = np.full((len(here), self.count), -1.0)
+            bound[:, hopeful] = self.bound(here, np.flatnonzero(hopeful))
             if len(self._waves) < 2:  # the bound is the maximum
                 highest = bound.argmax(axis=0)
                 value = bound[highest, np.arange(self.count)]
@@ -180,7 +206,7 @@ class Circumference:
         order = np.argsort(-reach, kind="stable")
         return rows[order], reach[order]
 
-    def reach(self, points: Ints, instants: slice = EVERY) -> Floats:
+    def reach(self, points: Ints, instants: Instants = EVERY) -> Floats:
         """A bound that is sooner found: the sum over unit loads of what each can do by itself."""
         most = np.hypot(self._first[instants], self._second[instants]).T
         return np.asarray((self._each[points] @ most) * (1.0 + 1e-12))
@@ -250,17 +276,29 @@ class Circumference:
             forth[:, :EVEN, w], forth[:, EVEN:, w] = b[:, :EVEN], a[:, EVEN:]
         return back, forth
 
-    def squares(self, points: Ints, angle: float) -> Floats:
-        """Von Mises squared (J, T) at points (J,) at an angle (rad) and every instant, Pa^2."""
-        back, forth = self._amounts(angle)
-        five = self._five[points]
-        rows, waves = len(points), len(self._n)  # no -1 for rows: there are no waves of no load
-        even = five[:, :EVEN].reshape(rows * EVEN, waves) @ back.T
-        odd = five[:, EVEN:].reshape(rows * (5 - EVEN), waves) @ forth.T
-        shape = (len(points), -1, self.count)
-        return np.asarray(
-            np.square(even).reshape(shape).sum(axis=1) + np.square(odd).reshape(shape).sum(axis=1)
-        )
+    def envelope(self, points: Ints, angles: Floats) -> Floats:
+        """Largest von Mises stress (J, A) Pa over all instants at points (J,) and angles (rad)."""
+        out = [
+            self._over_time(points[k : k + POINTS], angles) for k in range(0, len(points), POINTS)
+        ]
+        return np.asarray(np.sqrt(np.concatenate([np.zeros((0, len(angles))), *out])))
+
+    def _over_time(self, points: Ints, angles: Floats) -> Floats:
+        """Its square (J, A): the numbers of every harmonic first, then those at each angle."""
+        turns = np.outer(angles, self._n[[wave.start for wave in self._waves]])
+        c, s = np.cos(turns), np.sin(turns)
+        total = np.zeros((len(angles), len(points), self.count))
+        for part, signed in ((_EVEN, (c, s)), (_ODD, (s, -c))):
+            five = self._five[points, part]
+            amounts = [
+                five[:, :, wave] @ phase[:, wave].T
+                for phase in (self._first, self._second)
+                for wave in self._waves
+            ]
+            if amounts:
+                at = np.tensordot(np.concatenate(signed, axis=1), np.stack(amounts), axes=1)
+                total += np.square(at, out=at).sum(axis=2)
+        return np.asarray(total.max(axis=2).T)
 
     def stress(self, points: Ints, instants: Ints, angle: Floats) -> Floats:
         """Stress (J, 6) in Pa at pairs of points and instants and angles (J,): rr, tt, zz, tz, rz,
@@ -271,13 +309,6 @@ class Circumference:
         back = np.einsum("jik,jk->ji", stress, c * first + s * second)
         forth = np.einsum("jik,jk->ji", stress, s * first - c * second)
         return np.asarray(np.where(_BACK, back, forth))
-
-    def _amounts(self, angle: float) -> tuple[Floats, Floats]:
-        """How much of each unit load's parts there is at an angle, (T, K) each: of those that go
-        as cos psi, and of the others.
-        """
-        c, s = np.cos(self._n * angle), np.sin(self._n * angle)
-        return c * self._first + s * self._second, s * self._first - c * self._second
 
 
 def _forms(form: Floats, products: Floats) -> Floats:

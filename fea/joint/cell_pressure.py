@@ -15,10 +15,13 @@ NEAR = 1e-6  # of the radius: how far off its ring a point may be by round-off
 
 @dataclass(frozen=True)
 class CellPressure:
-    """Pressure (R, M) Pa on the M sectors of the rings of all bands, the first about x."""
+    """Pressure (R, M) Pa on the M sectors of the rings of all bands, the middle of the first at an
+    angle, rad, from x.
+    """
 
     bands: Bands
     pressure: Floats
+    angle: float = 0.0
 
     def rings(self, points: Floats) -> NDArray[np.int64]:
         """Numbers of the rings on which points (N, 3) m lie, (N,); -1 on none."""
@@ -33,6 +36,6 @@ class CellPressure:
     def at(self, points: Floats) -> Floats:
         """At points (N, 3) m, (N,) Pa; zero where nothing is in contact."""
         rings, sectors = self.rings(points), self.pressure.shape[1]
-        turns = np.arctan2(points[:, 1], points[:, 0]) / (2.0 * np.pi)
+        turns = (np.arctan2(points[:, 1], points[:, 0]) - self.angle) / (2.0 * np.pi)
         sector = np.rint(turns * sectors).astype(np.int64) % sectors
         return np.where(rings < 0, 0.0, self.pressure[rings, sector])

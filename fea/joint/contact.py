@@ -9,7 +9,9 @@ beyond, under pressures that are even on every cell, and averaged over cells, so
 symmetric. A lug whose tilt is elastic adds the tilt that the pressures' couple makes. Shifts and
 turn are the multipliers of what equilibrium asks: the resultant on the bands of a link is its
 force, and the couples on the pin are in balance. It is a linear complementarity problem with a
-positive definite matrix; a primal-dual active set solves it, from any start, in few steps.
+positive definite matrix; a primal-dual active set solves it, from any start, in few steps. As long
+as the same cells are in contact everything is linear in the loads: what a set of cells answers is
+found once and kept, so that neighbouring instants take next to nothing.
 
 Sources: Hintermueller, Ito & Kunisch, SIAM J. Optim. 13 (2002) 865 (the active set); Ciavarella &
 Decuzzi, Int. J. Solids Struct. 38 (2001) 4507 (the plane problem that tests compare with).
@@ -17,8 +19,9 @@ Decuzzi, Int. J. Solids Struct. 38 (2001) 4507 (the plane problem that tests com
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -35,6 +38,7 @@ BALANCE = 1e-9  # of the largest force
 CLOSE = 1e-12  # of the largest pressure or gap: what is round-off
 SOFT = 1e-13  # of the stiffness of the cells: holds a lug that has lost all contact
 WAVES = 40  # times the sectors: harmonics of the half-plane that are summed
+KEPT = 4_000_000  # numbers: of what sets of cells answer
 
 
 @dataclass(frozen=True)
@@ -74,7 +78,8 @@ class Bands:
 @dataclass(frozen=True)
 class Pressed:
     """Pressure (R, M) in Pa and gap (R, M) in m on the cells; shift (B, 2) m of the lugs against
-    the pin along x and y; turn (2,): slopes dx / dz and dy / dz. steps: of the active set.
+    the pin along x and y; turn (2,): slopes dx / dz and dy / dz. steps: of the active set. angle:
+    of the first cells' middle from the x axis, rad.
     """
 
     pressure: Floats
@@ -82,6 +87,7 @@ class Pressed:
     shift: Floats
     turn: Floats
     steps: int
+    angle: float = 0.0
 
     @property
     def active(self) -> Mask:
@@ -96,7 +102,42 @@ class Pressed:
             factor * self.shift,
             factor * self.turn,
             0,
+            self.angle,
         )
+
+    def turned(self, angle: float) -> Pressed:
+        """All of it turned about the axis by an angle, rad."""
+        turn = rotation(angle).T
+        return replace(
+            self, shift=self.shift @ turn, turn=self.turn @ turn, angle=self.angle + angle
+        )
+
+
+def rotation(angle: float) -> Floats:
+    """By an angle, rad, of columns along x and y, (2, 2)."""
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[c, -s], [s, c]])
+
+
+@dataclass(frozen=True)
+class _Answer:
+    """What the cells of one active set answer: forces (U,) N and gaps (U,) m without rigid motions,
+    how much each rigid motion takes off the forces and adds to the gaps, (U, Y), and the equations
+    (Y, Y), (Y,) of the motions but for what equilibrium asks.
+    """
+
+    force: Floats
+    yielding: Floats
+    gap: Floats
+    moving: Floats
+    system: Floats
+    right: Floats
+
+    def under(self, asked: Floats) -> tuple[Floats, Floats, Floats]:
+        """Forces, gaps and rigid motions."""
+        found = np.linalg.lstsq(self.system, self.right - asked)[0]  # what moves nothing is zero
+        motion = np.asarray(found, dtype=np.float64)
+        return self.force - self.yielding @ motion, self.gap + self.moving @ motion, motion
 
 
 class ContactProblem:
@@ -122,6 +163,8 @@ class ContactProblem:
         self._open = np.repeat(bands.gap, sectors)
         self._compliance = self._of_cells(flexibility, tail)
         self._motions = self._rigid(np.asarray(tilt, dtype=float))
+        self._soft = SOFT / np.abs(self._compliance).max()
+        self._answers: dict[bytes, _Answer] = {}
 
     @property
     def closed(self) -> bool:
@@ -170,15 +213,11 @@ class ContactProblem:
 
         Raises: SolveError where the active set does not settle.
         """
-        C, G = self._compliance, self._motions
         asked = self._asked(np.asarray(forces, dtype=float), couple)
         active = self._facing(forces) if start is None else start.ravel().copy()
-        soft = SOFT / np.abs(C).max()
         seen: set[bytes] = set()
         for step in range(1, MOST_STEPS + 1):
-            force, motion = self._with(active, asked, soft)
-            gap = self._open + C @ force + G @ motion
-            gap[active] = 0.0
+            force, gap, motion = self._answer(active).under(asked)
             wrong_force = active & (force < -CLOSE * np.abs(force).max(initial=0.0))
             wrong_gap = ~active & (gap < -CLOSE * np.abs(gap).max(initial=0.0))
             if not (wrong_force | wrong_gap).any():
@@ -193,21 +232,30 @@ class ContactProblem:
             seen.add(key)
         raise SolveError(f"contact does not settle in {MOST_STEPS} steps", "contact-unsettled")
 
-    def _with(self, active: Mask, asked: Floats, soft: float) -> tuple[Floats, Floats]:
-        """Forces (U,) N and rigid motions (Y,) with given cells in contact."""
+    def _answer(self, active: Mask) -> _Answer:
+        """Of given cells in contact."""
+        key = np.packbits(active).tobytes()
+        if key not in self._answers:
+            if len(self._answers) * self._motions.size > KEPT:
+                self._answers.clear()
+            self._answers[key] = self._found_answer(active)
+        return self._answers[key]
+
+    def _found_answer(self, active: Mask) -> _Answer:
+        C, G = self._compliance, self._motions
         rows = np.flatnonzero(active)
-        G = self._motions[rows]
-        force = np.zeros(len(active))
-        if not len(rows):
-            return force, -asked / soft
-        factor = cho_factor(self._compliance[np.ix_(rows, rows)], lower=True, check_finite=False)
-        solved = cho_solve(factor, np.column_stack([G, -self._open[rows]]), check_finite=False)
-        rigid, opened = solved[:, :-1], solved[:, -1]
-        system = G.T @ rigid + soft * self._scale
-        found = np.linalg.lstsq(system, G.T @ opened - asked)[0]  # what moves nothing is zero
-        motion = np.asarray(found, dtype=np.float64)
-        force[rows] = opened - rigid @ motion
-        return force, motion
+        force, yielding = np.zeros(len(active)), np.zeros(G.shape)
+        system, right = self._soft * self._scale, np.zeros(G.shape[1])
+        if len(rows):
+            factor = cho_factor(C[np.ix_(rows, rows)], lower=True, check_finite=False)
+            given = np.column_stack([G[rows], -self._open[rows]])
+            solved = cho_solve(factor, given, check_finite=False)
+            yielding[rows], force[rows] = solved[:, :-1], solved[:, -1]
+            system, right = system + G[rows].T @ solved[:, :-1], G[rows].T @ solved[:, -1]
+        gap = self._open + C[:, rows] @ force[rows]
+        moving = G - C[:, rows] @ yielding[rows]
+        gap[rows], moving[rows] = 0.0, 0.0
+        return _Answer(force, yielding, gap, moving, system, right)
 
     @cached_property
     def _scale(self) -> Floats:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from fea.core.pin_loads import Floats, LugEdge, PinLoads, UnitLoad
 from geometry import Pin
 
-NEGLIGIBLE = 1e-4  # of the largest amplitude: what a pattern must add to any instant's at most
+NEGLIGIBLE = 5e-4  # of the largest amplitude: what a pattern must add to any instant's
 
 
 @dataclass(frozen=True)
@@ -70,20 +70,20 @@ class Patterns:
     by_harmonic: tuple[Floats, ...]
     edges: tuple[LugEdge, ...] = ()
 
-    def loads(self, pressure: Floats, links: PinLoads) -> PressureLoads:
-        """Of pressures (T, R, M) Pa on M sectors of the rings, made of these patterns, and of what
-        else is in the loads of the links, whose surfaces are the bands that the rings cut: forces
-        along the axis and torques, even over a band's rings, and the body force.
+    def loads(self, waves: Floats, links: PinLoads) -> PressureLoads:
+        """Of pressures on the rings with harmonics (N + 1, T, R, 2) Pa, made of these patterns, and
+        of what else is in the loads of the links, whose surfaces are the bands that the rings cut:
+        forces along the axis and torques, even over a band's rings, and the body force.
         """
         made = _others(self.pin, self.rings, links)
         acting = dict(PinLoads.coefficients(made))
-        for n, patterns in enumerate(self.by_harmonic):
-            amounts = np.einsum("trp,kr->ktp", amplitudes(pressure, n), patterns)
+        for n, (wave, patterns) in enumerate(zip(waves, self.by_harmonic, strict=True)):
+            amounts = np.einsum("trp,kr->ktp", wave, patterns)
             for pattern, amount in zip(patterns.tolist(), amounts, strict=True):
                 parts = tuple(zip(self.rings, pattern, strict=True))
                 acting[UnitLoad("", "pressure", n, parts)] = amount
         area = np.array([self.pin.band(name).area for name in self.rings])
-        made.forces[:, :, :2] = -0.5 * amplitudes(pressure, 1) * area[:, None]
+        made.forces[:, :, :2] = -0.5 * waves[1] * area[:, None]
         return PressureLoads(
             links.case,
             self.rings,
@@ -96,35 +96,27 @@ class Patterns:
             lug_edges=self.edges,
         )
 
-    def left_out(self, pressure: Floats) -> float:
-        """Of pressures (T, R, M), the largest part that these patterns miss, relative."""
-        largest, missed = 0.0, 0.0
-        for n, patterns in enumerate(self.by_harmonic):
-            amplitude = amplitudes(pressure, n)
-            amounts = np.einsum("trp,kr->ktp", amplitude, patterns)
-            rest = amplitude - np.einsum("ktp,kr->trp", amounts, patterns)
-            largest = max(largest, float(np.abs(amplitude).max()))
+    def left_out(self, waves: Floats) -> float:
+        """Of harmonics (N + 1, T, R, 2), the largest part that these patterns miss, relative."""
+        largest, missed = float(np.abs(waves).max(initial=0.0)), 0.0
+        for wave, patterns in zip(waves, self.by_harmonic, strict=True):
+            rest = wave - (wave.swapaxes(1, 2) @ patterns.T @ patterns).swapaxes(1, 2)
             missed = max(missed, float(np.abs(rest).max()))
         return missed / largest if largest else 0.0
 
 
-def patterns_of(
-    pin: Pin, rings: tuple[str, ...], pressures: Sequence[Floats], highest: int
-) -> Patterns:
-    """Those of which pressures (T, R, M) Pa are made, harmonics up to `highest`; in several arrays
-    if the sectors differ in number.
+def patterns_of(pin: Pin, rings: tuple[str, ...], parts: Sequence[Floats]) -> Patterns:
+    """Those of which harmonics of pressures (N + 1, T, R, 2) Pa are made, in some parts, as cases:
+    what is negligible depends on the largest of the part.
     """
-    each = [
-        np.concatenate(
-            [amplitudes(p, n).transpose(0, 2, 1).reshape(-1, len(rings)) for p in pressures]
-        )
-        for n in range(highest + 1)
-    ]
-    least = NEGLIGIBLE * max(float(np.linalg.norm(x, axis=1).max()) for x in each)
+    sizes = [float(np.abs(waves).max(initial=0.0)) or 1.0 for waves in parts]
+    waves = np.concatenate([x / size for x, size in zip(parts, sizes, strict=True)], axis=1)
     found = []
-    for amplitude in each:
-        _, size, patterns = np.linalg.svd(amplitude, full_matrices=False)
-        found.append(np.asarray(patterns[size > least]))
+    for wave in waves:
+        amplitude = wave.transpose(0, 2, 1).reshape(-1, len(rings))
+        instants, size, patterns = np.linalg.svd(amplitude, full_matrices=False)
+        most = np.abs(instants * size).max(axis=0)
+        found.append(np.asarray(patterns[most > NEGLIGIBLE]))
     return Patterns(pin, rings, tuple(found))
 
 
@@ -146,13 +138,15 @@ def _after_each_other(loads: Sequence[PressureLoads]) -> dict[UnitLoad, Floats]:
     }
 
 
-def amplitudes(pressure: Floats, n: int) -> Floats:
-    """Of harmonic n of pressures (T, R, M), even on each sector: (T, R, 2), of cos and sin."""
-    sectors = pressure.shape[2]
-    angles = 2.0 * np.pi * np.arange(sectors) / sectors
-    factor = np.sinc(n / sectors) * (2.0 if n else 1.0) / sectors
-    waves = np.stack([np.cos(n * angles), np.sin(n * angles)], axis=1)
-    return np.asarray(pressure @ waves * factor)
+def amplitudes(pressure: Floats, highest: int, angle: float = 0.0) -> Floats:
+    """Of harmonics 0 to `highest` of pressures (R, M), even on each sector, the first at an angle
+    (rad) from the x axis: (N + 1, R, 2), of cos and sin.
+    """
+    sectors, n = pressure.shape[1], np.arange(highest + 1)
+    factor = np.sinc(n / sectors) * np.where(n > 0, 2.0, 1.0) / sectors
+    turns = np.outer(n, 2.0 * np.pi * np.arange(sectors) / sectors + angle)
+    waves = np.stack([np.cos(turns), np.sin(turns)], axis=2) * factor[:, None, None]
+    return np.asarray(pressure @ waves)
 
 
 def _others(pin: Pin, rings: tuple[str, ...], links: PinLoads) -> PinLoads:

@@ -2,9 +2,9 @@
 the maximum depends on what is not known of the joint.
 
 Stress under the pressures is found as under any loads (fea.solve_pin), of a pin that nothing
-clamps. To the error of meshes and instants comes that of the cells: contact at the governing
-instant is solved once more on cells twice as large, whose order is one at least, so that the
-difference counts whole; cells are refined until it is within the tolerance.
+clamps. To the error of meshes and instants comes that of the cells: contact at the instant that
+governs on the first mesh is solved once more on cells twice as large, whose order is one at least,
+so that the difference counts whole; cells are refined until it is within half of the tolerance.
 """
 
 from __future__ import annotations
@@ -20,22 +20,23 @@ from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.over_time import Between
 from fea.core.peak import Note, Peak
-from fea.core.pin_loads import Floats, PinLoads
+from fea.core.pin_loads import PinLoads
+from fea.harmonic.evaluate import HarmonicAnswer, harmonic_solution
 from fea.joint.cell_pressure import CellPressure
 from fea.joint.contact import Pressed
 from fea.joint.lugs.lug import Lug
 from fea.joint.lugs.rings import whole_names
 from fea.joint.pressure_loads import PressureLoads
 from fea.joint.records import JointResult
-from fea.joint.solve_joint import Cells, JointModel
-from fea.joint.variations import compare
+from fea.joint.solve_joint import Cells, JointContact, JointModel
+from fea.joint.variations import Comparison, compare
 from fea.joint.what_contact_says import joint_result
-from fea.solve_pin import Progress, Solution, imbalance, solve_pin
+from fea.solve_pin import Progress, Solution, imbalance, singularities_of, solve_pin
 from fea.verdict import accuracy
 from geometry import Pin
 
 SETS = Cells(), Cells(12, 48, 16)  # until one is fine enough
-CELLS = 0.5  # of the tolerance: what the cells may take in any case
+CELLS = 0.5  # of the tolerance: what the cells may take
 MOST_CELLS = 6000  # a dense matrix of them takes 300 MB
 CONTACT = Note("contact, harmonic: the pin is held by its lugs", ("contact",))
 
@@ -75,19 +76,18 @@ def solve_in_lugs(
 
     Raises: ArgumentError for lugs that do not fit; MeshError, SolveError.
     """
-    found: dict[str, LugSolution] = {}
     for cells, finer in zip(SETS, (*SETS[1:], None), strict=True):
-        left = tuple(case for case in given.cases if case.case not in found)
         progress(f"pin {given.pin.name}, flexibility of {cells.rings} rings of each lug")
         model = JointModel(given.pin, given.material, given.lugs, cells)
-        for case in left:
-            solution = _solved(model, given, case, asked, progress)
-            last = finer is None or _count(model, finer) > MOST_CELLS
-            if _fine_enough(solution.solution.peak, asked) or last:
-                found[case.case] = solution
-        if len(found) == len(given.cases):
+        progress(f"pin {given.pin.name}, contact")
+        contact = _Contact(model, given)
+        compared = contact.compared(asked)
+        coarse = any(x.cells > CELLS * asked.tolerance for x in compared.values())
+        if not coarse or finer is None or _count(model, finer) > MOST_CELLS:
             break
-    return tuple(found[case.case] for case in given.cases)
+    found = contact.solved(compared, asked, progress)
+    failed = {case: _failed(given, case, why) for case, why in contact.failed.items()}
+    return tuple((found | failed)[case.case] for case in given.cases)
 
 
 def _count(model: JointModel, cells: Cells) -> int:
@@ -95,36 +95,124 @@ def _count(model: JointModel, cells: Cells) -> int:
     return len(model.rings) * cells.rings // model.cells.rings * cells.sectors
 
 
-class _Pressing:
-    """A case's pressures at any time, each found once."""
+def _failed(given: InLugs, name: str, why: str) -> LugSolution:
+    (case,) = (case for case in given.cases if case.case == name)
+    peak = Peak(given.pin.name, name, "harmonic", "failed", why)
+    return LugSolution(Solution(peak, None, case), None, lambda links: links)
 
-    def __init__(self, model: JointModel, case: PinLoads, besides: PinLoads | None) -> None:
-        self.model, self.missed = model, 0.0  # of any pressure, by the patterns
-        self._known: dict[float, Pressed] = {}
-        pressures = [_pressure(self.at(case))]
-        if besides is not None:
-            pressures.append(_pressure(model.pressed(besides)))
-        self.patterns = model.patterns(pressures)
 
-    def at(self, links: PinLoads) -> list[Pressed]:
+class _Contact:
+    """The pressures of all cases at any time, each found once; those made of the same patterns act
+    on one mesh. failed: by case, why there is no contact.
+    """
+
+    def __init__(self, model: JointModel, given: InLugs) -> None:
+        self.model, self.given = model, given
+        self.failed: dict[str, str] = {}
+        self._missed: dict[str, float] = {}  # by case, of any pressure, by the patterns
+        self._known: dict[tuple[str, float], Pressed] = {}
+        waves = []
+        for case in given.cases:
+            try:
+                found = self._at(_instants(case, given.between.get(case.case)))
+                if case.case in given.besides:
+                    found = found + model.pressed(given.besides[case.case])
+                waves.append(model.waves(found))
+            except SolveError as error:
+                self.failed[case.case] = str(error)
+        if waves:
+            self._patterns = model.patterns(waves)
+        self.cases = tuple(case for case in given.cases if case.case not in self.failed)
+        self.loads = tuple(self.press(case) for case in self.cases)
+
+    def _at(self, links: PinLoads) -> list[Pressed]:
         """Contact at the loads' instants."""
         if links.times is None:
             return self.model.pressed(links)
-        new = [i for i, t in enumerate(links.times.tolist()) if t not in self._known]
+        keys = [(links.case, t) for t in links.times.tolist()]
+        new = [i for i, key in enumerate(keys) if key not in self._known]
         if new:
             found = self.model.pressed(links.at(np.array(new)))
-            self._known |= dict(zip(links.times[new].tolist(), found, strict=True))
-        return [self._known[t] for t in links.times.tolist()]
+            self._known |= {keys[i]: x for i, x in zip(new, found, strict=True)}
+        return [self._known[key] for key in keys]
 
-    def __call__(self, links: PinLoads) -> PressureLoads:
+    def press(self, links: PinLoads) -> PressureLoads:
         """What presses on the pin under loads of its links."""
-        pressure = _pressure(self.at(links))
-        self.missed = max(self.missed, self.patterns.left_out(pressure))
-        return self.patterns.loads(pressure, links)
+        waves = self.model.waves(self._at(links))
+        missed = self._patterns.left_out(waves)
+        self._missed[links.case] = max(self._missed.get(links.case, 0.0), missed)
+        return self._patterns.loads(waves, links)
 
+    def _joined(self, links: PinLoads, instant: int) -> JointContact:
+        here = links.at(np.array([instant]))
+        return self.model.joined(self._at(here), self.press(here))
 
-def _pressure(found: list[Pressed]) -> Floats:
-    return np.stack([x.pressure for x in found])
+    def compared(self, asked: Asked) -> dict[str, Comparison]:
+        """By case, at the instant that governs on the first mesh."""
+        governing = self._governing(asked) if any(len(x) > 1 for x in self.loads) else None
+        at = [
+            self._joined(loads.links, governing[loads.case] if governing else 0)
+            for loads in self.loads
+        ]
+        return {
+            loads.case: found
+            for loads, found in zip(self.loads, compare(self.model, at, asked), strict=True)
+        }
+
+    def _governing(self, asked: Asked) -> dict[str, int]:
+        model = self.model
+        own = [
+            singularities_of(model.pin, model.material, (), (loads,), asked.distance)
+            for loads in self.loads
+        ]
+        both = tuple(dict.fromkeys(zone for zones in own for zone in zones))
+        section = harmonic_solution(model.pin, model.material, (), self.loads, both, 0, 1.0)
+        return {
+            loads.case: HarmonicAnswer(section, zones).largest(loads)[1]
+            for loads, zones in zip(self.loads, own, strict=True)
+        }
+
+    def solved(
+        self, compared: dict[str, Comparison], asked: Asked, progress: Progress
+    ) -> dict[str, LugSolution]:
+        """Stress of all cases on the same meshes."""
+        if not self.loads:
+            return {}
+
+        def between(of_links: Between) -> Between:
+            return lambda times: self.press(of_links(times))
+
+        found = solve_pin(
+            self.model.pin,
+            self.given.material,
+            (),
+            self.loads,
+            replace(asked, model="harmonic", because=CONTACT),
+            progress,
+            {case: between(links) for case, links in self.given.between.items()},
+        )
+        return {
+            case.case: self._solution(case, solution, compared[case.case], asked)
+            for case, solution in zip(self.cases, found, strict=True)
+        }
+
+    def _solution(
+        self, case: PinLoads, solution: Solution, known: Comparison, asked: Asked
+    ) -> LugSolution:
+        if solution.answer is None:
+            return LugSolution(solution, None, self.press)
+        contact = self._joined(solution.loads.links, solution.instant)
+        links = contact.loads.links
+        if not known.is_at(links, case):
+            (known,) = compare(self.model, [contact], asked)
+        peak = with_cells(
+            _named(self.model, solution.peak), known.cells + self._missed[case.case], asked
+        )
+        peak = replace(peak, governing=links, imbalance=_imbalance(self.model, case))
+        joint = joint_result(contact, known.range(peak.max_von_mises or 0.0))
+        (pressed,) = contact.contact
+        pressure = CellPressure(contact.bands, pressed.pressure, pressed.angle)
+        return LugSolution(replace(solution, peak=peak), joint, self.press, pressure)
 
 
 def _instants(case: PinLoads, between: Between | None) -> PinLoads:
@@ -132,55 +220,6 @@ def _instants(case: PinLoads, between: Between | None) -> PinLoads:
     if between is None or case.times is None or len(case) < 2:
         return case
     return case.merged(between(0.5 * (case.times[1:] + case.times[:-1])))
-
-
-def _fine_enough(peak: Peak, asked: Asked) -> bool:
-    """Whether finer cells would not help."""
-    if peak.parts is None or not peak.max_von_mises:
-        return True
-    most = asked.tolerance * peak.max_von_mises
-    return peak.parts.cells <= CELLS * most or peak.parts.total <= most
-
-
-def _solved(
-    model: JointModel, given: InLugs, case: PinLoads, asked: Asked, progress: Progress
-) -> LugSolution:
-    progress(f"pin {given.pin.name}, case {case.case}, contact")
-    try:
-        return _of_case(model, given, case, asked, progress)
-    except SolveError as error:
-        peak = Peak(given.pin.name, case.case, "harmonic", "failed", str(error))
-        return LugSolution(Solution(peak, None, case), None, lambda links: links)
-
-
-def _of_case(
-    model: JointModel, given: InLugs, case: PinLoads, asked: Asked, progress: Progress
-) -> LugSolution:
-    between = given.between.get(case.case)
-    pressing = _Pressing(model, _instants(case, between), given.besides.get(case.case))
-    through: dict[str, Between] = {}
-    if between is not None:
-        of_links = between
-        through[case.case] = lambda times: pressing(of_links(times))
-    (solution,) = solve_pin(
-        model.pin,
-        given.material,
-        (),
-        (pressing(case),),
-        replace(asked, model="harmonic", because=CONTACT),
-        progress,
-        through,
-    )
-    if solution.answer is None:
-        return LugSolution(solution, None, pressing)
-    here = solution.loads.links.at(np.array([solution.instant]))
-    contact = model.joined(pressing.at(here), pressing(here))
-    comparison = compare(model, contact, solution.peak, asked)
-    peak = with_cells(_named(model, solution.peak), comparison.cells + pressing.missed, asked)
-    joint = joint_result(contact, comparison.range)
-    pressure = CellPressure(contact.bands, contact.contact[0].pressure)
-    peak = replace(peak, governing=here, imbalance=_imbalance(model, case))
-    return LugSolution(replace(solution, peak=peak), joint, pressing, pressure)
 
 
 def _named(model: JointModel, peak: Peak) -> Peak:

@@ -17,7 +17,7 @@ import numpy as np
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, LugEdge, PinLoads
 from fea.joint.bending import bending_moment, mass_per_length
-from fea.joint.contact import Bands, ContactProblem, Pressed
+from fea.joint.contact import Bands, ContactProblem, Pressed, rotation
 from fea.joint.flexibility import (
     half_plane,
     lug_flexibility,
@@ -28,11 +28,12 @@ from fea.joint.lugs.fit import fitted, on_structure
 from fea.joint.lugs.links import link_forces, link_numbers
 from fea.joint.lugs.lug import Lug
 from fea.joint.lugs.rings import annulus, ring_ends, ringed, rings
-from fea.joint.pressure_loads import Patterns, PressureLoads, patterns_of
+from fea.joint.pressure_loads import Patterns, PressureLoads, amplitudes, patterns_of
 from fea.singular.lug_edge import lug_edge_exponent
 from geometry import Pin
 
-DIGITS = 13  # to which loads are in proportion
+SAME = 1e-13  # relative: loads that differ by no more are the same
+LARGEST = 1.0 - 1e-6  # of the largest: a force that is as good as it
 WAVES = 4  # times the sectors: harmonics in which neighbouring rings feel each other
 
 
@@ -40,8 +41,8 @@ WAVES = 4  # times the sectors: harmonics in which neighbouring rings feel each 
 class Cells:
     """How finely contact is resolved. rings: of a band with sharp edges (lugs.rings); sectors:
     round it; highest: harmonic of elasticity that is computed; across: elements over the pin's
-    diameter where flexibilities are found; beside: length of the rings beside the place where a
-    rounded edge begins, of its radius.
+    diameter where flexibilities are found; beside: of an edge's radius, the length of the rings
+    where rounding begins, if the peak of pressure there is to be resolved.
 
     The usual ones give the moment and the stress at mid-span to 0.3 % (benchmarks/joint.py). They
     do not give the peak of pressure at rounded edges: contact reaches only a few hundredths of the
@@ -52,7 +53,7 @@ class Cells:
     sectors: int = 36
     highest: int = 12
     across: float = 10.0
-    beside: float = 1.0 / 3.0
+    beside: float | None = None
 
 
 @dataclass(frozen=True)
@@ -185,13 +186,16 @@ class JointModel:
         Raises: SolveError where contact does not settle, or forces are not in balance.
         """
         found = self.pressed(loads)
-        pressure = np.stack([x.pressure for x in found])
-        return self.joined(found, self.patterns([pressure]).loads(pressure, loads))
+        waves = self.waves(found)
+        return self.joined(found, self.patterns([waves]).loads(waves, loads))
 
-    def patterns(self, pressures: Sequence[Floats]) -> Patterns:
-        """Those of which pressures (T, R, M) Pa are made."""
-        made = patterns_of(self.pin, self.rings, pressures, self.cells.highest)
-        return replace(made, edges=self.edges)
+    def waves(self, found: Sequence[Pressed]) -> Floats:
+        """The harmonics of contact at some instants, (N + 1, T, R, 2) Pa, of cos and sin."""
+        return np.stack([amplitudes(x.pressure, self.cells.highest, x.angle) for x in found], 1)
+
+    def patterns(self, parts: Sequence[Floats]) -> Patterns:
+        """Those of which harmonics of pressures (N + 1, T, R, 2) Pa are made, in some parts."""
+        return replace(patterns_of(self.pin, self.rings, parts), edges=self.edges)
 
     @cached_property
     def edges(self) -> tuple[LugEdge, ...]:
@@ -214,27 +218,34 @@ class JointModel:
         cut, angles = contact.bands, contact.angles
         return JointContact(self.pin, self.lugs, cut, angles, tuple(found), loads, mass)
 
-    def pressed(self, loads: PinLoads) -> list[Pressed]:
-        """Contact at each of their instants. Without any gap to close, contact under loads in
-        proportion is the same, so that it is solved once.
+    def pressed(self, loads: PinLoads, problem: ContactProblem | None = None) -> list[Pressed]:
+        """Contact at each of their instants, on cells that turn with the largest force of a link:
+        what turns as a whole is one solution. Each starts from that under the most similar loads;
+        without any gap to close, loads in proportion are one solution, too. problem: with other
+        cells than this model's.
 
         Raises: SolveError as `solve`.
         """
-        forces, contact = self.forces(loads), self.contact
-        couples = self.couples(loads)
+        contact = problem or self.contact
+        forces, couples = self.forces(loads), self.couples(loads)
+        angles = _directions(forces)
+        turns = np.stack([rotation(angle) for angle in angles])
+        forces, couples = forces @ turns, np.einsum("ta,tab->tb", couples, turns)
+        sizes = np.abs(forces).max(axis=(1, 2))
+        sizes[sizes == 0.0] = 1.0
+        scale = sizes if contact.closed else np.full(len(sizes), sizes.max())
+        arm = couples / self.pin.length
+        like = np.concatenate([forces.reshape(len(forces), -1), arm], axis=1) / scale[:, None]
         found: list[Pressed] = []
-        known: dict[bytes, tuple[float, Pressed]] = {}
-        for force, couple in zip(forces, couples, strict=True):
-            size = float(np.abs(force).max())
-            part = np.round(np.append(force, couple / self.pin.length) / (size or 1.0), DIGITS)
-            like = known.get(part.tobytes()) if contact.closed else None
-            if like is not None:
-                found.append(like[1].times(size / like[0]))
+        for t, (force, couple) in enumerate(zip(forces, couples.tolist(), strict=True)):
+            apart = np.abs(like[:t] - like[t]).max(axis=1, initial=0.0)
+            near = int(apart.argmin()) if t else None
+            if near is not None and apart[near] <= SAME:
+                found.append(found[near].times(float(scale[t] / scale[near])))
                 continue
-            last = found[-1].active if found else None
-            found.append(contact.solve(force, (couple[0], couple[1]), last))
-            known[part.tobytes()] = size, found[-1]
-        return found
+            start = None if near is None else found[near].active
+            found.append(contact.solve(force, (couple[0], couple[1]), start))
+        return [x.turned(angle) for x, angle in zip(found, angles, strict=True)]
 
     def forces(self, loads: PinLoads) -> Floats:
         """Of the links along x and y, last of the structure, (T, L, 2) N."""
@@ -256,6 +267,14 @@ class JointModel:
     @property
     def _mass(self) -> float:
         return (self.material.density or 0.0) * self.whole.volume
+
+
+def _directions(forces: Floats) -> list[float]:
+    """Angles (T) in rad of the largest of forces (T, L, 2), the first of equal ones."""
+    size = np.linalg.norm(forces, axis=2)
+    first = (size >= LARGEST * size.max(axis=1, keepdims=True)).argmax(axis=1)
+    x, y = forces[np.arange(len(forces)), first].T
+    return [float(angle) for angle in np.arctan2(y, x)]
 
 
 def _softer(lug: Lug, times: float) -> Lug:

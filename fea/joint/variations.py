@@ -15,8 +15,7 @@ import numpy as np
 
 from fea.asked import Asked
 from fea.core.linear_solver import SolveError
-from fea.core.peak import Peak
-from fea.core.pin_loads import Floats
+from fea.core.pin_loads import Floats, PinLoads
 from fea.harmonic.evaluate import HarmonicAnswer, harmonic_solution
 from fea.joint.coarser_cells import on_coarser_cells
 from fea.joint.lugs.lug import Lug
@@ -31,44 +30,68 @@ SOFTER = 2.0
 
 @dataclass(frozen=True)
 class Comparison:
-    """cells: by how much, relative, the maximum may differ for the cells. range: over the joint."""
+    """At one instant. cells: by how much, relative, the maximum may differ for the cells. links:
+    the loads. over: what is changed of the joint, maxima relative to that of the joint as given.
+    """
 
     cells: float
-    range: JointRange
+    links: PinLoads
+    over: tuple[Variation, ...]
+
+    def range(self, largest: float) -> JointRange:
+        """Over the joint, of a maximum in Pa."""
+        over = tuple(replace(x, max_von_mises=largest * x.max_von_mises) for x in self.over)
+        ends = [largest, *(x.max_von_mises for x in over)]
+        return JointRange((min(ends), max(ends)), over)
+
+    def is_at(self, links: PinLoads, case: PinLoads) -> bool:
+        """Whether an instant is this one, or no farther from it than two of the case's are."""
+        if links.times is None or self.links.times is None or case.times is None:
+            return np.array_equal(links.forces, self.links.forces)
+        apart = float(np.abs(links.times - self.links.times)[0])
+        return apart <= float(np.diff(case.times).max(initial=0.0))
 
 
-def compare(model: JointModel, contact: JointContact, peak: Peak, asked: Asked) -> Comparison:
-    """At one instant. peak: the maximum there."""
-    links = contact.loads.links
-    found = [np.stack([x.pressure for x in contact.contact]), _on_coarser_cells(model, contact)]
-    names: list[tuple[str, str, float | None]] = []
-    for what, to, length, other in _joints(model):
-        try:
-            found.append(np.stack([x.pressure for x in other.pressed(links)]))
-        except SolveError:
-            continue  # a lug that is free to tilt may leave a couple on the pin
-        names.append((what, to, length))
-    maxima = _maxima(model, contact, found, asked)
-    if not maxima[0]:  # nothing loads the pin
-        return Comparison(0.0, JointRange((0.0, 0.0), ()))
-    largest = (peak.max_von_mises or 0.0) * maxima / maxima[0]
-    over = tuple(
-        Variation(what, to, float(x), length)
-        for (what, to, length), x in zip(names, largest[2:], strict=True)
-    )
-    ends = [float(largest[0]), *(v.max_von_mises for v in over)]
-    return Comparison(
-        abs(float(maxima[1] / maxima[0]) - 1.0), JointRange((min(ends), max(ends)), over)
-    )
+def compare(model: JointModel, at: Sequence[JointContact], asked: Asked) -> tuple[Comparison, ...]:
+    """Joints in contact, each at one instant."""
+    found: list[Floats] = []
+    links: list[PinLoads] = []
+    names: list[list[Variation]] = []
+    for contact in at:
+        here = contact.loads.links
+        waves = [model.waves(contact.contact), _on_coarser_cells(model, contact)]
+        over = []
+        for changed, other in _joints(model):
+            try:
+                waves.append(model.waves(other.pressed(here)))
+            except SolveError:
+                continue  # a lug that is free to tilt may leave a couple on the pin
+            over.append(changed)
+        found += waves
+        links += [here] * len(waves)
+        names.append(over)
+    if not found:
+        return ()
+    maxima, out = _maxima(model, found, links, asked), []
+    for contact, over in zip(at, names, strict=True):
+        (first, coarse, *others), maxima = np.split(maxima, [len(over) + 2])
+        first = first or 1.0  # nothing loads the pin
+        ratios = tuple(
+            replace(x, max_von_mises=float(y / first)) for x, y in zip(over, others, strict=True)
+        )
+        cells = abs(float(coarse / first) - 1.0) if coarse else 0.0
+        out.append(Comparison(cells, contact.loads.links, ratios))
+    return tuple(out)
 
 
 def _maxima(
-    model: JointModel, contact: JointContact, pressures: Sequence[Floats], asked: Asked
+    model: JointModel, found: Sequence[Floats], links: Sequence[PinLoads], asked: Asked
 ) -> Floats:
-    """Largest von Mises stress (V,) Pa under each of the pressures (1, R, M) on the first mesh."""
-    patterns = model.patterns(pressures)
-    links = contact.loads.links
-    loads = stacked([patterns.loads(pressure, links) for pressure in pressures])
+    """Largest von Mises stress (V,) Pa on the first mesh under pressures of each of the harmonics
+    (N + 1, 1, R, 2).
+    """
+    patterns = model.patterns(found)
+    loads = stacked([patterns.loads(w, here) for w, here in zip(found, links, strict=True)])
     singular = singularities_of(model.pin, model.material, (), (loads,), asked.distance)
     section = harmonic_solution(model.pin, model.material, (), (loads,), singular, 0, 1.0)
     return HarmonicAnswer(section, singular).maxima(loads)
@@ -76,24 +99,23 @@ def _maxima(
 
 def _on_coarser_cells(model: JointModel, contact: JointContact) -> Floats:
     problem, belongs = on_coarser_cells(model)
-    links = contact.loads.links
-    (force,), (couple,) = model.forces(links), model.couples(links)
-    pressed = problem.solve(force, (couple[0], couple[1]))
-    return np.asarray((belongs @ pressed.pressure)[None])
+    found = model.pressed(contact.loads.links, problem)
+    return model.waves([replace(x, pressure=belongs @ x.pressure) for x in found])
 
 
-def _joints(model: JointModel) -> Iterator[tuple[str, str, float | None, JointModel]]:
-    """What is changed, to what in words, as a length in m if it is one, and the joint with it."""
+def _joints(model: JointModel) -> Iterator[tuple[Variation, JointModel]]:
+    """What is changed, and the joint with it."""
     lugs = model.lugs
     for times in (0.0, 2.0):
         changed = tuple(replace(lug, clearance=times * _clearance(model, lug)) for lug in lugs)
         size = max(lug.clearance for lug in changed)
-        yield "clearance", _in_words(lugs, times), size, model.varied(changed)
+        yield Variation("clearance", _in_words(lugs, times), 1.0, size), model.varied(changed)
     for softness in (1.0 / SOFTER, SOFTER):
-        times = 1.0 / softness
-        yield "stiffness of the lugs", f"times {times:g}", None, model.varied(lugs, softness)
+        stiffer = Variation("stiffness of the lugs", f"times {1.0 / softness:g}", 1.0)
+        yield stiffer, model.varied(lugs, softness)
     for tilt, name in ((0.0, "free"), (math.inf, "guided")):
-        yield "tilt", name, None, model.varied(tuple(replace(lug, tilt=tilt) for lug in lugs))
+        other = model.varied(tuple(replace(lug, tilt=tilt) for lug in lugs))
+        yield Variation("tilt", name, 1.0), other
 
 
 def _in_words(lugs: Sequence[Lug], times: float) -> str:

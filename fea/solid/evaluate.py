@@ -106,7 +106,7 @@ class SolidAnswer:
     def __init__(self, solution: SolidSolution) -> None:
         self.solution = solution
 
-    def maxima(self, loads: PinLoads) -> Floats:
+    def maxima(self, loads: AnyLoads, _: float = 0.0) -> Floats:
         """Largest von Mises stress (T,) Pa at every instant outside the singularities."""
         return envelope(self.solution.fields, loads, self.solution.outside).maxima
 

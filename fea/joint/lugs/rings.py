@@ -17,21 +17,39 @@ LONGEST = 0.25  # ring, of the diameter, if there are so many
 GROWTH = 1.6  # of each ring over the one before, from there on
 
 
-def ring_ends(band: Band, edge_radius: float, count: int, beside: float) -> Floats:
+def ring_ends(band: Band, edge_radius: float, count: int, beside: float | None = None) -> Floats:
     """Ends of the rings of a band, (R + 1,) m from its start on, as fine as `count` says: so many
-    where the bore has sharp edges, but for long bands; where it has rounded ones as many as lead
-    from their radius to the middle, the first of `beside` times the radius for the usual count.
+    where the bore is straight, but for long bands. Where its edges are rounded, the first rings of
+    the rounding are so short that contact may end in them.
+
+    beside: to resolve the peak of pressure where rounding begins, as many rings as lead from there
+    to the middle, the first of `beside` times the radius for the usual count.
     """
     coarser = USUAL / count
     longest = 2.0 * LONGEST * band.radius * coarser
-    if edge_radius == 0.0:
-        least = math.ceil(0.5 * math.pi * band.length / longest - 1e-9)
-        return graded(band.length, max(count, least))
-    first, growth = beside * edge_radius * coarser, GROWTH**coarser
-    outside = _growing(edge_radius, first, growth, longest)[::-1]
-    flat = _growing(band.length / 2.0 - edge_radius, first, growth, longest)
+    if beside is not None and edge_radius:
+        return _to_the_peak(band.length, edge_radius, beside * coarser, GROWTH**coarser, longest)
+    flat = band.length - 2.0 * edge_radius
+    inner = np.zeros(1)
+    if flat > 1e-9 * band.length:
+        inner = graded(flat, max(count, math.ceil(0.5 * math.pi * flat / longest - 1e-9)))
+    if not edge_radius:
+        return inner
+    rounded = max(2, count // 4, math.ceil(2.0 * edge_radius / longest))
+    outer = edge_radius * (np.arange(1, rounded + 1) / rounded) ** 2
+    return np.concatenate(
+        [edge_radius - outer[::-1], edge_radius + inner, band.length - edge_radius + outer]
+    )
+
+
+def _to_the_peak(
+    length: float, radius: float, beside: float, growth: float, longest: float
+) -> Floats:
+    first = beside * radius
+    outside = _growing(radius, first, growth, longest)[::-1]
+    flat = _growing(length / 2.0 - radius, first, growth, longest)
     ends = np.cumsum([0.0, *outside, *flat])
-    return np.concatenate([ends[:-1], [band.length / 2.0], band.length - ends[-2::-1]])
+    return np.concatenate([ends[:-1], [length / 2.0], length - ends[-2::-1]])
 
 
 def graded(length: float, count: int) -> Floats:
