@@ -300,15 +300,17 @@ class Circumference:
                 total += np.square(at, out=at).sum(axis=2)
         return np.asarray(total.max(axis=2).T)
 
-    def stress(self, points: Ints, instants: Ints, angle: Floats) -> Floats:
-        """Stress (J, 6) in Pa at pairs of points and instants and angles (J,): rr, tt, zz, tz, rz,
-        rt.
-        """
-        first, second, stress = self._first[instants], self._second[instants], self._stress[points]
-        c, s = np.cos(self._n * angle[:, None]), np.sin(self._n * angle[:, None])
-        back = np.einsum("jik,jk->ji", stress, c * first + s * second)
-        forth = np.einsum("jik,jk->ji", stress, s * first - c * second)
-        return np.asarray(np.where(_BACK, back, forth))
+    def stress(self, points: Ints, instant: int, angles: Floats) -> Floats:
+        """Stress (J, A, 6) in Pa at points and angles (A,): rr, tt, zz, tz, rz, rt."""
+        out = np.zeros((len(points), len(angles), 6))
+        for wave in self._waves:
+            unit = self._stress[points, :, wave]
+            first, second = (unit @ x[instant, wave] for x in (self._first, self._second))
+            c, s = np.cos(self._n[wave.start] * angles), np.sin(self._n[wave.start] * angles)
+            back = first[:, None] * c[:, None] + second[:, None] * s[:, None]
+            forth = first[:, None] * s[:, None] - second[:, None] * c[:, None]
+            out += np.where(_BACK, back, forth)
+        return out
 
 
 def _forms(form: Floats, products: Floats) -> Floats:
