@@ -13,9 +13,10 @@ import numpy as np
 
 from fea.beam.round_section import Circle
 from fea.core.material import Material
-from fea.core.pin_loads import AnyLoads, Floats, UnitLoad
+from fea.core.pin_loads import AnyLoads, UnitLoad
 from fea.core.tractions import Traction, closing_tractions, traction
 from geometry import ArgumentError, Pin
+from geometry.arrays import Floats
 
 
 def loads_sections(load: UnitLoad) -> bool:

@@ -7,7 +7,6 @@ thin bore along the axis, which imitates the line load of the theory.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fea.checks.cantilever_theory import cantilever
 from fea.checks.michell import axis_load_term, constant_stress, surface_load_term
@@ -16,9 +15,8 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads, UnitLoad
 from fea.harmonic.model import HarmonicModel
 from geometry import Pin
+from geometry.arrays import Floats
 from geometry.mesh.section_mesh import SectionSize, Spot, meridian_mesh
-
-Floats = NDArray[np.float64]
 
 ACROSS = 20.0  # elements over the thinnest wall, which the bore leaves
 CLOSE = 0.01  # element at the root's edge and the load's, of the radius

@@ -9,14 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fea.beam.timoshenko import MOMENT, SHEAR, stepped_beam
 from fea.core.material import Material
 from fea.core.pin_loads import UnitLoad
 from geometry import Pin
-
-Floats = NDArray[np.float64]
+from geometry.arrays import Floats
 
 _ANY = Material("any", 1.0, 0.0)
 

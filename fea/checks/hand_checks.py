@@ -24,8 +24,9 @@ from fea.beam.stress import sample
 from fea.beam.timoshenko import MOMENT, SHEAR, InternalForces, stepped_beam
 from fea.checks.records import HandCheck
 from fea.core.material import Material
-from fea.core.pin_loads import Floats, PinLoads
+from fea.core.pin_loads import PinLoads
 from geometry import Pin
+from geometry.arrays import Floats
 
 SHIGLEY = "Budynas & Nisbett, Shigley's Mechanical Engineering Design"
 HALVES = 0.1  # part of a band's load by which its two sides may differ in double shear

@@ -13,14 +13,15 @@ import scipy.sparse as sp
 
 from fea.core.linear_solver import Analysis, SolveError
 from fea.core.material import Material
-from fea.core.pin_loads import Floats, UnitLoad
+from fea.core.pin_loads import UnitLoad
 from fea.core.tractions import ALONG_X, ALONG_Z, Traction, closing_tractions, tractions_of
-from fea.harmonic.assembly import Ints, Section, around
+from fea.harmonic.assembly import Section, around
 from fea.harmonic.boundary import Outline
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.pressure_edge import unread
 from fea.harmonic.stress_recovery import NOWHERE, reading
 from geometry import Pin
+from geometry.arrays import Floats, Ints
 from geometry.mesh.section_mesh import MeridianMesh
 
 

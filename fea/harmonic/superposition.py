@@ -23,15 +23,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fea.core.pin_loads import AnyLoads, Floats
+from fea.core.pin_loads import AnyLoads
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.trigonometric_maximum import highest_crest
 from geometry import ArgumentError
+from geometry.arrays import Floats, Ints, Mask
 
-Ints = NDArray[np.int64]
-Mask = NDArray[np.bool_]
 Instants = slice | Ints
 
 SAMPLES_PER_WAVE = 5  # of von Mises squared

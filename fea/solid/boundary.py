@@ -5,14 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
 from fea.solid.assembly import Discretisation
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from geometry.arrays import Floats, Ints
 
 _PLANE = 1e-6  # difference of unit normals on a plane facet, by round-off and gmsh's
 SMOOTH = 0.97  # cosine between a node's normals below which it sits on an edge of the body

@@ -13,7 +13,6 @@ from functools import cached_property
 import numpy as np
 import scipy.linalg
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
 from fea.core.linear_solver import SolveError, factorize
 from fea.core.material import Material
@@ -24,10 +23,8 @@ from fea.solid.boundary import SurfaceMesh, held_nodes, resultants, surface
 from fea.solid.nodal_loads import Unit, closed, nodal_loads, part
 from fea.solid.stress_recovery import nodal_stress, with_known_traction
 from geometry import ArgumentError, PinLike
+from geometry.arrays import Floats, Ints
 from geometry.mesh.solid_mesh import SolidMesh
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 _NOWHERE = np.zeros((0, 3))
 

@@ -5,15 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from fea.singular.singularities import INSTEAD_OF_CLAMP, Kind, Singularity
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import SurfaceMesh
-
-Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+from geometry.arrays import Floats, Mask
 
 TURN = np.radians(40.0)  # of an inner corner: less is a facet of a curved wall, or hardly sharp
 SIDES = ((0, 1, 2), (1, 2, 0), (0, 2, 1))  # of a facet: ends and the corner across

@@ -8,15 +8,13 @@ from __future__ import annotations
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
 from fea.core.local_fit import extension
 from fea.core.material import Material
 from fea.core.voigt import ENTRIES, TENSOR
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import SMOOTH, SurfaceMesh
-
-Floats = NDArray[np.float64]
+from geometry.arrays import Floats, Mask
 
 
 def recovery(space: Discretisation) -> sp.csr_matrix:
@@ -35,7 +33,7 @@ def nodal_stress(space: Discretisation, material: Material, displacement: Floats
 
 
 def with_known_traction(
-    stress: Floats, surface: SurfaceMesh, traction: Floats, held: NDArray[np.bool_]
+    stress: Floats, surface: SurfaceMesh, traction: Floats, held: Mask
 ) -> Floats:
     """Stress (N, 6, L) corrected on the surface to carry the traction (F, .., 3, L) at the nodes of
     its facets, Pa.

@@ -16,14 +16,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fea.core.pin_loads import AnyLoads
 from fea.core.voigt import VON_MISES
 from fea.solid.model import UnitFields
+from geometry.arrays import Floats, Mask
 
-Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 Point = tuple[float, float, float]
 
 

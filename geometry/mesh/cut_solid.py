@@ -7,15 +7,14 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geometry.arrays import Floats
 from geometry.mesh.gmsh_session import MeshError
 from geometry.mesh.revolve import revolve
 from geometry.shape.features import Flat, Hole
 from geometry.shape.pin import GeometryError, Pin
 from geometry.shape.profile import Arc, Edge, meridian
 
-Floats = NDArray[np.float64]
 Holes = tuple[Hole, ...]
 Flats = tuple[Flat, ...]
 Off = Callable[[Floats], Floats]  # distances (P,) of points (P, 3) from a surface

@@ -6,9 +6,10 @@ from typing import Any
 
 import meshio
 import numpy as np
-from numpy.typing import NDArray
 from skfem import MeshTet1
 from skfem.io.meshio import from_meshio
+
+from geometry.arrays import Floats, Ints
 
 SMALLEST_JACOBIAN = 0.1  # min / max of det J that every element must exceed
 MOST_REPAIRS = 8  # halvings of an edge's curvature
@@ -18,12 +19,12 @@ GMSH_TO_VTK_TETRA10 = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]
 GMSH_EDGES = ((0, 1), (1, 2), (2, 0), (3, 0), (2, 3), (1, 3))  # of its nodes 4 to 9
 
 
-def _jacobians(gmsh: Any) -> NDArray[np.float64]:
+def _jacobians(gmsh: Any) -> Floats:
     """min/max det J of every tetrahedron (gmsh bounds them by Bezier coefficients)."""
     tags = gmsh.model.mesh.getElementsByType(TETRA10)[0]
     low = np.asarray(gmsh.model.mesh.getElementQualities(tags, "minDetJac"))
     high = np.asarray(gmsh.model.mesh.getElementQualities(tags, "maxDetJac"))
-    ratios: NDArray[np.float64] = low / high
+    ratios: Floats = low / high
     return ratios
 
 
@@ -62,8 +63,8 @@ def collect(gmsh: Any, surfaces: dict[str, list[int]]) -> MeshTet1:
     else:
         nodes = gmsh.model.mesh.getElementsByType(TETRA10)[1].reshape(-1, 10)
         nodes = nodes[:, GMSH_TO_VTK_TETRA10]
-    triangles: list[NDArray[np.int64]] = []
-    sets: dict[str, list[NDArray[np.int64]]] = {}
+    triangles: list[Ints] = []
+    sets: dict[str, list[Ints]] = {}
     count = 0
     for name, faces in surfaces.items():
         for face in faces:

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from skfem import MeshTri2
 
+from geometry.arrays import Ints
 from geometry.mesh.gmsh_session import MeshError, gmsh_model, set_size
 from geometry.mesh.scale import unit_of
 from geometry.mesh.sizing import (
@@ -28,7 +28,6 @@ from geometry.shape.profile import RZ, Arc, Edge, meridian
 
 __all__ = ["MeridianMesh", "SectionSize", "Spot", "meridian_mesh"]
 
-Ints = NDArray[np.int64]
 
 TRIANGLE6, LINE3 = 9, 8  # gmsh's element types
 MOST_TRIANGLES = 2e5

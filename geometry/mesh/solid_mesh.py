@@ -6,10 +6,9 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
 from skfem import MeshTet1
 
+from geometry.arrays import Floats
 from geometry.mesh.cut_pin import CutPin
 from geometry.mesh.cut_solid import cut_solid, grade, name_faces
 from geometry.mesh.elements import Element
@@ -56,9 +55,9 @@ class SolidMesh:
     repaired: int
 
     @property
-    def nodes(self) -> NDArray[np.float64]:
+    def nodes(self) -> Floats:
         """Coordinates of all nodes, (N, 3), m."""
-        points: NDArray[np.float64] = self.mesh.doflocs.T
+        points: Floats = self.mesh.doflocs.T
         return points
 
 

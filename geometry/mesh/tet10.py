@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from skfem import ElementTetP2, MeshTet1, MeshTet2
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from geometry.arrays import Floats, Ints
 
 EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))  # of nodes 4 to 9: VTK's and scikit-fem's
 # the four corners, and the octahedron between them along its diagonal from edge 02 to edge 13
