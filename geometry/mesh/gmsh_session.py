@@ -68,6 +68,13 @@ def _reason(said: str) -> str:
     )
 
 
+def formula_size(gmsh: Any, formula: str) -> int:
+    """A field of element size by a formula of x, y, z and other fields."""
+    size = gmsh.model.mesh.field.add("MathEval")
+    gmsh.model.mesh.field.setString(size, "F", formula)
+    return int(size)
+
+
 def set_size(gmsh: Any, fields: list[int]) -> None:
     """Element size as the least of fields, and by nothing else."""
     field = gmsh.model.mesh.field

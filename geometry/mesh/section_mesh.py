@@ -134,17 +134,21 @@ def _cuts(edge: Edge, spots: tuple[Spot, ...]) -> list[RZ]:
 
 def _stretch(gmsh: Any, parts: list[Stretch], growth: float) -> tuple[float, list[int]]:
     """The largest size, and fields for the stretches that have a smaller one."""
-    field = gmsh.model.mesh.field
     far = max(part.near for part in parts)
     fields: list[int] = []
     for part in parts:
         if part.near < far:
-            fields.append(field.add("Box"))
             numbers = {"VIn": part.near, "VOut": far, "Thickness": (far - part.near) / growth}
             ends = {"XMin": 0.0, "XMax": EVERYWHERE, "YMin": part.z0, "YMax": part.z1}
-            for key, value in (numbers | ends).items():
-                field.setNumber(fields[-1], key, value)
+            fields.append(_field(gmsh, "Box", numbers | ends))
     return far, fields
+
+
+def _field(gmsh: Any, kind: str, numbers: dict[str, float]) -> int:
+    tag = gmsh.model.mesh.field.add(kind)
+    for key, value in numbers.items():
+        gmsh.model.mesh.field.setNumber(tag, key, value)
+    return int(tag)
 
 
 def _set_sizes(gmsh: Any, parts: tuple[float, list[int]], found: Iterable[Grade]) -> None:
@@ -156,12 +160,9 @@ def _set_sizes(gmsh: Any, parts: tuple[float, list[int]], found: Iterable[Grade]
             continue
         distance = field.add("Distance")
         field.setNumbers(distance, "PointsList", [geo.addPoint(*p, 0.0) for p in grade.points])
-        fields.append(field.add("Threshold"))
-        field.setNumber(fields[-1], "InField", distance)
-        field.setNumber(fields[-1], "SizeMin", grade.near)
-        field.setNumber(fields[-1], "DistMin", grade.flat)
-        field.setNumber(fields[-1], "SizeMax", far)
-        field.setNumber(fields[-1], "DistMax", grade.flat + (far - grade.near) / grade.growth)
+        numbers = {"InField": distance, "SizeMin": grade.near, "DistMin": grade.flat}
+        end = grade.flat + (far - grade.near) / grade.growth
+        fields.append(_field(gmsh, "Threshold", numbers | {"SizeMax": far, "DistMax": end}))
     geo.synchronize()
     set_size(gmsh, fields)
     gmsh.option.setNumber("Mesh.MeshSizeMax", far)

@@ -29,7 +29,7 @@ class Quadratic:
 
     def determinants(self, at: Floats, elements: Ints | slice = slice(None)) -> Floats:
         """det J of elements at reference points (Q, 3), (M, Q)."""
-        slopes = _slopes(at)
+        slopes = _shapes(at)[1]
         x = self.mesh.doflocs.T[self.nodes[elements]]
         return np.asarray(np.linalg.det(np.einsum("mia,qib->mqab", x, slopes)))
 
@@ -52,17 +52,11 @@ def find_facets(made: Quadratic, triangles: Ints) -> Ints:
     """Facets of the mesh with these corners (T, 3), numbers of points given; only those that are on
     its boundary.
     """
-    wanted = np.sort(made.vertex[triangles], axis=1)
-    return facets_of(made.mesh, wanted)
-
-
-def facets_of(mesh: MeshTet2, triangles: Ints) -> Ints:
-    """Boundary facets with these vertices (T, 3)."""
-    boundary = mesh.boundary_facets()
+    mesh, boundary = made.mesh, made.mesh.boundary_facets()
     n = mesh.nvertices + 1
     weigh = np.array([n * n, n, 1])
     key = np.sort(mesh.facets[:, boundary].T, axis=1) @ weigh
-    found: Ints = boundary[np.isin(key, np.sort(triangles, axis=1) @ weigh)]
+    found: Ints = boundary[np.isin(key, np.sort(made.vertex[triangles], axis=1) @ weigh)]
     return found
 
 
@@ -73,7 +67,7 @@ def refined(mesh: MeshTet2) -> MeshTet2:
     children = parent[:, CHILDREN].reshape(-1, 4)
     corner_at = ElementTetP2.doflocs[CHILDREN]  # (8, 4, 3)
     middles = np.stack([(corner_at[:, a] + corner_at[:, b]) / 2 for a, b in EDGES], axis=1)
-    shapes = _shapes(middles.reshape(-1, 3))  # (48, 10)
+    shapes, _ = _shapes(middles.reshape(-1, 3))  # (48, 10)
     at = np.einsum("qi,mia->mqa", shapes, mesh.doflocs.T[parent]).reshape(-1, 6, 3)
     number = np.arange(at.shape[0] * 6).reshape(-1, 6) + len(mesh.doflocs.T)
     points = np.concatenate([mesh.doflocs.T, at.reshape(-1, 3)])
@@ -103,17 +97,9 @@ def _edge_numbers(mesh: MeshTet1, cells: Ints) -> Ints:
     return np.asarray(order[np.searchsorted(key[order], wanted)])
 
 
-def _shapes(x: Floats) -> Floats:
-    """The ten quadratic functions at reference points (Q, 3): (Q, 10)."""
-    w = np.concatenate([1.0 - x.sum(axis=1, keepdims=True), x], axis=1)
-    corner = w * (2.0 * w - 1.0)
-    return np.concatenate([corner, np.stack([4 * w[:, a] * w[:, b] for a, b in EDGES], 1)], axis=1)
-
-
-def _slopes(x: Floats) -> Floats:
-    """Their derivatives, (Q, 10, 3)."""
-    w = np.concatenate([1.0 - x.sum(axis=1, keepdims=True), x], axis=1)
-    by = np.concatenate([-np.ones((1, 3)), np.eye(3)])
-    corner = (4.0 * w - 1.0)[:, :, None] * by
-    edge = [4.0 * (w[:, a, None] * by[b] + w[:, b, None] * by[a]) for a, b in EDGES]
-    return np.concatenate([corner, np.stack(edge, axis=1)], axis=1)
+def _shapes(x: Floats) -> tuple[Floats, Floats]:
+    """The ten quadratic functions at reference points (Q, 3): (Q, 10); and their derivatives, (Q,
+    10, 3).
+    """
+    values, slopes = zip(*(ElementTetP2().lbasis(x.T, i) for i in range(10)), strict=True)
+    return np.stack(values, axis=1), np.stack(slopes, axis=1).transpose(2, 1, 0)
