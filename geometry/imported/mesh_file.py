@@ -41,7 +41,8 @@ def mesh_from_file(file: BodyFile) -> SolidMesh:
             "bad-nodes",
         )
     cells = np.concatenate([b.data for b in mesh.cells if b.type.startswith("tetra")])
-    named, sets = _triangles(mesh), _point_sets(mesh)
+    named = _triangles(mesh)
+    sets = {str(name): np.asarray(n, dtype=np.int64) for name, n in mesh.point_sets.items()}
     for told in (cells, *named.values(), *sets.values()):
         if not ((told >= 0) & (told < len(points))).all():
             raise GeometryError(
@@ -134,11 +135,6 @@ def _triangles(mesh: meshio.Mesh) -> dict[str, Ints]:
             if dimension == 2 and block.type in SURFACES and name not in mesh.cell_sets:
                 out.setdefault(name, []).append(block.data[np.asarray(tags) == tag, :3])
     return {name: np.concatenate(parts).astype(np.int64) for name, parts in out.items()}
-
-
-def _point_sets(mesh: meshio.Mesh) -> dict[str, Ints]:
-    """Nodes of every named set."""
-    return {str(name): np.asarray(n, dtype=np.int64) for name, n in mesh.point_sets.items()}
 
 
 def _pieces(mesh: MeshTet2) -> int:

@@ -41,8 +41,7 @@ def quadratic(points: Floats, cells: Ints) -> Quadratic:
     vertex[corners] = np.arange(len(corners))
     linear = MeshTet1(points[corners].T.copy(), vertex[cells[:, :4]].T.copy(), sort_t=False)
     mesh = MeshTet2.from_mesh(linear)
-    edge_of = _edge_numbers(linear, vertex[cells[:, :4]])
-    nodes = np.concatenate([vertex[cells[:, :4]], len(corners) + edge_of], axis=1)
+    nodes = np.concatenate([vertex[cells[:, :4]], len(corners) + linear.t2e.T], axis=1)
     if cells.shape[1] == 10:
         mesh.doflocs[:, nodes[:, 4:].ravel()] = points[cells[:, 4:].ravel()].T
     return Quadratic(mesh, nodes, vertex)
@@ -62,8 +61,7 @@ def find_facets(made: Quadratic, triangles: Ints) -> Ints:
 
 def refined(mesh: MeshTet2) -> MeshTet2:
     """Every element in eight, on the same curved shape; boundaries keep their names."""
-    t = mesh.t.T
-    parent = np.concatenate([t, mesh.nvertices + _edge_numbers(mesh, t)], axis=1)
+    parent = np.concatenate([mesh.t, mesh.nvertices + mesh.t2e]).T
     children = parent[:, CHILDREN].reshape(-1, 4)
     corner_at = ElementTetP2.doflocs[CHILDREN]  # (8, 4, 3)
     middles = np.stack([(corner_at[:, a] + corner_at[:, b]) / 2 for a, b in EDGES], axis=1)
@@ -73,28 +71,12 @@ def refined(mesh: MeshTet2) -> MeshTet2:
     points = np.concatenate([mesh.doflocs.T, at.reshape(-1, 3)])
     made = quadratic(points, np.concatenate([children, number], axis=1))
     named = {}
-    edges = {tuple(e): i for i, e in enumerate(np.sort(mesh.edges, axis=0).T.tolist())}
     for name, facets in (mesh.boundaries or {}).items():
-        a, b, c = np.sort(mesh.facets[:, facets], axis=0)
-        ab, bc, ac = (
-            mesh.nvertices + np.array([edges[e] for e in zip(i.tolist(), j.tolist(), strict=True)])
-            for i, j in ((a, b), (b, c), (a, c))
-        )
+        (a, b, c), (ab, bc, ac) = mesh.facets[:, facets], mesh.nvertices + mesh.f2e[:, facets]
         four = [(a, ab, ac), (ab, b, bc), (ac, bc, c), (ab, bc, ac)]
         triangles = np.concatenate([np.stack(three, axis=1) for three in four])
         named[name] = find_facets(made, triangles)
     return made.mesh.with_boundaries(named)
-
-
-def _edge_numbers(mesh: MeshTet1, cells: Ints) -> Ints:
-    """Edge numbers (M, 6) of cells (M, 4) in the order EDGES."""
-    n = mesh.nvertices + 1
-    ends = np.sort(mesh.edges, axis=0)
-    key = ends[0].astype(np.int64) * n + ends[1]
-    order = np.argsort(key)
-    pairs = np.sort(np.stack([cells[:, e] for e in EDGES], axis=1), axis=2)
-    wanted = pairs[..., 0] * n + pairs[..., 1]
-    return np.asarray(order[np.searchsorted(key[order], wanted)])
 
 
 def _shapes(x: Floats) -> tuple[Floats, Floats]:
