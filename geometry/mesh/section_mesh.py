@@ -13,6 +13,7 @@ from skfem import MeshTri2
 
 from geometry.arrays import Ints
 from geometry.mesh.gmsh_session import MeshError, gmsh_model, set_size
+from geometry.mesh.revolve import draw
 from geometry.mesh.scale import unit_of
 from geometry.mesh.sizing import (
     Grade,
@@ -24,7 +25,7 @@ from geometry.mesh.sizing import (
     triangles,
 )
 from geometry.shape.pin import Pin
-from geometry.shape.profile import RZ, Arc, Edge, meridian
+from geometry.shape.profile import RZ, Edge, meridian
 
 __all__ = ["MeridianMesh", "SectionSize", "Spot", "meridian_mesh"]
 
@@ -95,22 +96,7 @@ def _require_reasonable(pin: Pin, size: SectionSize) -> None:
 def _draw(gmsh: Any, outline: tuple[Edge, ...], spots: tuple[Spot, ...]) -> list[list[int]]:
     """Curves of every edge, which is cut at the reach of spots at its ends."""
     geo = gmsh.model.geo
-    points: dict[tuple[float, float], int] = {}
-
-    def point(rz: tuple[float, float]) -> int:
-        if rz not in points:
-            points[rz] = geo.addPoint(rz[0], rz[1], 0.0)
-        return points[rz]
-
-    curves = []
-    for e in outline:
-        if isinstance(e, Arc):
-            centre = geo.addPoint(*e.centre, 0.0)
-            curves.append([geo.addCircleArc(point(e.start), centre, point(e.end))])
-        else:
-            stops = [e.start, *_cuts(e, spots), e.end]
-            pairs = itertools.pairwise(stops)
-            curves.append([geo.addLine(point(a), point(b)) for a, b in pairs])
+    curves = draw(geo, outline, lambda rz: geo.addPoint(*rz, 0.0), lambda e: _cuts(e, spots))
     geo.addPlaneSurface([geo.addCurveLoop([c for found in curves for c in found])])
     geo.synchronize()
     return curves
