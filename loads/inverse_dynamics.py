@@ -15,7 +15,7 @@ import numpy as np
 
 from loads.friction import MOST_CONTACTS, JammingError, contact_forces
 from loads.joint_forces import connection_members, slider_couple, slider_members
-from loads.linkage import Floats, Linkage, LinkageError, Point, Slider
+from loads.linkage import GROUND, Floats, Linkage, LinkageError, Point, Slider
 from loads.loop_equations import Complex, cross, number, pairs
 from loads.motion import Motion
 from loads.reactions import Reactions
@@ -262,8 +262,9 @@ class _Balance:
         on_body = self.connections.forces(self.needed, self._closing(f))
         on_pin = np.zeros((*on_body.shape, 3))
         on_pin[..., 0], on_pin[..., 1] = -on_body.real, -on_body.imag
+        # A pin's own axes turn with what it is fixed in; those of a floating pin are the world's.
         turn = np.stack(
-            [motion.angle(_axes(linkage, j.fixed_in)) for j, _ in linkage.connections], axis=1
+            [motion.angle(j.fixed_in or GROUND) for j, _ in linkage.connections], axis=1
         )
         return Reactions(
             case=case,
@@ -274,11 +275,6 @@ class _Balance:
             moments=np.zeros_like(on_pin),
             turn=turn,
         )
-
-
-def _axes(linkage: Linkage, fixed_in: str | None) -> str:
-    """The item whose rotation the pin's own axes follow; a floating pin keeps the world's."""
-    return fixed_in if fixed_in in linkage.index else "ground"
 
 
 def _shares(linkage: Linkage, forces: Complex, loose: Complex, shared: tuple[str, ...]) -> Floats:
