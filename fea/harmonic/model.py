@@ -102,9 +102,8 @@ class HarmonicBody:
 class HarmonicModel(HarmonicBody):
     """A pin on one mesh of its section, clamped at surfaces (by name).
 
-    Without any, the loads' balance is closed by tractions on the bands (fea.core.tractions), and as
-    many unknowns are constrained as there are rigid motions, about `pivot` (0 to 1, of the
-    length), which changes nothing but the motion.
+    Without any, the loads' balance is closed by tractions on the bands (fea.core.tractions);
+    `pivot` changes nothing but the motion.
 
     Leaves out: plasticity, contact and clearance (loads are tractions).
     """

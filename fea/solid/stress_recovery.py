@@ -7,7 +7,6 @@ on the surface the traction is known, and the stress is corrected to carry exact
 from __future__ import annotations
 
 import numpy as np
-import scipy.sparse as sp
 
 from fea.core.local_fit import extension
 from fea.core.material import Material
@@ -17,14 +16,9 @@ from fea.solid.boundary import SMOOTH, SurfaceMesh
 from geometry.arrays import Floats, Mask
 
 
-def recovery(space: Discretisation) -> sp.csr_matrix:
-    """Matrix (N, Q M) from values at the quadrature points to values at the nodes."""
-    return extension(space.elements, space.basis.X, space.basis.elem.doflocs.T)
-
-
 def nodal_stress(space: Discretisation, material: Material, displacement: Floats) -> Floats:
     """Stress (N, 6, L) in Pa of L displacement fields (N, 3, L) in m."""
-    to_nodes = recovery(space)
+    to_nodes = extension(space.elements, space.basis.X, space.basis.elem.doflocs.T)
     fields = []
     for k in range(displacement.shape[2]):
         stress = material.stress(space.strain(displacement[:, :, k]))

@@ -17,13 +17,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fea.core.mesh_result import Point
 from fea.core.pin_loads import AnyLoads
 from fea.core.voigt import VON_MISES
 from fea.solid.model import UnitFields
 from geometry.arrays import Floats, Mask
-
-Point = tuple[float, float, float]
-
 
 FEW = 12  # unit loads up to which their products in pairs are fewer than the stresses
 CHUNK = 16  # instants at once
@@ -44,7 +42,7 @@ class Envelope:
     maximum: float
     scatter: float
     instant: int
-    location: tuple[float, float, float]
+    location: Point
     field: Floats
     maxima: Floats
     inside: tuple[tuple[float, Point], ...] = ()
