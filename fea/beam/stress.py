@@ -17,8 +17,9 @@ from fea.beam.round_section import Circle
 from fea.beam.stress_concentration import Notch, notches
 from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, stepped_beam
 from fea.core.material import Material
-from fea.core.pin_loads import Floats, UnitLoad
+from fea.core.pin_loads import UnitLoad
 from geometry import Pin
+from geometry.arrays import Floats
 
 ZZ, TZ, RZ = 2, 3, 4
 PER_CELL = 33  # points in a cell, besides where a moment is largest

@@ -21,21 +21,19 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fea.checks import calculix
 from fea.checks.calculix_deck import write_deck
 from fea.core.material import Material
 from fea.core.peak import Peak
-from fea.core.pin_loads import Floats, PinLoads
+from fea.core.pin_loads import PinLoads
 from fea.core.voigt import von_mises
 from fea.solid.evaluate import SolidSolution, solid_solution
 from fea.solid.stress_recovery import nodal_stress
 from fea.solve_pin import singularities_of
 from geometry import PinLike
+from geometry.arrays import Floats, Ints
 from geometry.mesh.solid_mesh import MeshSize
-
-Ints = NDArray[np.int64]
 
 SAME_DISPLACEMENT = 1e-5  # of the largest; CalculiX prints 7 digits
 SAME_STRESS = 1e-4  # of the largest; CalculiX prints 6 digits of each component

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from fea.core.pin_loads import Floats, PinLoads
+from fea.core.pin_loads import PinLoads
 from fea.core.solution import Picture
 from fea.core.voigt import ENTRIES, TENSOR
 from fea.harmonic.fields import MeridianFields
-from fea.harmonic.superposition import Circumference, Ints
+from fea.harmonic.superposition import Circumference
+from geometry.arrays import Floats, Ints
 
 SECTORS = 60
 CLOSE = 1e-9  # of the length: points that are one

@@ -23,15 +23,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fea.core.pin_loads import AnyLoads, Floats
+from fea.core.pin_loads import AnyLoads, require_solved
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.trigonometric_maximum import highest_crest
-from geometry import ArgumentError
+from geometry.arrays import Floats, Ints, Mask
 
-Ints = NDArray[np.int64]
-Mask = NDArray[np.bool_]
 Instants = slice | Ints
 
 SAMPLES_PER_WAVE = 5  # of von Mises squared
@@ -64,12 +61,7 @@ class Circumference:
 
     def __init__(self, fields: MeridianFields, loads: AnyLoads) -> None:
         acting = loads.coefficients()
-        missing = set(acting) - set(fields.loads)
-        if missing:
-            raise ArgumentError(
-                f"case {loads.case}: no unit fields were solved for {sorted(missing)}",
-                "missing-fields",
-            )
+        require_solved(loads.case, acting, fields.loads)
         units = sorted(acting, key=lambda load: load.n)
         by_phase = np.zeros((len(loads), len(units), 2))
         for k, load in enumerate(units):

@@ -131,9 +131,7 @@ def _own_weight(
     for k, joint in enumerate(motion.linkage.joints):
         if any(c.name == connection for c in joint.connections):
             own = motion.joint(joint.name)[2] if accelerations is None else accelerations[:, k]
-            across = np.array(motion.linkage.gravity) - own
-            turn = reactions.turn[:, reactions.connections.index(connection)]
-            c, s = np.cos(turn), np.sin(turn)
-            x, y = np.broadcast_to(across, (len(turn), 2)).T
-            return np.stack([c * x + s * y, c * y - s * x, np.zeros(len(x))], axis=1)
+            across = np.zeros((len(reactions), 3))
+            across[:, :2] = np.array(motion.linkage.gravity) - own
+            return reactions.turned_back(across, connection)
     return np.zeros(3)
