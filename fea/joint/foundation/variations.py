@@ -12,6 +12,8 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
@@ -20,9 +22,9 @@ from fea.joint.foundation.foundation_model import FoundationModel
 from fea.joint.foundation.stress import FoundationStress
 from fea.joint.lugs.fit import beyond_foundations
 from fea.joint.lugs.lug import Lug
-from fea.joint.records import JointRange, Variation
+from fea.joint.records import JointRange, JointResult, Variation
 from fea.joint.variations import FIT, SOFTER
-from geometry import Pin
+from geometry import ArgumentError, Pin
 
 
 @dataclass(frozen=True)
@@ -73,6 +75,34 @@ class FoundationRange:
         beyond = f"beyond what was measured, and not included: {', '.join(left_out)}"
         whole = JointRange(ends, tuple(over), "foundation", self.assumed)
         return whole, beyond if left_out else ""
+
+
+def prescribed_ranges(
+    pin: Pin,
+    material: Material,
+    lugs: Sequence[Lug],
+    loads: Sequence[PinLoads | None],
+    how: tuple[float, bool],
+) -> tuple[JointResult | None, ...]:
+    """Of a pin that something else holds, if it sat in these lugs. loads: at the governing instants
+    of its cases, None where there is none. how: distance and assumed, as of FoundationRange.
+    """
+    try:
+        over = FoundationRange(pin, material, lugs, *how)
+    except (ArgumentError, SolveError) as error:
+        none = JointResult("prescribed", remark=str(error))
+        return tuple(None if here is None else none for here in loads)
+    return tuple(None if here is None else _prescribed(over, here) for here in loads)
+
+
+def _prescribed(over: FoundationRange, loads: PinLoads) -> JointResult:
+    if np.any(loads.moments[:, :, :2]):
+        return JointResult("prescribed", remark="its links exert moments across its axis")
+    try:
+        found, remark = over.at(loads)
+    except SolveError as error:
+        return JointResult("prescribed", remark=str(error))
+    return JointResult("prescribed", range=found, remark=remark)
 
 
 def _tried(stress: FoundationStress, loads: PinLoads) -> Bounded | None:
