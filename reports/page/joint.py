@@ -50,8 +50,8 @@ def _sentence(pin: PinResult, joint: JointResult, units: Units) -> str:
     if joint.range:
         over = f"; {joint_range(pin)} {units.stress} over what is not known of the joint"
         if joint.range.model == "foundation":
-            lugs = "assumed" if joint.range.assumed else "the given"
-            over += f" (beam on foundations in {lugs} lugs, its error included)"
+            lugs = "assumed lugs" if joint.range.assumed else "its lugs"
+            over += f" (beam on foundations in {lugs}, its error included)"
     why = f": {joint.remark}" if joint.remark else ""
     more = f" {PLANE}" if joint.model == "foundation" else ""
     return f"Maximum von Mises stress{outside} {largest} ({error}){over}{why}.{more}"

@@ -80,8 +80,8 @@ def joint_json(joint: JointResult | None) -> dict[str, Any] | None:
 
 
 def lugs_word(over: JointRange) -> str:
-    """Where the lugs of a range come from."""
-    return "assumed" if over.assumed else "given"
+    """Whose the lugs of a range are."""
+    return "assumed" if over.assumed else "study"
 
 
 def _joined(results: Results) -> Iterator[tuple[PinResult, JointResult]]:
