@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from statistics import median
 
 import numpy as np
@@ -17,6 +18,7 @@ from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.harmonic.evaluate import HarmonicAnswer, harmonic_solution
+from fea.joint.bending import shear_force
 from fea.joint.foundation.bounds import Bounded, bounded
 from fea.joint.foundation.foundation_model import (
     FoundationModel,
@@ -28,10 +30,11 @@ from fea.joint.foundation.stress import FoundationStress
 from fea.joint.lugs.lug import Lug
 from fea.joint.solve_joint import Cells, JointContact, JointModel
 from fea.solve_pin import singularities_of
-from geometry import Pin, Segment
+from geometry import Band, Pin, Segment
 
 PINS, SEED = 40, 3  # 1, 2 and 5 served to find the constants
 FINE = Cells(rings=8, sectors=48, highest=16)
+ENDS = 0.04, 0.15  # of a lug's length
 CLEARANCES = 0.001, 0.003  # of the diameter
 PRESSURE = 1e8  # Pa, the mean over the most loaded lug at which clearances count
 INSTANTS = 10_000
@@ -43,8 +46,7 @@ PLAY = 0.001  # of the diameter
 @dataclass(frozen=True)
 class Compared:
     """Of one pin: errors of the largest moment and at mid-span over the largest of contact, of the
-    line load at the lugs' ends over the lug's mean, on the last ring and on the last two; bound of
-    the first.
+    line load at the lugs' ends over the lug's mean, on the last parts (ENDS); bound of the first.
     """
 
     lugs: int
@@ -149,11 +151,12 @@ def _compared(trial: JointTrial, contact: JointContact, stiffness: Stiffness) ->
     z = contact.bands.z
     middle = np.array([0.5 * (z[0] + z[-1])])
     apart = found.bending_moment(middle) - contact.bending_moment(middle)
-    lengths = np.array([trial.pin.band(lug.connection).length for lug in trial.lugs])
-    means = np.abs(trial.loads.forces[0, :, 0]) / lengths
-    load = (found.loads.forces - contact.loads.forces)[0, :, 0].reshape(len(lengths), -1)
-    ring = contact.bands.length.reshape(load.shape)
-    ends = np.abs([_end_load(load, ring, k) / means[:, None] for k in (1, 2)])
+    by_contact = partial(shear_force, contact.pin, contact.mass, contact.bands, contact.loads)
+    off = [
+        _end_loads(found.shear_force, by_contact, trial.pin.band(lug.connection), float(force))
+        for lug, force in zip(trial.lugs, trial.loads.forces[0, :, 0], strict=True)
+    ]
+    ends = np.stack(off, axis=1)  # (parts, lugs, sides)
     return Compared(
         len(trial.lugs),
         any(s.bore for s in trial.pin.segments),
@@ -165,11 +168,16 @@ def _compared(trial: JointTrial, contact: JointContact, stiffness: Stiffness) ->
     )
 
 
-def _end_load(force: Floats, length: Floats, count: int) -> Floats:
-    """Per length, N/m, on the first and last `count` of the rings of each lug, (B, 2)."""
-    sides = slice(None, count), slice(-count, None)
-    each = [force[:, side].sum(axis=1) / length[:, side].sum(axis=1) for side in sides]
-    return np.stack(each, axis=1)
+def _end_loads(
+    ours: Callable[[Floats], Floats], theirs: Callable[[Floats], Floats], band: Band, force: float
+) -> Floats:
+    """By how much the loads along x of both ends of a lug differ, over their mean, (parts, 2)."""
+    out = []
+    for part in ENDS:
+        z = np.array([band.z0, band.z0 + part * band.length, band.z1 - part * band.length, band.z1])
+        apart = (ours(z) - theirs(z))[0, :, 0]
+        out.append(np.abs([apart[1] - apart[0], apart[3] - apart[2]]) / (part * abs(force)))
+    return np.array(out)
 
 
 def _errors(trials: list[JointTrial], contacts: list[JointContact]) -> str:

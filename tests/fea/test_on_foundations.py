@@ -177,6 +177,8 @@ def test_sharp_corners_are_left_out_and_fillets_without_a_factor_are_not() -> No
     tiny = on_foundations(replace(wide, fillet=1e-4), lugs)
     assert tiny.bounds is None
     assert "fillet" in tiny.why
+    head = replace(pin, segments=(*pin.segments, Segment(0.005, 0.03)), fillet=1e-4)
+    assert on_foundations(head, lugs).bounds is not None  # beyond which nothing acts
 
 
 def test_a_row_has_the_error_of_the_model_alone() -> None:

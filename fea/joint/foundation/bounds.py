@@ -17,7 +17,7 @@ the diameter from sharp edges and corners (python -m benchmarks foundation).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -66,18 +66,19 @@ def bounded(stress: FoundationStress, found: JointFoundation) -> Bounded:
     out = Bounded(float(s[point, t]), None, place, float(top.theta[point, t]), t)
     loose = _looseness(model, found, t)
     part = _moment_part(model, loose)
-    if stress.unknown or not math.isfinite(part):
+    lacking = stress.lacking(found, s)
+    if lacking or not math.isfinite(part):
         why = "the size of pin, lugs or clearance is beyond that on which the error was measured"
-        if stress.unknown:
-            why = f"no notch factor is available for {', '.join(stress.unknown)}"
-        return Bounded(out.maximum, None, place, out.theta, t, why)
+        if lacking:
+            why = f"no notch factor is available for {', '.join(lacking)}"
+        return replace(out, why=why)
     z = np.unique(stress.z)
     largest = np.linalg.norm(found.bending_moment(z), axis=2).max(axis=1)
     moved = np.outer(stress.bending, part * largest)
     pressed, alone = _contact_stress(stress, found, loose)
     high = (s * (1.0 + PLAIN + stress.near)[:, None] + moved + pressed).max()
     low = max(0.0, out.maximum * (1.0 - PLAIN) - float(moved[point, t]))
-    return Bounded(out.maximum, (low, max(float(high), alone)), place, out.theta, t)
+    return replace(out, bounds=(low, max(float(high), alone)))
 
 
 def _diameters(model: FoundationModel) -> Floats:

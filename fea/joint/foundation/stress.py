@@ -25,14 +25,15 @@ from fea.singular.singularities import Singularity, find_singularities, outside
 from geometry import Pin
 
 NEAR = 0.5  # of the diameter: so far a sharp shoulder is felt
+NEGLIGIBLE = 1e-6  # of the largest
 EACH = 17  # points of a segment at a radius, besides the ends of rings
 
 
 @dataclass(frozen=True)
 class FoundationStress:
     """What serves all loads of a pin. r, z: of the points (S,), m. per_force: (S, 6, 4), amplitudes
-    there per V, M, N, T. near: (S,) what shoulders may add, relative. unknown: why there is no
-    notch factor, of the notches without one.
+    there per V, M, N, T. near: (S,) what shoulders may add, relative. notches: those that are not
+    left out, whose points are the last.
     """
 
     model: FoundationModel
@@ -40,7 +41,7 @@ class FoundationStress:
     z: Floats
     per_force: Floats
     near: Floats
-    unknown: tuple[str, ...]
+    notches: tuple[Notch, ...]
 
     @classmethod
     def of(cls, model: FoundationModel, distance: float = 0.1) -> Self:
@@ -55,8 +56,8 @@ class FoundationStress:
         near[len(r) - len(local) :] = SHOULDER
         keep = outside(corners, r, z)
         free = keep[len(r) - len(local) :]
-        unknown = [n.why for n, out in zip(every, free, strict=True) if out and n.bending is None]
-        return cls(model, r[keep], z[keep], per_force[keep], near[keep], tuple(unknown))
+        left = tuple(n for n, out in zip(every, free, strict=True) if out)
+        return cls(model, r[keep], z[keep], per_force[keep], near[keep], left)
 
     def in_lugs(self, model: FoundationModel) -> FoundationStress:
         """Of the same pin in other lugs."""
@@ -70,6 +71,18 @@ class FoundationStress:
     def von_mises(self, found: JointFoundation) -> Highest:
         """At all points and instants, the largest over the circumference."""
         return highest(self._harmonics(found))
+
+    def lacking(self, found: JointFoundation, von_mises: Floats) -> list[str]:
+        """Of the notches that loads reach, why there is no factor. von_mises: (S, T) Pa."""
+        first = len(self.z) - len(self.notches)
+        torque = np.abs(found.along(self.z[first:])[1]).max(axis=0)
+        turned = torque > NEGLIGIBLE * np.abs(found.loads.moments).max(initial=0.0)
+        reached = von_mises[first:].max(axis=1) > NEGLIGIBLE * von_mises.max()
+        return [
+            n.why
+            for n, t, any_ in zip(self.notches, turned, reached, strict=True)
+            if (any_ and n.bending is None) or (t and n.torsion is None)
+        ]
 
     def _harmonics(self, found: JointFoundation) -> Floats:
         """(3, S, 6, T): even, times cos theta, times sin theta, as fea.beam.maximum has them."""
