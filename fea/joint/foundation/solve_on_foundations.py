@@ -15,6 +15,7 @@ import numpy as np
 
 from fea.asked import Asked
 from fea.beam.error_model import PLAIN
+from fea.beam.maximum import Highest
 from fea.core.linear_solver import SolveError
 from fea.core.over_time import rise_between, through_time
 from fea.core.peak import ErrorParts, Note, Peak, Refinement
@@ -86,17 +87,19 @@ class FoundationAnswer:
     def __init__(self, stress: FoundationStress, case: PinLoads) -> None:
         self.stress, self.case = stress, case
 
-    def maxima(self, loads: PinLoads) -> Floats:
+    def maxima(self, loads: AnyLoads, _: float = 0.0) -> Floats:
         """Largest von Mises stress (T,) Pa at every instant."""
-        found = self.stress.model.solve(loads)
-        return np.asarray(self.stress.von_mises(found).von_mises.max(axis=0))
+        return np.asarray(self._von_mises(loads).von_mises.max(axis=0))
 
     def largest(self, loads: AnyLoads) -> tuple[float, int]:
         """The largest of these (Pa), and the index of its instant."""
+        top = self._von_mises(loads)
+        return float(top.von_mises[top.place]), top.place[1]
+
+    def _von_mises(self, loads: AnyLoads) -> Highest:
         whole = isinstance(loads, PinLoads)
         links = loads if isinstance(loads, PinLoads) else _as_loads(loads, self.case)
-        top = self.stress.von_mises(self.stress.model.solve(links, whole))
-        return float(top.von_mises[top.place]), top.place[1]
+        return self.stress.von_mises(self.stress.model.solve(links, whole))
 
     def picture(self, loads: PinLoads, instant: int) -> Picture | None:
         """None: a beam has no field over its surface."""

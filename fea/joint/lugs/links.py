@@ -46,7 +46,7 @@ def link_forces(
     left = out.sum(axis=1) + loads.body[:, :2] * mass
     if structure:
         return np.concatenate([out, -left[:, None]], axis=1)
-    largest = np.linalg.norm(left, axis=1).max()
+    largest = np.linalg.norm(left, axis=1).max(initial=0.0)
     if whole and largest > MOST * np.linalg.norm(out, axis=2).max(initial=1e-300):
         raise SolveError(
             f"pin {pin.name}, case {loads.case}: the forces of its links have "
