@@ -246,9 +246,6 @@ def test_auto_takes_contact_for_more_than_foundations_can() -> None:
     """The clevis, though its error is within the tolerance, is pressed too hard."""
     pin, lugs = usual()
     assert solved(lugs, pin, Asked(tolerance=0.5)).solution.peak.model == "harmonic"
-    pin, lugs = far_apart()
-    for asked in (Asked(tolerance=0.1), Asked(tolerance=0.3, model="harmonic")):
-        assert solved(lugs, pin, asked).solution.peak.model == "harmonic"
 
 
 @pytest.mark.parametrize(("lugs", "clearance", "largest"), [
