@@ -81,8 +81,7 @@ def _results(
         required_safety_factor=table.analysis.required_safety_factor,
         tolerance=tolerance,
         pins=tuple(
-            replace(_pin_result(study, loads, task, peak, published), joint=joint)
-            for task, peak, joint in rows
+            _pin_result(study, loads, task, peak, published, joint) for task, peak, joint in rows
         ),
         shapes=tuple(_shape(tasks[name]) for name in table.pin if name in tasks),
         **mechanics(study, loads, published),
@@ -101,6 +100,7 @@ def _pin_result(
     task: Task,
     peak: Peak,
     published: Published,
+    joint: JointResult | None,
 ) -> plain.PinResult:
     strength = task.material.yield_strength
     required = study.table.analysis.required_safety_factor
@@ -128,7 +128,8 @@ def _pin_result(
         dofs=peak.dofs,
         seconds=peak.seconds,
         history=peak.history,
-        held=_held(task),
+        held=_held(task, joint),
+        joint=joint,
         left_out=task.left_out[peak.case],
         published_max_von_mises=theirs[0],
         published_safety_factor=theirs[1],
@@ -142,9 +143,9 @@ def _pin_result(
     )
 
 
-def _held(task: Task) -> str:
+def _held(task: Task, joint: JointResult | None) -> str:
     if task.lugs:
-        return "its lugs (contact)"
+        return f"its lugs ({joint.model if joint else 'contact'})"
     return ", ".join(task.clamps) or "nothing (loads in balance)"
 
 

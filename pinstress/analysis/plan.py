@@ -96,15 +96,22 @@ def prepare(
                 f"{asked.model} model needs: use auto or solid",
                 at=f"pin.{task.pin.name}",
             )
-        if asked.model in ("beam", "solid") and task.lugs:
-            raise study.error(
-                f"pin {task.pin.name} is held by contact with its lugs, which the harmonic model "
-                f'finds: use auto or harmonic, or analysis.joints = "prescribed" for the '
-                f"{asked.model} model",
-                at=f"pin.{task.pin.name}",
-                code="model-without-contact",
-            )
+        if task.lugs:
+            _require_model(study, asked.model, task.pin.name)
     return Plan(study, asked, loads, todo, published, checked, also)
+
+
+def _require_model(study: Study, model: Model, pin: str) -> None:
+    """Raises: InputError for a model that cannot answer for a pin in its lugs."""
+    beam = study.table.analysis.joints == "foundation"
+    by, fits = ("foundations in", "beam") if beam else ("contact with", "harmonic")
+    if model not in ("auto", fits):
+        raise study.error(
+            f"pin {pin} is held by {by} its lugs, which the {fits} model finds: use auto or "
+            f'{fits}, or analysis.joints = "prescribed" for the {model} model',
+            at=f"pin.{pin}",
+            code="model-without-contact",
+        )
 
 
 def _asked(

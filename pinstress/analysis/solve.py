@@ -10,7 +10,10 @@ from fea.checks.calculix_compare import Opinion
 from fea.core.memory import allowed_memory, solid_memory
 from fea.core.peak import Peak
 from fea.core.pin_loads import PinLoads
-from fea.joint.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
+from fea.joint.foundation.solve_on_foundations import solve_joints
+from fea.joint.foundation.variations import prescribed_ranges
+from fea.joint.records import JointResult
+from fea.joint.solve_in_lugs import InLugs, LugSolution
 from fea.solve_pin import MOST_UNKNOWNS, solve_pin
 from geometry import Pin
 from pinstress.analysis import checks, gather, gather_fields
@@ -151,18 +154,32 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
     if task is plan.checked and study.table.beam_check is not None:
         tell(f"pin {task.pin.name}, beam check")
         beam = checks.beam_check(study, task)
-    joints = tuple(j.joint for j in joined)
+    joints = tuple(j.joint for j in joined) or _around(plan, task, peaks)
     surfaces = surfaces_of(plan.loads, task, found, pressures)
     return Solved(peaks, landing, beam, surfaces, joints=joints)
 
 
 def _in_lugs(plan: Plan, task: Task, tell: Tell) -> tuple[LugSolution, ...]:
-    """Solutions of a pin that is in contact with its lugs; none of any other."""
+    """Solutions of a pin that its lugs hold; none of any other."""
     if not task.lugs:
         return ()
     assert isinstance(task.pin, Pin)
     given = InLugs(task.pin, task.material, task.lugs, task.loads, task.between, task.ranges)
-    return solve_in_lugs(given, plan.asked, tell)
+    joints = plan.study.table.analysis.joints
+    return solve_joints(given, plan.asked, "auto" if joints == "prescribed" else joints, tell)
+
+
+def _around(plan: Plan, task: Task, peaks: tuple[Peak, ...]) -> tuple[JointResult | None, ...]:
+    """Of a pin that is loaded and clamped as the study says, the range over lugs around it."""
+    around, loads = task.surroundings, [peak.governing for peak in peaks]
+    if around is None:
+        return ()
+    if around.pin is None:
+        none = JointResult("prescribed", remark=around.why)
+        return tuple(none if here is not None else None for here in loads)
+    return prescribed_ranges(
+        around.pin, task.material, around.lugs, loads, (plan.asked.distance, around.assumed)
+    )
 
 
 def _as_given(loads: PinLoads) -> PinLoads:

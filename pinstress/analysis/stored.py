@@ -60,6 +60,8 @@ def question(plan: Plan, task: Task) -> object:
         _shape(task.pin),
         task.clamps,
         task.lugs,
+        task.surroundings,
+        study.table.analysis.joints,
         task.loads,
         task.left_out,
         task.ranges,

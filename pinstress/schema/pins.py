@@ -139,8 +139,7 @@ class PinTable(StrictTable):
     """Bands of a pin from a file, by name. With `geometry` only."""
     lug: dict[str, LugTable] = {}
     """What surrounds its bands, by connection or by the name of a segment; an empty table takes all
-    defaults. With any, the pin is held by contact with its lugs (`analysis.joints`). With a profile
-    only."""
+    defaults. With any, its lugs hold the pin (`analysis.joints`). With a profile only."""
     clamp: list[str] = []
     """Clamped surfaces: "start" and "end" (faces), a segment's name or connection (its outer
     surface), "hole 1", "flat 1", a band. Empty: none, and the loads must be nearly in balance."""

@@ -16,9 +16,11 @@ class AnalysisTable(StrictTable):
 
     model: Literal["auto", "beam", "harmonic", "solid"] = "auto"
     """The model; "auto" uses the smallest that is accurate enough."""
-    joints: Literal["auto", "contact", "prescribed"] = "auto"
-    """How links and pins meet: by contact with elastic lugs ("contact"), or as the study clamps and
-    distributes ("prescribed"); "auto" is contact for the pins that have a `lug`."""
+    joints: Literal["auto", "contact", "foundation", "prescribed"] = "auto"
+    """How links and pins meet: by contact with elastic lugs ("contact"), on elastic foundations in
+    them, a quick beam with an error of the model ("foundation"), or as the study clamps and
+    distributes ("prescribed"); "auto" is contact for the pins that have a `lug`, or the beam where
+    its error is within the tolerance and bending governs."""
     goal: Literal["value", "decide"] = "value"
     """The maximum to the tolerance ("value"), or only on which side of the required factor of
     safety it is ("decide"; it needs a yield strength)."""

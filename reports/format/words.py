@@ -18,7 +18,8 @@ READING = (
 JOINT = (
     "Joint is the range of the maximum over what is seldom known of a joint: other clearances of "
     "the lugs, lugs of half and twice the stiffness, and lugs that are guided or free to tilt. It "
-    "is not part of the ±, and the result is decided without it."
+    "is not part of the ±, and the result is decided without it. Of pins that are not solved in "
+    "contact it is that of a beam on foundations in their lugs, with its error, or in assumed ones."
 )
 RESULTS = {
     SAFE: "the pin meets its required safety factor.",
