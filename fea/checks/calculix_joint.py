@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import re
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -37,6 +37,7 @@ Ints = NDArray[np.int64]
 
 APPENDED = "zero-size increment is appended"
 USUAL = Fineness()
+FLAT = 1e-3  # of a band's length: a shorter flat part between rounded edges is none
 IN_A_PLANE = 1e-9  # of the largest force: what may be across the plane of the others
 NEAR, STEPS, NATURAL = 12, 12, 1e-9  # elements in which a point is looked for, and how
 SIGNS = np.array([[x, y, z] for z in (-1.0, 1.0) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
@@ -140,7 +141,8 @@ def joint_deck(
     angle, half = _plane(force)
     c, s = np.cos(angle), np.sin(angle)
     turned = force @ np.array([[c, -s], [s, c]]) * (0.5 if half else 1.0) * fineness.scale
-    stations = _stations(pin, fineness)
+    radii = {lug.connection: lug.edge_radius for lug in lugs}
+    stations = _stations(pin, radii, fineness)
     mesh = pin_mesh(pin, stations, fineness, half)
     eyes = [
         _eye(pin, lug, f, mesh, stations, fineness, half)
@@ -172,18 +174,31 @@ def _plane(force: Floats) -> tuple[float, bool]:
     return float(np.arctan2(fy, fx)), True
 
 
-def _stations(pin: Pin, fineness: Fineness) -> list[Floats]:
-    """Ends of the layers of elements in every segment, m."""
+def _stations(pin: Pin, radii: Mapping[str, float], fineness: Fineness) -> list[Floats]:
+    """Ends of the layers of elements in every segment, m. radii: of the bores' edges, m."""
     out = []
     for segment, start in zip(pin.segments, pin.stations, strict=False):
         if segment.connection:
-            ends, parts = graded(segment.length, fineness.rings), fineness.parts
-            cut = np.interp(np.arange(fineness.rings * parts + 1) / parts, range(len(ends)), ends)
+            ends = _ring_ends(segment.length, radii[segment.connection], fineness.rings)
+            count, parts = len(ends) - 1, fineness.parts
+            cut = np.interp(np.arange(count * parts + 1) / parts, range(count + 1), ends)
         else:
             count = max(2, round(fineness.along * segment.length / pin.smallest_diameter))
             cut = np.linspace(0.0, segment.length, count + 1)
         out.append(start + cut)
     return out
+
+
+def _ring_ends(length: float, radius: float, count: int) -> Floats:
+    """Of the rings of a band, m: `count` on its flat part, and two in the rounding of each edge,
+    since the parabola of one would press on the pin.
+    """
+    flat = length - 2.0 * radius
+    inner = radius + graded(flat, count) if flat > FLAT * length else np.array([length / 2.0])
+    if not radius:
+        return inner
+    edge = np.array([0.0, radius / 2.0])
+    return np.concatenate([edge, inner, (length - edge)[::-1]])
 
 
 def _eye(
@@ -202,7 +217,8 @@ def _eye(
     before = sum(len(x) - 1 for x in stations[:i])
     surface = np.abs(mesh.outer - radius) < 1e-9 * radius
     ring = (mesh.layer - before) // fineness.parts
-    rings = tuple(np.flatnonzero(surface & (ring == k)) for k in range(fineness.rings))
+    count = (len(z) - 1) // fineness.parts
+    rings = tuple(np.flatnonzero(surface & (ring == k)) for k in range(count))
     part = Part(f"LUG{i}", body, lug.material)
     return Eye(part, force, lug.tilt * (0.5 if half else 1.0), rings)
 
@@ -231,11 +247,12 @@ def _read(
 ) -> JointOpinion:
     """The results of a run. Raises: CalculixError."""
     seconds = calculix.seconds_of(printed)
-    mesh, count = deck.pin.mesh, len(deck.eyes[0].rings)
+    mesh = deck.pin.mesh
     try:
         found = contact_forces(folder / f"{calculix.JOB}.dat")
         stress = calculix.stresses(folder / f"{calculix.JOB}.frd")
-        each = np.array([found[slave(e.part.name, k)] for e in deck.eyes for k in range(count)])
+        names = [slave(eye.part.name, k) for eye in deck.eyes for k in range(len(eye.rings))]
+        each = np.array([found[name] for name in names])
     except (OSError, ValueError, IndexError, KeyError, StopIteration) as error:
         raise calculix.CalculixError(
             f"{calculix.COMMAND} wrote no readable results ({error})", "unreadable-results"

@@ -37,8 +37,8 @@ ROUND = 0.4  # how round the core is: 0 a square, 1 a circle
 class Fineness:
     """How fine CalculiX's meshes are, and what its contact is.
 
-    rings: of a band, as in fea.joint.solve_joint: Cells; parts: elements along each. sectors: round
-    the whole circle, a multiple of 8. layers: across the pin's wall, or from the core of a solid
+    rings: of a band between its rounded edges; parts: elements along each. sectors: round the
+    whole circle, a multiple of 8. layers: across the pin's wall, or from the core of a solid
     one to its surface. eye: across the wall of a lug. along: elements of a segment that no lug
     holds, for every length of a diameter; at least two. stiffness: of the contact, times Young's
     modulus of the pin over its smallest diameter. scale: of forces and gaps, of which results are

@@ -195,6 +195,23 @@ def test_clearance_and_rounded_edges_are_in_the_bore() -> None:
         assert r[middle] == pytest.approx(np.full(middle.sum(), 0.01 + 5e-5))
 
 
+def test_the_rounding_of_a_bore_never_presses_on_the_pin() -> None:
+    """Elements are parabolas along z: with too few of them in the rounding one dips below the
+    pin's surface, and the edges carry everything.
+    """
+    pin, lugs = clevis(radius=1e-3)
+    deck, _ = joint_deck(pin, STEEL, lugs, PULL, replace(COARSE, rings=6))
+    assert [len(eye.rings) for eye in deck.eyes] == [10, 10, 10]
+    for eye in deck.eyes:
+        mesh = eye.part.mesh
+        faces = mesh.face(np.flatnonzero(mesh.inner == mesh.inner.min()), 6)
+        r, z = np.hypot(*mesh.nodes[:, :2].T)[faces], mesh.nodes[:, 2][faces]
+        for depth, height in zip(r - D / 2.0, z, strict=True):
+            along = np.polyfit(height, depth, 2)
+            between = np.linspace(height.min(), height.max(), 9)
+            assert np.polyval(along, between).min() > -1e-7
+
+
 def test_forces_of_contact_are_read(tmp_path: Path) -> None:
     path = tmp_path / "job.dat"
     path.write_text(
