@@ -125,7 +125,8 @@ def commands() -> None:
 @click.option(
     "--second-opinion",
     type=click.Choice(["ccx"]),
-    help="Solve every row again with CalculiX on the solid model's mesh, and compare.",
+    help="Solve every row again with CalculiX and compare: on the solid model's mesh; a pin in its "
+    "lugs by contact in three dimensions, which takes minutes.",
 )
 @click.option("--no-cache", is_flag=True, help="Solve all pins again; do not reuse cached results.")
 @click.option("--json", "as_json", is_flag=True, help="Print results.json instead of the table.")

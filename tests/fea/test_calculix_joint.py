@@ -117,7 +117,7 @@ def test_what_this_mesh_lacks_is_refused() -> None:
 
 def test_weights_of_the_outer_surface() -> None:
     """Its area and first moment, of a half; as close as parabolas come to arcs."""
-    mesh = annulus_mesh(0.01, 0.025, np.array([0.01, 0.013, 0.02]), Fineness(sectors=32), True)
+    mesh = annulus_mesh((0.01, 0.025), np.array([0.01, 0.013, 0.02]), Fineness(sectors=32), True)
     _, weights = surface_weights(mesh)
     area = math.pi * 0.025 * 0.01
     assert weights.sum(axis=0) == pytest.approx([area, area * 0.015], rel=1e-5)
