@@ -26,7 +26,7 @@ from fea.joint.records import BandContact, JointResult
 from geometry import ArgumentError, Pin
 
 Meshes = tuple[Fineness, Fineness]
-HALF = Fineness(rings=4, sectors=16, eye=2), Fineness(rings=6, sectors=24, eye=2)
+HALF = Fineness(rings=4, sectors=16, eye=2), Fineness(rings=6, sectors=24, layers=3, eye=2)
 WHOLE = Fineness(rings=4, sectors=8, eye=1), Fineness(rings=6, sectors=16, eye=2)
 SMALL = 1e-3  # of the largest force: what CalculiX's model may lack
 UNLOADED = 1e-6  # of the largest force

@@ -52,4 +52,4 @@ def _mean(ends: Sequence[float], load: Sequence[float], low: float, high: float)
     whole = ends[-1] - ends[0]
     z0, z1 = ends[0] + low * whole, ends[0] + high * whole
     shared = (max(0.0, min(b, z1) - max(a, z0)) for a, b in pairwise(ends))
-    return sum(map(mul, load, shared)) / (z1 - z0)
+    return float(sum(map(mul, load, shared)) / (z1 - z0))

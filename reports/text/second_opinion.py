@@ -10,7 +10,6 @@ from fea.checks.opinions import (
     SAME_LOAD,
     SAME_MAXIMUM,
     SAME_MOMENT,
-    SAME_POINT,
     SAME_STRESS,
     ContactOpinion,
     Opinion,
@@ -198,7 +197,7 @@ def summary(others: Sequence[Opinion], pressed: Sequence[Opinion]) -> str:
     if pressed:
         text += (
             f" Limits for contact: {SAME_MOMENT:.0%} of the largest bending moment and "
-            f"{SAME_POINT:.0%} of the stress at the point of our maximum, each plus the error; "
+            f"{SAME_MAXIMUM:.0%} of the stress at the point of our maximum, each plus the error; "
             f"{SAME_LOAD:.0%} of the load of a lug elsewhere along it."
         )
     return text

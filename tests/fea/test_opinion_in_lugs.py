@@ -53,7 +53,7 @@ def test_what_is_beyond_its_limit_is_complained_of() -> None:
     told = {
         "moment is +11.0% from": replace(AGREED, contact=replace(CONTACT, moment=111.0)),
         "moment is +nan%": replace(AGREED, contact=replace(CONTACT, moment=math.nan)),
-        "maximum is -30.0% from": replace(AGREED, theirs=70.0),
+        "maximum is -40.0% from": replace(AGREED, theirs=60.0),
         "12.0% of the load of A": replace(AGREED, contact=replace(CONTACT, bands=(far,))),
         "no ccx": replace(AGREED, contact=None, failure="no ccx"),
     }
