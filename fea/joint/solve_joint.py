@@ -208,18 +208,8 @@ class JointModel:
 
     @cached_property
     def edges(self) -> tuple[LugEdge, ...]:
-        """Of the bores, rounded where they have an edge radius."""
-        bands = [self.whole.band(lug.connection) for lug in self.lugs]
-        ends = np.array([[b.z0, b.z1] for b in bands])
-        found = []
-        for lug, band in zip(self.lugs, bands, strict=True):
-            exponent = lug_edge_exponent(self.material, lug.bearing)
-            for z in (band.z0, band.z1):
-                gaps = np.abs(ends - z)
-                feature = float(gaps[gaps > 0.0].min())
-                at, rounded = (band.radius, z), lug.edge_radius > 0.0
-                found.append(LugEdge(lug.connection, *at, exponent, feature, rounded))
-        return tuple(found)
+        """Of the bores."""
+        return edges_of(self.whole, self.material, self.lugs)
 
     def joined(self, found: Sequence[Pressed], loads: PressureLoads) -> JointContact:
         """Contact at the instants of some loads, with them."""
@@ -284,6 +274,21 @@ def _directions(forces: Floats) -> list[float]:
     first = (size >= LARGEST * size.max(axis=1, keepdims=True)).argmax(axis=1)
     x, y = forces[np.arange(len(forces)), first].T
     return [float(angle) for angle in np.arctan2(y, x)]
+
+
+def edges_of(pin: Pin, material: Material, lugs: Sequence[Lug]) -> tuple[LugEdge, ...]:
+    """Of the bores of lugs, rounded where they have an edge radius."""
+    bands = [pin.band(lug.connection) for lug in lugs]
+    ends = np.array([[b.z0, b.z1] for b in bands])
+    found = []
+    for lug, band in zip(lugs, bands, strict=True):
+        exponent = lug_edge_exponent(material, lug.bearing)
+        for z in (band.z0, band.z1):
+            gaps = np.abs(ends - z)
+            feature = float(gaps[gaps > 0.0].min())
+            at, rounded = (band.radius, z), lug.edge_radius > 0.0
+            found.append(LugEdge(lug.connection, *at, exponent, feature, rounded))
+    return tuple(found)
 
 
 def _softer(lug: Lug, times: float) -> Lug:

@@ -38,11 +38,13 @@ def results_of(plan: Plan, found: list[Solved]) -> plain.Results:
         for task, made in zip(plan.tasks, found, strict=True)
         for peak, joint in zip(made.peaks, made.joints or [None] * len(made.peaks), strict=True)
     ]
+    opinions = {(o.pin, o.case): o for made in found for o in made.opinions}
     rows.sort(key=lambda row: (pins.index(row[1].pin), cases.index(row[1].case)))
     beam = next((made.beam for made in found if made.beam is not None), None)
     results = _results(study, plan.loads, rows, beam, plan.published, plan.asked.tolerance)
     results = replace(
         results,
+        pins=tuple(replace(p, second_opinion=opinions.get((p.pin, p.case))) for p in results.pins),
         landing=tuple(r for made in found for r in made.landing),
         surfaces=tuple(surface for made in found for surface in made.surfaces),
     )

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
-from fea.checks.calculix_compare import Opinion
+from fea.checks.opinions import Opinion
 from fea.core.memory import allowed_memory, solid_memory
 from fea.core.peak import Peak
 from fea.core.pin_loads import PinLoads
@@ -28,14 +28,14 @@ from reports.data.in_units import Unit, in_units
 from reports.data.results import Field
 
 Keep = Callable[[Field], None]
-Ask = Callable[[Task, tuple[Peak, ...], Tell], tuple[Opinion, ...]]
+Ask = Callable[[Plan, Task, Solved, Tell], tuple[Opinion, ...]]
 
 
 def keep_none(_: Field) -> None:
     """Keep no field. Not a lambda: it is sent to processes that are started anew."""
 
 
-def _ask_none(_: Task, __: tuple[Peak, ...], ___: Tell) -> tuple[Opinion, ...]:
+def _ask_none(_: Plan, __: Task, ___: Solved, ____: Tell) -> tuple[Opinion, ...]:
     return ()
 
 
@@ -52,7 +52,7 @@ def solve_tasks(
     last bit.
 
     keep: called with every field, in the study's units, as soon as it is there. ask: for a second
-    opinion on a task's peaks, with what to report progress to. Both are called in the task's
+    opinion on a task, with what to report progress to. Both are called in the task's
     process. progress: called with what is being done and the part of the work that is behind.
     cache: where tasks that were solved before are found, and the others kept.
 
@@ -96,7 +96,7 @@ def _attempt(
             solved = _solve(plan, task, keep, tell)
         else:
             solved = _solve_once(plan, task, keep, cache, tell)
-        return replace(solved, opinions=ask(task, solved.peaks, tell))
+        return replace(solved, opinions=ask(plan, task, solved, tell))
     except MemoryError:
         return _failed(plan, task, "out of memory; a larger tolerance needs less")
     except ArithmeticError as error:  # MeshError, SolveError and what numpy raises
