@@ -8,8 +8,8 @@ import numpy as np
 
 from fea.core.pin_loads import Floats, PinLoads
 from fea.harmonic.half_section import MeridianPlane
-from pinstress.analysis.thinning import Mask, needed
-from reports.data.surface import HalfSection
+from pinstress.analysis.thinning import needed
+from reports.data.surface import HalfSection, Mask
 
 STATIONS, ROWS = 200, 33  # at most 2.5 times as many stations, of which few are needed
 NEAR = 1e-6  # of the length: how close to a shoulder, on both sides of it, stress is read

@@ -68,12 +68,11 @@ def _surface(
     ]
     keep = np.ones(len(surface.points), dtype=bool)
     if surface.revolved:
-        excluded = np.all([c.excluded for c in cases], axis=0)
         kept = np.any(
             [_own(c, s, surface.points) for c, (s, _, _) in zip(cases, with_fields, strict=True)],
             axis=0,
         )
-        keep = meridian_points(surface, [c.amounts for c in cases], excluded, kept)
+        keep = meridian_points(surface, cases, kept)
     return Surface(
         pin=task.pin.name,
         points=surface.points[keep],

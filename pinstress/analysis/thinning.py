@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fea.core.pin_loads import Floats
 from fea.surface_fields import UnitSurface
+from reports.data.surface import Mask, SurfaceCase
 
-Mask = NDArray[np.bool_]
-
-STRESS = 4e-3  # of the stress at a point, or of LEAST of the largest one there is
+STRESS = 8e-3  # of the stress at a point, or of LEAST of the largest one at the instant
 LEAST = 0.1
+ANGLES = 16
+STRESSES, MOTIONS = slice(0, 5), slice(5, 8)  # of the eight numbers of a surface
+INSTANTS = 8  # of a motion, about, besides the governing one
 MOVED = 5e-3  # of the largest displacement
 PLACE = 2e-4  # of the length
 SHARP = 0.94  # cosine of the turn at a corner, at most
@@ -45,34 +47,44 @@ def needed(at: Floats, values: Floats, allowed: Floats, kept: Mask) -> Mask:
     return keep
 
 
-def meridian_points(
-    surface: UnitSurface, amounts: list[Floats], excluded: Mask, kept: Mask
-) -> Mask:
+def meridian_points(surface: UnitSurface, cases: Sequence[SurfaceCase], kept: Mask) -> Mask:
     """Which points (P,) of a meridian to keep so that its shape, displacements and stresses in all
-    cases stay what they are, but for the stresses that every case excludes.
-
-    amounts: (T, K, 2) of each case. kept: (P,) points that are kept in any case.
+    cases stay what they are, but for the stresses that every case excludes. kept: (P,) points that
+    are kept in any case.
     """
-    x = surface.points
+    x, excluded = surface.points, np.all([c.excluded for c in cases], axis=0)
     size = float(np.ptp(x, axis=0).max())
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(x, axis=0), axis=1))])
     values, allowed = [x[:, [0, 2]]], [np.full((len(x), 2), PLACE * size)]
-    for amount in amounts:
-        most = np.hypot(*np.moveaxis(amount, 2, 0)).max(axis=0)  # (K,)
-        stress, moved = surface.stress * most, surface.displacement * most
-        reach = np.linalg.norm(stress, axis=1).sum(axis=1)
-        reach = np.maximum(reach, LEAST * reach[~excluded].max(initial=0.0)) + np.finfo(float).tiny
-        values += [_flat(stress), _flat(moved)]
-        allowed.append(np.where(excluded, np.inf, STRESS * reach)[:, None])
-        longest = np.linalg.norm(moved, axis=1).sum(axis=1).max() + np.finfo(float).tiny
-        allowed.append(np.full((len(x), 1), MOVED * longest))
-    wide = [np.broadcast_to(a, v.shape) for a, v in zip(allowed, values, strict=True)]
+    for case in cases:
+        for instant in sorted({case.instant, *range(0, len(case.amounts), _step(case))}):
+            stress = np.linalg.norm(_around(surface, case.amounts[instant], STRESSES), axis=1)
+            top = max(stress[~excluded].max(initial=0.0), LEAST * case.maxima.max())
+            values.append(stress)
+            allowed.append(STRESS * np.maximum(stress, LEAST * top))
+            allowed[-1][excluded] = np.inf
+        moved = _around(surface, case.amounts[case.instant], MOTIONS).reshape(len(x), -1)
+        values.append(moved)
+        allowed.append(np.full(moved.shape, MOVED * float(np.abs(moved).max())))
     keep = kept | _corners(x, CLOSE * size) | _ends(excluded)
-    return needed(along, np.concatenate(values, axis=1), np.concatenate(wide, axis=1), keep)
+    # What never acts allows nothing, and misses nothing.
+    within = np.concatenate(allowed, axis=1) + np.finfo(float).tiny
+    return needed(along, np.concatenate(values, axis=1), within, keep)
 
 
-def _flat(fields: Floats) -> Floats:
-    return fields.reshape(len(fields), -1)
+def _step(case: SurfaceCase) -> int:
+    return max(1, len(case.amounts) // INSTANTS)
+
+
+def _around(surface: UnitSurface, amount: Floats, which: slice) -> Floats:
+    """Those of the eight numbers of the surface, (P, C, ANGLES), under amounts (K, 2)."""
+    turns = surface.n * np.linspace(0.0, 2.0 * np.pi, ANGLES, endpoint=False)[:, None]
+    c, s = np.cos(turns), np.sin(turns)
+    first, second = amount.T
+    eight = np.concatenate([surface.stress, surface.displacement], axis=1)[:, which]
+    even = np.array(surface.even)[which, None]
+    found = np.where(even, eight @ (c * first + s * second).T, eight @ (s * first - c * second).T)
+    return np.asarray(found)
 
 
 def _ends(mask: Mask) -> Mask:
