@@ -18,7 +18,6 @@ const short = (value, digits = 6) => written(value, digits).replace(/(\.\d*?)0+(
 
 const product = (a, b) => a.map((row) => b[0].map((_, j) => row.reduce((sum, x, k) => sum + x * b[k][j], 0)));
 const applied = (a, x) => a.map((row) => row.reduce((sum, y, k) => sum + y * x[k], 0));
-const dot = (a, b) => a.reduce((sum, x, k) => sum + x * b[k], 0);
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const unit = (a) => a.map((x) => x / Math.hypot(...a));
 const about = (axis, angle) => {
@@ -29,6 +28,11 @@ const about = (axis, angle) => {
   out[j][i] = s;
   return out;
 };
+// Rows right, up and towards the viewer, with z across the picture.
+const facing = (direction) => {
+  const towards = unit(direction), up = unit(cross([0, 0, 1], towards));
+  return [cross(up, towards), up, towards];
+};
 const NONE = [0, 0, 0], RED = "#d01c1c", NOWHERE = -1e30;
 
 const startView = (root, paint) => {
@@ -37,7 +41,7 @@ const startView = (root, paint) => {
   const one = (name) => root.querySelector(`[data-is="${name}"]`);
   const canvas = root.querySelector("canvas"), flat = canvas.getContext("2d");
   const allowed = strength && data.required ? strength / data.required : null;
-  let turn, zoom, middle, chosen, surface, mesh, shape, cut, exaggeration = 0, drawn = 0, largestMoved, longest, probe, drawnAt;
+  let turn, first, zoom, middle, chosen, surface, mesh, shape, cut, exaggeration = 0, drawn = 0, largestMoved, longest, probe, drawnAt;
 
   const instant = () => (chosen.times ? Number(one("time").value) : chosen.instant);
   const governs = () => instant() === chosen.instant;
@@ -45,15 +49,14 @@ const startView = (root, paint) => {
   const pressed = () => one("colour").value === "pressure";
   const opened = () => one("cut").checked;
 
-  // Facing the maximum; of a pin that is cut open, the section.
+  // Facing the maximum, from the end from which nothing hides it; of a pin that is cut open, the section.
   const base = () => {
-    if (!opened()) return chosen.turn;
-    const outwards = [Math.cos(chosen.start), Math.sin(chosen.start), 0], end = Math.sign(chosen.turn[2][2]) || 1;
-    const towards = unit(chosen.section.away.map((x, i) => x + 0.3 * outwards[i] + (i === 2 ? 0.3 * end : 0)));
-    const up = unit(cross([0, 0, 1], towards));
-    return [cross(up, towards), up, towards];
+    const outwards = [Math.cos(chosen.start), Math.sin(chosen.start), 0], [x, y, z] = chosen.turn[2];
+    if (opened()) return facing(chosen.section.away.map((c, i) => c + 0.3 * outwards[i] + (i === 2 ? 0.3 * Math.sign(z) : 0)));
+    return [chosen.turn, facing([x, y, -z]), facing(outwards)].find(clear) ?? chosen.turn;
   };
-  const reset = () => { turn = base(); zoom = 1; middle = data.centre; };
+  const clear = ([, , towards]) => !hitOf(mesh, chosen.location.map((c, i) => c + 1e-3 * data.size * towards[i]), towards);
+  const reset = () => { turn = first = base(); zoom = 1; middle = data.centre; };
 
   const choose = () => {
     chosen = cases[Number(one("case").value)];
@@ -125,7 +128,9 @@ const startView = (root, paint) => {
     one("ticks").replaceChildren(...clear, tick(1, written(factors() ? least : top(), 3), "end"));
     const marks = pressed() || !strength ? [] : [[strength, "yield", "black"], ...(allowed ? [[allowed, `required factor ${short(data.required)}`, "white"]] : [])];
     const on = marks.filter(([stress]) => along(stress) >= 0 && along(stress) <= 1), off = marks.filter((mark) => !on.includes(mark));
+    one("marks").style.height = `${1.4 * on.length}em`;
     one("marks").replaceChildren(...on.map(([stress, name, line]) => tick(along(stress), factors() ? name : `${name} (${line} line)`, along(stress) > 0.6 ? "end" : "")));
+    [...one("marks").children].forEach((mark, k) => { mark.style.height = `${1.4 * (on.length - k)}em`; }); // one row each
     one("off").textContent = off.length ? `not on the scale: ${off.map(([stress, name]) => `${name} at ${written(stress, 3)}`).join(", ")}` : "";
     exaggeration = largestMoved > 0 ? (0.15 * data.size * Number(one("deform").value)) / 100 / largestMoved : 0;
     one("deformed").textContent = exaggeration ? `× ${written(exaggeration, 3)}` : "not shown";
@@ -148,7 +153,7 @@ const startView = (root, paint) => {
     canvas.height = height;
     // The pin and its loads at the governing instant fit the initial view.
     const tails = forcesAt(chosen, chosen.instant).filter((f) => f.size).map((f) => arrowOf(f, longest, data.size)[0]);
-    const half = [...data.box, ...tails].map((c) => applied(base(), c.map((x, i) => x - data.centre[i])));
+    const half = [...data.box, ...tails].map((c) => applied(first, c.map((x, i) => x - data.centre[i])));
     const reach = (i) => Math.max(...half.map((c) => Math.abs(c[i])));
     const fit = (0.88 * zoom) / Math.max(reach(0), (reach(1) * width) / height);
     const scale = [fit, (fit * width) / height, -0.3 / data.size];

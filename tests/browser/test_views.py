@@ -68,6 +68,11 @@ def marked(root: Any) -> tuple[float, float]:
     return float(told.get_attribute("data-x")), float(told.get_attribute("data-y"))
 
 
+def changed(page: Any, root: Any, before: str) -> None:
+    """Wait until the picture is another one."""
+    wait(page, lambda: pixels(page, root) != before)
+
+
 def test_a_pin_is_drawn_in_many_colours_and_turns(page: Any) -> None:
     from selenium.webdriver import ActionChains, Keys
 
@@ -207,7 +212,7 @@ def test_the_keyboard_does_it_all(page: Any, gear_run: Path) -> None:
         for key in keys[:-1]:
             pressing.key_up(key)
         pressing.perform()
-        wait(page, lambda last=before: pixels(page, root) != last)
+        changed(page, root, before)
         before = pixels(page, root)
     part(root, "cut").send_keys(Keys.SPACE)
     assert part(root, "cut").is_selected()
