@@ -18,7 +18,7 @@ when to stop.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -26,7 +26,7 @@ import numpy as np
 
 from fea.core.pin_loads import AnyLoads, require_solved
 from fea.harmonic.fields import MeridianFields
-from fea.harmonic.trigonometric_maximum import highest_crest
+from fea.harmonic.trigonometric_maximum import at_most, highest_crest
 from geometry.arrays import Floats, Ints, Mask
 
 Instants = slice | Ints
@@ -35,6 +35,7 @@ SAMPLES_PER_WAVE = 5  # of von Mises squared
 FIRST = 16  # pairs of points and instants that are sampled to begin with
 CHUNK = 4096  # pairs sampled at once
 POINTS = 64  # points looked at together
+LOWEST = 4  # harmonics whose sum is sampled for a closer bound
 FEW = 4  # unit loads of a harmonic: up to so many, quadratic forms of them take less than sums
 EVERY = slice(None)
 EVEN = 3  # so many of the five numbers go as cos psi, the others as sin psi
@@ -90,8 +91,11 @@ class Circumference:
         """At least the largest von Mises stress over the circumference, (J, T) Pa, at points (J,)
         and instants; exactly it where only one harmonic acts.
         """
+        return self._sum(points, self._waves, instants)
+
+    def _sum(self, points: Ints, waves: Sequence[slice], instants: Instants) -> Floats:
         out = np.zeros((len(points), len(self._first[instants])))
-        for wave in self._waves:
+        for wave in waves:
             out += self._alone(points, wave, instants)
         return out
 
@@ -173,7 +177,7 @@ class Circumference:
             if not hopeful.any():
                 continue
             bound = np.full((len(here), self.count), -1.0)
-            bound[:, hopeful] = self.bound(here, np.flatnonzero(hopeful))
+            bound[:, hopeful] = self._closer(here, hopeful, best.max() if together else best)
             if len(self._waves) < 2:  # the bound is the maximum
                 highest = bound.argmax(axis=0)
                 value = bound[highest, np.arange(self.count)]
@@ -189,6 +193,25 @@ class Circumference:
                 more = value > best[t]
                 best[t[more]], point[t[more]] = value[more], here[i[more]]  # the last one stays
         return best, point
+
+    def _closer(self, points: Ints, instants: Mask, beat: Floats | float) -> Floats:
+        """A bound (J, T) Pa for instants of a mask, closer where it exceeds `beat` and many
+        harmonics act: of the lowest ones together, sampled, and of each of the others.
+        """
+        at = np.flatnonzero(instants)
+        low, high = self._waves[:LOWEST], self._waves[LOWEST:]
+        if not high:
+            return self.bound(points, at)
+        rest = self._sum(points, high, at)
+        out = rest + self._sum(points, low, at)
+        i, t = np.nonzero(out > (beat[at] if isinstance(beat, np.ndarray) else beat))
+        degree = 2 * int(self._n[low[-1].start])
+        for k in range(0, len(i), CHUNK):
+            here, now = i[k : k + CHUNK], t[k : k + CHUNK]
+            samples = self._samples(points[here], at[now], low, degree)
+            together = np.sqrt(at_most(samples, degree)) + rest[here, now]
+            out[here, now] = np.minimum(out[here, now], together)
+        return out
 
     def _in_order(self, rows: Ints) -> tuple[Ints, Floats]:
         """Points, those first that can reach most, and how much, Pa."""
@@ -241,28 +264,30 @@ class Circumference:
 
     def _round(self, points: Ints, instants: Ints, beat: Floats) -> tuple[Floats, Floats]:
         n = self._n[[wave.start for wave in self._waves]]
-        back, forth = self._parts(points, instants)  # (J, 5, W)
+        back, forth = self._parts(points, instants, self._waves)  # (J, 5, W)
         if len(n) < 2:
             return _one_wave(n, back, forth)
         degree = 2 * int(n[-1])  # of von Mises squared
-        even = n[:, None] * np.linspace(0.0, 2.0 * np.pi, SAMPLES_PER_WAVE * degree, endpoint=False)
-        found = np.concatenate([back, forth], axis=2) @ np.concatenate([np.cos(even), np.sin(even)])
-        angle = highest_crest(np.square(found).sum(axis=1), degree, beat**2)
+        angle = highest_crest(_sampled(n, back, forth, degree), degree, beat**2)
         there = n * angle[:, None]
         found = np.einsum("jiw,jw->ji", back, np.cos(there))
         found += np.einsum("jiw,jw->ji", forth, np.sin(there))
         return np.linalg.norm(found, axis=1), angle
 
-    def _parts(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
+    def _samples(self, points: Ints, instants: Ints, waves: Sequence[slice], degree: int) -> Floats:
+        """Von Mises squared (J, A), Pa^2, of some harmonics at even angles."""
+        n = self._n[[wave.start for wave in waves]]
+        return _sampled(n, *self._parts(points, instants, waves), degree)
+
+    def _parts(self, points: Ints, instants: Ints, waves: Sequence[slice]) -> tuple[Floats, Floats]:
         """Of pairs of points and instants what goes as cos n theta and as sin n theta, by wave,
         (J, 5, W) each.
         """
-        five = self._five[points]
-        back, forth = (np.empty((len(points), 5, len(self._waves))) for _ in range(2))
-        for w, wave in enumerate(self._waves):
+        back, forth = (np.empty((len(points), 5, len(waves))) for _ in range(2))
+        for w, wave in enumerate(waves):
+            five = self._five[:, :, wave][points]
             a, b = (
-                np.einsum("jik,jk->ji", five[:, :, wave], x[instants, wave])
-                for x in (self._first, self._second)
+                (five @ x[instants, wave][:, :, None])[:, :, 0] for x in (self._first, self._second)
             )
             back[:, :EVEN, w], back[:, EVEN:, w] = a[:, :EVEN], -b[:, EVEN:]
             forth[:, :EVEN, w], forth[:, EVEN:, w] = b[:, :EVEN], a[:, EVEN:]
@@ -303,6 +328,14 @@ class Circumference:
             forth = first[:, None] * s[:, None] - second[:, None] * c[:, None]
             out += np.where(_BACK, back, forth)
         return out
+
+
+def _sampled(n: Ints, back: Floats, forth: Floats, degree: int) -> Floats:
+    """Von Mises squared (J, A) at even angles, of what goes as cos and sin n theta (J, 5, W)."""
+    angles = np.linspace(0.0, 2.0 * np.pi, SAMPLES_PER_WAVE * degree, endpoint=False)
+    turns = n[:, None] * angles
+    found = np.concatenate([back, forth], axis=2) @ np.concatenate([np.cos(turns), np.sin(turns)])
+    return np.asarray(np.square(found, out=found).sum(axis=1))
 
 
 def _forms(form: Floats, products: Floats) -> Floats:

@@ -27,7 +27,7 @@ def highest_crest(samples: Floats, degree: int, beat: Floats | float = -np.inf) 
     """
     count = samples.shape[1]
     best = samples.argmax(axis=1) * (2.0 * np.pi / count)
-    hopeful = np.flatnonzero(_most(samples, degree) > beat)
+    hopeful = np.flatnonzero(at_most(samples, degree) > beat)
     k = np.arange(degree + 1)
     c = np.fft.rfft(samples[hopeful], axis=1)[:, : degree + 1] / count
     count *= FINER
@@ -35,7 +35,7 @@ def highest_crest(samples: Floats, degree: int, beat: Floats | float = -np.inf) 
     samples, slope = (np.fft.irfft(x, count, axis=1) * count for x in (c, 1j * k * c))
     c[:, 1:] *= 2.0
     top = samples.max(axis=1)
-    near = samples >= (2.0 * top - _most(samples, degree))[:, None]
+    near = samples >= (2.0 * top - at_most(samples, degree))[:, None]
     near |= np.roll(near, -1, axis=1)
     row, at = np.nonzero(near & (slope > 0.0) & (np.roll(slope, -1, axis=1) <= 0.0))
     before, after = slope[row, at], slope[row, (at + 1) % count]
@@ -47,7 +47,7 @@ def highest_crest(samples: Floats, degree: int, beat: Floats | float = -np.inf) 
     return np.asarray(best)
 
 
-def _most(samples: Floats, degree: int) -> Floats:
+def at_most(samples: Floats, degree: int) -> Floats:
     """What polynomials that have these samples (J, A) reach at most, (J,)."""
     arch = degree * np.pi / samples.shape[1]
     top = samples.max(axis=1)
