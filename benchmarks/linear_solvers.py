@@ -123,11 +123,11 @@ def _matrix(across: float, file: Path) -> dict[str, float]:
     """Write the matrix of a cantilever with a fillet, and the nodes of its unknowns."""
     from benchmarks.speed import PIN, STEEL
     from fea.solid.assembly import Discretisation
-    from fea.solid.boundary import held_nodes
+    from fea.solid.boundary import clamped_nodes
     from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 
     space = Discretisation(solid_mesh(PIN, MeshSize(across, arc=1.5)).mesh)
-    fixed = (3 * held_nodes(space, ("start",))[:, None] + np.arange(3)).ravel()
+    fixed = (3 * clamped_nodes(space, ("start",))[:, None] + np.arange(3)).ravel()
     free = np.setdiff1d(np.arange(space.unknowns), fixed)
     K = space.stiffness(STEEL)[free][:, free]
     np.savez(file, data=K.data, indices=K.indices, indptr=K.indptr, free=free, nodes=space.nodes)

@@ -254,7 +254,7 @@ class _Balance:
         try:
             n = np.abs(contact_forces(free, feedback))
         except JammingError as error:
-            raise self._told(error, feedback, owner) from None
+            raise self._named(error, feedback, owner) from None
         friction = np.zeros((len(f), len(sliders)))
         for i, k in enumerate(owner):
             friction[:, k] += sliders[k].friction * opposes[:, k] * n[:, i]
@@ -262,7 +262,7 @@ class _Balance:
             f = f + friction[:, k, None] * response[k]
         return friction, f
 
-    def _told(self, error: JammingError, feedback: Floats, owner: list[int]) -> JammingError:
+    def _named(self, error: JammingError, feedback: Floats, owner: list[int]) -> JammingError:
         """The same with the sliders named and the time."""
         t = int(error.instants[0])
         grips = np.abs(np.diagonal(feedback[t]))

@@ -108,9 +108,9 @@ def _peaks(found: Resolved, at: Callable[[Floats], Reactions], unit: list[float]
     exact = vectors[rows, rows]
     limit = found.interpolate(when)[:, : 6 * count].reshape(len(when), -1, 3)[rows, rows]
     size = np.linalg.norm(exact, axis=1)
-    told = np.abs(size - best) <= AGREES * best
-    value = np.where(told, size, best) * np.repeat(unit, count)
-    vector = np.where(told[:, None], exact, limit) * unit[0]
+    agrees = np.abs(size - best) <= AGREES * best
+    value = np.where(agrees, size, best) * np.repeat(unit, count)
+    vector = np.where(agrees[:, None], exact, limit) * unit[0]
 
     def named(part: slice) -> dict[str, Extreme]:
         pairs = zip(names, value[part].tolist(), when[part].tolist(), strict=True)

@@ -39,8 +39,9 @@ Ints = NDArray[np.int64]
 
 SAME_DISPLACEMENT = 1e-5  # of the largest; CalculiX prints 7 digits
 SAME_STRESS = 1e-4  # of the largest; CalculiX prints 6 digits of each component
-# Of the answer, beside its error: what the solid model's first mesh may be off, at a fillet or
-# where a singularity ends (22 % at most in studies/grenier2008.toml). It finds mistakes only.
+# Allowed deviation from the answer, in addition to its error, of the solid model's first mesh at a
+# fillet or where a singularity ends (22 % at most in studies/grenier2008.toml). It finds mistakes
+# only.
 SAME_MAXIMUM = 0.30
 
 
@@ -65,7 +66,7 @@ class Opinion:
     failure: str = ""
 
     @property
-    def beside(self) -> float | None:
+    def deviation(self) -> float | None:
         """How far their maximum is from the ladder's answer, relative to it."""
         if self.theirs is None or not self.answer:
             return None
@@ -83,11 +84,11 @@ class Opinion:
         ):
             if value is None or not value <= limit:
                 said.append(f"{what} on the same mesh differ by {value:.1e}, allowed {limit:.0e}")
-        if self.answer and self.beside is not None:
+        if self.answer and self.deviation is not None:
             limit = SAME_MAXIMUM + (self.error or 0.0) / self.answer
-            if not abs(self.beside) <= limit:
+            if not abs(self.deviation) <= limit:
                 said.append(
-                    f"its maximum is {self.beside:+.1%} from the answer, allowed {limit:.1%}"
+                    f"its maximum is {self.deviation:+.1%} from the answer, allowed {limit:.1%}"
                 )
         return "; ".join(said)
 
@@ -106,13 +107,13 @@ def second_opinions(
 
     Raises: MeshError, SolveError from our own side; a failure of CalculiX is in the opinion.
     """
-    held = tuple(pin.surface(name) for name in clamps)
+    constrained = tuple(pin.surface(name) for name in clamps)
     instants = {p.case: p for p in peaks if p.verdict != "rigid"}
     live = tuple(case for case in cases if case.case in instants)
     if not live:
         return ()
-    singularities = singularities_of(pin, material, held, live, distance)
-    solution = solid_solution(pin, material, held, live, singularities, MeshSize(), distance)
+    singularities = singularities_of(pin, material, constrained, live, distance)
+    solution = solid_solution(pin, material, constrained, live, singularities, MeshSize(), distance)
     out = []
     for case in live:
         progress(f"pin {pin.name}, {case.case}, CalculiX")
@@ -157,7 +158,7 @@ def _compared(
 
 
 def _outside(solution: SolidSolution) -> Ints:
-    """Nodes outside of the singular places of a body of revolution, in which all models also look
+    """Nodes outside of the singular places of a body of revolution, where all models look
     inside, where such a singularity ends; of any other body those of its surface.
     """
     fields = solution.fields

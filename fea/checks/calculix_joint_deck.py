@@ -141,14 +141,14 @@ class JointDeck:
         mesh, E = self.pin.mesh, self.pin.material.youngs_modulus
         length = float(np.ptp(mesh.nodes[:, 2]))
         weak = WEAK * E * length
-        held = [(1 + n, axis, weak) for n in _ends(mesh) for axis in self.axes]
+        constrained = [(1 + n, axis, weak) for n in _ends(mesh) for axis in self.axes]
         for b, eye in enumerate(self.eyes):
             shift, tilt = self._auxiliary(b)
-            held += [(shift, axis, weak) for axis in self.axes if b]
+            constrained += [(shift, axis, weak) for axis in self.axes if b]
             if np.isfinite(eye.tilt):
                 stiff = max(eye.tilt, weak * length**2)
-                held += [(tilt, axis, stiff) for axis in self.axes]
-        for k, (node, axis, stiffness) in enumerate(held):
+                constrained += [(tilt, axis, stiff) for axis in self.axes]
+        for k, (node, axis, stiffness) in enumerate(constrained):
             yield f"*ELEMENT, TYPE=SPRING1, ELSET=SPRING{k}"
             yield f"{number + k}, {node}"
             yield f"*SPRING, ELSET=SPRING{k}"

@@ -20,7 +20,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import AnyLoads, PinLoads
 from fea.singular.probes import interpolation
 from fea.solid.assembly import Discretisation
-from fea.solid.boundary import SurfaceMesh, held_nodes, resultants, surface
+from fea.solid.boundary import SurfaceMesh, clamped_nodes, resultants, surface
 from fea.solid.nodal_loads import Unit, closed, nodal_loads, part
 from fea.solid.stress_recovery import nodal_stress, with_known_traction
 from geometry import ArgumentError, PinLike
@@ -122,7 +122,7 @@ class SolidModel:
     def fixed(self) -> Ints:
         """Held unknowns."""
         if self.clamps:
-            nodes = held_nodes(self.space, self.clamps)
+            nodes = clamped_nodes(self.space, self.clamps)
             return (3 * nodes[:, None] + np.arange(3)).ravel()
         return _isostatic(self.space.nodes)
 
@@ -138,11 +138,11 @@ class SolidModel:
             pressing = np.array([not load.shears for load, _ in units])
             loads = closed(self.pin, self.space, boundary, loads, pressing)
         displacement, support = self._displace(loads.forces)
-        held = np.zeros(len(boundary.facets), dtype=bool)
+        clamped = np.zeros(len(boundary.facets), dtype=bool)
         for name in self.clamps:
-            held |= np.isin(boundary.facets, self.space.mesh.boundaries[name])
+            clamped |= np.isin(boundary.facets, self.space.mesh.boundaries[name])
         stress = nodal_stress(self.space, self.material, displacement)
-        stress = with_known_traction(stress, boundary, loads.traction, held)
+        stress = with_known_traction(stress, boundary, loads.traction, clamped)
         return UnitFields(
             self.space,
             boundary,

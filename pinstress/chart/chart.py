@@ -79,8 +79,8 @@ def plan_chart(study: Study, pin: str, case: str, tolerance: float | None = None
     problem = Problem(task.pin, task.material, clamps, solution.loads, asked.distance)
     if not peak.max_von_mises:
         why = peak.note if peak.verdict == "rigid" else "its loads make no stress"
-        told = f"pin {pin}, case {case}: there is nothing to chart: {why}"
-        raise study.error(told, at=f"pin.{pin}")
+        text = f"pin {pin}, case {case}: there is nothing to chart: {why}"
+        raise study.error(text, at=f"pin.{pin}")
     beam_error = None
     if isinstance(task.pin, Pin):
         with suppress(ValueError, ArithmeticError):  # the chart will say why

@@ -13,7 +13,9 @@ from pinstress.schema.pins import LugTable
 from pinstress.study.file import Study
 
 EYE = 2.5  # outer diameter over the band's
-HELD = 0.8  # of the outer diameter: how far from the bore's middle the link holds its eye
+CLAMP_DISTANCE = (
+    0.8  # of the outer diameter: distance from the bore's centre to where the link clamps the eye
+)
 
 
 def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]:
@@ -73,4 +75,4 @@ def _lug(study: Study, pin: Pin, connection: str, given: LugTable, of_pin: Mater
 
 def _bending(material: Material, outer: float, thickness: float) -> float:
     """Of a shank as wide as the eye, N m/rad."""
-    return material.youngs_modulus * outer * thickness**3 / (12.0 * HELD * outer)
+    return material.youngs_modulus * outer * thickness**3 / (12.0 * CLAMP_DISTANCE * outer)

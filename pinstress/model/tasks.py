@@ -1,4 +1,4 @@
-"""What is to be solved: each pin, how it is held, and its loads in every case."""
+"""What is to be solved: each pin, its constraints, and its loads in every case."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def tasks(study: Study, pins: list[PinLike], loads: dict[str, CaseLoads]) -> lis
 
 
 def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, CaseLoads]) -> Task:
-    held = {pin.surface(c) for c in clamps}
+    constrained = {pin.surface(c) for c in clamps}
     made_of = material(study, study.table.pin[pin.name].material)
     cases: list[PinLoads] = []
     left_out: dict[str, tuple[str, ...]] = {}
@@ -74,13 +74,13 @@ def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, 
         here = [c for c in pin.connections if c in given.reactions.connections]
         if not here or study.clamps(pin.name, case) != clamps:
             continue
-        applied = [c for c in here if c not in held]
+        applied = [c for c in here if c not in constrained]
         if not applied:
             raise study.error(
                 f"case.{case}: every load on pin {pin.name} is at a clamped band "
                 f"({', '.join(here)}), so nothing loads it; clamp something else"
             )
-        left_out[case] = tuple(c for c in here if c in held)
+        left_out[case] = tuple(c for c in here if c in constrained)
         spread = study.table.case[case].distribution
         heavy = not clamps and bool(made_of.density)
         made = partial(_pin_loads, case, given, applied, spread, heavy)
@@ -91,8 +91,8 @@ def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, 
             cases.append(between[case](given.moving.instants))
         if given.range is not None:
             ranges[case] = made(given.range.reactions)
-    held_by = lugs(study, pin, clamps) if cases else ()
-    return Task(pin, made_of, clamps, tuple(cases), left_out, ranges, between, held_by)
+    in_lugs = lugs(study, pin, clamps) if cases else ()
+    return Task(pin, made_of, clamps, tuple(cases), left_out, ranges, between, in_lugs)
 
 
 def _at(made: Callable[..., PinLoads], moving: MovingLoads, times: Floats) -> PinLoads:

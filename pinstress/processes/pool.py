@@ -91,7 +91,7 @@ def preload(*modules: str) -> None:
     Interrupts wait until then: one in the middle of VTK's import crashes it.
     """
     _preloaded.extend(modules)
-    with interrupts.held(), elsewhere():
+    with interrupts.deferred(), elsewhere():
         for name in modules:
             with suppress(ImportError):
                 import_module(name)
@@ -132,9 +132,9 @@ def side_by_side(
                         child.take(waiting.pop(), jobs)
                     else:
                         running.pop(pipe).close()
-            told = "; ".join(child.doing for child in running.values())
+            doing = "; ".join(child.doing for child in running.values())
             interrupts.require_none()
-            progress(told, len(found) / len(jobs))
+            progress(doing, len(found) / len(jobs))
     finally:
         _end(list(running.values()))
     return [found[i] for i in range(len(jobs))]
@@ -229,12 +229,12 @@ def _do_jobs(jobs: Sequence[Job[T]], pipe: Connection) -> None:
         try:
             say("returns", job.work(lambda message: say("tells", message)))
         except Exception as error:
-            told = "".join(traceback.format_exception(error))
-            error.add_note(f"{job.name}, in its own process:\n{told}")
+            text = "".join(traceback.format_exception(error))
+            error.add_note(f"{job.name}, in its own process:\n{text}")
             try:
                 say("raises", error)
             except (pickle.PicklingError, TypeError, AttributeError):
-                say("raises", RuntimeError(f"{job.name}, in its own process:\n{told}"))
+                say("raises", RuntimeError(f"{job.name}, in its own process:\n{text}"))
 
 
 def _leave(*_: object) -> None:

@@ -16,7 +16,7 @@ from pinstress.schema.shown import shown
 from pinstress.schema.tables import StudyTable
 from pinstress.schema.types import KINDS
 from pinstress.schema.units import SYSTEMS, UnitSystem
-from pinstress.study.errors import MOST_TOLD, InputError, Wrong, located, study_error
+from pinstress.study.errors import MOST_LISTED, InputError, Wrong, located, study_error
 from pinstress.study.file_names import same_files
 from pinstress.study.limits import too_many
 from pinstress.study.plausible import questions
@@ -58,9 +58,9 @@ class Study:
         """The first of its questions, each with its line, and how many more there are."""
         if not self.questions:
             return ()
-        told = located(self.path, self._lines, [Wrong(q) for q in self.questions], MOST_TOLD)
-        more = len(self.questions) - len(told)
-        return (*told, f"{self.path}: and {more:,} more") if more else tuple(told)
+        listed = located(self.path, self._lines, [Wrong(q) for q in self.questions], MOST_LISTED)
+        more = len(self.questions) - len(listed)
+        return (*listed, f"{self.path}: and {more:,} more") if more else tuple(listed)
 
     @property
     def system(self) -> UnitSystem:
@@ -77,7 +77,7 @@ class Study:
         """Hash of the study file."""
         return hashlib.sha256(self.text.encode()).hexdigest()
 
-    def beside(self, name: str) -> Path:
+    def path_to(self, name: str) -> Path:
         """A file that the study names. Raises: InputError for what can be no file's name."""
         if "\0" in name or len(name) > LONGEST_PATH:
             raise self.error(f"{shown(name)} is not a file name", code="not-a-file-name")

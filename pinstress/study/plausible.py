@@ -63,9 +63,9 @@ class Stated:
 def questions(table: StudyTable, raw: dict[str, Any], system: UnitSystem) -> tuple[str, ...]:
     """What is hardly meant, each with the key and the likely unit. raw: what the table is from."""
     return tuple(
-        told
+        question
         for kind, stated, high in _numbers(table, raw)
-        if (told := _question(kind, stated, high, system))
+        if (question := _question(kind, stated, high, system))
     )
 
 

@@ -55,7 +55,7 @@ def write_second_opinion(opinions: Sequence[Opinion], path: Path, stress: float,
                 scaled(o.theirs),
                 scaled(o.answer),
                 scaled(o.error),
-                None if o.beside is None else 1.0 + o.beside,
+                None if o.deviation is None else 1.0 + o.deviation,
                 not o.complaint,
                 unit,
                 o.complaint,
@@ -100,7 +100,7 @@ def print_second_opinion(
             cell(o.theirs),
             cell(o.answer),
             cell(o.error, 2),
-            engineering(None if o.beside is None else 1.0 + o.beside, 3),
+            engineering(None if o.deviation is None else 1.0 + o.deviation, 3),
             Text("differs", "red") if o.complaint else Text("agrees", "green"),
         )
     console.print()
