@@ -69,7 +69,10 @@ def prepare(
     Raises: InputError for bad input.
     """
     if not isinstance(study, Study):
-        raise InputError(f"{shown(study)} is no study; pinstress.load_study reads one from a file")
+        raise InputError(
+            f"{shown(study)} is no study; pinstress.load_study reads one from a file",
+            code="not-a-study",
+        )
     names = select(study.table.pin, pins, "pin")
     chosen = select(study.table.case, cases, "case")
     asked = _asked(study, require_model(model), require_tolerance(tolerance), memory)
@@ -95,6 +98,7 @@ def prepare(
                 f"pin {task.pin.name} is no body of revolution, which the "
                 f"{asked.model} model needs: use auto or solid",
                 at=f"pin.{task.pin.name}",
+                code="not-of-revolution",
             )
         if asked.model in ("beam", "solid") and task.lugs:
             raise study.error(

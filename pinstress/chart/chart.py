@@ -80,7 +80,7 @@ def plan_chart(study: Study, pin: str, case: str, tolerance: float | None = None
     if not peak.max_von_mises:
         why = peak.note if peak.verdict == "rigid" else "its loads make no stress"
         text = f"pin {pin}, case {case}: there is nothing to chart: {why}"
-        raise study.error(text, at=f"pin.{pin}")
+        raise study.error(text, at=f"pin.{pin}", code="nothing-to-chart")
     beam_error = None
     if isinstance(task.pin, Pin):
         with suppress(ValueError, ArithmeticError):  # the chart will say why

@@ -53,12 +53,15 @@ def tasks(study: Study, pins: list[PinLike], loads: dict[str, CaseLoads]) -> lis
             if task.loads:
                 out.append(task)
     if not study.table.pin:
-        raise study.error("the study has no pins; pinstress loads gives the reactions alone")
+        raise study.error(
+            "the study has no pins; pinstress loads gives the reactions alone", code="no-pins"
+        )
     if not out:
         many = "s" if len(loads) > 1 else ""
         raise study.error(
             f"case{many} {', '.join(loads)} {'do' if many else 'does'} not load "
-            f"pin{'s' if len(pins) > 1 else ''} {', '.join(pin.name for pin in pins)}"
+            f"pin{'s' if len(pins) > 1 else ''} {', '.join(pin.name for pin in pins)}",
+            code="not-loaded",
         )
     return out
 
@@ -78,7 +81,8 @@ def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, 
         if not applied:
             raise study.error(
                 f"case.{case}: every load on pin {pin.name} is at a clamped band "
-                f"({', '.join(here)}), so nothing loads it; clamp something else"
+                f"({', '.join(here)}), so nothing loads it; clamp something else",
+                code="not-loaded",
             )
         left_out[case] = tuple(c for c in here if c in constrained)
         spread = study.table.case[case].distribution

@@ -32,7 +32,10 @@ def study_from(
     if isinstance(tables, str):
         return parse_study(path, tables)
     if not isinstance(tables, Mapping):
-        raise InputError(f"{shown(tables)} is not a study: give a dict or the text of a study file")
+        raise InputError(
+            f"{shown(tables)} is not a study: give a dict or the text of a study file",
+            code="not-a-study",
+        )
     return parse_study(path, tomlkit.dumps(_plain(tables, name)), located=False)
 
 
@@ -62,12 +65,14 @@ def _parts(study: Study, key: str) -> list[str | int]:
     while at < len(key):
         match = PART.match(key, at)
         if match is None:
-            raise study.error(f"{shown(key)} is no key: write pin.E.profile[2].diameter, say")
+            raise study.error(
+                f"{shown(key)} is no key: write pin.E.profile[2].diameter, say", code="not-a-key"
+            )
         found.append(match[1] if match[1] is not None else match[2])
         found += [int(i) - 1 for i in INDEX.findall(match[3])]
         at = match.end()
     if not found:
-        raise study.error("'' is no key")
+        raise study.error("'' is no key", code="not-a-key")
     return found
 
 
@@ -80,7 +85,9 @@ def _inside(study: Study, table: Any, part: str | int, key: str) -> Any:
         return table[part]
     except (KeyError, IndexError, TypeError):
         there = part + 1 if isinstance(part, int) else part
-        raise study.error(f"{key}: the study has no {shown(there)} there") from None
+        raise study.error(
+            f"{key}: the study has no {shown(there)} there", code="unknown-key"
+        ) from None
 
 
 def _plain(value: Any, key: str) -> Any:
@@ -95,4 +102,7 @@ def _plain(value: Any, key: str) -> Any:
         return [_plain(v, f"{key}[{i}]") for i, v in enumerate(value, 1)]
     if isinstance(value, os.PathLike):
         return os.fspath(value)
-    raise InputError(f"{key}: {shown(value)} is no value of a study: give a number, text or table")
+    raise InputError(
+        f"{key}: {shown(value)} is no value of a study: give a number, text or table",
+        code="not-a-value",
+    )
