@@ -158,7 +158,7 @@ def _compared(
 
 
 def _outside(solution: SolidSolution) -> Ints:
-    """Nodes outside of the singular places of a body of revolution, where all models look
+    """Nodes outside the excluded zones of a body of revolution, where all models search
     inside, where such a singularity ends; of any other body those of its surface.
     """
     fields = solution.fields

@@ -1,7 +1,7 @@
 """An input deck for CalculiX: a pin and its lugs in frictionless contact, surface to surface.
 
 The pin is the slave, ring by ring, so that CalculiX prints the force on every ring; the bore of a
-lug is the master. A lug is held as in fea.joint: on its outer surface a traction of constant
+lug is the master. A lug is supported as in fea.joint: on its outer surface a traction of constant
 direction, linear along z, which is what *EQUATION of the mean motion of that surface makes of a
 force or a spring on an auxiliary node.
 """
@@ -39,7 +39,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Eye:
-    """A lug as it is held: force (2,) N of its link on it; tilt: N m/rad; inf, 0 as of fea.joint's
+    """Support of a lug: force (2,) N of its link on it; tilt: N m/rad; inf, 0 as of fea.joint's
     Lug. rings: the elements of the pin on each of its rings.
     """
 

@@ -42,7 +42,7 @@ BORED_FOR_THE_PIN: Mapping[str, float] = MappingProxyType({})
 
 
 def net_section_stress(force: float, outer: float, bore: float, thickness: float) -> float:
-    """Tension beside the bore, Pa; N, and diameters and thickness in m.
+    """Net-section tension at the bore, Pa; N, and diameters and thickness in m.
 
     Raises: ArgumentError where the eye is not wider than its bore. Source: as the module.
     """

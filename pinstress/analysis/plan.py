@@ -70,7 +70,7 @@ def prepare(
     """
     if not isinstance(study, Study):
         raise InputError(
-            f"{shown(study)} is no study; pinstress.load_study reads one from a file",
+            f"{shown(study)} is not a study; pinstress.load_study reads one from a file",
             code="not-a-study",
         )
     names = select(study.table.pin, pins, "pin")
@@ -95,15 +95,15 @@ def prepare(
     for task in todo:
         if asked.model in ("beam", "harmonic") and not task.pin.revolved:
             raise study.error(
-                f"pin {task.pin.name} is no body of revolution, which the "
+                f"pin {task.pin.name} is not a body of revolution, which the "
                 f"{asked.model} model needs: use auto or solid",
                 at=f"pin.{task.pin.name}",
                 code="not-of-revolution",
             )
         if asked.model in ("beam", "solid") and task.lugs:
             raise study.error(
-                f"pin {task.pin.name} is held by contact with its lugs, which the harmonic model "
-                f'finds: use auto or harmonic, or analysis.joints = "prescribed" for the '
+                f"pin {task.pin.name} is in contact with its lugs, which requires the harmonic "
+                f'model: use auto or harmonic, or analysis.joints = "prescribed" for the '
                 f"{asked.model} model",
                 at=f"pin.{task.pin.name}",
                 code="model-without-contact",

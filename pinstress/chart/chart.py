@@ -78,7 +78,7 @@ def plan_chart(study: Study, pin: str, case: str, tolerance: float | None = None
     peak = solution.peak
     problem = Problem(task.pin, task.material, clamps, solution.loads, asked.distance)
     if not peak.max_von_mises:
-        why = peak.note if peak.verdict == "rigid" else "its loads make no stress"
+        why = peak.note if peak.verdict == "rigid" else "its loads cause no stress"
         text = f"pin {pin}, case {case}: there is nothing to chart: {why}"
         raise study.error(text, at=f"pin.{pin}", code="nothing-to-chart")
     beam_error = None
@@ -171,5 +171,6 @@ def _note(peak: Peak) -> str:
     worst = max(governing, key=lambda zone: zone.max_von_mises)
     return (
         f"No maximum exists: at {worst.kind} ({' / '.join(worst.between)}) stress grows without "
-        "bound. Charted is the largest outside of what is excluded, by one rule for all models."
+        "bound. The chart shows the maximum outside the excluded zones, which all models "
+        "share."
     )

@@ -103,11 +103,11 @@ def _watch(process: subprocess.Popen[bytes], limits: MeasureLimits, place: Path)
     start = time.monotonic()
     while process.poll() is None:
         if time.monotonic() - start > limits.seconds:
-            return f"passed the limit of {limits.seconds:g} s"
+            return f"exceeded the limit of {limits.seconds:g} s"
         if (place / "bare").exists() and memory(process.pid, "VmRSS") > limits.memory + float(
             (place / "bare").read_text() or 0.0
         ):
-            return f"passed the limit of {limits.memory:g} MB"
+            return f"exceeded the limit of {limits.memory:g} MB"
         time.sleep(POLL)
     return ""
 

@@ -39,7 +39,7 @@ def chart_and_write(
     """Chart a pin into a folder; returns the exit status. Raises: InputError, ArithmeticError."""
     if portable():
         raise InputError(
-            "chart measures the memory of processes, which is done on Linux only", code="linux-only"
+            "chart measures the memory of processes, which works on Linux only", code="linux-only"
         )
     preload(*PLOTTERS)
     from reports.plots.chart import chart_plot

@@ -60,7 +60,7 @@ def _pin(study: Study, name: str) -> str:
 
 def _support(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> str:
     if lugs(study, pin, clamps):
-        return "held by contact with its lugs"
+        return "in contact with its lugs"
     return f"clamped at {', '.join(clamps) or 'nowhere (loads must balance)'}"
 
 

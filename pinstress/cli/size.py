@@ -24,7 +24,7 @@ from reports.format.ranges import factor_range
 from reports.text.sizes import SizeRow, print_sizes
 
 PASSES = 4
-ANOTHER = "name another file with --out"
+ANOTHER = "choose another file with --out"
 
 
 def size_and_write(

@@ -15,7 +15,7 @@ from reports.vtk.read_back import Opened, open_results
 from reports.vtk.render import render_pin, show_pin
 from reports.vtk.renderer import renderer_problem
 
-OVERWRITE = "name another file, or overwrite it with --force"
+OVERWRITE = "choose another file, or overwrite it with --force"
 
 
 def view(
@@ -38,8 +38,8 @@ def view(
         raise InputError(f"{directory}: {error}", code="unreadable-results") from None
     except FileNotFoundError as error:
         raise InputError(
-            f"{error}: no such file; a beam has no field, nor has a pin that was not solved, "
-            "nor a run with --vtk none",
+            f"{error}: no such file; there is no field for a beam, for a pin that was not "
+            "solved, or after a run with --vtk none",
             code="no-field",
         ) from None
     title = opened.title(row)
@@ -50,7 +50,7 @@ def view(
         return
     if screenshot.suffix.lower() != ".png" or not screenshot.parent.is_dir():
         raise InputError(
-            f"--screenshot {screenshot}: name a .png file in a folder that exists",
+            f"--screenshot {screenshot}: give a .png file in an existing folder",
             code="not-a-picture",
         )
     if not force:
@@ -72,7 +72,7 @@ def _remove(path: Path) -> None:
     """Remove a file or link. Raises: InputError for anything else."""
     if not (path.is_file() or path.is_symlink()):
         raise InputError(
-            f"--screenshot {path} is no file that can be overwritten; name another",
+            f"--screenshot {path} is not a regular file and cannot be overwritten; choose another",
             code="not-a-file",
         )
     try:
@@ -88,7 +88,7 @@ def _opened(directory: Path) -> Opened:
         return open_results(directory)
     except OSError:
         raise InputError(
-            f"{directory}: no results.json in it; name the folder that `pinstress run` wrote",
+            f"{directory}: contains no results.json; give a folder written by `pinstress run`",
             code="no-results",
         ) from None
     except ValueError as error:

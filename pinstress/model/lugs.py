@@ -22,24 +22,24 @@ def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]
     """Those of a pin, one for every connection and those of a structure that are named, if contact
     with them holds it; else none.
 
-    Raises: InputError for lugs that cannot be, and for a pin that contact cannot hold.
+    Raises: InputError for impossible lugs, and for a pin that contact cannot support.
     """
     table, joints = study.table.pin[pin.name], study.table.analysis.joints
     if joints == "prescribed" or (joints == "auto" and not table.lug):
         return ()
     at = f"pin.{pin.name}" + ".lug" * bool(table.lug)
-    instead = 'or take analysis.joints = "prescribed"'
+    instead = 'or set analysis.joints = "prescribed"'
     if not isinstance(pin, Pin):
         raise study.error(
-            f"pin {pin.name} is cut or from a file; contact with lugs is found for turned pins "
-            f"only: remove its lugs {instead}",
+            f"pin {pin.name} has holes or flats or is from a file; contact with lugs requires "
+            f"a plain profile: remove its lugs, {instead}",
             at,
             "not-axisymmetric",
         )
     if clamps:
         raise study.error(
-            f"pin {pin.name} is clamped at {', '.join(clamps)}, and its lugs hold it by contact at "
-            f"the same time: remove either, {instead}",
+            f"pin {pin.name} is clamped at {', '.join(clamps)}, and also supported by lugs: "
+            f"remove the clamp or the lugs, {instead}",
             at,
             "clamped-in-lugs",
         )

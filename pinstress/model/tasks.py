@@ -54,7 +54,7 @@ def tasks(study: Study, pins: list[PinLike], loads: dict[str, CaseLoads]) -> lis
                 out.append(task)
     if not study.table.pin:
         raise study.error(
-            "the study has no pins; pinstress loads gives the reactions alone", code="no-pins"
+            "the study has no pins; use pinstress loads for the reactions only", code="no-pins"
         )
     if not out:
         many = "s" if len(loads) > 1 else ""
@@ -81,7 +81,7 @@ def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, 
         if not applied:
             raise study.error(
                 f"case.{case}: every load on pin {pin.name} is at a clamped band "
-                f"({', '.join(here)}), so nothing loads it; clamp something else",
+                f"({', '.join(here)}), so no load acts on it; clamp another surface",
                 code="not-loaded",
             )
         left_out[case] = tuple(c for c in here if c in constrained)

@@ -48,8 +48,8 @@ _preloaded: list[str] = []
 
 @dataclass(frozen=True)
 class Job(Generic[T_co]):
-    """Work under a name, told whom to tell what it is doing. What it returns must be small: it is
-    sent from process to process.
+    """Work under a name; it gets a function to report its progress. What it returns must be small:
+    it is sent from process to process.
     """
 
     name: str
@@ -185,7 +185,7 @@ def ended(status: int) -> str:
     if status >= 0:
         return f"its process ended with status {status}"
     text = f"its process was ended by signal {-status} ({signal.strsignal(-status)})"
-    return text + "; is there memory enough?" * (status == -KILLED)
+    return text + "; it may have run out of memory" * (status == -KILLED)
 
 
 def _start(jobs: Sequence[Job[T]]) -> _Child:

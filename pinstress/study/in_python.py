@@ -66,13 +66,14 @@ def _parts(study: Study, key: str) -> list[str | int]:
         match = PART.match(key, at)
         if match is None:
             raise study.error(
-                f"{shown(key)} is no key: write pin.E.profile[2].diameter, say", code="not-a-key"
+                f"{shown(key)} is not a key; a key looks like pin.E.profile[2].diameter",
+                code="not-a-key",
             )
         found.append(match[1] if match[1] is not None else match[2])
         found += [int(i) - 1 for i in INDEX.findall(match[3])]
         at = match.end()
     if not found:
-        raise study.error("'' is no key", code="not-a-key")
+        raise study.error("'' is not a key", code="not-a-key")
     return found
 
 
@@ -103,6 +104,6 @@ def _plain(value: Any, key: str) -> Any:
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     raise InputError(
-        f"{key}: {shown(value)} is no value of a study: give a number, text or table",
+        f"{key}: {shown(value)} cannot be a value in a study: give a number, text or table",
         code="not-a-value",
     )

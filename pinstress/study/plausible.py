@@ -122,10 +122,10 @@ def _question(kind: str, stated: Stated, high: float, system: UnitSystem) -> str
     unit = usual.metric[0]
     one = to_si(f"1 {unit}", usual.dimension, system)
     is_, low, most = (f"{value / one:,.4g}" for value in (stated.value, usual.low, high))
-    hint = f"; is it {likely}?" if (likely := _likely(usual, stated, high, system)) else ""
+    hint = f"; did you mean {likely}?" if (likely := _likely(usual, stated, high, system)) else ""
     return (
-        f"{stated.key}: {shown(stated.written)} is {is_} {unit}, and that of {usual.whose} lies "
-        f"between {low} and {most} {unit}{hint}"
+        f"{stated.key}: {shown(stated.written)} is {is_} {unit}, but the usual range for "
+        f"{usual.whose} is {low} to {most} {unit}{hint}"
     )
 
 

@@ -16,9 +16,9 @@ READING = (
     "orientation, so their maximum may differ by up to the ±."
 )
 JOINT = (
-    "Joint is the range of the maximum over what is seldom known of a joint: other clearances of "
-    "the lugs, lugs of half and twice the stiffness, and lugs that are guided or free to tilt. It "
-    "is not part of the ±, and the result is decided without it."
+    "Joint is the range of the maximum over properties of the joint that are seldom known: other "
+    "clearances, lugs of half and twice the stiffness, and lugs that are guided or free to tilt. "
+    "It is not part of the ±, and the result is decided without it."
 )
 RESULTS = {
     SAFE: "the pin meets its required safety factor.",
