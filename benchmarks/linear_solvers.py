@@ -50,9 +50,9 @@ def linear_solvers() -> str:
         found = dict(zip(NAMES, pool.map(partial(_row, counts, files), NAMES), strict=True))
     return "\n\n".join(
         (
-            f"Factoring and {_RIGHT_HAND_SIDES} right-hand sides, s (MB above the matrix); a "
-            f"point is given up after {SECONDS:.0f} s or {GIGABYTES:.0f} GB, or not begun where "
-            f"the two before it foretell half as much again; {ABREAST} at a time, one thread each:",
+            f"Factoring and {_RIGHT_HAND_SIDES} right-hand sides, s (MB above the matrix); "
+            f"limits {SECONDS:.0f} s and {GIGABYTES:.0f} GB; cases expected to take half as much "
+            f"again from the two before are not run; {ABREAST} at a time, one thread each:",
             table(
                 ("unknowns", *(f"{n:,}" for n in counts), "time ~", "memory ~"),
                 [
@@ -78,7 +78,7 @@ def _row(counts: list[int], files: list[Path], name: str) -> list[Point]:
 
 
 def _hopeless(counts: list[int], row: list[Point]) -> bool:
-    """Whether a smaller size was over the limit, or the last two foretell half as much again."""
+    """Whether a smaller size was over the limit, or the last two predict half as much again."""
     if OVER in row:
         return True
     if len(row) < 2 or any(isinstance(point, str) for point in row):
