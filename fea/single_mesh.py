@@ -1,4 +1,4 @@
-"""One mesh of one model, from the mesh to the maximum, for whoever compares models.
+"""One mesh of one model, from the mesh to the maximum, for comparisons of models.
 
 All models leave out the same singularities, those at edges of loads included: what they say differs
 by the models and their meshes alone. A harmonic mesh is the one that `fea.solve_pin` makes at that

@@ -1,4 +1,4 @@
-"""Whether what a linkage can do as drawn is only so there: a singular position, not its kind."""
+"""Whether a linkage is drawn in a singular position."""
 
 from __future__ import annotations
 

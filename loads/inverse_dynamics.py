@@ -55,11 +55,11 @@ class SliderForces:
 
 @dataclass(frozen=True)
 class Dynamics:
-    """Reactions with what goes along.
+    """Reactions, with the forces of the drives and the loads.
 
-    drive: (T, D) N, pushing a slider longer, or N m, turning a body on. needed, couples: (T, items)
-    forces (complex, N) and couples (N m) that joints and drives bring to each item. applied: the
-    loads. shared: connections whose forces follow the sharing rule.
+    drive: (T, D) N, positive if it extends a slider, or N m, positive counter-clockwise. needed,
+    couples: (T, items) forces (complex, N) and couples (N m) that joints and drives bring to each
+    item. applied: the loads. shared: connections whose forces follow the sharing rule.
     """
 
     reactions: Reactions

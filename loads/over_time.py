@@ -24,7 +24,7 @@ AGREES = (
 
 @dataclass(frozen=True)
 class Extreme:
-    """A largest or smallest value over a time and when it is taken, s."""
+    """A maximum or minimum over time, and its time, s."""
 
     value: float
     time: float
@@ -59,8 +59,8 @@ class OverTime:
     """Results for a motion as a whole.
 
     drives: in the linkage's order. transmission: smallest angle (rad) by link and joint.
-    condition: largest. violation: of the power ledger, largest at any instant looked at. corners:
-    where something may jump, s.
+    condition: largest. violation: largest relative violation of the power balance at any solved
+    instant. corners: times at which something may jump, s.
     """
 
     peaks: PeakForces

@@ -21,7 +21,7 @@ class Energy:
 
 
 def energy(motion: Motion) -> Energy:
-    """Energies of all items; the potential is zero at the world's origin."""
+    """Energies of all items; the potential energy is zero at the world's origin."""
     items = motion.linkage.items
     mass = np.array([item.mass for item in items])
     spin = np.stack([motion.angular_velocity(item.name) for item in items], axis=1)
@@ -56,7 +56,7 @@ class Ledger:
 
 
 def ledger(dynamics: Dynamics) -> Ledger:
-    """The power ledger at every instant."""
+    """The power balance at every instant."""
     motion = dynamics.motion
     items = motion.linkage.items
     mass = np.array([item.mass for item in items])

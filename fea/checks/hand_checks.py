@@ -1,4 +1,4 @@
-"""The hand checks that engineers sign off on: shear, bearing and bending of a pin.
+"""Hand checks of a pin: shear, bearing and bending.
 
 Nominal stresses of the textbooks from the beam's internal forces (fea.beam.timoshenko), each at the
 place and the instant where it is largest. With their strengths: yield in bending, yield over

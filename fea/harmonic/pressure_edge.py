@@ -1,4 +1,4 @@
-"""Stress where a pressure ends on a smooth surface: bounded, but another from every direction.
+"""Stress where a pressure ends on a smooth surface: bounded, but dependent on direction.
 
 Close to such an edge a body is a half-plane with a pressure p on one half of its surface, whose
 stress is the same at all distances. With x along the surface away from the pressure, y into the

@@ -1,4 +1,4 @@
-"""Places on a pin where stress has no bound, whatever the mesh, and what would give it one."""
+"""The stress singularities of a pin, and their remedies."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from geometry.shape.pin import Band, GeometryError, Pin
 
 @dataclass(frozen=True)
 class CutPin:
-    """A profile with holes and flats; its bands keep their names and places, less what is cut.
+    """A profile with holes and flats; its bands keep their names and positions, less what is cut.
     Ends of flats within the profile's tolerance of a band's lie there.
 
     Raises: GeometryError when a feature does not cut the pin, or cuts it in two.
@@ -55,7 +55,7 @@ class CutPin:
 
     @property
     def meshed(self) -> bool:
-        """Whether it comes with a mesh: never."""
+        """Whether it is given by a mesh: never."""
         return False
 
     @property

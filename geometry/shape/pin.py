@@ -41,7 +41,7 @@ class Segment:
 
 @dataclass(frozen=True)
 class Band:
-    """A cylindrical surface: what is left of a segment between its fillets; m."""
+    """A cylindrical surface: the part of a segment between its fillets; m."""
 
     name: str
     z0: float
@@ -146,7 +146,7 @@ class Pin:
 
     @property
     def revolved(self) -> bool:
-        """Whether it is the same all round its axis: always."""
+        """Whether it is a body of revolution: always."""
         return True
 
     @property

@@ -60,7 +60,7 @@ def prepare(
     memory: float | None = None,
     also: Also = None,
 ) -> Plan:
-    """Find the reactions and lay out what is to be solved.
+    """Compute the reactions and prepare the pins for `solve`.
 
     pins, cases: names; all by default. model, tolerance: instead of the study's. memory: MB that a
     solid may take, by default most of what is free now. also: fields along the whole motion, or of

@@ -21,10 +21,11 @@ INDEX = re.compile(r"\[(\d+)\]")
 def study_from(
     tables: Mapping[str, Any] | str, folder: str | os.PathLike[str] = ".", name: str = "study"
 ) -> Study:
-    """A study from a dict with the keys of a study file (docs/study-file.md), where None is as if
-    the key were not there, or from the text of such a file.
+    """A study from a dict with the keys of a study file (docs/study-file.md), in which None means
+    that the key is absent, or from the text of such a file.
 
-    folder: of files that the study names. name: of the study, in messages and results.
+    folder: folder of the files that the study refers to. name: name of the study in messages and
+    results.
 
     Raises: InputError as load_study.
     """
@@ -40,11 +41,11 @@ def study_from(
 
 
 def changed_study(study: Study, changes: Mapping[str, Any]) -> Study:
-    """The study with other values, by key as messages write them: {"pin.E.profile[2].diameter":
-    "1.5 in", "analysis.tolerance": 0.01}. A key that was not there is added. Provenance of what is
-    replaced is dropped; comments stay.
+    """The study with other values, by key as in messages: {"pin.E.profile[2].diameter":
+    "1.5 in", "analysis.tolerance": 0.01}. Missing keys are added. The provenance of replaced
+    values is removed; comments are kept.
 
-    Raises: InputError as load_study, and for a key that leads nowhere.
+    Raises: InputError as load_study, and for a key that does not exist in the study.
     """
     document: Any = tomlkit.parse(study.text)
     for key, value in changes.items():

@@ -171,7 +171,7 @@ class Provenance:
 
 @dataclass(frozen=True)
 class Results:
-    """Everything a run found, without the fields inside of pins (those are written pin by pin)."""
+    """All results of a run, without the fields inside pins (those are written pin by pin)."""
 
     title: str
     study: str
