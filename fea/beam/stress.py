@@ -21,7 +21,7 @@ from fea.core.pin_loads import Floats, UnitLoad
 from geometry import Pin
 
 ZZ, TZ, RZ = 2, 3, 4
-PER_CELL = 33  # points in a cell, besides where a moment is largest
+PER_CELL = 33  # points in a cell, in addition to where a moment is largest
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,9 @@ if its link pulled with the largest force F of the case:
 
 The shear planes run along the force from the bore, 40 degrees off it, to the outer edge: L is their
 length in a round eye, at most 5 % less than the W / 2 - D / 2 cos 40 of a square end if W >= 2.5 D.
-Beside them are the lug's strengths: yield, yield over sqrt(3) in shear (von Mises), and yield in
-bearing, a convention. Neither the stress concentration at the bore nor a load across the link is in
-them.
+They are compared with the lug's strengths: yield, yield over sqrt(3) in shear (von Mises), and yield
+in bearing, a convention. Neither the stress concentration at the bore nor a load across the link is
+in them.
 
 Source: R. G. Budynas & J. K. Nisbett, Shigley's Mechanical Engineering Design, 8-12 (net section,
 edge shear, bearing); E. F. Bruhn, Analysis and Design of Flight Vehicle Structures, D1 (planes at

@@ -56,7 +56,7 @@ class Row:
 def read_table(
     path: Path, needed: Sequence[str], optional: Sequence[str] | None = None
 ) -> Iterator[Row]:
-    """The rows of a table with a header. optional: columns allowed besides those needed; None: any.
+    """The rows of a table with a header. optional: further columns that are allowed; None: any.
 
     Raises: TableError for a file that is not such a table.
     """

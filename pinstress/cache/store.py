@@ -132,7 +132,7 @@ def _usual() -> Path:
 
 
 def program() -> str:
-    """Hash of what answers depend on besides what is asked: versions, and the source itself, so
+    """Hash of what results depend on in addition to the task: versions, and the source itself, so
     that whoever changes a formula does not meet the answers of the old one.
     """
     versions = PACKAGES + DRAWN_BY

@@ -1,4 +1,4 @@
-"""The commands besides run, loads, chart and check: init, schema, size, view, completion."""
+"""The commands other than run, loads, chart and check: init, schema, size, view, completion."""
 
 from __future__ import annotations
 
