@@ -1,4 +1,4 @@
-"""Checks a study may ask for: a cantilever beside beam theory, a motion beside a closed form."""
+"""Optional checks of a study: a cantilever against beam theory, a motion against a closed form."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def beam_check(study: Study, task: Task) -> BeamCheck:
 def motion_check(
     study: Study, loads: dict[str, CaseLoads], published: Published
 ) -> plain.MotionCheck | None:
-    """A joint's speed and acceleration beside the closed form; None when not asked for."""
+    """A joint's speed and acceleration and the closed form; None if not requested."""
     check = study.table.motion_check
     case = loads.get(check.case) if check else None
     if check is None or case is None:

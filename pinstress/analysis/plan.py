@@ -38,7 +38,7 @@ class Plan:
     """All that is known before anything is solved: every input is read and found usable.
 
     checked: the task whose pin the beam check compares, if any. also: which fields are wanted
-    beside those of the model at the governing instant.
+    in addition to those of the model at the governing instant.
     """
 
     study: Study
