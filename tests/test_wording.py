@@ -29,7 +29,7 @@ REPLACED = {
     "clos(e|es|ed) the balance": "the residual imbalance is reacted by the bands",
     "stands? in": "replaces",
     "set beside": "compared with",
-    "beside (ours|theirs|that of|those of|beam|other programs|the published)": "compared with, next to",
+    "beside (ours|theirs|that of|those of|beam|other programs|the published)": "compared with",
     "in the way and not": "exists and was not written by",
     "is no (study|key|value|file that)": "is not a",
     "by a double click": "with a double-click",

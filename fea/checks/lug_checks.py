@@ -9,8 +9,8 @@ if its link pulled with the largest force F of the case:
 
 The shear planes run along the force from the bore, 40 degrees off it, to the outer edge: L is their
 length in a round eye, at most 5 % less than the W / 2 - D / 2 cos 40 of a square end if W >= 2.5 D.
-They are compared with the lug's strengths: yield, yield over sqrt(3) in shear (von Mises), and yield
-in bearing, a convention. Neither the stress concentration at the bore nor a load across the link is
+They are compared with yield, in shear with yield over sqrt(3) (von Mises); yield as the strength in
+bearing is a convention. Neither the stress concentration at the bore nor a load across the link is
 in them.
 
 Source: R. G. Budynas & J. K. Nisbett, Shigley's Mechanical Engineering Design, 8-12 (net section,
