@@ -32,7 +32,7 @@ ONE = "E"
 def gear() -> str:
     """Seconds and meshes of the three ways; and of one pin on its first meshes."""
     published = load_study(STUDIES / "grenier2008.toml")
-    improved = prepare(load_study(STUDIES / "grenier2008_improved.toml"))
+    improved = prepare(load_study(STUDIES / "landing_gear.toml"))
     ways = {
         "floating pins clamped, as published": prepare(published),
         "floating pins in balance": prepare(_floating(published)),

@@ -23,7 +23,8 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from benchmarks.timing import power, table
-from fea.core.linear_solver import Floats, Solve
+from fea.core.linear_solver import Solve
+from geometry.arrays import Floats
 from reports.format.numbers import engineering
 
 Ints = NDArray[np.int64]

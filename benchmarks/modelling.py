@@ -23,7 +23,7 @@ from pinstress.model.cases import CaseLoads
 from pinstress.model.pins import material
 from pinstress.model.tasks import Task
 
-STUDY = Path(__file__).parent.parent / "studies" / "grenier2008_improved.toml"
+STUDY = Path(__file__).parent.parent / "studies" / "landing_gear.toml"
 CASE = "retract"
 PUBLISHED = {"C": "C2", "E": "E1", "F": "F1", "G": "G3", "J": "J3"}  # bands clamped there
 TERMS = (1, 2, 4, 6, 8, 10, 12)

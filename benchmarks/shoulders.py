@@ -96,8 +96,7 @@ def _peaks(pin: Pin, fields: MeridianFields, case: PinLoads) -> tuple[float, flo
     around = Circumference(fields, case)
     top = around.top(near)
     at = np.flatnonzero(near)
-    angles = np.full(len(at), top.angle)
-    s = around.stress(at, np.zeros(len(at), dtype=int), angles)
+    s = around.stress(at, 0, np.array([top.angle]))[:, 0]
     return top.value, float(np.abs(np.linalg.eigvalsh(s[:, TENSOR])).max())
 
 

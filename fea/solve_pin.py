@@ -30,7 +30,6 @@ from fea.core.pin_loads import PinLoads
 from fea.core.solution import Answer
 from fea.harmonic.evaluate import (
     HarmonicAnswer,
-    HarmonicSolution,
     harmonic_result,
     harmonic_solution,
 )
@@ -93,7 +92,8 @@ def solve_pin(
     constrained = tuple(pin.surface(name) for name in clamps)
     job = _Job(pin, material, constrained, asked, progress, between)
     balances = {} if clamps else {c.case: out_of_balance(pin, c, material.density) for c in cases}
-    notes = {case: _reacted(pin, balance) for case, balance in balances.items()}
+    shares = {case: imbalance(pin, balance) for case, balance in balances.items()}
+    notes = {case: _reacted(share) for case, share in shares.items() if share}
     out: dict[str, Solution] = {}
     for case in cases:
         if case.case in balances and (refusal := balances[case.case].refusal):
@@ -113,8 +113,9 @@ def solve_pin(
             if asked.model != "auto" or not isinstance(pin, Pin):
                 raise
             out |= _instead(job, pin, live, notes, str(error))
-    shares = {case: imbalance(pin, balance) for case, balance in balances.items()}
-    return tuple(_with_imbalance(out[c.case], shares.get(c.case)) for c in cases)
+    for name, share in shares.items():
+        out[name] = replace(out[name], peak=replace(out[name].peak, imbalance=share))
+    return tuple(out[c.case] for c in cases)
 
 
 @dataclass(frozen=True)
@@ -236,9 +237,10 @@ def _refined(
     ratio = ratio_of(pin)
     singularities = _singularities(job, cases)
     own = {case.case: _singularities(job, (case,)) for case in cases}
-    seen: dict[str, Seen] = {}
+    seen = {case.case: Seen(pin.name, case.case, model, (), (), ratio) for case in cases}
     for level in range(asked.meshes or MESHES[model]):
-        largest = max((s.results[-1].unknowns for s in seen.values()), default=0)
+        before = {case: s.results[-1] for case, s in seen.items() if s.results}
+        largest = max((result.unknowns for result in before.values()), default=0)
         finer = unknowns_after(pin, model, largest)
         if level and finer > MOST_UNKNOWNS[model]:
             break
@@ -250,17 +252,13 @@ def _refined(
             break
         job.progress(f"pin {pin.name}, {model} model, mesh {level + 1}")
         start = time.perf_counter()
-        before = {case: s.results[-1] for case, s in seen.items()}
         mesh = _mesh(job, model, cases, singularities, own, level, before)
         if not level:
             cases = tuple(_through_time(job, mesh, case) for case in cases)
         for case in cases:
-            now = mesh.result(case)
-            spent = time.perf_counter() - start
-            seen[case.case] = _with(
-                seen.get(case.case), pin.name, case.case, model, now, spent, ratio
-            )
-            start = time.perf_counter()
+            now, end = mesh.result(case), time.perf_counter()
+            seen[case.case] = seen[case.case].then(now, end - start)
+            start = end
         if all(enough(asked, job.material, s) for s in seen.values()):
             break
     why, out = reasons(asked, job.material, model), {}
@@ -298,7 +296,11 @@ def _mesh(
             pin, job.material, job.constrained, cases, singularities, level, ratio, before.values()
         )
         answers: dict[str, Answer] = {c: HarmonicAnswer(section, mine) for c, mine in own.items()}
-        return _Mesh(singularities, partial(_own_result, section, singularities, own), answers)
+
+        def result(case: PinLoads) -> MeshResult:
+            return harmonic_result(section, singularities, case, own[case.case])
+
+        return _Mesh(singularities, result, answers)
     size, asked = MeshSize().finer(ratio**level), job.asked
     solid = solid_solution(
         pin,
@@ -334,28 +336,6 @@ def _at_crest(job: _Job, mesh: _Mesh, case: PinLoads, seen: Seen) -> tuple[PinLo
     return more, replace(seen, results=(*seen.results[:-1], last))
 
 
-def _own_result(
-    section: HarmonicSolution,
-    singularities: tuple[Singularity, ...],
-    own: Mapping[str, tuple[Singularity, ...]],
-    case: PinLoads,
-) -> MeshResult:
-    return harmonic_result(section, singularities, case, own[case.case])
-
-
-def _with(
-    seen: Seen | None,
-    pin: str,
-    case: str,
-    model: str,
-    result: MeshResult,
-    spent: float,
-    ratio: float,
-) -> Seen:
-    results, seconds = ((), ()) if seen is None else (seen.results, seen.seconds)
-    return Seen(pin, case, model, (*results, result), (*seconds, spent), ratio)
-
-
 def imbalance(pin: PinLike, balance: Balance) -> tuple[float, float] | None:
     """Force and couple that the bands react, relative; None if negligible."""
     if not balance.largest:
@@ -365,14 +345,8 @@ def imbalance(pin: PinLike, balance: Balance) -> tuple[float, float] | None:
     return (force, couple) if max(force, couple) >= TELL else None
 
 
-def _with_imbalance(solution: Solution, share: tuple[float, float] | None) -> Solution:
-    return replace(solution, peak=replace(solution.peak, imbalance=share)) if share else solution
-
-
-def _reacted(pin: PinLike, balance: Balance) -> Note:
+def _reacted(share: tuple[float, float]) -> Note:
     """The imbalance that the bands react, as the end of a note."""
-    if (share := imbalance(pin, balance)) is None:
-        return NOTHING
     force, couple = share
     return Note(
         f"; the bearing bands react a residual imbalance: a force of {force:.2g} of the largest "

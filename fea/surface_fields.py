@@ -5,18 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fea.core.pin_loads import Floats, PinLoads, UnitLoad
+from fea.core.pin_loads import PinLoads, UnitLoad
 from fea.core.solution import Answer
 from fea.harmonic.evaluate import HarmonicAnswer
 from fea.harmonic.superposition import EVEN, METRIC, Circumference
 from fea.singular.singularities import outside
 from fea.solid.boundary import SurfaceMesh
 from fea.solid.evaluate import SolidAnswer
-
-Ints = NDArray[np.int64]
-Mask = NDArray[np.bool_]
+from geometry.arrays import Floats, Ints, Mask
 
 MOST_NODES = 6000  # of a surface of quadratic triangles, to show their middle nodes, too
 _QUARTERS = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])  # of a quadratic triangle

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from fea.core.linear_solver import SolveError
 from fea.core.mesh_result import MeshResult
@@ -45,6 +45,10 @@ class Seen:
     seconds: tuple[float, ...]
     ratio: float
     first: int = 0
+
+    def then(self, result: MeshResult, spent: float) -> Seen:
+        """With one more mesh, on which s were spent."""
+        return replace(self, results=(*self.results, result), seconds=(*self.seconds, spent))
 
     @property
     def history(self) -> tuple[Refinement, ...]:

@@ -10,14 +10,13 @@ from geometry.shape.corners import Vertex, vertices
 from geometry.shape.features import Flat, Hole
 from geometry.shape.pin import Band, GeometryError, Pin, Segment
 from geometry.shape.pin_like import PinLike
-from geometry.shape.profile import Arc, Corner, Edge, meridian, sharp_corners
+from geometry.shape.profile import Arc, Edge, meridian, sharp_corners
 
 __all__ = [
     "Arc",
     "ArgumentError",
     "Band",
     "Coded",
-    "Corner",
     "CutPin",
     "Edge",
     "Flat",

@@ -15,7 +15,7 @@ from loads.drives import (
 )
 from loads.friction import JammingError
 from loads.impulse import impulse_force
-from loads.inverse_dynamics import Applied, Dynamics, motion_reactions, static_reactions
+from loads.inverse_dynamics import Applied, Dynamics, motion_reactions
 from loads.linkage import (
     GROUND,
     Body,
@@ -104,5 +104,4 @@ __all__ = [
     "require_possible",
     "require_regular",
     "resolved",
-    "static_reactions",
 ]

@@ -14,14 +14,13 @@ Singular = Literal["change point", "dead point"]
 ASIDE = 0.05  # rad (or length scales) that a coordinate moves away from the drawing
 TRIES = 12  # ways to move away
 FAR = 20.0 * ASIDE  # what goes further is not near the drawing
-RANK = 1e-9  # smallest singular value that counts, of the largest
+RANK_TOLERANCE = 1e-9  # smallest singular value that counts, relative to the largest
 CLOSED = 1e-10  # of the length scale: gap of a loop that is closed
 
 
-def rank(matrix: Floats) -> int:
+def rank(singular: Floats) -> int:
     """Number of singular values that count."""
-    singular = np.linalg.svd(matrix, compute_uv=False)
-    return int(np.sum(singular > RANK * singular[0])) if len(singular) and singular[0] else 0
+    return int(np.sum(singular > RANK_TOLERANCE * singular[0])) if singular.any() else 0
 
 
 def singular_as_drawn(loops: Loops) -> Singular | None:
@@ -38,14 +37,16 @@ def singular_as_drawn(loops: Loops) -> Singular | None:
 def _ranks(loops: Loops, q: Floats) -> tuple[int, int]:
     """Of the loop equations without the drives', and of all."""
     J = loops.jacobian(loops.pose(q[None]))[0]
-    return rank(J[: 2 * len(loops.closing)]), rank(J)
+    closing, whole = (np.linalg.svd(A, compute_uv=False) for A in (J[: 2 * len(loops.closing)], J))
+    return rank(closing), rank(whole)
 
 
 def _nearby(loops: Loops) -> list[Floats]:
     """Coordinates (n,) near the drawing at which all loops are closed, drives free."""
     first = loops.jacobian(loops.pose(np.zeros((1, loops.columns))))[0]
     closing = first[: 2 * len(loops.closing)]
-    ways = np.linalg.svd(closing)[2][rank(closing) :] if len(closing) else np.eye(loops.columns)
+    _, singular, right = np.linalg.svd(closing)
+    ways = right[rank(singular) :]
     random = np.random.default_rng(0)
     tried = [random.standard_normal(len(ways)) @ ways for _ in range(TRIES if len(ways) else 0)]
     return [q for way in tried if (q := _closed(loops, way / np.linalg.norm(way))) is not None]

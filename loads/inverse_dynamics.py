@@ -14,15 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from loads.friction import MOST_CONTACTS, JammingError, contact_forces
-from loads.joint_forces import (
-    closing_points,
-    connection_members,
-    slider_couple,
-    slider_members,
-)
-from loads.linkage import Floats, Linkage, LinkageError, Point, Slider
+from loads.joint_forces import connection_members, slider_couple, slider_members
+from loads.linkage import GROUND, Floats, Linkage, LinkageError, Point, Slider
 from loads.loop_equations import Complex, cross, number, pairs
-from loads.motion import Motion, at_rest
+from loads.motion import Motion
 from loads.reactions import Reactions
 
 STANDS = 1e-13  # of the fastest coordinate of the course: a slider this slow is at rest
@@ -40,6 +35,11 @@ class Applied:
     force: Point = (0.0, 0.0)
     couple: float = 0.0
     follows: bool = False
+
+    def along(self, motion: Motion) -> Complex:
+        """The force in world axes at every instant, (T,) N."""
+        force = np.full(len(motion), number(self.force))
+        return force * np.exp(1j * motion.angle(self.body)) if self.follows else force
 
 
 @dataclass(frozen=True)
@@ -94,13 +94,6 @@ def motion_reactions(
     return _Balance(motion, tuple(applied)).dynamics(case, timed)
 
 
-def static_reactions(
-    case: str, linkage: Linkage, drives: Sequence[float], applied: Sequence[Applied] = ()
-) -> Dynamics:
-    """Reactions of the linkage at rest, at values of its drives (m or rad), under applied loads."""
-    return motion_reactions(case, at_rest(linkage, drives), applied, timed=False)
-
-
 class _Balance:
     """The balance of forces of one motion: linear in what the bodies need."""
 
@@ -134,18 +127,12 @@ class _Balance:
     def _needs(self) -> tuple[Complex, Floats]:
         """m a - weight - applied force, and the couples about the centres, (T, items) each."""
         motion, linkage = self.motion, self.motion.linkage
-        items = linkage.items
-        mass = np.array([item.mass for item in items])
-        inertia = np.array([item.inertia or 0.0 for item in items])
         centres, _, acceleration = motion.centres
-        needed = mass * (acceleration - number(linkage.gravity))
-        spin = np.stack([motion.angular_acceleration(item.name) for item in items], axis=1)
-        couples = inertia * spin
+        needed = motion.masses * (acceleration - number(linkage.gravity))
+        couples = motion.inertias * motion.spin_rate
         for load in self.applied:
             i = linkage.index[load.body]
-            force = np.full(len(motion), number(load.force))
-            if load.follows:
-                force = force * np.exp(1j * motion.angle(load.body))
+            force = load.along(motion)
             at, _, _ = motion.point(load.body, load.at)
             arm = at[:, 0] + 1j * at[:, 1] - centres[:, i]
             needed[:, i] -= force
@@ -196,8 +183,8 @@ class _Balance:
         force = self.slides.forces(needed, closing)
         normal = np.real(np.conj(1j * pose.axis) * force)
         centres, _, _ = self.motion.centres
-        items, at = closing_points(loops)
-        closing_at = loops.place(pose, loops.points(items, at))
+        bodies, _, at = loops.closing_ends
+        closing_at = loops.place(pose, loops.points(bodies, at))
         torques = self._drives(f)
         couple = np.stack(
             [
@@ -275,8 +262,9 @@ class _Balance:
         on_body = self.connections.forces(self.needed, self._closing(f))
         on_pin = np.zeros((*on_body.shape, 3))
         on_pin[..., 0], on_pin[..., 1] = -on_body.real, -on_body.imag
+        # A pin's own axes turn with what it is fixed in; those of a floating pin are the world's.
         turn = np.stack(
-            [motion.angle(_axes(linkage, j.fixed_in)) for j, _ in linkage.connections], axis=1
+            [motion.angle(j.fixed_in or GROUND) for j, _ in linkage.connections], axis=1
         )
         return Reactions(
             case=case,
@@ -287,11 +275,6 @@ class _Balance:
             moments=np.zeros_like(on_pin),
             turn=turn,
         )
-
-
-def _axes(linkage: Linkage, fixed_in: str | None) -> str:
-    """The item whose rotation the pin's own axes follow; a floating pin keeps the world's."""
-    return fixed_in if fixed_in in linkage.index else "ground"
 
 
 def _shares(linkage: Linkage, forces: Complex, loose: Complex, shared: tuple[str, ...]) -> Floats:

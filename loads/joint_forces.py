@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from loads.linkage import Floats, Turn
-from loads.loop_equations import Complex, Loops, cross, number
+from loads.loop_equations import Complex, Loops, cross
 
 
 @dataclass(frozen=True)
@@ -40,28 +40,17 @@ def _members(loops: Loops, slides: bool, count: int) -> Members:
     linkage = loops.linkage
     needs = np.zeros((count, len(linkage.items)))
     brings = np.zeros((count, len(loops.closing)))
-    ends = [_closure_ends(loops, k) for k in range(len(loops.closing))]
+    bodies, carriers, _ = loops.closing_ends
     for edge in loops.tree:
         if edge.slides is slides:
             sign = 1.0 if edge.forward else -1.0
             needs[edge.which, list(edge.away)] = sign
-            for k, (body, carrier) in enumerate(ends):
+            for k, (body, carrier) in enumerate(zip(bodies, carriers, strict=True)):
                 brings[edge.which, k] = -sign * ((body in edge.away) - (carrier in edge.away))
     for k, (closes, which) in enumerate(loops.closing):
         if closes is slides:
             brings[which, k] = 1.0
     return Members(needs, brings)
-
-
-def _closure_ends(loops: Loops, k: int) -> tuple[int, int]:
-    """Items on which a closure's force acts (the body) and reacts (the carrier)."""
-    linkage = loops.linkage
-    slides, which = loops.closing[k]
-    if slides:
-        s = linkage.sliders[which]
-        return linkage.index[s.moving], linkage.index[s.base]
-    joint, c = linkage.connections[which]
-    return linkage.index[c.body], linkage.index[linkage.carrier(joint)]
 
 
 def slider_couple(
@@ -88,8 +77,7 @@ def slider_couple(
     away = list(edge.away)
     p = about[:, None]
     out += np.sum(couples[:, away] + cross(centres[:, away] - p, needed[:, away]), axis=1)
-    for k in range(len(loops.closing)):
-        body, carrier = _closure_ends(loops, k)
+    for k, (body, carrier) in enumerate(zip(*loops.closing_ends[:2], strict=True)):
         side = (body in edge.away) - (carrier in edge.away)
         out -= side * cross(closing_at[:, k] - about, closing[:, k])
     for k, drive in enumerate(loops.linkage.drives):
@@ -98,14 +86,3 @@ def slider_couple(
             side = (index[drive.body] in edge.away) - (index[drive.base] in edge.away)
             out -= side * torques[:, k]
     return out if edge.forward else -out
-
-
-def closing_points(loops: Loops) -> tuple[np.ndarray, Complex]:
-    """Item and drawn place of the point at which each closure's force acts on its body."""
-    linkage = loops.linkage
-    items = [_closure_ends(loops, k)[0] for k in range(len(loops.closing))]
-    at = [
-        number(linkage.sliders[w].end if slides else linkage.connections[w][0].at)
-        for slides, w in loops.closing
-    ]
-    return np.array(items, dtype=np.int64), np.array(at, dtype=complex)

@@ -9,10 +9,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from loads.coded import LoadsError
+from loads.coded import LoadsError, Place
 
 Floats = NDArray[np.float64]
 Point = tuple[float, float]
+Contradiction = tuple[str, str, Place]  # message, code and place of a LinkageError
 
 GROUND = "ground"
 
@@ -145,7 +146,7 @@ class Linkage:
     sharing: tuple[Sharing, ...] = ()
 
     def __post_init__(self) -> None:
-        if wrong := list(_contradictions(self)):
+        if wrong := [LinkageError(*each) for each in _contradictions(self)]:
             raise LinkageError.all(wrong)
 
     @cached_property
@@ -200,9 +201,9 @@ def _pin_item(joint: Joint) -> str:
     return f"pin {joint.name}"
 
 
-def _contradictions(linkage: Linkage) -> Iterator[LinkageError]:
+def _contradictions(linkage: Linkage) -> Iterator[Contradiction]:
     if not linkage.joints:
-        yield LinkageError("the linkage has no joints", "no-joints")
+        yield "the linkage has no joints", "no-joints", ()
     bodies = {b.name: b for b in linkage.bodies}
     names = [c.name for j in linkage.joints for c in j.connections]
     coordinates = [s.name for s in linkage.sliders] + [t.name for t in linkage.turns]
@@ -214,91 +215,62 @@ def _contradictions(linkage: Linkage) -> Iterator[LinkageError]:
         ("drive", list(linkage.driven)),
     ):
         for name in sorted({n for n in seen if seen.count(n) > 1}):
-            yield LinkageError(
-                f"{what} {name!r} is named twice; names must be unique", "duplicate-name"
-            )
+            yield f"{what} {name!r} is named twice; names must be unique", "duplicate-name", ()
     if GROUND in bodies:
-        yield LinkageError(
-            f"body {GROUND!r}: this name is reserved for the fixed frame; rename the body",
-            "reserved-name",
-            ("body", GROUND),
-        )
+        text = f"body {GROUND!r}: this name is reserved for the fixed frame; rename the body"
+        yield text, "reserved-name", ("body", GROUND)
     yield from _of_joints(linkage, bodies)
     yield from _of_sliders(linkage, bodies)
     for name in linkage.driven:
         if name not in coordinates:
-            yield LinkageError(
-                f"drive {name!r}: there is no slider or turn of this name",
-                "unknown-drive",
-                ("drive", name),
-            )
+            text = f"drive {name!r}: there is no slider or turn of this name"
+            yield text, "unknown-drive", ("drive", name)
     for share in linkage.sharing:
         for name in share.connections:
             if name not in names:
-                yield LinkageError(
-                    f"sharing: there is no connection {name!r}", "unknown-connection", ("sharing",)
-                )
+                text = f"sharing: there is no connection {name!r}"
+                yield text, "unknown-connection", ("sharing",)
     for body in linkage.bodies:
         if body.inertia is None:
             yield from _of_particle(linkage, body)
 
 
-def _of_joints(linkage: Linkage, bodies: dict[str, Body]) -> Iterator[LinkageError]:
+def _of_joints(linkage: Linkage, bodies: dict[str, Body]) -> Iterator[Contradiction]:
     for joint in linkage.joints:
         at = ("joint", joint.name)
         for c in joint.connections:
-            key = (*at, "connections", c.name)
+            key, what = (*at, "connections", c.name), f"connection {c.name}"
             if c.body not in (GROUND, *bodies):
-                yield LinkageError(
-                    f"connection {c.name}: there is no body {c.body!r}", "unknown-body", key
-                )
+                yield f"{what}: there is no body {c.body!r}", "unknown-body", key
             if c.body == joint.fixed_in:
-                yield LinkageError(
-                    f"connection {c.name}: pin {joint.name} is fixed in {c.body}, so {c.body} "
-                    "cannot also turn on it",
-                    "fixed-and-turning",
-                    key,
-                )
+                text = f"pin {joint.name} is fixed in {c.body}, so {c.body} cannot also turn on it"
+                yield f"{what}: {text}", "fixed-and-turning", key
+        what = f"joint {joint.name}"
         if joint.fixed_in not in (None, GROUND, *bodies):
-            yield LinkageError(
-                f"joint {joint.name}: there is no body {joint.fixed_in!r}",
-                "unknown-body",
-                (*at, "fixed_in"),
-            )
+            text = f"{what}: there is no body {joint.fixed_in!r}"
+            yield text, "unknown-body", (*at, "fixed_in")
         if joint.fixed_in is None and len(joint.connections) < 2:
-            yield LinkageError(
-                f"joint {joint.name}: a floating pin needs at least two connections",
-                "too-few-connections",
-                at,
-            )
+            text = f"{what}: a floating pin needs at least two connections"
+            yield text, "too-few-connections", at
 
 
-def _of_sliders(linkage: Linkage, bodies: dict[str, Body]) -> Iterator[LinkageError]:
+def _of_sliders(linkage: Linkage, bodies: dict[str, Body]) -> Iterator[Contradiction]:
     pairs = [("slider", s.name, (s.base, s.moving)) for s in linkage.sliders]
     pairs += [("drive", t.name, (t.base, t.body)) for t in linkage.turns]
     for kind, name, pair in pairs:
         for body in pair:
             if body not in (GROUND, *bodies):
-                yield LinkageError(
-                    f"{kind} {name}: there is no body {body!r}", "unknown-body", (kind, name)
-                )
+                yield f"{kind} {name}: there is no body {body!r}", "unknown-body", (kind, name)
         if pair[0] == pair[1]:
-            yield LinkageError(
-                f"{kind} {name}: {pair[0]} cannot move relative to itself; name two bodies",
-                "same-body",
-                (kind, name),
-            )
+            text = f"{kind} {name}: {pair[0]} cannot move relative to itself; name two bodies"
+            yield text, "same-body", (kind, name)
     for slider in linkage.sliders:
         if slider.axis == (0.0, 0.0):
-            yield LinkageError(
-                f"slider {slider.name}: its two points coincide, so they define no direction; "
-                "give direction = [x, y]",
-                "no-direction",
-                ("slider", slider.name),
-            )
+            text = "its two points coincide, so they define no direction; give direction = [x, y]"
+            yield f"slider {slider.name}: {text}", "no-direction", ("slider", slider.name)
 
 
-def _of_particle(linkage: Linkage, body: Body) -> Iterator[LinkageError]:
+def _of_particle(linkage: Linkage, body: Body) -> Iterator[Contradiction]:
     slides = [s for s in linkage.sliders if body.name in (s.base, s.moving)]
     if any(GROUND in (s.base, s.moving) for s in slides):
         return
@@ -306,9 +278,8 @@ def _of_particle(linkage: Linkage, body: Body) -> Iterator[LinkageError]:
     carries = any(j.fixed_in == body.name for j in linkage.joints)
     alone = len(joined) == 1 and not slides and not carries
     if not alone or not np.allclose(joined[0].at, body.centre, atol=1e-9):
-        yield LinkageError(
+        text = (
             f"body {body.name}: a body without inertia is a particle, which must have exactly one "
-            "connection, at its centre; give its inertia, or place its centre at that joint",
-            "particle",
-            ("body", body.name),
+            "connection, at its centre; give its inertia, or place its centre at that joint"
         )
+        yield text, "particle", ("body", body.name)

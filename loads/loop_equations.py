@@ -232,7 +232,8 @@ class Loops:
         sliding = np.zeros((len(linkage.sliders), count))
         # Edges come from the ground outwards, so each adds to what lies nearer to the ground.
         for edge in self.tree:
-            inner, outer = _ends(linkage, edge)
+            ends = _ends(linkage, edge.slides, edge.which)
+            outer, inner = ends if edge.forward else ends[::-1]
             away = list(edge.away)
             if edge.slides:
                 sliding[edge.which, away] += 1.0 if edge.forward else -1.0
@@ -242,41 +243,32 @@ class Loops:
             turning[self.frame[outer], away] -= at
         return turning, sliding
 
+    @cached_property
+    def closing_ends(self) -> tuple[Ints, Ints, Complex]:
+        """Of every closure the items on which its force acts (the body) and reacts (the carrier),
+        and its drawn place.
+        """
+        ends = np.array([_ends(self.linkage, *c) for c in self.closing], dtype=np.int64)
+        sliders, connections = self.linkage.sliders, self.linkage.connections
+        at = [number(sliders[k].end if s else connections[k][0].at) for s, k in self.closing]
+        return *ends.reshape(-1, 2).T, np.array(at, dtype=complex)
+
     def _closures(self) -> Points:
-        linkage, index = self.linkage, self.linkage.index
-        first, second, at, extra = [], [], [], []
-        for slides, which in self.closing:
+        body, carrier, at = self.closing_ends
+        gap = self.points(body, at) - self.points(carrier, at)
+        for k, (slides, which) in enumerate(self.closing):
             if slides:
-                s = linkage.sliders[which]
-                first.append(index[s.moving])
-                second.append(index[s.base])
-                at.append((number(s.end), number(s.end)))
-            else:
-                joint, c = linkage.connections[which]
-                first.append(index[c.body])
-                second.append(index[linkage.carrier(joint)])
-                at.append((number(joint.at), number(joint.at)))
-            extra.append(which if slides else None)
-        ends = np.array(at, dtype=complex).reshape(-1, 2)
-        gap = self.points(np.array(first, dtype=int), ends[:, 0]) - self.points(
-            np.array(second, dtype=int), ends[:, 1]
-        )
-        for k, s_number in enumerate(extra):
-            if s_number is not None:
-                gap.sliding[s_number, k] -= 1.0
+                gap.sliding[which, k] -= 1.0
         return gap
 
 
-def _ends(linkage: Linkage, edge: LoopEdge) -> tuple[int, int]:
-    """The items nearer to and further from the ground that an edge joins."""
-    index = linkage.index
-    if edge.slides:
-        s = linkage.sliders[edge.which]
-        body, other = index[s.moving], index[s.base]
-    else:
-        joint, c = linkage.connections[edge.which]
-        body, other = index[c.body], index[linkage.carrier(joint)]
-    return (other, body) if edge.forward else (body, other)
+def _ends(linkage: Linkage, slides: bool, which: int) -> tuple[int, int]:
+    """The items that a slider or connection joins: its (moving) body, and what carries that."""
+    if slides:
+        s = linkage.sliders[which]
+        return linkage.index[s.moving], linkage.index[s.base]
+    joint, c = linkage.connections[which]
+    return linkage.index[c.body], linkage.index[linkage.carrier(joint)]
 
 
 def _frames(linkage: Linkage) -> tuple[int, Ints]:
@@ -325,11 +317,8 @@ def _tree(linkage: Linkage) -> tuple[tuple[LoopEdge, ...], tuple[tuple[bool, int
     Raises: LinkageError for bodies that nothing joins to the ground.
     """
     index = linkage.index
-    members = [(True, k, index[s.moving], index[s.base]) for k, s in enumerate(linkage.sliders)]
-    members += [
-        (False, k, index[c.body], index[linkage.carrier(j)])
-        for k, (j, c) in enumerate(linkage.connections)
-    ]
+    members = [(True, k, *_ends(linkage, True, k)) for k in range(len(linkage.sliders))]
+    members += [(False, k, *_ends(linkage, False, k)) for k in range(len(linkage.connections))]
     joined = _Sets(len(index))
     inside = [m for m in members if joined.join(m[2], m[3])]
     closing = tuple((m[0], m[1]) for m in members if m not in inside)

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loads.as_drawn import singular_as_drawn
+from loads.as_drawn import rank, singular_as_drawn
 from loads.joint_forces import connection_members
 from loads.linkage import GROUND, Floats, Linkage, LinkageError
 from loads.loop_equations import Loops, Pose
 
-RANK_TOLERANCE = 1e-9  # smallest singular value that counts, relative to the largest
 TAKES_PART = 1e-6  # of the largest part in a null vector
 
 
@@ -40,16 +39,16 @@ def mobility(linkage: Linkage) -> Mobility:
     pose = loops.pose(np.zeros((1, loops.columns)))
     J = loops.jacobian(pose)[0]
     left, singular, right = np.linalg.svd(J)
-    rank = _rank(singular)
+    found = rank(singular)
     guided = J[: 2 * len(loops.closing)]
-    free = right[rank:]
+    free = right[found:]
     return Mobility(
         kutzbach=kutzbach(linkage),
-        degrees=loops.columns - _rank(np.linalg.svd(guided, compute_uv=False)),
+        degrees=loops.columns - rank(np.linalg.svd(guided, compute_uv=False)),
         free=len(free),
         loose=moving_bodies(loops, pose, free / loops.scale),
-        redundant=len(J) - rank,
-        shared=stressed_connections(loops, left[:, rank:]),
+        redundant=len(J) - found,
+        shared=stressed_connections(loops, left[:, found:]),
     )
 
 
@@ -71,12 +70,6 @@ def is_particle(linkage: Linkage, name: str) -> bool:
     body = next(b for b in linkage.bodies if b.name == name)
     slides = any(name in (s.base, s.moving) for s in linkage.sliders)
     return body.inertia is None and not slides
-
-
-def _rank(singular: Floats) -> int:
-    if not len(singular) or singular[0] == 0.0:
-        return 0
-    return int(np.sum(singular > RANK_TOLERANCE * singular[0]))
 
 
 def moving_bodies(

@@ -8,11 +8,12 @@ from functools import cached_property
 
 import numpy as np
 
+from loads.as_drawn import RANK_TOLERANCE
 from loads.drives import Law, StateDrive
 from loads.least_squares import Factors
 from loads.linkage import Floats, Linkage, LinkageError, Point
 from loads.loop_equations import Complex, Loops, Points, Pose, number, pairs
-from loads.mobility import RANK_TOLERANCE, Mobility, require_determined
+from loads.mobility import Mobility, require_determined
 from loads.positions import Path
 from loads.singular_positions import impasse
 
@@ -102,6 +103,26 @@ class Motion:
     def angular_acceleration(self, item: str) -> Floats:
         """(T,) rad/s^2."""
         return self._angular(self.a, item)
+
+    @cached_property
+    def masses(self) -> Floats:
+        """(items,) kg."""
+        return np.array([item.mass for item in self.linkage.items])
+
+    @cached_property
+    def inertias(self) -> Floats:
+        """(items,) kg m^2, 0 for a particle."""
+        return np.array([item.inertia or 0.0 for item in self.linkage.items])
+
+    @cached_property
+    def spin(self) -> Floats:
+        """Angular velocities (T, items) rad/s."""
+        return np.stack([self.angular_velocity(i.name) for i in self.linkage.items], axis=1)
+
+    @cached_property
+    def spin_rate(self) -> Floats:
+        """Angular accelerations (T, items) rad/s^2."""
+        return np.stack([self.angular_acceleration(i.name) for i in self.linkage.items], axis=1)
 
     @cached_property
     def condition(self) -> Floats:

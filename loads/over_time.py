@@ -71,12 +71,10 @@ class OverTime:
     corners: Floats
 
 
-def peak_forces(
-    samples: Floats, at: Callable[[Floats], Reactions], corners: Floats | tuple[float, ...] = ()
-) -> PeakForces:
+def peak_forces(samples: Floats, at: Callable[[Floats], Reactions]) -> PeakForces:
     """The largest force and moment of every connection from the first to the last of the samples.
 
-    at: reactions at times (T,) s of the same motion. corners: times at which they may jump, s.
+    at: reactions at times (T,) s of the same motion, which jump nowhere.
     """
     first = at(samples)
     forces = [(np.abs(first.forces).max() or 1.0), (np.abs(first.moments).max() or 1.0)]
@@ -88,7 +86,7 @@ def peak_forces(
 
     count = len(first.connections)
     groups = np.repeat(np.arange(2 * count), 3)
-    return _peaks(resolved(samples, columns, corners, groups=groups.tolist()), at, forces)
+    return _peaks(resolved(samples, columns, groups=groups.tolist()), at, forces)
 
 
 def _peaks(found: Resolved, at: Callable[[Floats], Reactions], unit: list[float]) -> PeakForces:

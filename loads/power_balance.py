@@ -22,14 +22,10 @@ class Energy:
 
 def energy(motion: Motion) -> Energy:
     """Energies of all items; the potential energy is zero at the world's origin."""
-    items = motion.linkage.items
-    mass = np.array([item.mass for item in items])
-    spin = np.stack([motion.angular_velocity(item.name) for item in items], axis=1)
-    inertia = np.array([item.inertia or 0.0 for item in items])
     centres, velocity, _ = motion.centres
-    weight = mass * number(motion.linkage.gravity)
+    weight = motion.masses * number(motion.linkage.gravity)
     return Energy(
-        kinetic=0.5 * (np.abs(velocity) ** 2 @ mass + spin**2 @ inertia),
+        kinetic=0.5 * (np.abs(velocity) ** 2 @ motion.masses + motion.spin**2 @ motion.inertias),
         potential=-np.real(centres @ np.conj(weight)),
     )
 
@@ -58,21 +54,16 @@ class Ledger:
 def ledger(dynamics: Dynamics) -> Ledger:
     """The power balance at every instant."""
     motion = dynamics.motion
-    items = motion.linkage.items
-    mass = np.array([item.mass for item in items])
-    inertia = np.array([item.inertia or 0.0 for item in items])
     _, velocity, acceleration = motion.centres
-    spin = np.stack([motion.angular_velocity(item.name) for item in items], axis=1)
-    spin_rate = np.stack([motion.angular_acceleration(item.name) for item in items], axis=1)
     pull = np.conj(number(motion.linkage.gravity))
     slides = motion.v[:, motion.loops.frames - 1 :]
     return Ledger(
         drives=dynamics.power.sum(axis=1),
-        gravity=np.real(velocity * pull) @ mass,
+        gravity=np.real(velocity * pull) @ motion.masses,
         applied=_applied_power(dynamics),
         friction=np.sum(dynamics.sliders.friction * slides, axis=1),
-        kinetic_rate=np.real(np.conj(velocity) * acceleration) @ mass
-        + (spin * spin_rate) @ inertia,
+        kinetic_rate=np.real(np.conj(velocity) * acceleration) @ motion.masses
+        + (motion.spin * motion.spin_rate) @ motion.inertias,
     )
 
 
@@ -81,9 +72,7 @@ def _applied_power(dynamics: Dynamics) -> Floats:
     out = np.zeros(len(motion))
     for load in dynamics.applied:
         _, velocity, _ = motion.point(load.body, load.at)
-        force = np.full(len(motion), number(load.force))
-        if load.follows:
-            force = force * np.exp(1j * motion.angle(load.body))
+        force = load.along(motion)
         out += velocity[:, 0] * force.real + velocity[:, 1] * force.imag
         out += load.couple * motion.angular_velocity(load.body)
     return out

@@ -49,16 +49,17 @@ class Reactions:
 
     def in_pin_axes(self, connection: str) -> Floats:
         """Force on the pin in its own axes, (T, 3) N."""
-        return self._turned_back(self.forces, connection)
+        return self.turned_back(self.forces[:, self.connections.index(connection)], connection)
 
     def moment_in_pin_axes(self, connection: str) -> Floats:
         """Moment on the pin in its own axes, (T, 3) N m."""
-        return self._turned_back(self.moments, connection)
+        return self.turned_back(self.moments[:, self.connections.index(connection)], connection)
 
-    def _turned_back(self, vectors: Floats, connection: str) -> Floats:
-        c = self.connections.index(connection)
-        cos, sin = np.cos(self.turn[:, c]), np.sin(self.turn[:, c])
-        x, y, z = vectors[:, c].T
+    def turned_back(self, vectors: Floats, connection: str) -> Floats:
+        """Vectors (T, 3) in world axes in those of the connection's pin."""
+        turn = self.turn[:, self.connections.index(connection)]
+        cos, sin = np.cos(turn), np.sin(turn)
+        x, y, z = vectors.T
         return np.stack([cos * x + sin * y, cos * y - sin * x, z], axis=1)
 
 

@@ -16,6 +16,7 @@ import numpy as np
 from loads.linkage import Floats
 
 DEGREE = 8
+TOLERANCE = 1e-6  # of the largest magnitude of a quantity, or of those in its group
 PANELS = 16  # at least, of all the time before any is halved
 INSET = 1e-6  # of a span: so far inside its corners it is evaluated, to see one side of a jump only
 SAME = 1e-9  # of the whole time: corners this close are one; of a maximum: so is an end's value
@@ -165,16 +166,15 @@ def resolved(
     times: Floats,
     at: At,
     corners: Floats | tuple[float, ...] = (),
-    tolerance: float = 1e-6,
     most: int = 4096,
     groups: Sequence[int] | None = None,
 ) -> Resolved:
     """Quantities at `times` (T,) s, increasing, and at as many instants in between as necessary.
 
     at: values (T, K) at times (T,) in any order. corners: where values or their derivatives may
-    jump, s. tolerance: of the largest magnitude of each quantity, or of all in its group; groups:
-    (K,) numbers of them, by default each quantity is alone. most: evaluations after the first
-    round; what they do not resolve is in `unresolved`.
+    jump, s. groups: (K,) numbers of those whose tolerance is a part of the largest magnitude of
+    all in the group, by default each quantity is alone. most: evaluations after the first round;
+    what they do not resolve is in `unresolved`.
     """
     ends = _spans(times, corners)
     low, high = _first(ends)
@@ -198,7 +198,7 @@ def resolved(
         fresh = fresh.reshape(len(between), DEGREE, -1)
         off = _largest(np.abs(halfway @ active.values - fresh) / large)
         np.maximum.at(off, *_off_at(active, samples, values, large))
-        good = off <= tolerance
+        good = off <= TOLERANCE
         done.append(active[good].halves(fresh[good]))
         active = active[~good].halves(fresh[~good])
         if not len(active.low):

@@ -241,23 +241,17 @@ def _kinematics(leg: SpatialLeg, motion: LegMotion) -> dict[str, Floats]:
     spin_rate = _row(-a_w * c + w_i * w_w * s, -w_g * w_w * c, a_w * s + w_i * w_w * c)
     r_BC = _row(-leg.l3 * s - leg.l4 * c, o, -leg.l3 * c + leg.l4 * s)
     r_BD = _row(-0.75 * leg.l3 * s - 0.25 * leg.l4 * c, o, -0.75 * leg.l3 * c + 0.25 * leg.l4 * s)
-    v_B, a_B, _ = _point(leg, motion, np.zeros_like(r_BC))
-    v_C, a_C, coriolis_C = _point(leg, motion, r_BC)
-    v_D, a_D, _ = _point(leg, motion, r_BD)
-    return {
+    moved = {}
+    for point, r in (("B", np.zeros_like(r_BC)), ("D", r_BD), ("C", r_BC)):
+        moved[f"v_{point}"], moved[f"a_{point}"], coriolis = _point(leg, motion, r)
+    return moved | {
         "leg_omega": leg_omega,
         "leg_alpha": leg_alpha,
         "wheel_omega": leg_omega + _row(-w_w * c, o, w_w * s),
         "wheel_alpha": leg_alpha + spin_rate,
         "r_BC": r_BC,
         "r_BD": r_BD,
-        "v_B": v_B,
-        "a_B": a_B,
-        "v_C": v_C,
-        "a_C": a_C,
-        "coriolis_C": coriolis_C,
-        "v_D": v_D,
-        "a_D": a_D,
+        "coriolis_C": coriolis,
     }
 
 

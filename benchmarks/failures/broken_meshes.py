@@ -11,7 +11,7 @@ from benchmarks.failures.asked import STUDIES
 from fea.core.pin_loads import Floats
 from fea.solid.assembly import Discretisation
 from geometry import Pin, Segment
-from geometry.mesh.quality import Ints
+from geometry.arrays import Ints
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 
 MM = 1e-3

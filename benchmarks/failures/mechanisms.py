@@ -14,7 +14,6 @@ from benchmarks.failures.draw import GREY, INK, decades, line_style, note
 from benchmarks.failures.entry import Entry
 from fea.core.pin_loads import Floats
 from loads import Applied, JammingError, StateDrive, at_rest, motion_reactions, move
-from loads import static_reactions as static
 from pinstress.model.cases import case_loads
 from pinstress.model.linkage import linkage
 from pinstress.study.errors import InputError
@@ -77,7 +76,7 @@ def toggle() -> Toggle:
     force, condition = [], []
     for gap in short:
         motion = at_rest(mechanism, [dead - gap])
-        held = static("held", mechanism, [dead - gap], [load]).reactions
+        held = motion_reactions("held", at_rest(mechanism, [dead - gap]), [load], False).reactions
         force.append(float(held.magnitudes[0, held.connections.index("B")]))
         condition.append(float(motion.condition[0]))
     exact = np.array([_transmission(dead - gap) for gap in short])

@@ -30,9 +30,10 @@ import numpy as np
 
 from fea.beam.maximum import harmonics, highest
 from fea.beam.stress import TZ, ZZ, BeamStress
-from fea.core.pin_loads import Floats, PinLoads
+from fea.core.pin_loads import PinLoads
 from fea.core.tractions import pressure_amplitude
 from geometry import Band, Pin
+from geometry.arrays import Floats
 
 PLAIN = 0.05
 SHOULDER = 0.12

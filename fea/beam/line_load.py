@@ -13,9 +13,10 @@ import numpy as np
 
 from fea.beam.round_section import Circle
 from fea.core.material import Material
-from fea.core.pin_loads import AnyLoads, Floats, UnitLoad
+from fea.core.pin_loads import AnyLoads, UnitLoad, require_solved
 from fea.core.tractions import Traction, closing_tractions, traction
 from geometry import ArgumentError, Pin
+from geometry.arrays import Floats
 
 
 def loads_sections(load: UnitLoad) -> bool:
@@ -35,11 +36,7 @@ def shares(units: tuple[UnitLoad, ...], loads: AnyLoads) -> Floats:
     Raises: ValueError when a part of the loads is not among the units.
     """
     found = loads.coefficients()
-    missing = set(acting(loads)) - set(units)
-    if missing:
-        raise ArgumentError(
-            f"case {loads.case}: no unit fields were solved for {sorted(missing)}", "missing-fields"
-        )
+    require_solved(loads.case, acting(loads), units)
     out = np.zeros((len(loads), 2, len(units)))
     for k, unit in enumerate(units):
         if unit in found and loads_sections(unit):

@@ -15,11 +15,12 @@ from fea.beam.stress import BeamStress, beam_stress
 from fea.core.material import Material
 from fea.core.mesh_result import MeshResult
 from fea.core.peak import ErrorParts, Note, Peak, Refinement
-from fea.core.pin_loads import AnyLoads, Floats, PinLoads
+from fea.core.pin_loads import AnyLoads, PinLoads
 from fea.core.solution import Picture
 from fea.singular.singularities import Singularity, outside
 from fea.verdict import accuracy
 from geometry import Pin
+from geometry.arrays import Floats
 
 
 class BeamAnswer:

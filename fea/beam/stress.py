@@ -17,8 +17,9 @@ from fea.beam.round_section import Circle
 from fea.beam.stress_concentration import Notch, notches
 from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, stepped_beam
 from fea.core.material import Material
-from fea.core.pin_loads import Floats, UnitLoad
+from fea.core.pin_loads import UnitLoad
 from geometry import Pin
+from geometry.arrays import Floats
 
 ZZ, TZ, RZ = 2, 3, 4
 PER_CELL = 33  # points in a cell, in addition to where a moment is largest
@@ -60,15 +61,12 @@ def beam_stress(
     for radius in ("outer", "inner"):
         r = np.array([getattr(s, radius) for s in sections])
         points.append(np.stack([r, z], axis=1))
-        per_force = [_section_stress(s, a, nu) for s, a in zip(sections, r, strict=True)]
+        per_force = [section_stress(s, a, nu) for s, a in zip(sections, r, strict=True)]
         stress.append(np.einsum("siq,sqk->sik", per_force, inside))
     found = [(n, c) for n in notches(pin) if (c := _thin_cell(pin, forces, n)) is not None]
     for notch, c in found:
         section = forces.sections[c]
-        nominal = _section_stress(section, section.outer, nu)
-        nominal[ZZ, MOMENT] *= notch.bending or 1.0
-        nominal[ZZ, AXIAL] *= notch.tension or 1.0
-        nominal[TZ, TORQUE] *= notch.torsion or 1.0
+        nominal = notch_stress(notch, section, nu)
         here = forces.inside(np.array([c]), np.array([notch.z]))
         points.append(np.array([[section.outer, notch.z]]))
         stress.append(np.einsum("iq,sqk->sik", nominal, here))
@@ -98,13 +96,22 @@ def sample(forces: InternalForces) -> tuple[NDArray[np.intp], Floats]:
     return np.array(cells, dtype=np.intp), np.array(z)
 
 
-def _section_stress(section: Circle, r: float, nu: float) -> Floats:
+def section_stress(section: Circle, r: float, nu: float) -> Floats:
     """Amplitudes (6, 4) in Pa at r (m) per V, M, N, T."""
     out = np.zeros((6, 4))
     out[RZ, SHEAR], out[TZ, SHEAR] = section.flexure(r, nu)
     out[ZZ, MOMENT] = -r / section.inertia
     out[ZZ, AXIAL] = 1.0 / section.area
     out[TZ, TORQUE] = -r / section.polar
+    return out
+
+
+def notch_stress(notch: Notch, section: Circle, nu: float) -> Floats:
+    """The same at the surface of the thinner shaft, with the notch's factors where it has them."""
+    out = section_stress(section, section.outer, nu)
+    out[ZZ, MOMENT] *= notch.bending or 1.0
+    out[ZZ, AXIAL] *= notch.tension or 1.0
+    out[TZ, TORQUE] *= notch.torsion or 1.0
     return out
 
 

@@ -24,8 +24,9 @@ from numpy.typing import NDArray
 from fea.beam.line_load import line_loads
 from fea.beam.round_section import Circle, circle
 from fea.core.material import Material
-from fea.core.pin_loads import Floats, UnitLoad
+from fea.core.pin_loads import UnitLoad
 from geometry import Pin
+from geometry.arrays import Floats
 
 SHEAR, MOMENT, AXIAL, TORQUE = range(4)
 _GAUSS, _WEIGHT = np.polynomial.legendre.leggauss(4)  # exact for products of our cubics

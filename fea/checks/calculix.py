@@ -10,11 +10,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from geometry import Coded
-
-Floats = NDArray[np.float64]
+from geometry.arrays import Floats
 
 COMMAND = "ccx"
 JOB = "job"

@@ -17,80 +17,24 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fea.checks import calculix
 from fea.checks.calculix_deck import write_deck
+from fea.checks.opinions import Opinion
 from fea.core.material import Material
 from fea.core.peak import Peak
-from fea.core.pin_loads import Floats, PinLoads
+from fea.core.pin_loads import PinLoads
 from fea.core.voigt import von_mises
 from fea.solid.evaluate import SolidSolution, solid_solution
 from fea.solid.stress_recovery import nodal_stress
 from fea.solve_pin import singularities_of
 from geometry import PinLike
+from geometry.arrays import Floats, Ints
 from geometry.mesh.solid_mesh import MeshSize
-
-Ints = NDArray[np.int64]
-
-SAME_DISPLACEMENT = 1e-5  # of the largest; CalculiX prints 7 digits
-SAME_STRESS = 1e-4  # of the largest; CalculiX prints 6 digits of each component
-# Allowed deviation from the answer, in addition to its error, of the solid model's first mesh at a
-# fillet or where a singularity ends (22 % at most in studies/grenier2008.toml). It finds mistakes
-# only.
-SAME_MAXIMUM = 0.30
-
-
-@dataclass(frozen=True)
-class Opinion:
-    """Of one pin in one case: both programs on one mesh of `unknowns`, and the ladder's answer.
-
-    displacement, stress: largest differences, relative to the largest displacement and von Mises
-    stress. ours, theirs: largest von Mises stress outside of singularities, both averaged
-    at the nodes, Pa. answer, error: the ladder's, Pa. failure: why there is none of this, or empty.
-    """
-
-    pin: str
-    case: str
-    answer: float | None
-    error: float | None
-    unknowns: int = 0
-    displacement: float | None = None
-    stress: float | None = None
-    ours: float | None = None
-    theirs: float | None = None
-    failure: str = ""
-
-    @property
-    def deviation(self) -> float | None:
-        """How far their maximum is from the ladder's answer, relative to it."""
-        if self.theirs is None or not self.answer:
-            return None
-        return self.theirs / self.answer - 1.0
-
-    @property
-    def complaint(self) -> str:
-        """What is beyond its limit, in words; empty when they agree."""
-        if self.failure:
-            return self.failure
-        said = []
-        for what, value, limit in (
-            ("displacements", self.displacement, SAME_DISPLACEMENT),
-            ("von Mises stresses", self.stress, SAME_STRESS),
-        ):
-            if value is None or not value <= limit:
-                said.append(f"{what} on the same mesh differ by {value:.1e}, allowed {limit:.0e}")
-        if self.answer and self.deviation is not None:
-            limit = SAME_MAXIMUM + (self.error or 0.0) / self.answer
-            if not abs(self.deviation) <= limit:
-                said.append(
-                    f"its maximum is {self.deviation:+.1%} from the answer, allowed {limit:.1%}"
-                )
-        return "; ".join(said)
 
 
 def second_opinions(

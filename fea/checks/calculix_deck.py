@@ -6,12 +6,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fea.core.material import Material
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from geometry.arrays import Floats, Ints
 
 # C3D10 has the corners, then edges 01, 12, 02, 03, 13, 23, which is VTK's order and scikit-fem's
 # (not gmsh's: 03, 23, 13). A mirrored element is turned by exchanging its corners 1 and 2.

@@ -1,9 +1,9 @@
 """A second opinion on a pin in its lugs: CalculiX's contact in three dimensions.
 
 The geometry is that of fea.joint: the pin as it is, each lug an annulus as thick as its band is
-long, with the clearance and the edges' rounding in the bore. Lugs are supported as there: the
-link's force is a traction of constant direction on the outer surface, whose mean tilt is guided or
-sprung.
+long, a bushing in it, with the clearance and the edges' rounding in the bore. Lugs are supported as
+there: the link's force is a traction of constant direction on the outer surface, whose mean tilt is
+guided or sprung.
 What differs: elements (C3D20R), contact (surface to surface, by a penalty), solver, stress
 recovery. Of forces that lie in a plane only one half is modelled. A lug begins where it touches
 the pin: shifted by half of its clearance along its force, which without friction changes nothing.
@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import re
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -38,7 +38,8 @@ Ints = NDArray[np.int64]
 
 APPENDED = "zero-size increment is appended"
 USUAL = Fineness()
-IN_A_PLANE = 1e-9  # of the largest force: what may be across the plane of the others
+FLAT = 1e-3  # of a band's length: a shorter flat part between rounded edges is none
+IN_A_PLANE = 1e-6  # of the largest force: what may be across the plane of the others
 NEAR, STEPS, NATURAL = 12, 12, 1e-9  # elements in which a point is looked for, and how
 SIGNS = np.array([[x, y, z] for z in (-1.0, 1.0) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
 
@@ -138,10 +139,11 @@ def joint_deck(
 ) -> tuple[JointDeck, float]:
     """The deck, and by which angle (rad) its axes are turned about the pin's. As joint_opinion."""
     force = _forces(loads, [lug.connection for lug in lugs])
-    angle, half = _plane(force)
+    angle, half = plane_of(force)
     c, s = np.cos(angle), np.sin(angle)
     turned = force @ np.array([[c, -s], [s, c]]) * (0.5 if half else 1.0) * fineness.scale
-    stations = _stations(pin, fineness)
+    radii = {lug.connection: lug.edge_radius for lug in lugs}
+    stations = _stations(pin, radii, fineness)
     mesh = pin_mesh(pin, stations, fineness, half)
     eyes = [
         _eye(pin, lug, f, mesh, stations, fineness, half)
@@ -164,8 +166,10 @@ def _forces(loads: PinLoads, connections: Sequence[str]) -> Floats:
     return out
 
 
-def _plane(force: Floats) -> tuple[float, bool]:
-    """The direction (rad) of the largest force, and whether all have it, or its opposite."""
+def plane_of(force: Floats) -> tuple[float, bool]:
+    """The direction (rad) of the largest of forces (B, 2) N, and whether all have it, or its
+    opposite; then half of the joint is modelled.
+    """
     fx, fy = force[np.argmax(np.linalg.norm(force, axis=1))]
     across = np.abs(force @ [-fy, fx]).max() / np.hypot(fx, fy)
     if across > IN_A_PLANE * np.hypot(fx, fy):
@@ -173,18 +177,31 @@ def _plane(force: Floats) -> tuple[float, bool]:
     return float(np.arctan2(fy, fx)), True
 
 
-def _stations(pin: Pin, fineness: Fineness) -> list[Floats]:
-    """Ends of the layers of elements in every segment, m."""
+def _stations(pin: Pin, radii: Mapping[str, float], fineness: Fineness) -> list[Floats]:
+    """Ends of the layers of elements in every segment, m. radii: of the bores' edges, m."""
     out = []
     for segment, start in zip(pin.segments, pin.stations, strict=False):
         if segment.connection:
-            ends, parts = graded(segment.length, fineness.rings), fineness.parts
-            cut = np.interp(np.arange(fineness.rings * parts + 1) / parts, range(len(ends)), ends)
+            ends = _ring_ends(segment.length, radii[segment.connection], fineness.rings)
+            count, parts = len(ends) - 1, fineness.parts
+            cut = np.interp(np.arange(count * parts + 1) / parts, range(count + 1), ends)
         else:
             count = max(2, round(fineness.along * segment.length / pin.smallest_diameter))
             cut = np.linspace(0.0, segment.length, count + 1)
         out.append(start + cut)
     return out
+
+
+def _ring_ends(length: float, radius: float, count: int) -> Floats:
+    """Of the rings of a band, m: `count` on its flat part, and two in the rounding of each edge,
+    since the parabola of one would press on the pin.
+    """
+    flat = length - 2.0 * radius
+    inner = radius + graded(flat, count) if flat > FLAT * length else np.array([length / 2.0])
+    if not radius:
+        return inner
+    edge = np.array([0.0, radius / 2.0])
+    return np.concatenate([edge, inner, (length - edge)[::-1]])
 
 
 def _eye(
@@ -198,13 +215,17 @@ def _eye(
 ) -> Eye:
     i = pin.labels.index(lug.connection)
     radius, z = pin.segments[i].diameter / 2.0, stations[i]
-    plain = annulus_mesh(radius, lug.outer_diameter / 2.0, z, fineness, half)
+    inside = lug.bushing
+    lining = None if inside is None else (radius + inside.thickness, inside.material)
+    radii = (radius, *(lining[:1] if lining else ()), lug.outer_diameter / 2.0)
+    plain = annulus_mesh(radii, z, fineness, half)
     body = _opened(plain, lug, force, fineness.scale)
     before = sum(len(x) - 1 for x in stations[:i])
     surface = np.abs(mesh.outer - radius) < 1e-9 * radius
     ring = (mesh.layer - before) // fineness.parts
-    rings = tuple(np.flatnonzero(surface & (ring == k)) for k in range(fineness.rings))
-    part = Part(f"LUG{i}", body, lug.material)
+    count = (len(z) - 1) // fineness.parts
+    rings = tuple(np.flatnonzero(surface & (ring == k)) for k in range(count))
+    part = Part(f"LUG{i}", body, lug.material, lining)
     return Eye(part, force, lug.tilt * (0.5 if half else 1.0), rings)
 
 
@@ -232,11 +253,12 @@ def _read(
 ) -> JointOpinion:
     """The results of a run. Raises: CalculixError."""
     seconds = calculix.seconds_of(printed)
-    mesh, count = deck.pin.mesh, len(deck.eyes[0].rings)
+    mesh = deck.pin.mesh
     try:
         found = contact_forces(folder / f"{calculix.JOB}.dat")
         stress = calculix.stresses(folder / f"{calculix.JOB}.frd")
-        each = np.array([found[slave(e.part.name, k)] for e in deck.eyes for k in range(count)])
+        names = [slave(eye.part.name, k) for eye in deck.eyes for k in range(len(eye.rings))]
+        each = np.array([found[name] for name in names])
     except (OSError, ValueError, IndexError, KeyError, StopIteration) as error:
         raise calculix.CalculixError(
             f"{calculix.COMMAND} wrote no readable results ({error})", "unreadable-results"

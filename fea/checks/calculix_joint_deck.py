@@ -30,11 +30,25 @@ WEAK = 1e-7  # of Young's modulus times the pin's length: springs that hold what
 
 @dataclass(frozen=True)
 class Part:
-    """A body: its name in the deck, mesh and material."""
+    """A body: its name in the deck, mesh and material. lining: what has another material, up to a
+    radius, m.
+    """
 
     name: str
     mesh: Hexahedra
     material: Material
+    lining: tuple[float, Material] | None = None
+
+    @property
+    def materials(self) -> Iterator[tuple[str, Material, Ints]]:
+        """Of the elements, by their numbers in this body: name in the deck and material."""
+        if self.lining is None:
+            yield self.name, self.material, np.arange(len(self.mesh.elements))
+            return
+        radius, other = self.lining
+        inside = self.mesh.outer < radius * (1.0 + 1e-9)
+        yield self.name, self.material, np.flatnonzero(~inside)
+        yield f"{self.name}LINING", other, np.flatnonzero(inside)
 
 
 @dataclass(frozen=True)
@@ -211,15 +225,16 @@ def _body(part: Part, node: int, element: int) -> Iterator[str]:
     yield f"*NODE, NSET={part.name}"
     for number, (x, y, z) in enumerate(part.mesh.nodes, node):
         yield f"{number}, {real(x)}, {real(y)}, {real(z)}"
-    yield f"*ELEMENT, TYPE=C3D20R, ELSET={part.name}"
-    for number, row in enumerate(part.mesh.elements + node, element):
-        text = [str(n) for n in row]
-        yield f"{number}, " + ", ".join(text[:10]) + ","
-        yield ", ".join(text[10:])
-    yield f"*MATERIAL, NAME=OF{part.name}"
-    yield "*ELASTIC"
-    yield f"{real(part.material.youngs_modulus)}, {real(part.material.poisson_ratio)}"
-    yield f"*SOLID SECTION, ELSET={part.name}, MATERIAL=OF{part.name}"
+    for name, material, own in part.materials:
+        yield f"*ELEMENT, TYPE=C3D20R, ELSET={name}"
+        for number, row in zip(own + element, part.mesh.elements[own] + node, strict=True):
+            text = [str(n) for n in row]
+            yield f"{number}, " + ", ".join(text[:10]) + ","
+            yield ", ".join(text[10:])
+        yield f"*MATERIAL, NAME=OF{name}"
+        yield "*ELASTIC"
+        yield f"{real(material.youngs_modulus)}, {real(material.poisson_ratio)}"
+        yield f"*SOLID SECTION, ELSET={name}, MATERIAL=OF{name}"
 
 
 def _surface(name: str, elements: Ints, face: int) -> Iterator[str]:

@@ -39,12 +39,12 @@ ROUND = 0.4  # how round the core is: 0 a square, 1 a circle
 class Fineness:
     """How fine CalculiX's meshes are, and what its contact is.
 
-    rings: of a band, as in fea.joint.solve_joint: Cells; parts: elements along each. sectors: round
-    the whole circle, a multiple of 8. layers: across the pin's wall, or from the core of a solid
-    one to its surface. eye: across the wall of a lug. along: elements of a segment that no lug
-    holds, for every length of a diameter; at least two. stiffness: of the contact, times Young's
-    modulus of the pin over its smallest diameter. scale: of forces and gaps, of which results are
-    the same multiple where displacements are small.
+    rings: of a band between its rounded edges; parts: elements along each. sectors: round the
+    whole circle, a multiple of 8. layers: across the pin's wall, or from the core of a solid
+    one to its surface. eye: across the wall of a lug, besides one in a bushing. along: elements of
+    a segment without a lug, for every length of a diameter; at least two. stiffness: of the
+    contact, times Young's modulus of the pin over its smallest diameter. scale: of forces and gaps,
+    of which results are the same multiple where displacements are small.
     """
 
     rings: int = 8
@@ -97,7 +97,7 @@ def pin_mesh(pin: Pin, z: Sequence[Floats], fineness: Fineness, half: bool) -> H
     Raises: ArgumentError for a pin with fillets.
     """
     if any(pin.fillet_at(i) for i in range(len(pin.segments) - 1)):
-        raise ArgumentError(f"pin {pin.name}: this mesh has no fillets", "fillet")
+        raise ArgumentError(f"CalculiX's model has no fillets (pin {pin.name})", "fillet")
     bores = [s.bore / 2.0 for s in pin.segments]
     steps = sorted({s.diameter / 2.0 for s in pin.segments} | {b for b in bores if b})
     solid = min(bores) == 0.0
@@ -109,12 +109,14 @@ def pin_mesh(pin: Pin, z: Sequence[Floats], fineness: Fineness, half: bool) -> H
     return _drawn(section, ends, np.repeat(bores, counts), outer)
 
 
-def annulus_mesh(bore: float, outer: float, z: Floats, fineness: Fineness, half: bool) -> Hexahedra:
-    """A lug of radii `bore` and `outer` (m), of layers with ends z (m)."""
-    ratio = (outer / bore) ** np.linspace(0.0, 1.0, fineness.eye + 1)
-    section = _section(bore * ratio, False, fineness.sectors, half)
-    wall = np.ones(len(z) - 1)
-    return _drawn(section, z, bore * wall, outer * wall)
+def annulus_mesh(radii: tuple[float, ...], z: Floats, fineness: Fineness, half: bool) -> Hexahedra:
+    """A lug of layers with ends z (m). radii: of its bore, of a bushing's outside if it has one,
+    and its own, m.
+    """
+    wall = (radii[-1] / radii[-2]) ** np.linspace(0.0, 1.0, fineness.eye + 1)
+    section = _section(np.array([*radii[:-2], *radii[-2] * wall]), False, fineness.sectors, half)
+    count = np.ones(len(z) - 1)
+    return _drawn(section, z, radii[0] * count, radii[-1] * count)
 
 
 def _radii(steps: list[float], solid: bool, layers: int) -> Floats:

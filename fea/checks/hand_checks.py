@@ -13,7 +13,6 @@ ASME BTH-1, Design of Below-the-Hook Lifting Devices, 3-3, has the same for pinn
 from __future__ import annotations
 
 import math
-from functools import partial
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -24,10 +23,13 @@ from fea.beam.stress import sample
 from fea.beam.timoshenko import MOMENT, SHEAR, InternalForces, stepped_beam
 from fea.checks.records import HandCheck
 from fea.core.material import Material
-from fea.core.pin_loads import Floats, PinLoads
+from fea.core.pin_loads import PinLoads
 from geometry import Pin
+from geometry.arrays import Floats
 
 SHIGLEY = "Budynas & Nisbett, Shigley's Mechanical Engineering Design"
+JOINTS = f"{SHIGLEY}, 8-12"
+CONVENTION = f"{JOINTS}; yield as its strength is a convention"
 HALVES = 0.1  # part of a band's load by which its two sides may differ in double shear
 
 
@@ -43,36 +45,18 @@ def hand_checks(
     yields = material.yield_strength
     in_shear = yields / math.sqrt(3.0) if yields else None
     cell, z, t, mean = _largest(forces, c, SHEAR)
-    section, at = forces.sections[cell], _label(pin, forces, cell)
-    formula = "V Q / (I t)" if section.inner else "4 V / (3 A)"
-    time = partial(_time, loads)
-    M_cell, M_z, M_t, bending = _largest(forces, c, MOMENT)
+    section = forces.sections[cell]
+    shear = _label(pin, forces, cell), z, _time(loads, t)
+    highest, formula = mean * section.vq_it, "V Q / (I t)" if section.inner else "4 V / (3 A)"
+    cell, z, t, largest = _largest(forces, c, MOMENT)
+    bent = _label(pin, forces, cell), z, _time(loads, t)
+    axis = "single shear, at the neutral axis"
     return (
-        HandCheck(
-            "single shear, mean", at, z, time(t), mean, in_shear, "V / A", f"{SHIGLEY}, 8-12"
-        ),
-        HandCheck(
-            "single shear, at the neutral axis",
-            at,
-            z,
-            time(t),
-            mean * section.vq_it,
-            in_shear,
-            formula,
-            f"{SHIGLEY}, 3-11",
-        ),
+        HandCheck("single shear, mean", *shear, mean, in_shear, "V / A", JOINTS),
+        HandCheck(axis, *shear, highest, in_shear, formula, f"{SHIGLEY}, 3-11"),
         *_double_shear(pin, forces, c, loads, in_shear),
         *_bearing(pin, loads, yields),
-        HandCheck(
-            "bending",
-            _label(pin, forces, M_cell),
-            M_z,
-            time(M_t),
-            bending,
-            yields,
-            "M c / I",
-            f"{SHIGLEY}, 3-10",
-        ),
+        HandCheck("bending", *bent, largest, yields, "M c / I", f"{SHIGLEY}, 3-10"),
     )
 
 
@@ -126,19 +110,8 @@ def _double_shear(
         t = int(load.argmax())
         if load[t] > 0.0 and np.linalg.norm(V[0, t] + V[1, t]) <= HALVES * load[t]:
             area = min(forces.sections[i].area for i in adjacent)
-            stress = float(load[t]) / (2.0 * area)
-            out.append(
-                HandCheck(
-                    "double shear, mean",
-                    band.name,
-                    band.middle,
-                    _time(loads, t),
-                    stress,
-                    strength,
-                    "F / (2 A)",
-                    f"{SHIGLEY}, 8-12",
-                )
-            )
+            stress, at = float(load[t]) / (2.0 * area), (band.name, band.middle, _time(loads, t))
+            out.append(HandCheck("double shear, mean", *at, stress, strength, "F / (2 A)", JOINTS))
     return out
 
 
@@ -151,18 +124,8 @@ def _bearing(pin: Pin, loads: PinLoads, strength: float | None) -> list[HandChec
         t = int(size.argmax())
         if size[t] > 0.0:
             pressure = float(size[t]) / (2.0 * band.radius * band.length)
-            out.append(
-                HandCheck(
-                    "bearing",
-                    band.name,
-                    band.middle,
-                    _time(loads, t),
-                    pressure,
-                    strength,
-                    "F / (d L)",
-                    f"{SHIGLEY}, 8-12; yield as its strength is a convention",
-                )
-            )
+            at = band.name, band.middle, _time(loads, t)
+            out.append(HandCheck("bearing", *at, pressure, strength, "F / (d L)", CONVENTION))
     return out
 
 

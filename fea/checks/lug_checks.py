@@ -26,14 +26,13 @@ from types import MappingProxyType
 
 import numpy as np
 
+from fea.checks.hand_checks import CONVENTION, JOINTS
 from fea.checks.records import HandCheck
 from fea.core.pin_loads import PinLoads
 from fea.joint.lugs.lug import Lug
 from geometry import ArgumentError, Pin
 
-SHIGLEY = "Budynas & Nisbett, Shigley's Mechanical Engineering Design, 8-12"
 BRUHN = "Bruhn, Analysis and Design of Flight Vehicle Structures, D1"
-CONVENTION = f"{SHIGLEY}; yield as its strength is a convention"
 NET = "F / ((W - D) t)"
 OUT = "F / (t (sqrt(W^2 - (D sin 40°)^2) - D cos 40°))"
 BEARING = "F / (d t)"
@@ -99,7 +98,7 @@ def _of_lug(pin: Pin, lug: Lug, loads: PinLoads, bushed: float | None) -> tuple[
     yields = lug.material.yield_strength
     in_shear = yields / math.sqrt(3.0) if yields else None
     found = (
-        ("lug, net section", net_section_stress(force, W, bore, thickness), yields, NET, SHIGLEY),
+        ("lug, net section", net_section_stress(force, W, bore, thickness), yields, NET, JOINTS),
         ("lug, shear-out", shear_out_stress(force, W, bore, thickness), in_shear, OUT, BRUHN),
         ("lug, bearing", bearing_stress(force, inside, thickness), yields, BEARING, CONVENTION),
     )

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea.core.pin_loads import Floats, PinLoads
+from fea.core.pin_loads import PinLoads
 from geometry import PinLike
+from geometry.arrays import Floats
 
 MOST = 0.1  # imbalance allowed, of the largest force or torque
 NOISE = 1e-9  # of the largest load: smaller ones are zero

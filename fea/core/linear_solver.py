@@ -9,14 +9,12 @@ from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
 from geometry import Coded
+from geometry.arrays import Floats, Ints
 from geometry.mesh.gmsh_session import ONE_AT_A_TIME
 from geometry.system import offered
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Solve = Callable[[Floats], Floats]
 
 # Relative change of the solution by one more step of iterative refinement: an estimate of round-off

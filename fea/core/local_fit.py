@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-Floats = NDArray[np.float64]
+from geometry.arrays import Floats, Ints
 
 NEIGHBOURS = 24  # samples whose stress a quadratic polynomial is fitted to; it has six terms
 _LITTLE = 1e-10  # added where samples leave slope or curvature open, of their number
 
 
-def extension(elements: NDArray[np.int64], samples: Floats, singularities: Floats) -> sp.csr_matrix:
+def extension(elements: Ints, samples: Floats, singularities: Floats) -> sp.csr_matrix:
     """Matrix (N, M Q) from values at Q samples of each element to values at nodes: each element's
     extended linearly, and averaged.
 

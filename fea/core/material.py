@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from geometry import ArgumentError
+from geometry.arrays import Floats
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Material:
         E, nu = self.youngs_modulus, self.poisson_ratio
         return E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), E / (2.0 * (1.0 + nu))
 
-    def stress(self, strain: NDArray[np.float64]) -> NDArray[np.float64]:
+    def stress(self, strain: Floats) -> Floats:
         """Stress (..., 6) in Pa from strain (..., 6): xx, yy, zz, yz, xz, xy with tensor shears."""
         lam, mu = self.lame
         stress = 2.0 * mu * strain

@@ -15,8 +15,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.core.pin_loads import Amounts, Floats, PinLoads, off_chord
+from fea.core.pin_loads import Amounts, PinLoads, off_chord
 from fea.core.solution import Answer
+from geometry.arrays import Floats
 
 Between = Callable[[Floats], PinLoads]  # a motion's loads at any times (T,) s
 

@@ -17,11 +17,14 @@ So a unit load of harmonic n serves all directions: phases differ by a turn abou
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+from geometry import ArgumentError
 
 Floats = NDArray[np.float64]
 Kind = Literal["force", "moment", "pressure", "body"]
@@ -142,17 +145,21 @@ class PinLoads:
         add(UnitLoad(BODY, "body", 0), self.body[:, 2], zero)
         return out
 
+    @property
+    def _vectors(self) -> tuple[Floats, Floats, Floats]:
+        return self.forces, self.moments, self.body
+
     def turned(self, angle: float) -> PinLoads:
         """The same loads, all turned about the pin's axis by `angle` (rad)."""
         c, s = np.cos(angle), np.sin(angle)
         about_z = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-        forces, moments, body = (x @ about_z for x in (self.forces, self.moments, self.body))
+        forces, moments, body = (x @ about_z for x in self._vectors)
         return replace(self, forces=forces, moments=moments, body=body)
 
     def at(self, instants: NDArray[np.int64]) -> PinLoads:
         """The loads at some of the instants, by their numbers."""
         times = None if self.times is None else self.times[instants]
-        forces, moments, body = (x[instants] for x in (self.forces, self.moments, self.body))
+        forces, moments, body = (x[instants] for x in self._vectors)
         return replace(self, forces=forces, moments=moments, body=body, times=times)
 
     def merged(self, other: PinLoads) -> PinLoads:
@@ -160,14 +167,8 @@ class PinLoads:
         assert self.times is not None
         assert other.times is not None
         times, first = np.unique(np.concatenate([self.times, other.times]), return_index=True)
-        forces, moments, body = (
-            np.concatenate([a, b])[first]
-            for a, b in (
-                (self.forces, other.forces),
-                (self.moments, other.moments),
-                (self.body, other.body),
-            )
-        )
+        both = zip(self._vectors, other._vectors, strict=True)
+        forces, moments, body = (np.concatenate(pair)[first] for pair in both)
         return replace(self, forces=forces, moments=moments, body=body, times=times)
 
 
@@ -201,6 +202,14 @@ class Amounts:
 
 
 AnyLoads = PinLoads | Amounts
+
+
+def require_solved(case: str, acting: Iterable[UnitLoad], solved: Iterable[UnitLoad]) -> None:
+    """Raises: ArgumentError when a part of a case's loads is not among those solved."""
+    if missing := set(acting) - set(solved):
+        raise ArgumentError(
+            f"case {case}: no unit fields were solved for {sorted(missing)}", "missing-fields"
+        )
 
 
 def off_chord(loads: PinLoads, middle: PinLoads) -> Amounts:

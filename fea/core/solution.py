@@ -5,10 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
-from fea.core.pin_loads import AnyLoads, Floats, PinLoads
+from fea.core.pin_loads import AnyLoads, PinLoads
+from geometry.arrays import Floats, Ints
 
 
 @dataclass(frozen=True)
@@ -19,7 +17,7 @@ class Picture:
     """
 
     points: Floats
-    cells: NDArray[np.int64]
+    cells: Ints
     cell_type: str
     displacement: Floats
     stress: Floats

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from geometry.arrays import Floats, Ints
 
 
 class Pattern:
@@ -19,7 +18,7 @@ class Pattern:
     columns: (P,) second node of each pair. pointer: (N + 1,) where each first node's pairs begin.
     """
 
-    def __init__(self, elements: NDArray[np.int64], nodes: int) -> None:
+    def __init__(self, elements: Ints, nodes: int) -> None:
         e = elements.astype(np.int32)
         count = elements.shape[1] * e.size
         row, column = np.repeat(e, e.shape[1], axis=1).ravel(), np.tile(e, e.shape[1]).ravel()

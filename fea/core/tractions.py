@@ -15,8 +15,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea.core.pin_loads import Floats, UnitLoad
+from fea.core.pin_loads import UnitLoad
 from geometry import Band, PinLike
+from geometry.arrays import Floats
 
 
 @dataclass(frozen=True)

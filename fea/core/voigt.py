@@ -6,9 +6,8 @@ Components are xx, yy, zz, yz, xz, xy; of a section rr, tt, zz, tz, rz, rt.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from geometry.arrays import Floats
 
 # von Mises squared is s . VON_MISES s
 VON_MISES = np.zeros((6, 6))

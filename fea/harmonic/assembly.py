@@ -22,17 +22,14 @@ from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 from skfem import Basis, ElementTriP2
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
 from fea.core.material import Material
 from fea.core.sparsity import Pattern
+from geometry.arrays import Floats, Ints
 from geometry.mesh.section_mesh import MeridianMesh
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class Section:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from fea.core.tractions import Traction
-from fea.harmonic.assembly import Floats, Ints, Section, around
+from fea.harmonic.assembly import Section, around
+from geometry.arrays import Floats, Ints
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from fea.core.material import Material
 from fea.core.mesh_result import FELT, MeshResult, Point
-from fea.core.pin_loads import AnyLoads, Floats, PinLoads, UnitLoad
+from fea.core.pin_loads import AnyLoads, PinLoads, UnitLoad
 from fea.core.solution import Picture
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.model import HarmonicModel
@@ -18,10 +18,11 @@ from fea.harmonic.near_singularities import CLOSE, inside, interval
 from fea.harmonic.quiet_corners import crowd, quiet_corners
 from fea.harmonic.revolve import revolve
 from fea.harmonic.stress_recovery import NOWHERE
-from fea.harmonic.superposition import Circumference, Mask, Top
+from fea.harmonic.superposition import Circumference, Top
 from fea.singular.probes import rim
 from fea.singular.singularities import VARIED, Singularity, smooth_edges
 from geometry import Pin
+from geometry.arrays import Floats, Mask
 from geometry.mesh.section_mesh import meridian_mesh
 from geometry.mesh.sizing import Grade, SectionSize, Spot, size_at
 

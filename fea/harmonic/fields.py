@@ -6,12 +6,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fea.core.pin_loads import Floats, UnitLoad
+from fea.core.pin_loads import UnitLoad
 from fea.singular.singularities import Singularity, outside
-
-Ints = NDArray[np.int64]
+from geometry.arrays import Floats, Ints, Mask
 
 
 @dataclass(frozen=True)
@@ -35,7 +33,7 @@ class MeridianFields:
     triangles: Ints = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int64))
     unread: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
 
-    def outside(self, singularities: Iterable[Singularity]) -> NDArray[np.bool_]:
+    def outside(self, singularities: Iterable[Singularity]) -> Mask:
         """Which of the points may have the maximum: read, and in none of the singularities."""
         out = outside(singularities, *self.points.T)
         out[self.unread] = False

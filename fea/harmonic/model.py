@@ -13,14 +13,15 @@ import scipy.sparse as sp
 
 from fea.core.linear_solver import Analysis, SolveError
 from fea.core.material import Material
-from fea.core.pin_loads import Floats, UnitLoad
+from fea.core.pin_loads import UnitLoad
 from fea.core.tractions import ALONG_X, ALONG_Z, Traction, closing_tractions, tractions_of
-from fea.harmonic.assembly import Ints, Section, around
+from fea.harmonic.assembly import Section, around
 from fea.harmonic.boundary import Outline
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.pressure_edge import unread
 from fea.harmonic.stress_recovery import NOWHERE, reading
 from geometry import Pin
+from geometry.arrays import Floats, Ints
 from geometry.mesh.section_mesh import MeridianMesh
 
 
@@ -101,9 +102,8 @@ class HarmonicBody:
 class HarmonicModel(HarmonicBody):
     """A pin on one mesh of its section, clamped at surfaces (by name).
 
-    Without any, the loads' balance is closed by tractions on the bands (fea.core.tractions), and as
-    many unknowns are constrained as there are rigid motions, about `pivot` (0 to 1, of the
-    length), which changes nothing but the motion.
+    Without any, the loads' balance is closed by tractions on the bands (fea.core.tractions);
+    `pivot` changes nothing but the motion.
 
     Leaves out: plasticity, contact and clearance (loads are tractions).
     """

@@ -11,12 +11,12 @@ from dataclasses import replace
 import numpy as np
 
 from fea.core.mesh_result import FELT, AtSingularity, Strength
-from fea.core.pin_loads import Floats
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.superposition import Circumference
 from fea.singular.fit_exponent import growth_exponent, strength
 from fea.singular.singularities import VARIED, Singularity
 from fea.singular.williams import notch_factor
+from geometry.arrays import Floats
 
 CLOSE = (1e-2, 1e-3, 1e-4)  # element at a corner or clamp's edge, of the diameter, mesh by mesh
 READ = (4.0, 0.01)  # exponents: from so many elements to so much of the diameter

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from fea.core.pin_loads import Floats, PinLoads
+from fea.core.pin_loads import PinLoads
 from fea.core.solution import Picture
 from fea.core.voigt import ENTRIES, TENSOR
 from fea.harmonic.fields import MeridianFields
-from fea.harmonic.superposition import Circumference, Ints
+from fea.harmonic.superposition import Circumference
+from geometry.arrays import Floats, Ints
 
 SECTORS = 60
 CLOSE = 1e-9  # of the length: points that are one
@@ -56,20 +57,17 @@ def _turned(
     fields: MeridianFields, around: Circumference, loads: PinLoads, rows: Ints, instant: int
 ) -> tuple[Floats, Floats, Floats]:
     """Of every point on all meridians: x, y, z (P, 3), displacement (P, 3), stress (P, 6)."""
-    r, z = fields.points[rows].T
-    everywhere = np.repeat(np.arange(len(rows)), SECTORS)
+    r, z = np.repeat(fields.points[rows], SECTORS, axis=0).T
     angle = np.tile(_angles(), len(rows))
-    at = rows[everywhere]
-    stress = around.stress(at, np.full(len(at), instant), angle)
+    stress = around.stress(rows, instant, _angles()).reshape(-1, 6)
     turn = np.zeros((len(angle), 3, 3))  # columns: unit vectors along r, theta, z
     turn[:, 0, 0], turn[:, 1, 0] = np.cos(angle), np.sin(angle)
     turn[:, 0, 1], turn[:, 1, 1] = -np.sin(angle), np.cos(angle)
     turn[:, 2, 2] = 1.0
     tensor = turn @ stress[:, TENSOR] @ turn.transpose(0, 2, 1)
-    x, y = r[everywhere] * np.cos(angle), r[everywhere] * np.sin(angle)
     return (
-        np.stack([x, y, z[everywhere]], axis=1),
-        np.einsum("pab,pb->pa", turn, _moved(fields, loads, at, instant, angle)),
+        np.stack([r * np.cos(angle), r * np.sin(angle), z], axis=1),
+        np.einsum("pab,pb->pa", turn, _moved(fields, loads, rows, instant)),
         np.stack([tensor[:, a, b] for a, b in ENTRIES], axis=1),
     )
 
@@ -88,22 +86,18 @@ def _quads(count: int) -> Ints:
     return np.stack([i + j, i + k, i + SECTORS + k, i + SECTORS + j], axis=2).reshape(-1, 4)
 
 
-def _moved(
-    fields: MeridianFields,
-    loads: PinLoads,
-    rows: Ints,
-    instant: int,
-    angle: Floats,
-) -> Floats:
-    """Displacement along r, theta, z (P, 3) at points and angles."""
-    out = np.zeros((len(rows), 3))
+def _moved(fields: MeridianFields, loads: PinLoads, rows: Ints, instant: int) -> Floats:
+    """Displacement along r, theta, z (P, 3) at points on all meridians."""
+    amounts: dict[tuple[int, int], Floats] = {}  # of every harmonic and phase
     for load, both in loads.coefficients().items():
-        u = fields.displacement[rows, :, fields.loads.index(load)]
+        unit = fields.displacement[rows, :, fields.loads.index(load)]
         for phase, amount in enumerate(both[instant]):
-            psi = load.n * angle - phase * np.pi / 2.0
-            c, s = np.cos(psi), np.sin(psi)
-            out += amount * u * np.stack([c, s, c], axis=1)
-    return out
+            amounts[load.n, phase] = amounts.get((load.n, phase), 0.0) + amount * unit
+    out = np.zeros((len(rows), SECTORS, 3))
+    for (n, phase), u in amounts.items():
+        psi = n * _angles() - phase * np.pi / 2.0
+        out += u[:, None] * np.stack([np.cos(psi), np.sin(psi), np.cos(psi)], axis=1)
+    return out.reshape(-1, 3)
 
 
 def _envelope(around: Circumference, rows: Ints, theta: Floats) -> Floats:

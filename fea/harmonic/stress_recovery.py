@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
 from fea.core.local_fit import continuation
 from fea.core.material import Material
-from fea.harmonic.assembly import Floats, Ints, Section, elasticity
+from fea.harmonic.assembly import Section, elasticity
 from fea.harmonic.boundary import Outline, shapes
 from fea.harmonic.pressure_edge import DIRECTIONS, Jump, jumps
 from fea.harmonic.surface_stress import AT, skin
+from geometry.arrays import Floats, Ints, Mask
 
 NOWHERE = np.zeros((0, 2))
 AXIS = 1e-9  # r on it at most, of the largest
@@ -38,7 +38,7 @@ class Reading:
     points: Floats
     skin: int
     inner: Ints
-    extrapolated: NDArray[np.bool_]
+    extrapolated: Mask
     rough: Ints
     continued: sp.csr_matrix
     jumps: tuple[Jump, ...]

@@ -23,15 +23,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fea.core.pin_loads import AnyLoads, Floats
+from fea.core.pin_loads import AnyLoads, require_solved
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.trigonometric_maximum import highest_crest
-from geometry import ArgumentError
+from geometry.arrays import Floats, Ints, Mask
 
-Ints = NDArray[np.int64]
-Mask = NDArray[np.bool_]
 Instants = slice | Ints
 
 SAMPLES_PER_WAVE = 5  # of von Mises squared
@@ -64,12 +61,7 @@ class Circumference:
 
     def __init__(self, fields: MeridianFields, loads: AnyLoads) -> None:
         acting = loads.coefficients()
-        missing = set(acting) - set(fields.loads)
-        if missing:
-            raise ArgumentError(
-                f"case {loads.case}: no unit fields were solved for {sorted(missing)}",
-                "missing-fields",
-            )
+        require_solved(loads.case, acting, fields.loads)
         units = sorted(acting, key=lambda load: load.n)
         by_phase = np.zeros((len(loads), len(units), 2))
         for k, load in enumerate(units):
@@ -300,15 +292,17 @@ class Circumference:
                 total += np.square(at, out=at).sum(axis=2)
         return np.asarray(total.max(axis=2).T)
 
-    def stress(self, points: Ints, instants: Ints, angle: Floats) -> Floats:
-        """Stress (J, 6) in Pa at pairs of points and instants and angles (J,): rr, tt, zz, tz, rz,
-        rt.
-        """
-        first, second, stress = self._first[instants], self._second[instants], self._stress[points]
-        c, s = np.cos(self._n * angle[:, None]), np.sin(self._n * angle[:, None])
-        back = np.einsum("jik,jk->ji", stress, c * first + s * second)
-        forth = np.einsum("jik,jk->ji", stress, s * first - c * second)
-        return np.asarray(np.where(_BACK, back, forth))
+    def stress(self, points: Ints, instant: int, angles: Floats) -> Floats:
+        """Stress (J, A, 6) in Pa at points and angles (A,): rr, tt, zz, tz, rz, rt."""
+        out = np.zeros((len(points), len(angles), 6))
+        for wave in self._waves:
+            unit = self._stress[points, :, wave]
+            first, second = (unit @ x[instant, wave] for x in (self._first, self._second))
+            c, s = np.cos(self._n[wave.start] * angles), np.sin(self._n[wave.start] * angles)
+            back = first[:, None] * c[:, None] + second[:, None] * s[:, None]
+            forth = first[:, None] * s[:, None] - second[:, None] * c[:, None]
+            out += np.where(_BACK, back, forth)
+        return out
 
 
 def _forms(form: Floats, products: Floats) -> Floats:

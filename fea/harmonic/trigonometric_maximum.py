@@ -12,9 +12,8 @@ of half the range too low.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from geometry.arrays import Floats
 
 FINER = 4  # times as many angles as samples: D h = 0.3 where there are 5 samples for a degree
 STEPS = 40  # of Newton's method at most, or of bisection where that leaves the interval

@@ -1,6 +1,8 @@
-"""Bending moments of a pin under the loads of rings and its own body force."""
+"""Section forces of a pin under the loads of rings and its own body force."""
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import numpy as np
 
@@ -16,24 +18,42 @@ def bending_moment(pin: Pin, mass: Floats, bands: Bands, loads: PinLoads, z: Flo
     mass: of the pin's segments, (S,) kg/m. loads: on the rings of `bands`, in their order; forces
     are even along a ring, moments make loads that are linear along it.
     """
-    mean = loads.forces[:, :, :2] / bands.length[:, None]
+    return _summed(pin, mass, bands, loads, z, _moments)
+
+
+def shear_force(pin: Pin, mass: Floats, bands: Bands, loads: PinLoads, z: Floats) -> Floats:
+    """Sum of the loads across on the part of the pin before z, (T, Z, 2) N, as `bending_moment`."""
+    return _summed(pin, mass, bands, loads, z, _forces)
+
+
+Parts = tuple[Floats, Floats]  # (Z, R): of loads per length that are even, and that rise
+
+
+def _summed(
+    pin: Pin, mass: Floats, bands: Bands, loads: PinLoads, z: Floats,
+    parts: Callable[[Floats, Floats], Parts],
+) -> Floats:  # fmt: skip
     couples = np.stack([loads.moments[:, :, 1], -loads.moments[:, :, 0]], axis=2)
+    mean = loads.forces[:, :, :2] / bands.length[:, None]
     slope = couples * (12.0 / bands.length**3)[:, None]
-    rings = _by_pieces(z, bands.z - bands.length / 2.0, bands.length, mean, slope)
+    even, rising = parts(z[:, None] - (bands.z - bands.length / 2.0), bands.length)
+    rings = np.einsum("zr,tra->tza", even, mean) + np.einsum("zr,tra->tza", rising, slope)
     weight = loads.body[:, None, :2] * mass[:, None]
     ends = np.array(pin.stations)
-    return rings + _by_pieces(z, ends[:-1], np.diff(ends), weight, np.zeros_like(weight))
+    even, _ = parts(z[:, None] - ends[:-1], np.diff(ends))
+    return np.asarray(rings + np.einsum("zs,tsa->tza", even, weight))
 
 
-def _by_pieces(z: Floats, starts: Floats, lengths: Floats, mean: Floats, slope: Floats) -> Floats:
-    """Under loads per length of pieces, (T, R, 2): their mean, N/m, and slope along z, N/m^2."""
-    way = z[:, None] - starts
+def _moments(way: Floats, lengths: Floats) -> Parts:
+    """Of pieces, of the load per length and of its slope; way: from their starts to z, (Z, R)."""
     reach = np.clip(way, 0.0, lengths)  # of each piece that is before z
     even = reach * (way - reach / 2.0)
-    rising = reach**2 * (way / 2.0 - reach / 3.0) - even * lengths / 2.0
-    return np.asarray(
-        np.einsum("zr,tra->tza", even, mean) + np.einsum("zr,tra->tza", rising, slope)
-    )
+    return even, reach**2 * (way / 2.0 - reach / 3.0) - even * lengths / 2.0
+
+
+def _forces(way: Floats, lengths: Floats) -> Parts:
+    reach = np.clip(way, 0.0, lengths)
+    return reach, reach * (reach - lengths) / 2.0
 
 
 def mass_per_length(pin: Pin, density: float | None) -> Floats:

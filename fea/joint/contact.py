@@ -19,6 +19,7 @@ Decuzzi, Int. J. Solids Struct. 38 (2001) 4507 (the plane problem that tests com
 
 from __future__ import annotations
 
+import copy
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -160,10 +161,23 @@ class ContactProblem:
         self._z = np.repeat(bands.z, sectors)
         self._link = np.repeat(bands.links[bands.band], sectors)
         self._count = int(bands.links.max()) + 1
-        self._open = np.repeat(bands.gap, sectors)
-        self._compliance = self._of_cells(flexibility, tail)
+        self._fixed = self._of_cells(flexibility, tail)
+        self._fit(bands, tilt)
+
+    def changed(self, gap: Floats, tilt: Sequence[float]) -> ContactProblem:
+        """The same with other gaps before any load (R,) m and tilts."""
+        other = copy.copy(self)
+        other._fit(replace(self.bands, gap=gap), tilt)
+        return other
+
+    def _fit(self, bands: Bands, tilt: Sequence[float]) -> None:
+        self.bands = bands
+        self._open = np.repeat(bands.gap, self.sectors)
+        self._compliance = self._fixed
         self._motions = self._rigid(np.asarray(tilt, dtype=float))
         self._soft = SOFT / np.abs(self._compliance).max()
+        # of the motions, (Y, Y): a turn counts as the shift at the far end
+        self._scale = np.diag(np.square(self._motions).max(axis=0))
         self._answers: dict[bytes, _Answer] = {}
 
     @property
@@ -200,7 +214,7 @@ class ContactProblem:
             if stiffness == 0.0:
                 columns.append(column)
             elif np.isfinite(stiffness):
-                self._compliance += column @ column.T / stiffness
+                self._compliance = self._compliance + column @ column.T / stiffness
         return np.hstack(columns)
 
     def solve(
@@ -246,21 +260,17 @@ class ContactProblem:
         rows = np.flatnonzero(active)
         force, yielding = np.zeros(len(active)), np.zeros(G.shape)
         system, right = self._soft * self._scale, np.zeros(G.shape[1])
+        C = C[rows]  # symmetric
         if len(rows):
-            factor = cho_factor(C[np.ix_(rows, rows)], lower=True, check_finite=False)
+            factor = cho_factor(C[:, rows], lower=True, check_finite=False)
             given = np.column_stack([G[rows], -self._open[rows]])
             solved = cho_solve(factor, given, check_finite=False)
             yielding[rows], force[rows] = solved[:, :-1], solved[:, -1]
             system, right = system + G[rows].T @ solved[:, :-1], G[rows].T @ solved[:, -1]
-        gap = self._open + C[:, rows] @ force[rows]
-        moving = G - C[:, rows] @ yielding[rows]
+        gap = self._open + C.T @ force[rows]
+        moving = G - C.T @ yielding[rows]
         gap[rows], moving[rows] = 0.0, 0.0
         return _Answer(force, yielding, gap, moving, system, right)
-
-    @cached_property
-    def _scale(self) -> Floats:
-        """Of the motions, (Y, Y): a turn counts as the shift at the far end."""
-        return np.diag(np.square(self._motions).max(axis=0))
 
     def _asked(self, forces: Floats, couple: tuple[float, float]) -> Floats:
         """What the cells' forces must add up to on each of the rigid motions, (Y,): they push the

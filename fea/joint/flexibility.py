@@ -26,11 +26,12 @@ from scipy.special import iti0k0, k1
 from fea.core.material import Material
 from fea.core.pin_loads import Floats
 from fea.core.tractions import ALONG_X, Traction
-from fea.harmonic.assembly import Ints, Section, around
+from fea.harmonic.assembly import Section, around
 from fea.harmonic.model import HarmonicBody, rigid_motions
 from fea.joint.lugs.eye_mesh import eye_mesh
 from fea.joint.lugs.lug import Lug
 from geometry import Pin
+from geometry.arrays import Ints
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
 from geometry.mesh.sizing import Grade
 

@@ -17,6 +17,7 @@ from fea.core.pin_loads import Floats, LugEdge, PinLoads, UnitLoad
 from geometry import Pin
 
 NEGLIGIBLE = 5e-4  # of the largest amplitude: what a pattern must add to any instant's
+ROUGH = 1e-2  # the same for instants that cannot govern
 
 
 @dataclass(frozen=True)
@@ -105,18 +106,19 @@ class Patterns:
         return missed / largest if largest else 0.0
 
 
-def patterns_of(pin: Pin, rings: tuple[str, ...], parts: Sequence[Floats]) -> Patterns:
+def patterns_of(
+    pin: Pin, rings: tuple[str, ...], parts: Sequence[tuple[Floats, float]]
+) -> Patterns:
     """Those of which harmonics of pressures (N + 1, T, R, 2) Pa are made, in some parts, as cases:
-    what is negligible depends on the largest of the part.
+    each with what is negligible, of the largest amplitude of the part.
     """
-    sizes = [float(np.abs(waves).max(initial=0.0)) or 1.0 for waves in parts]
-    waves = np.concatenate([x / size for x, size in zip(parts, sizes, strict=True)], axis=1)
+    scaled = [x / (negligible * (np.abs(x).max(initial=0.0) or 1.0)) for x, negligible in parts]
     found = []
-    for wave in waves:
+    for wave in np.concatenate(scaled, axis=1):
         amplitude = wave.transpose(0, 2, 1).reshape(-1, len(rings))
         instants, size, patterns = np.linalg.svd(amplitude, full_matrices=False)
         most = np.abs(instants * size).max(axis=0)
-        found.append(np.asarray(patterns[most > NEGLIGIBLE]))
+        found.append(np.asarray(patterns[most > 1.0]))
     return Patterns(pin, rings, tuple(found))
 
 

@@ -1,4 +1,4 @@
-"""What contact with its lugs says of a pin at the governing instant of a case."""
+"""What is known of a pin's joint at the governing instant of a case: loads of its lugs, range."""
 
 from __future__ import annotations
 
@@ -34,31 +34,39 @@ class BandContact:
 @dataclass(frozen=True)
 class Variation:
     """The maximum with something of the joint changed: what, and to what value or way, in words;
-    length: the value where it is one, the largest if it differs from lug to lug.
+    length: the value where it is one, the largest if it differs from lug to lug. interval: of the
+    maximum with the error of the model, where that is part of the range.
     """
 
     what: str
     value: str
     max_von_mises: Stress
     length: Length | None = None
+    interval: tuple[Stress, Stress] | None = None
 
 
 @dataclass(frozen=True)
 class JointRange:
-    """The maximum over what is not known of the joint, from the least to the largest."""
+    """The maximum over what is not known of the joint, from the least to the largest. model:
+    "contact" or "foundation", whose error is included. assumed: whether no lugs were given.
+    """
 
     max_von_mises: tuple[Stress, Stress]
     variations: tuple[Variation, ...]
+    model: str = "contact"
+    assumed: bool = False
 
 
 @dataclass(frozen=True)
 class JointResult:
-    """How the pin sits in its lugs. model: "contact" or "foundation". bending_moment: the largest
-    along the pin; bending_moments: pairs of z and moment. range: None where it was not found.
+    """How the pin sits in its lugs. model: "contact", "foundation" or "prescribed", with a range
+    alone. bending_moment: the largest along the pin; bending_moments: pairs of z and moment. range:
+    None where it was not found. remark: why not, or what it leaves out.
     """
 
     model: str
-    bands: tuple[BandContact, ...]
-    bending_moment: Couple
-    bending_moments: tuple[tuple[Length, Couple], ...]
+    bands: tuple[BandContact, ...] = ()
+    bending_moment: Couple | None = None
+    bending_moments: tuple[tuple[Length, Couple], ...] = ()
     range: JointRange | None = None
+    remark: str = ""

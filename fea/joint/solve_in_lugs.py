@@ -4,7 +4,8 @@ the maximum depends on what is not known of the joint.
 Stress under the pressures is found as under any loads (fea.solve_pin), of a pin that nothing
 clamps. To the error of meshes and instants comes that of the cells: contact at the instant that
 governs on the first mesh is solved once more on cells twice as large, whose order is one at least,
-so that the difference counts whole; cells are refined until it is within half of the tolerance.
+so that the difference counts whole; cells are refined until it is within half of the tolerance, or
+a quarter of what is uncertain anyway where stress near the edge of a lug governs.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fea.asked import Asked
 from fea.core.equilibrium import out_of_balance
@@ -20,13 +22,13 @@ from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.over_time import Between
 from fea.core.peak import Note, Peak
-from fea.core.pin_loads import PinLoads
+from fea.core.pin_loads import Floats, PinLoads
 from fea.harmonic.evaluate import HarmonicAnswer, harmonic_solution
 from fea.joint.cell_pressure import CellPressure
 from fea.joint.contact import Pressed
 from fea.joint.lugs.lug import Lug
 from fea.joint.lugs.rings import whole_names
-from fea.joint.pressure_loads import PressureLoads
+from fea.joint.pressure_loads import NEGLIGIBLE, ROUGH, PressureLoads
 from fea.joint.records import JointResult
 from fea.joint.solve_joint import Cells, JointContact, JointModel
 from fea.joint.variations import Comparison, compare
@@ -36,7 +38,7 @@ from fea.verdict import accuracy
 from geometry import Pin
 
 SETS = Cells(), Cells(12, 48, 16)  # until one is fine enough
-CELLS = 0.5  # of the tolerance: what the cells may take
+MAY = 0.8  # of the largest on the first mesh: from there on an instant may govern on finer ones
 MOST_CELLS = 6000  # a dense matrix of them takes 300 MB
 CONTACT = Note("contact, harmonic: the pin is held by its lugs", ("contact",))
 
@@ -76,14 +78,17 @@ def solve_in_lugs(
 
     Raises: ArgumentError for lugs that do not fit; MeshError, SolveError.
     """
+    near: Mapping[str, Near] = {}
     for cells, finer in zip(SETS, (*SETS[1:], None), strict=True):
         progress(f"pin {given.pin.name}, flexibility of {cells.rings} rings of each lug")
         model = JointModel(given.pin, given.material, given.lugs, cells)
         progress(f"pin {given.pin.name}, contact")
         contact = _Contact(model, given)
-        compared = contact.compared(asked)
-        coarse = any(x.cells > CELLS * asked.tolerance for x in compared.values())
-        if not coarse or finer is None or _count(model, finer) > MOST_CELLS:
+        near = near or contact.near(asked)
+        contact.follow(near)
+        compared = contact.compared(near, asked)
+        fine = all(x.fine(given.material, asked) for x in compared.values())
+        if fine or finer is None or _count(model, finer) > MOST_CELLS:
             break
     found = contact.solved(compared, asked, progress)
     failed = {case: _failed(given, case, why) for case, why in contact.failed.items()}
@@ -101,29 +106,64 @@ def _failed(given: InLugs, name: str, why: str) -> LugSolution:
     return LugSolution(Solution(peak, None, case), None, lambda links: links)
 
 
+@dataclass(frozen=True)
+class Near:
+    """On the first mesh: the governing instant of a case, and which (T,) are so near its maximum
+    that they may govern.
+    """
+
+    instant: int
+    may: NDArray[np.bool_]
+
+
 class _Contact:
     """The pressures of all cases at any time, each found once; those made of the same patterns act
-    on one mesh. failed: by case, why there is no contact.
+    on one mesh. instants: by case, those of which the patterns are made; failed: why a case has no
+    contact.
     """
 
     def __init__(self, model: JointModel, given: InLugs) -> None:
         self.model, self.given = model, given
         self.failed: dict[str, str] = {}
-        self._missed: dict[str, float] = {}  # by case, of any pressure, by the patterns
+        self.instants: dict[str, PinLoads] = {}
         self._known: dict[tuple[str, float], Pressed] = {}
-        waves = []
+        self._besides: dict[str, Floats] = {}
         for case in given.cases:
+            instants = _instants(case, given.between.get(case.case))
             try:
-                found = self._at(_instants(case, given.between.get(case.case)))
+                self._at(instants)
                 if case.case in given.besides:
-                    found = found + model.pressed(given.besides[case.case])
-                waves.append(model.waves(found))
+                    found = model.pressed(given.besides[case.case])
+                    self._besides[case.case] = model.waves(found)
             except SolveError as error:
                 self.failed[case.case] = str(error)
-        if waves:
-            self._patterns = model.patterns(waves)
-        self.cases = tuple(case for case in given.cases if case.case not in self.failed)
-        self.loads = tuple(self.press(case) for case in self.cases)
+                continue
+            self.instants[case.case] = instants
+
+    def near(self, asked: Asked) -> dict[str, Near]:
+        """By the stress of all instants, roughly, on the first mesh."""
+        if all(len(links) == 1 for links in self.instants.values()):
+            return {case: Near(0, np.ones(1, dtype=bool)) for case in self.instants}
+        self.follow({case: Near(0, np.zeros(len(x), bool)) for case, x in self.instants.items()})
+        loads = [self.press(links) for links in self.instants.values()]
+        model, out = self.model, {}
+        own = [singularities_of(model.pin, model.material, (), (x,), asked.distance) for x in loads]
+        both = tuple(dict.fromkeys(zone for zones in own for zone in zones))
+        section = harmonic_solution(model.pin, model.material, (), tuple(loads), both, 0, 1.0)
+        for x, zones in zip(loads, own, strict=True):
+            answer = HarmonicAnswer(section, zones)
+            largest, instant = answer.largest(x)
+            out[x.case] = Near(instant, answer.maxima(x, MAY * largest) > MAY * largest)
+        return out
+
+    def follow(self, near: Mapping[str, Near]) -> None:
+        """Make the patterns: good ones of what may govern, rough ones of other instants."""
+        parts = [(waves, NEGLIGIBLE) for waves in self._besides.values()]
+        for case, links in self.instants.items():
+            waves, may = self.model.waves(self._at(links)), near[case].may
+            parts += [(waves[:, may], NEGLIGIBLE), (waves[:, ~may], ROUGH)]
+        if parts:
+            self._patterns = self.model.patterns(parts)
 
     def _at(self, links: PinLoads) -> list[Pressed]:
         """Contact at the loads' instants."""
@@ -138,45 +178,23 @@ class _Contact:
 
     def press(self, links: PinLoads) -> PressureLoads:
         """What presses on the pin under loads of its links."""
-        waves = self.model.waves(self._at(links))
-        missed = self._patterns.left_out(waves)
-        self._missed[links.case] = max(self._missed.get(links.case, 0.0), missed)
-        return self._patterns.loads(waves, links)
+        return self._patterns.loads(self.model.waves(self._at(links)), links)
 
     def _joined(self, links: PinLoads, instant: int) -> JointContact:
         here = links.at(np.array([instant]))
         return self.model.joined(self._at(here), self.press(here))
 
-    def compared(self, asked: Asked) -> dict[str, Comparison]:
+    def compared(self, near: Mapping[str, Near], asked: Asked) -> dict[str, Comparison]:
         """By case, at the instant that governs on the first mesh."""
-        governing = self._governing(asked) if any(len(x) > 1 for x in self.loads) else None
-        at = [
-            self._joined(loads.links, governing[loads.case] if governing else 0)
-            for loads in self.loads
-        ]
-        return {
-            loads.case: found
-            for loads, found in zip(self.loads, compare(self.model, at, asked), strict=True)
-        }
-
-    def _governing(self, asked: Asked) -> dict[str, int]:
-        model = self.model
-        own = [
-            singularities_of(model.pin, model.material, (), (loads,), asked.distance)
-            for loads in self.loads
-        ]
-        both = tuple(dict.fromkeys(zone for zones in own for zone in zones))
-        section = harmonic_solution(model.pin, model.material, (), self.loads, both, 0, 1.0)
-        return {
-            loads.case: HarmonicAnswer(section, zones).largest(loads)[1]
-            for loads, zones in zip(self.loads, own, strict=True)
-        }
+        at = [self._joined(links, near[case].instant) for case, links in self.instants.items()]
+        return dict(zip(self.instants, compare(self.model, at, asked), strict=True))
 
     def solved(
         self, compared: dict[str, Comparison], asked: Asked, progress: Progress
     ) -> dict[str, LugSolution]:
         """Stress of all cases on the same meshes."""
-        if not self.loads:
+        live = [case for case in self.given.cases if case.case in self.instants]
+        if not live:
             return {}
 
         def between(of_links: Between) -> Between:
@@ -186,14 +204,14 @@ class _Contact:
             self.model.pin,
             self.given.material,
             (),
-            self.loads,
+            tuple(self.press(case) for case in live),
             replace(asked, model="harmonic", because=CONTACT),
             progress,
             {case: between(links) for case, links in self.given.between.items()},
         )
         return {
             case.case: self._solution(case, solution, compared[case.case], asked)
-            for case, solution in zip(self.cases, found, strict=True)
+            for case, solution in zip(live, found, strict=True)
         }
 
     def _solution(
@@ -205,9 +223,8 @@ class _Contact:
         links = contact.loads.links
         if not known.is_at(links, case):
             (known,) = compare(self.model, [contact], asked)
-        peak = with_cells(
-            _named(self.model, solution.peak), known.cells + self._missed[case.case], asked
-        )
+        missed = self._patterns.left_out(self.model.waves(contact.contact))
+        peak = with_cells(_named(self.model, solution.peak), known.cells + missed, asked)
         peak = replace(peak, governing=links, imbalance=_imbalance(self.model, case))
         joint = joint_result(contact, known.range(peak.max_von_mises or 0.0))
         (pressed,) = contact.contact

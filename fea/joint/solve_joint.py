@@ -28,7 +28,7 @@ from fea.joint.lugs.fit import fitted, on_structure
 from fea.joint.lugs.links import link_forces, link_numbers
 from fea.joint.lugs.lug import Lug
 from fea.joint.lugs.rings import annulus, ring_ends, ringed, rings
-from fea.joint.pressure_loads import Patterns, PressureLoads, amplitudes, patterns_of
+from fea.joint.pressure_loads import NEGLIGIBLE, Patterns, PressureLoads, amplitudes, patterns_of
 from fea.singular.lug_edge import lug_edge_exponent
 from geometry import Pin
 
@@ -155,6 +155,9 @@ class JointModel:
             other.__dict__.pop(known, None)
         other.lugs = tuple(_softer(lug, softness) for lug in lugs)
         other.of_lugs = softness * self.of_lugs
+        if softness == 1.0:
+            tilts = [lug.tilt for lug in lugs]
+            other.__dict__["contact"] = self.contact.changed(other.gap, tilts)
         return other
 
     @cached_property
@@ -164,11 +167,15 @@ class JointModel:
         z, length = (np.array(x) for x in zip(*((b.middle, b.length) for b in bands), strict=True))
         radius = np.array([b.radius for b in bands])
         number = np.repeat(np.arange(len(self.lugs)), [len(e) - 1 for e in self.ends.values()])
-        gap = np.concatenate([lug.gap(self.ends[lug.connection]) for lug in self.lugs])
         tilt = [lug.tilt for lug in self.lugs]
         links = link_numbers(self.whole.connections, self.given.connections)
-        cut = Bands(z, length, radius, number, gap, links)
+        cut = Bands(z, length, radius, number, self.gap, links)
         return ContactProblem(cut, self.flexibility, self.tail, tilt, self.cells.sectors)
+
+    @property
+    def gap(self) -> Floats:
+        """Clearance and rounding of the edges by ring, on the radius, m."""
+        return np.concatenate([lug.gap(self.ends[lug.connection]) for lug in self.lugs])
 
     @property
     def tail(self) -> Floats:
@@ -187,30 +194,22 @@ class JointModel:
         """
         found = self.pressed(loads)
         waves = self.waves(found)
-        return self.joined(found, self.patterns([waves]).loads(waves, loads))
+        return self.joined(found, self.patterns([(waves, NEGLIGIBLE)]).loads(waves, loads))
 
     def waves(self, found: Sequence[Pressed]) -> Floats:
         """The harmonics of contact at some instants, (N + 1, T, R, 2) Pa, of cos and sin."""
         return np.stack([amplitudes(x.pressure, self.cells.highest, x.angle) for x in found], 1)
 
-    def patterns(self, parts: Sequence[Floats]) -> Patterns:
-        """Those of which harmonics of pressures (N + 1, T, R, 2) Pa are made, in some parts."""
+    def patterns(self, parts: Sequence[tuple[Floats, float]]) -> Patterns:
+        """Those of which harmonics of pressures (N + 1, T, R, 2) Pa are made, in some parts, each
+        with what is negligible.
+        """
         return replace(patterns_of(self.pin, self.rings, parts), edges=self.edges)
 
     @cached_property
     def edges(self) -> tuple[LugEdge, ...]:
-        """Of the bores, rounded where they have an edge radius."""
-        bands = [self.whole.band(lug.connection) for lug in self.lugs]
-        ends = np.array([[b.z0, b.z1] for b in bands])
-        found = []
-        for lug, band in zip(self.lugs, bands, strict=True):
-            exponent = lug_edge_exponent(self.material, lug.bearing)
-            for z in (band.z0, band.z1):
-                gaps = np.abs(ends - z)
-                feature = float(gaps[gaps > 0.0].min())
-                at, rounded = (band.radius, z), lug.edge_radius > 0.0
-                found.append(LugEdge(lug.connection, *at, exponent, feature, rounded))
-        return tuple(found)
+        """Of the bores."""
+        return edges_of(self.whole, self.material, self.lugs)
 
     def joined(self, found: Sequence[Pressed], loads: PressureLoads) -> JointContact:
         """Contact at the instants of some loads, with them."""
@@ -275,6 +274,21 @@ def _directions(forces: Floats) -> list[float]:
     first = (size >= LARGEST * size.max(axis=1, keepdims=True)).argmax(axis=1)
     x, y = forces[np.arange(len(forces)), first].T
     return [float(angle) for angle in np.arctan2(y, x)]
+
+
+def edges_of(pin: Pin, material: Material, lugs: Sequence[Lug]) -> tuple[LugEdge, ...]:
+    """Of the bores of lugs, rounded where they have an edge radius."""
+    bands = [pin.band(lug.connection) for lug in lugs]
+    ends = np.array([[b.z0, b.z1] for b in bands])
+    found = []
+    for lug, band in zip(lugs, bands, strict=True):
+        exponent = lug_edge_exponent(material, lug.bearing)
+        for z in (band.z0, band.z1):
+            gaps = np.abs(ends - z)
+            feature = float(gaps[gaps > 0.0].min())
+            at, rounded = (band.radius, z), lug.edge_radius > 0.0
+            found.append(LugEdge(lug.connection, *at, exponent, feature, rounded))
+    return tuple(found)
 
 
 def _softer(lug: Lug, times: float) -> Lug:

@@ -13,30 +13,49 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fea.asked import Asked
+from fea.asked import Asked, decided
 from fea.core.linear_solver import SolveError
+from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.harmonic.evaluate import HarmonicAnswer, harmonic_solution
+from fea.harmonic.evaluate import HarmonicAnswer, harmonic_result, harmonic_solution
 from fea.joint.coarser_cells import on_coarser_cells
 from fea.joint.lugs.lug import Lug
-from fea.joint.pressure_loads import stacked
+from fea.joint.pressure_loads import NEGLIGIBLE, stacked
 from fea.joint.records import JointRange, Variation
 from fea.joint.solve_joint import JointContact, JointModel
 from fea.solve_pin import singularities_of
 
+CELLS = 0.5  # of the tolerance: what the cells may take
+APART = 0.25  # of half the interval of a maximum that depends on the excluded distance: the same
+FIRST = 1.2  # by which factor the first mesh may be wrong
 FIT = 0.002  # of the diameter: a free running fit, where no clearance is given
 SOFTER = 2.0
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """At one instant. cells: by how much, relative, the maximum may differ for the cells. links:
-    the loads. over: what is changed of the joint, maxima relative to that of the joint as given.
+    """At one instant, on the first mesh. largest: stress, Pa; interval: of it, Pa, where what is
+    excluded governs; cells: by how much, relative, it may differ for the cells. links: the loads.
+    over: what is changed of the joint, maxima relative to that of the joint as given.
     """
 
+    largest: float
+    interval: tuple[float, float]
     cells: float
     links: PinLoads
     over: tuple[Variation, ...]
+
+    def fine(self, material: Material, asked: Asked) -> bool:
+        """Whether finer cells would not help: they take little of the tolerance, or of what is
+        uncertain anyway, or the required factor is decided.
+        """
+        low, high = self.interval
+        apart = (high - low) / 2.0 / self.largest
+        if self.cells <= max(CELLS * asked.tolerance, APART * apart):
+            return True
+        return decided(
+            asked, material, low * (1.0 - self.cells) / FIRST, high * (1.0 + self.cells) * FIRST
+        )
 
     def range(self, largest: float) -> JointRange:
         """Over the joint, of a maximum in Pa."""
@@ -72,29 +91,23 @@ def compare(model: JointModel, at: Sequence[JointContact], asked: Asked) -> tupl
         names.append(over)
     if not found:
         return ()
-    maxima, out = _maxima(model, found, links, asked), []
+    patterns = model.patterns([(waves, NEGLIGIBLE) for waves in found])
+    each = [patterns.loads(waves, here) for waves, here in zip(found, links, strict=True)]
+    loads = stacked(each)
+    singular = singularities_of(model.pin, model.material, (), (loads,), asked.distance)
+    section = harmonic_solution(model.pin, model.material, (), (loads,), singular, 0, 1.0)
+    maxima, out = HarmonicAnswer(section, singular).maxima(loads), []
     for contact, over in zip(at, names, strict=True):
-        (first, coarse, *others), maxima = np.split(maxima, [len(over) + 2])
-        first = first or 1.0  # nothing loads the pin
+        first = float(maxima[0]) or 1.0  # nothing loads the pin
+        (_, coarse, *others), maxima = np.split(maxima, [len(over) + 2])
         ratios = tuple(
             replace(x, max_von_mises=float(y / first)) for x, y in zip(over, others, strict=True)
         )
-        cells = abs(float(coarse / first) - 1.0) if coarse else 0.0
-        out.append(Comparison(cells, contact.loads.links, ratios))
+        cells = abs(float(coarse) / first - 1.0) if coarse else 0.0
+        interval = harmonic_result(section, singular, each.pop(0)).interval or (first, first)
+        del each[: len(over) + 1]
+        out.append(Comparison(first, interval, cells, contact.loads.links, ratios))
     return tuple(out)
-
-
-def _maxima(
-    model: JointModel, found: Sequence[Floats], links: Sequence[PinLoads], asked: Asked
-) -> Floats:
-    """Largest von Mises stress (V,) Pa on the first mesh under pressures of each of the harmonics
-    (N + 1, 1, R, 2).
-    """
-    patterns = model.patterns(found)
-    loads = stacked([patterns.loads(w, here) for w, here in zip(found, links, strict=True)])
-    singular = singularities_of(model.pin, model.material, (), (loads,), asked.distance)
-    section = harmonic_solution(model.pin, model.material, (), (loads,), singular, 0, 1.0)
-    return HarmonicAnswer(section, singular).maxima(loads)
 
 
 def _on_coarser_cells(model: JointModel, contact: JointContact) -> Floats:

@@ -7,14 +7,12 @@ from __future__ import annotations
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 from skfem import Element, ElementTetP1, ElementTetP2
 
 from fea.singular.singularities import Singularity
 from geometry import Pin
-
-Floats = NDArray[np.float64]
+from geometry.arrays import Floats, Ints
 
 RIM = 32  # points round a singularity in the section
 ROUND = 36  # points about the axis
@@ -44,7 +42,7 @@ def all_round(points: Floats) -> Floats:
     return np.asarray(x.reshape(-1, 3))
 
 
-def interpolation(nodes: Floats, elements: NDArray[np.int64], points: Floats) -> sp.csr_matrix:
+def interpolation(nodes: Floats, elements: Ints, points: Floats) -> sp.csr_matrix:
     """Matrix (P, N) from values at nodes (N, d) to those at points (P, d) inside the body, by the
     shape functions of the element (M, k) round each point, as if it had straight sides.
     """

@@ -8,14 +8,13 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fea.core.pin_loads import LugEdge
 from fea.singular.williams import Side, antiplane_exponent, plane_exponent
 from geometry import Pin, Vertex, vertices
+from geometry.arrays import Floats, Mask
 from geometry.shape.tolerance import SAME
 
-Floats = NDArray[np.float64]
 Kind = Literal[
     "sharp corner", "edge of a clamp", "edge of a load", "edge of a lug", "rounded edge of a lug"
 ]
@@ -147,7 +146,7 @@ def _lug_edge(
     )
 
 
-def outside(singularities: Iterable[Singularity], r: Floats, z: Floats) -> NDArray[np.bool_]:
+def outside(singularities: Iterable[Singularity], r: Floats, z: Floats) -> Mask:
     """Which of the points at r, z (S,), m, are in none of the singularities."""
     out = np.ones(len(r), dtype=bool)
     for p in singularities:

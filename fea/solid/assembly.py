@@ -11,14 +11,12 @@ from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 from skfem import Basis, ElementTetP1, ElementTetP2, MeshTet1, MeshTet2
 
 from fea.core.material import Material
 from fea.core.sparsity import Pattern
 from fea.core.voigt import ENTRIES
-
-Floats = NDArray[np.float64]
+from geometry.arrays import Floats, Ints
 
 
 class Discretisation:
@@ -45,7 +43,7 @@ class Discretisation:
         return np.ascontiguousarray(self.mesh.doflocs.T)
 
     @cached_property
-    def elements(self) -> NDArray[np.int64]:
+    def elements(self) -> Ints:
         """Node numbers (M, K): corners, then edges 01, 12, 02, 03, 13, 23."""
         return np.ascontiguousarray(self.basis.element_dofs.T).astype(np.int64)
 

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
 from fea.solid.assembly import Discretisation
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from geometry.arrays import Floats, Ints, Mask
 
 _PLANE = 1e-6  # difference of unit normals on a plane facet, by round-off and gmsh's
 SMOOTH = 0.97  # cosine between a node's normals below which it sits on an edge of the body
@@ -59,6 +57,11 @@ class SurfaceMesh:
         """Whether any facet is."""
         return not np.allclose(self.normals, self.normals[:, :1], atol=_PLANE)
 
+    def on(self, space: Discretisation, surfaces: Iterable[str]) -> Mask:
+        """Which facets are on one of the named surfaces, (F,)."""
+        named = [space.mesh.boundaries[name] for name in surfaces]
+        return np.isin(self.facets, np.concatenate([*named, np.zeros(0, dtype=np.int64)]))
+
 
 def surface(space: Discretisation) -> SurfaceMesh:
     """The whole boundary of the mesh."""
@@ -92,7 +95,7 @@ class Patch:
     """
 
     def __init__(self, space: Discretisation, boundary: SurfaceMesh, name: str) -> None:
-        self.rows = np.flatnonzero(np.isin(boundary.facets, space.mesh.boundaries[name]))
+        self.rows = np.flatnonzero(boundary.on(space, (name,)))
         self._corners = boundary.corners[self.rows]
         self._nodes = space.nodes
         (x, y), weight = get_quadrature(RefTri, 4)

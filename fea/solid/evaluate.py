@@ -6,12 +6,11 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fea.core.material import Material
 from fea.core.memory import require_memory
 from fea.core.mesh_result import AtSingularity, MeshResult
-from fea.core.pin_loads import AnyLoads, Floats, PinLoads, UnitLoad
+from fea.core.pin_loads import AnyLoads, PinLoads, UnitLoad
 from fea.core.solution import Picture
 from fea.singular.probes import all_round, rim
 from fea.singular.singularities import VARIED, Singularity, clamp_rims, outside
@@ -19,12 +18,11 @@ from fea.solid.model import SolidModel, UnitFields, acting
 from fea.solid.sharp_edges import sharp_edges
 from fea.solid.superposition import envelope
 from geometry import CutPin, Pin, PinLike
+from geometry.arrays import Floats, Mask
 from geometry.mesh.elements import Element
 from geometry.mesh.solid_mesh import MeshSize
 from geometry.meshing import solid_mesh
 from geometry.shape.pin import FACES
-
-Mask = NDArray[np.bool_]
 
 # Tetrahedra are larger than a small step. What the harmonic model feels at its corner, a tenth of
 # the step away from it, is 1.6 to 2.1 times the stress of the shaft there.

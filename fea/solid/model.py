@@ -13,21 +13,18 @@ from functools import cached_property
 import numpy as np
 import scipy.linalg
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
 from fea.core.linear_solver import SolveError, factorize
 from fea.core.material import Material
-from fea.core.pin_loads import AnyLoads, PinLoads
+from fea.core.pin_loads import AnyLoads, PinLoads, require_solved
 from fea.singular.probes import interpolation
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import SurfaceMesh, clamped_nodes, resultants, surface
 from fea.solid.nodal_loads import Unit, closed, nodal_loads, part
 from fea.solid.stress_recovery import nodal_stress, with_known_traction
-from geometry import ArgumentError, PinLike
+from geometry import PinLike
+from geometry.arrays import Floats, Ints
 from geometry.mesh.solid_mesh import SolidMesh
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 _NOWHERE = np.zeros((0, 3))
 
@@ -73,12 +70,7 @@ class UnitFields:
         Raises: ValueError when there is no field for a part of the loads.
         """
         acts = loads.coefficients()
-        missing = set(acts) - {load for load, _ in self.loads}
-        if missing:
-            raise ArgumentError(
-                f"case {loads.case}: no unit fields were solved for {sorted(missing)}",
-                "missing-fields",
-            )
+        require_solved(loads.case, acts, (load for load, _ in self.loads))
         out = np.zeros((len(loads), len(self.loads)))
         for k, (load, phase) in enumerate(self.loads):
             if load in acts:
@@ -138,9 +130,7 @@ class SolidModel:
             pressing = np.array([not load.shears for load, _ in units])
             loads = closed(self.pin, self.space, boundary, loads, pressing)
         displacement, support = self._displace(loads.forces)
-        clamped = np.zeros(len(boundary.facets), dtype=bool)
-        for name in self.clamps:
-            clamped |= np.isin(boundary.facets, self.space.mesh.boundaries[name])
+        clamped = boundary.on(self.space, self.clamps)
         stress = nodal_stress(self.space, self.material, displacement)
         stress = with_known_traction(stress, boundary, loads.traction, clamped)
         return UnitFields(

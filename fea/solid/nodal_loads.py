@@ -5,15 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
-from fea.core.pin_loads import Floats, UnitLoad
+from fea.core.pin_loads import UnitLoad
 from fea.core.tractions import Traction, closing_tractions, traction
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import Patch, SurfaceMesh, resultants
 from geometry import Band, GeometryError, PinLike
+from geometry.arrays import Floats, Mask
 
 Unit = tuple[UnitLoad, int]  # a unit load and its phase
 
@@ -78,7 +78,7 @@ def closed(
     space: Discretisation,
     boundary: SurfaceMesh,
     loads: NodalLoads,
-    pressing: NDArray[np.bool_] | None = None,
+    pressing: Mask | None = None,
 ) -> NodalLoads:
     """The loads with closing tractions on all bands that make each free of resultants.
 

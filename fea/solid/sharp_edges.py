@@ -5,15 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from fea.singular.singularities import INSTEAD_OF_CLAMP, Kind, Singularity
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import SurfaceMesh
-
-Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+from geometry.arrays import Floats, Mask
 
 TURN = np.radians(40.0)  # of an inner corner: less is a facet of a curved wall, or hardly sharp
 SIDES = ((0, 1, 2), (1, 2, 0), (0, 2, 1))  # of a facet: ends and the corner across
@@ -63,11 +60,8 @@ _RADIUS = "a radius there would make it finite"
 
 def sharp_edges(space: Discretisation, surface: SurfaceMesh, clamps: tuple[str, ...]) -> SharpEdges:
     """Inner corners that turn by more than TURN, and the rims of the clamped surfaces."""
-    clamped = np.zeros(len(surface.facets), dtype=bool)
-    for name in clamps:
-        clamped |= np.isin(surface.facets, space.mesh.boundaries[name])
-    ends = np.sort(np.stack([surface.corners[:, [a, b]] for a, b, _ in SIDES]), axis=2)
-    side_of = ends[..., 0] * np.int64(len(space.nodes)) + ends[..., 1]  # shared by two facets
+    clamped = surface.on(space, clamps)
+    side_of = space.mesh.f2e[:, surface.facets]  # each is shared by two facets
     order = np.argsort(side_of.ravel(), kind="stable").reshape(-1, 2)
     facet, side = (order % len(surface.facets)).T, (order // len(surface.facets)).T
     nodes = np.array(SIDES)[side[1]]  # of the second facet: ends, across

@@ -7,26 +7,18 @@ on the surface the traction is known, and the stress is corrected to carry exact
 from __future__ import annotations
 
 import numpy as np
-import scipy.sparse as sp
-from numpy.typing import NDArray
 
 from fea.core.local_fit import extension
 from fea.core.material import Material
 from fea.core.voigt import ENTRIES, TENSOR
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import SMOOTH, SurfaceMesh
-
-Floats = NDArray[np.float64]
-
-
-def recovery(space: Discretisation) -> sp.csr_matrix:
-    """Matrix (N, Q M) from values at the quadrature points to values at the nodes."""
-    return extension(space.elements, space.basis.X, space.basis.elem.doflocs.T)
+from geometry.arrays import Floats, Mask
 
 
 def nodal_stress(space: Discretisation, material: Material, displacement: Floats) -> Floats:
     """Stress (N, 6, L) in Pa of L displacement fields (N, 3, L) in m."""
-    to_nodes = recovery(space)
+    to_nodes = extension(space.elements, space.basis.X, space.basis.elem.doflocs.T)
     fields = []
     for k in range(displacement.shape[2]):
         stress = material.stress(space.strain(displacement[:, :, k]))
@@ -35,7 +27,7 @@ def nodal_stress(space: Discretisation, material: Material, displacement: Floats
 
 
 def with_known_traction(
-    stress: Floats, surface: SurfaceMesh, traction: Floats, clamped: NDArray[np.bool_]
+    stress: Floats, surface: SurfaceMesh, traction: Floats, clamped: Mask
 ) -> Floats:
     """Stress (N, 6, L) corrected on the surface to carry the traction (F, .., 3, L) at the nodes of
     its facets, Pa.

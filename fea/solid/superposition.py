@@ -16,16 +16,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fea.core.mesh_result import Point
 from fea.core.pin_loads import AnyLoads
 from fea.core.voigt import VON_MISES
 from fea.solid.model import UnitFields
-
-Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-Point = tuple[float, float, float]
-
+from geometry.arrays import Floats, Mask
 
 FEW = 12  # unit loads up to which their products in pairs are fewer than the stresses
 CHUNK = 16  # instants at once
@@ -46,7 +42,7 @@ class Envelope:
     maximum: float
     scatter: float
     instant: int
-    location: tuple[float, float, float]
+    location: Point
     field: Floats
     maxima: Floats
     inside: tuple[tuple[float, Point], ...] = ()

@@ -15,9 +15,9 @@ import numpy as np
 
 from geometry.imported.body_file import BodyFile
 from geometry.mesh.cut_solid import near
-from geometry.mesh.gmsh_session import failure, gmsh_model, set_size, silence
-from geometry.mesh.gmsh_tetrahedra import SMALLEST_JACOBIAN, collect, repair
-from geometry.mesh.solid_mesh import MeshError, MeshSize, SolidMesh
+from geometry.mesh.gmsh_session import failure, formula_size, gmsh_model, set_size, silence
+from geometry.mesh.gmsh_tetrahedra import collect, repair
+from geometry.mesh.solid_mesh import MeshSize, SolidMesh, sound_mesh
 from geometry.shape.pin import GeometryError
 
 FLAT = 1e-9  # curvature times the body's size below which a surface is plane
@@ -29,18 +29,8 @@ def cad_mesh(file: BodyFile, size: MeshSize) -> SolidMesh:
 
     Raises: GeometryError when the file is not geometry or has no solid; MeshError.
     """
-    tried = []
-    for factor in (1.0, 1.15, 1.35):
-        mesh = _mesh(file, size.finer(factor))
-        if mesh.jacobian > SMALLEST_JACOBIAN:
-            return mesh
-        tried.append(mesh.jacobian)
-    raise MeshError(
-        f"pin {file.name}: gmsh produced inverted or sliver elements from {file.path.name} at "
-        f"three mesh sizes (min/max Jacobian {', '.join(f'{j:.2g}' for j in tried)}); look for "
-        "very small faces and edges in it",
-        "bad-elements",
-    )
+    small = f"very small faces and edges in {file.path.name}"
+    return sound_mesh(lambda finer: _mesh(file, finer), size, file.name, small)
 
 
 def cad_volume(file: BodyFile) -> float:
@@ -51,24 +41,16 @@ def cad_volume(file: BodyFile) -> float:
 
 
 def _mesh(file: BodyFile, size: MeshSize) -> SolidMesh:
-    with gmsh_model(file.name) as gmsh:
+    with gmsh_model(f"{file.name}, {file.path.name}") as gmsh:
         solids = _solids(gmsh, file)
         z = dict.fromkeys(v for place in file.places if place.z for v in place.z)
         cuts = [v / file.unit for v in z]
-        try:
-            faces = _split(gmsh, file, solids, cuts)
-            _set_sizes(gmsh, size, cuts)
-            gmsh.model.mesh.generate(3)
-            gmsh.model.mesh.setOrder(2)
-            jacobian, repaired = repair(gmsh)
-            mesh = collect(gmsh, faces)
-        except Exception as error:
-            if type(error) is not Exception:  # gmsh raises bare ones
-                raise
-            raise MeshError(
-                f"pin {file.name}: gmsh could not mesh {file.path.name} ({error})",
-                failure(str(error)),
-            ) from None
+        faces = _split(gmsh, file, solids, cuts)
+        _set_sizes(gmsh, size, cuts)
+        gmsh.model.mesh.generate(3)
+        gmsh.model.mesh.setOrder(2)
+        jacobian, repaired = repair(gmsh)
+        mesh = collect(gmsh, faces)
     return SolidMesh(replace(mesh, doflocs=mesh.doflocs * file.unit), jacobian, repaired)
 
 
@@ -170,7 +152,7 @@ def _same_surface(gmsh: Any, face: int, whole: list[int], slack: float) -> int:
 
 def _set_sizes(gmsh: Any, size: MeshSize, cuts: list[float]) -> None:
     """By the curvature of every face, and finer at the edges of bands."""
-    model, field = gmsh.model, gmsh.model.mesh.field
+    model = gmsh.model
     x0, y0, z0, x1, y1, z1 = model.getBoundingBox(-1, -1)
     whole = max(x1 - x0, y1 - y0, z1 - z0)
     far = min(x1 - x0, y1 - y0) / size.across
@@ -178,16 +160,15 @@ def _set_sizes(gmsh: Any, size: MeshSize, cuts: list[float]) -> None:
     for _, face in model.getBoundary(model.getEntities(3), oriented=False):
         radius, coaxial = _curvature(gmsh, face, whole)
         if radius < math.inf:
-            h = 2.0 * radius / size.across if coaxial else math.pi / 2 * radius / size.arc
-            h = min(h, math.pi * radius / size.across) if not coaxial else h
+            h = 2.0 * radius / size.across
+            if not coaxial:
+                h = min(math.pi / 2 * radius / size.arc, math.pi * radius / size.across)
             tags.append(near(gmsh, "SurfacesList", [face], min(h, far), size.growth))
     rims = [c for _, c in model.getEntities(1) if _lies_at(gmsh, c, cuts, 1e-6 * whole)]
     if rims:
         thin = min([far, *(2.0 * _reach(gmsh, c) / size.across for c in rims)])
         tags.append(near(gmsh, "CurvesList", rims, thin / size.corner, size.growth))
-    tags.append(field.add("MathEval"))
-    field.setString(tags[-1], "F", f"{far!r}")
-    set_size(gmsh, tags)
+    set_size(gmsh, [*tags, formula_size(gmsh, f"{far!r}")])
 
 
 def _curvature(gmsh: Any, face: int, whole: float) -> tuple[float, bool]:

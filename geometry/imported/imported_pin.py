@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -37,6 +37,8 @@ class SolidBody:
 
     file: BodyFile
     call: Callable[..., Any] = field(default=here, compare=False, repr=False)
+
+    revolved: ClassVar[bool] = False  # not known to be
 
     def __post_init__(self) -> None:
         if not self.file.path.is_file():
@@ -78,11 +80,6 @@ class SolidBody:
     def name(self) -> str:
         """The pin's."""
         return self.file.name
-
-    @property
-    def revolved(self) -> bool:
-        """Whether it is known to be axisymmetric: never."""
-        return False
 
     @property
     def meshed(self) -> bool:

@@ -9,17 +9,15 @@ from contextlib import redirect_stderr, redirect_stdout
 import meshio
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 from skfem import MeshTet2
 
+from geometry.arrays import Ints
 from geometry.imported.body_file import BodyFile
 from geometry.mesh.quality import distortion, folded
 from geometry.mesh.solid_mesh import MeshError, SolidMesh
 from geometry.mesh.tet10 import find_facets, quadratic
 from geometry.shape.pin import GeometryError
-
-Ints = NDArray[np.int64]
 
 SURFACES = ("triangle", "triangle6")
 FARTHEST = 1000.0  # m; as pins with a profile
@@ -43,7 +41,8 @@ def mesh_from_file(file: BodyFile) -> SolidMesh:
             "bad-nodes",
         )
     cells = np.concatenate([b.data for b in mesh.cells if b.type.startswith("tetra")])
-    named, sets = _triangles(mesh), _point_sets(mesh)
+    named = _triangles(mesh)
+    sets = {str(name): np.asarray(n, dtype=np.int64) for name, n in mesh.point_sets.items()}
     for indices in (cells, *named.values(), *sets.values()):
         if not ((indices >= 0) & (indices < len(points))).all():
             raise GeometryError(
@@ -136,11 +135,6 @@ def _triangles(mesh: meshio.Mesh) -> dict[str, Ints]:
             if dimension == 2 and block.type in SURFACES and name not in mesh.cell_sets:
                 out.setdefault(name, []).append(block.data[np.asarray(tags) == tag, :3])
     return {name: np.concatenate(parts).astype(np.int64) for name, parts in out.items()}
-
-
-def _point_sets(mesh: meshio.Mesh) -> dict[str, Ints]:
-    """Nodes of every named set."""
-    return {str(name): np.asarray(n, dtype=np.int64) for name, n in mesh.point_sets.items()}
 
 
 def _pieces(mesh: MeshTet2) -> int:

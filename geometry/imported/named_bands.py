@@ -5,14 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from skfem import ElementTetP2, FacetBasis, MeshTet2
 
+from geometry.arrays import Floats, Ints, Mask
 from geometry.imported.body_file import BodyFile, Place
 from geometry.shape.pin import FACES, Band, GeometryError
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 OUTWARD = 0.5  # cosine to the radius above which a facet belongs to an outer surface
 DEPTH = 0.02  # of the local radius: how far below it corners of a band's facets may lie
@@ -104,7 +101,7 @@ def _find(here: Facets, named: dict[str, Ints], place: Place, file: BodyFile) ->
     return here.number[on]
 
 
-def outermost(here: Facets, z0: float, z1: float) -> NDArray[np.bool_]:
+def outermost(here: Facets, z0: float, z1: float) -> Mask:
     """Which facets have their middle between z0 and z1 (m) and, at their z, lie furthest from the
     z-axis, facing away from it.
     """

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 from geometry.mesh.cut_solid import cut_solid, name_faces
 from geometry.mesh.gmsh_session import gmsh_model
@@ -23,6 +24,8 @@ class CutPin:
     profile: Pin
     holes: tuple[Hole, ...] = ()
     flats: tuple[Flat, ...] = ()
+
+    meshed: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         marks = {*self.profile.stations, *(z for b in self.profile.bands for z in (b.z0, b.z1))}
@@ -52,11 +55,6 @@ class CutPin:
     def revolved(self) -> bool:
         """Whether nothing is cut."""
         return not (self.holes or self.flats)
-
-    @property
-    def meshed(self) -> bool:
-        """Whether it is given by a mesh: never."""
-        return False
 
     @property
     def connections(self) -> tuple[str, ...]:

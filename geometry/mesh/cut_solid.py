@@ -7,15 +7,14 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from geometry.mesh.gmsh_session import MeshError
+from geometry.arrays import Floats
+from geometry.mesh.gmsh_session import MeshError, formula_size
 from geometry.mesh.revolve import revolve
 from geometry.shape.features import Flat, Hole
 from geometry.shape.pin import GeometryError, Pin
 from geometry.shape.profile import Arc, Edge, meridian
 
-Floats = NDArray[np.float64]
 Holes = tuple[Hole, ...]
 Flats = tuple[Flat, ...]
 Off = Callable[[Floats], Floats]  # distances (P,) of points (P, 3) from a surface
@@ -183,6 +182,4 @@ def near(gmsh: Any, what: str, tags: list[int], h: float, growth: float) -> int:
     distance = field.add("Distance")
     field.setNumbers(distance, what, tags)
     field.setNumber(distance, "Sampling", 100)
-    size = field.add("MathEval")
-    field.setString(size, "F", f"{h!r}+{growth!r}*F{distance}")
-    return int(size)
+    return formula_size(gmsh, f"{h!r}+{growth!r}*F{distance}")

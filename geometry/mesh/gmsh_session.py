@@ -50,7 +50,12 @@ def gmsh_model(name: str) -> Iterator[Any]:
         except Exception as error:
             if type(error) is not Exception:  # gmsh raises bare ones
                 raise
-            raise MeshError(f"pin {name}: {_reason(str(error))}", failure(str(error))) from None
+            raise MeshError(
+                f"pin {name}: gmsh could not build or mesh the shape (its message: "
+                f"{str(error).rstrip('.')}); look for a dimension that is very small compared with "
+                "its neighbours, or surfaces that just touch",
+                failure(str(error)),
+            ) from None
         finally:
             _open = False
             gmsh.finalize()
@@ -61,11 +66,11 @@ def failure(said: str, otherwise: str = "gmsh-failed") -> str:
     return "out-of-memory" if "bad_alloc" in said else otherwise
 
 
-def _reason(said: str) -> str:
-    return (
-        f"gmsh could not build or mesh the shape (its message: {said.rstrip('.')}); look for a "
-        "dimension that is very small compared with its neighbours, or surfaces that just touch"
-    )
+def formula_size(gmsh: Any, formula: str) -> int:
+    """A field of element size by a formula of x, y, z and other fields."""
+    size = gmsh.model.mesh.field.add("MathEval")
+    gmsh.model.mesh.field.setString(size, "F", formula)
+    return int(size)
 
 
 def set_size(gmsh: Any, fields: list[int]) -> None:

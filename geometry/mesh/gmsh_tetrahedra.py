@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-import meshio
 import numpy as np
-from numpy.typing import NDArray
 from skfem import MeshTet1
-from skfem.io.meshio import from_meshio
+
+from geometry.arrays import Floats
+from geometry.mesh.elements import with_element
+from geometry.mesh.tet10 import find_facets, quadratic
 
 SMALLEST_JACOBIAN = 0.1  # min / max of det J that every element must exceed
 MOST_REPAIRS = 8  # halvings of an edge's curvature
@@ -18,12 +19,12 @@ GMSH_TO_VTK_TETRA10 = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]
 GMSH_EDGES = ((0, 1), (1, 2), (2, 0), (3, 0), (2, 3), (1, 3))  # of its nodes 4 to 9
 
 
-def _jacobians(gmsh: Any) -> NDArray[np.float64]:
+def _jacobians(gmsh: Any) -> Floats:
     """min/max det J of every tetrahedron (gmsh bounds them by Bezier coefficients)."""
     tags = gmsh.model.mesh.getElementsByType(TETRA10)[0]
     low = np.asarray(gmsh.model.mesh.getElementQualities(tags, "minDetJac"))
     high = np.asarray(gmsh.model.mesh.getElementQualities(tags, "maxDetJac"))
-    ratios: NDArray[np.float64] = low / high
+    ratios: Floats = low / high
     return ratios
 
 
@@ -52,37 +53,19 @@ def repair(gmsh: Any) -> tuple[float, int]:
 
 def collect(gmsh: Any, surfaces: dict[str, list[int]]) -> MeshTet1:
     """gmsh's mesh of either order, the named surfaces as its boundaries."""
-    tags, coordinates, _ = gmsh.model.mesh.getNodes()
+    mesh = gmsh.model.mesh
+    tags, coordinates, _ = mesh.getNodes()
     row = np.zeros(int(tags.max()) + 1, dtype=np.int64)
     row[tags] = np.arange(len(tags))
-    linear = TETRA4 in gmsh.model.mesh.getElementTypes(3)
-    triangle, sides = (TRIANGLE3, 3) if linear else (TRIANGLE6, 6)
-    if linear:
-        nodes = gmsh.model.mesh.getElementsByType(TETRA4)[1].reshape(-1, 4)
-    else:
-        nodes = gmsh.model.mesh.getElementsByType(TETRA10)[1].reshape(-1, 10)
-        nodes = nodes[:, GMSH_TO_VTK_TETRA10]
-    triangles: list[NDArray[np.int64]] = []
-    sets: dict[str, list[NDArray[np.int64]]] = {}
-    count = 0
+    points = coordinates.reshape(-1, 3)
+    linear = TETRA4 in mesh.getElementTypes(3)
+    tetra, triangle, sides = (TETRA4, TRIANGLE3, 3) if linear else (TETRA10, TRIANGLE6, 6)
+    cells = row[mesh.getElementsByType(tetra)[1]].reshape(-1, 4 if linear else 10)
+    made = quadratic(points, cells if linear else cells[:, GMSH_TO_VTK_TETRA10])
+    corners = np.flatnonzero(made.vertex >= 0)
+    made.mesh.doflocs[:, : len(corners)] = points[corners].T  # to the last digit
+    named = {}
     for name, faces in surfaces.items():
-        for face in faces:
-            facets = gmsh.model.mesh.getElementsByType(triangle, face)[1].reshape(-1, sides)[:, :3]
-            triangles.append(row[facets])
-            sets.setdefault(name, []).append(np.arange(count, count + len(facets)))
-            count += len(facets)
-    tetrahedra = row[nodes]
-    corners = np.unique(tetrahedra[:, :4])  # first, because facets are identified by their corners
-    used = np.concatenate([corners, np.setdiff1d(tetrahedra, corners)])
-    packed = np.full(len(row), -1)
-    packed[used] = np.arange(len(used))
-    empty = np.zeros(0, dtype=np.int64)
-    solid = meshio.Mesh(
-        coordinates.reshape(-1, 3)[used],
-        [
-            ("tetra" if linear else "tetra10", packed[tetrahedra]),
-            ("triangle", packed[np.concatenate(triangles)]),
-        ],
-        cell_sets={name: [empty, np.concatenate(rows)] for name, rows in sets.items()},
-    )
-    return from_meshio(solid, ignore_orientation=True)
+        nodes = np.concatenate([mesh.getElementsByType(triangle, face)[1] for face in faces])
+        named[name] = find_facets(made, row[nodes].reshape(-1, sides)[:, :3])
+    return with_element(made.mesh.with_boundaries(named), "linear" if linear else "curved")

@@ -8,13 +8,10 @@ from __future__ import annotations
 from math import factorial, prod
 
 import numpy as np
-from numpy.typing import NDArray
 from skfem import MeshTet2
 
+from geometry.arrays import Floats, Ints
 from geometry.mesh.tet10 import Quadratic
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 CUBIC = 3  # degree of det J of a quadratic tetrahedron
 DENSE = 12  # points along an edge where Bernstein's coefficients leave it open

@@ -1,31 +1,45 @@
-"""The body of revolution of an outline, in gmsh's model."""
+"""An outline in gmsh's model, and its body of revolution."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from itertools import pairwise
 from typing import Any
 
-from geometry.shape.profile import Arc, Edge
+from geometry.shape.profile import RZ, Arc, Edge
 
 
-def revolve(gmsh: Any, outline: tuple[Edge, ...]) -> tuple[int, int]:
-    """Turn a closed outline about the z-axis; the solid's entity."""
-    occ = gmsh.model.occ
-    points: dict[tuple[float, float], int] = {}
+def draw(
+    kernel: Any,
+    outline: tuple[Edge, ...],
+    add_point: Callable[[RZ], int],
+    cuts: Callable[[Edge], list[RZ]] = lambda _: [],
+) -> list[list[int]]:
+    """Curves of every edge in a kernel of gmsh; straight edges are cut at the points `cuts`."""
+    points: dict[RZ, int] = {}
 
-    def point(rz: tuple[float, float]) -> int:
+    def point(rz: RZ) -> int:
         if rz not in points:
-            points[rz] = occ.addPoint(rz[0], 0.0, rz[1])
+            points[rz] = add_point(rz)
         return points[rz]
 
     curves = []
     for e in outline:
         if isinstance(e, Arc):
-            centre = occ.addPoint(e.centre[0], 0.0, e.centre[1])
-            curves.append(occ.addCircleArc(point(e.start), centre, point(e.end)))
+            centre = add_point(e.centre)
+            curves.append([kernel.addCircleArc(point(e.start), centre, point(e.end))])
         else:
-            curves.append(occ.addLine(point(e.start), point(e.end)))
-    face = occ.addPlaneSurface([occ.addCurveLoop(curves)])
+            pairs = pairwise([e.start, *cuts(e), e.end])
+            curves.append([kernel.addLine(point(a), point(b)) for a, b in pairs])
+    return curves
+
+
+def revolve(gmsh: Any, outline: tuple[Edge, ...]) -> tuple[int, int]:
+    """Turn a closed outline about the z-axis; the solid's entity."""
+    occ = gmsh.model.occ
+    curves = draw(occ, outline, lambda rz: occ.addPoint(rz[0], 0.0, rz[1]))
+    face = occ.addPlaneSurface([occ.addCurveLoop([curve for (curve,) in curves])])
     made = occ.revolve([(2, face)], 0, 0, 0, 0, 0, 1, 2 * math.pi)
     occ.remove([(2, face)])
     occ.synchronize()

@@ -9,10 +9,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from skfem import MeshTri2
 
+from geometry.arrays import Ints
 from geometry.mesh.gmsh_session import MeshError, gmsh_model, set_size
+from geometry.mesh.revolve import draw
 from geometry.mesh.scale import unit_of
 from geometry.mesh.sizing import (
     Grade,
@@ -24,11 +25,10 @@ from geometry.mesh.sizing import (
     triangles,
 )
 from geometry.shape.pin import Pin
-from geometry.shape.profile import RZ, Arc, Edge, meridian
+from geometry.shape.profile import RZ, Edge, meridian
 
 __all__ = ["MeridianMesh", "SectionSize", "Spot", "meridian_mesh"]
 
-Ints = NDArray[np.int64]
 
 TRIANGLE6, LINE3 = 9, 8  # gmsh's element types
 MOST_TRIANGLES = 2e5
@@ -96,22 +96,7 @@ def _require_reasonable(pin: Pin, size: SectionSize) -> None:
 def _draw(gmsh: Any, outline: tuple[Edge, ...], spots: tuple[Spot, ...]) -> list[list[int]]:
     """Curves of every edge, which is cut at the reach of spots at its ends."""
     geo = gmsh.model.geo
-    points: dict[tuple[float, float], int] = {}
-
-    def point(rz: tuple[float, float]) -> int:
-        if rz not in points:
-            points[rz] = geo.addPoint(rz[0], rz[1], 0.0)
-        return points[rz]
-
-    curves = []
-    for e in outline:
-        if isinstance(e, Arc):
-            centre = geo.addPoint(*e.centre, 0.0)
-            curves.append([geo.addCircleArc(point(e.start), centre, point(e.end))])
-        else:
-            stops = [e.start, *_cuts(e, spots), e.end]
-            pairs = itertools.pairwise(stops)
-            curves.append([geo.addLine(point(a), point(b)) for a, b in pairs])
+    curves = draw(geo, outline, lambda rz: geo.addPoint(*rz, 0.0), lambda e: _cuts(e, spots))
     geo.addPlaneSurface([geo.addCurveLoop([c for found in curves for c in found])])
     geo.synchronize()
     return curves
@@ -135,17 +120,21 @@ def _cuts(edge: Edge, spots: tuple[Spot, ...]) -> list[RZ]:
 
 def _stretch(gmsh: Any, parts: list[Stretch], growth: float) -> tuple[float, list[int]]:
     """The largest size, and fields for the stretches that have a smaller one."""
-    field = gmsh.model.mesh.field
     far = max(part.near for part in parts)
     fields: list[int] = []
     for part in parts:
         if part.near < far:
-            fields.append(field.add("Box"))
             numbers = {"VIn": part.near, "VOut": far, "Thickness": (far - part.near) / growth}
             ends = {"XMin": 0.0, "XMax": EVERYWHERE, "YMin": part.z0, "YMax": part.z1}
-            for key, value in (numbers | ends).items():
-                field.setNumber(fields[-1], key, value)
+            fields.append(_field(gmsh, "Box", numbers | ends))
     return far, fields
+
+
+def _field(gmsh: Any, kind: str, numbers: dict[str, float]) -> int:
+    tag = gmsh.model.mesh.field.add(kind)
+    for key, value in numbers.items():
+        gmsh.model.mesh.field.setNumber(tag, key, value)
+    return int(tag)
 
 
 def _set_sizes(gmsh: Any, parts: tuple[float, list[int]], found: Iterable[Grade]) -> None:
@@ -157,12 +146,9 @@ def _set_sizes(gmsh: Any, parts: tuple[float, list[int]], found: Iterable[Grade]
             continue
         distance = field.add("Distance")
         field.setNumbers(distance, "PointsList", [geo.addPoint(*p, 0.0) for p in grade.points])
-        fields.append(field.add("Threshold"))
-        field.setNumber(fields[-1], "InField", distance)
-        field.setNumber(fields[-1], "SizeMin", grade.near)
-        field.setNumber(fields[-1], "DistMin", grade.flat)
-        field.setNumber(fields[-1], "SizeMax", far)
-        field.setNumber(fields[-1], "DistMax", grade.flat + (far - grade.near) / grade.growth)
+        numbers = {"InField": distance, "SizeMin": grade.near, "DistMin": grade.flat}
+        end = grade.flat + (far - grade.near) / grade.growth
+        fields.append(_field(gmsh, "Threshold", numbers | {"SizeMax": far, "DistMax": end}))
     geo.synchronize()
     set_size(gmsh, fields)
     gmsh.option.setNumber("Mesh.MeshSizeMax", far)

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
 from skfem import MeshTet1
 
+from geometry.arrays import Floats
 from geometry.mesh.cut_pin import CutPin
 from geometry.mesh.cut_solid import cut_solid, grade, name_faces
 from geometry.mesh.elements import Element
-from geometry.mesh.gmsh_session import MeshError, gmsh_model, set_size
+from geometry.mesh.gmsh_session import MeshError, formula_size, gmsh_model, set_size
 from geometry.mesh.gmsh_tetrahedra import SMALLEST_JACOBIAN, collect, repair
 from geometry.mesh.revolve import revolve
 from geometry.mesh.scale import unit_of_solid
@@ -56,9 +56,9 @@ class SolidMesh:
     repaired: int
 
     @property
-    def nodes(self) -> NDArray[np.float64]:
+    def nodes(self) -> Floats:
         """Coordinates of all nodes, (N, 3), m."""
-        points: NDArray[np.float64] = self.mesh.doflocs.T
+        points: Floats = self.mesh.doflocs.T
         return points
 
 
@@ -69,24 +69,35 @@ def solid_mesh(
 
     Raises: MeshError when elements are still inverted or slivers after repair and on finer meshes.
     """
+    small = "a fillet or bore that is very small compared with its neighbours"
+    return sound_mesh(lambda finer: _mesh(pin, finer, edges, element), size, pin.name, small)
+
+
+def sound_mesh(
+    make: Callable[[MeshSize], SolidMesh], size: MeshSize, pin: str, small: str
+) -> SolidMesh:
+    """The first mesh, of this size and two finer ones, without inverted or sliver elements. small:
+    what may be the cause, as text.
+
+    Raises: MeshError if there is none.
+    """
     tried = []
     for factor in (1.0, 1.15, 1.35):
-        mesh, jacobian, repaired = _mesh(pin, size.finer(factor), edges, element)
-        if jacobian > SMALLEST_JACOBIAN:
-            return SolidMesh(mesh, jacobian, repaired)
-        tried.append(jacobian)
+        mesh = make(size.finer(factor))
+        if mesh.jacobian > SMALLEST_JACOBIAN:
+            return mesh
+        tried.append(mesh.jacobian)
     raise MeshError(
-        f"pin {pin.name}: gmsh produced inverted or sliver elements at three mesh sizes (min/max "
+        f"pin {pin}: gmsh produced inverted or sliver elements at three mesh sizes (min/max "
         f"Jacobian {', '.join(f'{j:.2g}' for j in tried)}; at least {SMALLEST_JACOBIAN} is "
-        "required), and straightening their edges did not help; look for a fillet or bore that is "
-        "very small compared with its neighbours",
+        f"required), and straightening their edges did not help; look for {small}",
         "bad-elements",
     )
 
 
 def _mesh(
     pin: Pin | CutPin, size: MeshSize, edges: tuple[float, ...], element: Element
-) -> tuple[MeshTet1, float, int]:
+) -> SolidMesh:
     profile = pin.profile if isinstance(pin, CutPin) else pin
     _require_reasonable(profile, size)
     unit = unit_of_solid(profile)
@@ -106,11 +117,11 @@ def _mesh(
         _set_sizes(gmsh, profile, size, edges, more)
         gmsh.model.mesh.generate(3)
         if element == "linear":
-            return collect(gmsh, surfaces).scaled(unit), 1.0, 0
+            return SolidMesh(collect(gmsh, surfaces).scaled(unit), 1.0, 0)
         gmsh.option.setNumber("Mesh.SecondOrderLinear", int(element == "straight"))
         gmsh.model.mesh.setOrder(2)
         jacobian, repaired = repair(gmsh)
-        return collect(gmsh, surfaces).scaled(unit), jacobian, repaired
+        return SolidMesh(collect(gmsh, surfaces).scaled(unit), jacobian, repaired)
 
 
 def _require_reasonable(pin: Pin, size: MeshSize) -> None:
@@ -174,12 +185,10 @@ def _set_sizes(
             thin = min(pin.segments[i].diameter, pin.segments[i + 1].diameter) / 2
             arc = min(far, rho * math.pi / 2 / size.arc)
             circles.append((thin, pin.stations[i + 1], arc, 1.3 * rho))
-    field = gmsh.model.mesh.field
     tags = list(more)
     for r, z, h, flat in dict.fromkeys(circles):
         d = f"Sqrt((Sqrt(x*x+y*y)-{r!r})^2+(z-{z!r})^2)-{flat!r}"
-        tags.append(field.add("MathEval"))
-        field.setString(tags[-1], "F", f"{h!r}+{size.growth / 2!r}*(({d})+Fabs({d}))")
+        tags.append(formula_size(gmsh, f"{h!r}+{size.growth / 2!r}*(({d})+Fabs({d}))"))
     for i, s in enumerate(pin.segments):
         if s.bore:
             h = math.pi * s.bore / (2.0 * size.across)
@@ -187,8 +196,5 @@ def _set_sizes(
             d = f"(Sqrt(x*x+y*y)-{s.bore / 2!r})"
             out = f"(Fabs(z-{(z0 + z1) / 2!r})-{(z1 - z0) / 2!r})"
             grow = f"{size.growth / 2!r}*({d}+Fabs({d})+{out}+Fabs({out}))"
-            tags.append(field.add("MathEval"))
-            field.setString(tags[-1], "F", f"{h!r}+{grow}")
-    tags.append(field.add("MathEval"))
-    field.setString(tags[-1], "F", f"{far!r}")
-    set_size(gmsh, tags)
+            tags.append(formula_size(gmsh, f"{h!r}+{grow}"))
+    set_size(gmsh, [*tags, formula_size(gmsh, f"{far!r}")])

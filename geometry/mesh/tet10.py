@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from skfem import ElementTetP2, MeshTet1, MeshTet2
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from geometry.arrays import Floats, Ints
 
 EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))  # of nodes 4 to 9: VTK's and scikit-fem's
 # the four corners, and the octahedron between them along its diagonal from edge 02 to edge 13
@@ -31,7 +29,7 @@ class Quadratic:
 
     def determinants(self, at: Floats, elements: Ints | slice = slice(None)) -> Floats:
         """det J of elements at reference points (Q, 3), (M, Q)."""
-        slopes = _slopes(at)
+        slopes = _shapes(at)[1]
         x = self.mesh.doflocs.T[self.nodes[elements]]
         return np.asarray(np.linalg.det(np.einsum("mia,qib->mqab", x, slopes)))
 
@@ -43,8 +41,7 @@ def quadratic(points: Floats, cells: Ints) -> Quadratic:
     vertex[corners] = np.arange(len(corners))
     linear = MeshTet1(points[corners].T.copy(), vertex[cells[:, :4]].T.copy(), sort_t=False)
     mesh = MeshTet2.from_mesh(linear)
-    edge_of = _edge_numbers(linear, vertex[cells[:, :4]])
-    nodes = np.concatenate([vertex[cells[:, :4]], len(corners) + edge_of], axis=1)
+    nodes = np.concatenate([vertex[cells[:, :4]], len(corners) + linear.t2e.T], axis=1)
     if cells.shape[1] == 10:
         mesh.doflocs[:, nodes[:, 4:].ravel()] = points[cells[:, 4:].ravel()].T
     return Quadratic(mesh, nodes, vertex)
@@ -54,68 +51,37 @@ def find_facets(made: Quadratic, triangles: Ints) -> Ints:
     """Facets of the mesh with these corners (T, 3), numbers of points given; only those that are on
     its boundary.
     """
-    wanted = np.sort(made.vertex[triangles], axis=1)
-    return facets_of(made.mesh, wanted)
-
-
-def facets_of(mesh: MeshTet2, triangles: Ints) -> Ints:
-    """Boundary facets with these vertices (T, 3)."""
-    boundary = mesh.boundary_facets()
+    mesh, boundary = made.mesh, made.mesh.boundary_facets()
     n = mesh.nvertices + 1
     weigh = np.array([n * n, n, 1])
     key = np.sort(mesh.facets[:, boundary].T, axis=1) @ weigh
-    found: Ints = boundary[np.isin(key, np.sort(triangles, axis=1) @ weigh)]
+    found: Ints = boundary[np.isin(key, np.sort(made.vertex[triangles], axis=1) @ weigh)]
     return found
 
 
 def refined(mesh: MeshTet2) -> MeshTet2:
     """Every element in eight, on the same curved shape; boundaries keep their names."""
-    t = mesh.t.T
-    parent = np.concatenate([t, mesh.nvertices + _edge_numbers(mesh, t)], axis=1)
+    parent = np.concatenate([mesh.t, mesh.nvertices + mesh.t2e]).T
     children = parent[:, CHILDREN].reshape(-1, 4)
     corner_at = ElementTetP2.doflocs[CHILDREN]  # (8, 4, 3)
     middles = np.stack([(corner_at[:, a] + corner_at[:, b]) / 2 for a, b in EDGES], axis=1)
-    shapes = _shapes(middles.reshape(-1, 3))  # (48, 10)
+    shapes, _ = _shapes(middles.reshape(-1, 3))  # (48, 10)
     at = np.einsum("qi,mia->mqa", shapes, mesh.doflocs.T[parent]).reshape(-1, 6, 3)
     number = np.arange(at.shape[0] * 6).reshape(-1, 6) + len(mesh.doflocs.T)
     points = np.concatenate([mesh.doflocs.T, at.reshape(-1, 3)])
     made = quadratic(points, np.concatenate([children, number], axis=1))
     named = {}
-    edges = {tuple(e): i for i, e in enumerate(np.sort(mesh.edges, axis=0).T.tolist())}
     for name, facets in (mesh.boundaries or {}).items():
-        a, b, c = np.sort(mesh.facets[:, facets], axis=0)
-        ab, bc, ac = (
-            mesh.nvertices + np.array([edges[e] for e in zip(i.tolist(), j.tolist(), strict=True)])
-            for i, j in ((a, b), (b, c), (a, c))
-        )
+        (a, b, c), (ab, bc, ac) = mesh.facets[:, facets], mesh.nvertices + mesh.f2e[:, facets]
         four = [(a, ab, ac), (ab, b, bc), (ac, bc, c), (ab, bc, ac)]
         triangles = np.concatenate([np.stack(three, axis=1) for three in four])
         named[name] = find_facets(made, triangles)
     return made.mesh.with_boundaries(named)
 
 
-def _edge_numbers(mesh: MeshTet1, cells: Ints) -> Ints:
-    """Edge numbers (M, 6) of cells (M, 4) in the order EDGES."""
-    n = mesh.nvertices + 1
-    ends = np.sort(mesh.edges, axis=0)
-    key = ends[0].astype(np.int64) * n + ends[1]
-    order = np.argsort(key)
-    pairs = np.sort(np.stack([cells[:, e] for e in EDGES], axis=1), axis=2)
-    wanted = pairs[..., 0] * n + pairs[..., 1]
-    return np.asarray(order[np.searchsorted(key[order], wanted)])
-
-
-def _shapes(x: Floats) -> Floats:
-    """The ten quadratic functions at reference points (Q, 3): (Q, 10)."""
-    w = np.concatenate([1.0 - x.sum(axis=1, keepdims=True), x], axis=1)
-    corner = w * (2.0 * w - 1.0)
-    return np.concatenate([corner, np.stack([4 * w[:, a] * w[:, b] for a, b in EDGES], 1)], axis=1)
-
-
-def _slopes(x: Floats) -> Floats:
-    """Their derivatives, (Q, 10, 3)."""
-    w = np.concatenate([1.0 - x.sum(axis=1, keepdims=True), x], axis=1)
-    by = np.concatenate([-np.ones((1, 3)), np.eye(3)])
-    corner = (4.0 * w - 1.0)[:, :, None] * by
-    edge = [4.0 * (w[:, a, None] * by[b] + w[:, b, None] * by[a]) for a, b in EDGES]
-    return np.concatenate([corner, np.stack(edge, axis=1)], axis=1)
+def _shapes(x: Floats) -> tuple[Floats, Floats]:
+    """The ten quadratic functions at reference points (Q, 3): (Q, 10); and their derivatives, (Q,
+    10, 3).
+    """
+    values, slopes = zip(*(ElementTetP2().lbasis(x.T, i) for i in range(10)), strict=True)
+    return np.stack(values, axis=1), np.stack(slopes, axis=1).transpose(2, 1, 0)

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
+from typing import ClassVar
 
 from geometry.coded import Coded
 from geometry.shape.tolerance import ROUND_OFF, SAME, merged, snapped
@@ -79,6 +80,9 @@ class Pin:
     fillet: float = 0.0
     merged: float = field(init=False, default=0.0, compare=False)
 
+    revolved: ClassVar[bool] = True
+    meshed: ClassVar[bool] = False
+
     def __post_init__(self) -> None:
         _check_dimensions(self)
         segments, apart = _merged(self.segments, self.tolerance)
@@ -145,16 +149,6 @@ class Pin:
         return tuple(bands)
 
     @property
-    def revolved(self) -> bool:
-        """Whether it is a body of revolution: always."""
-        return True
-
-    @property
-    def meshed(self) -> bool:
-        """Whether it comes with a mesh: never."""
-        return False
-
-    @property
     def connections(self) -> tuple[str, ...]:
         """Connections that bear on this pin, in the order of the profile."""
         return tuple(s.connection for s in self.segments if s.connection)
@@ -197,10 +191,6 @@ class Pin:
             centroid = rho * (10.0 - 3.0 * math.pi) / (12.0 - 3.0 * math.pi)
             rings += 2.0 * math.pi * (shaft + centroid) * area
         return sum(tubes) + rings
-
-    def weight(self, density: float, gravity: float = 9.80665) -> float:
-        """Weight (N) for a density in kg/m^3."""
-        return density * gravity * self.volume
 
     def scaled(self, factor: float) -> Pin:
         """The same pin in another unit."""

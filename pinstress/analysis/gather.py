@@ -38,11 +38,13 @@ def results_of(plan: Plan, found: list[Solved]) -> plain.Results:
         for task, made in zip(plan.tasks, found, strict=True)
         for peak, joint in zip(made.peaks, made.joints or [None] * len(made.peaks), strict=True)
     ]
+    opinions = {(o.pin, o.case): o for made in found for o in made.opinions}
     rows.sort(key=lambda row: (pins.index(row[1].pin), cases.index(row[1].case)))
     beam = next((made.beam for made in found if made.beam is not None), None)
     results = _results(study, plan.loads, rows, beam, plan.published, plan.asked.tolerance)
     results = replace(
         results,
+        pins=tuple(replace(p, second_opinion=opinions.get((p.pin, p.case))) for p in results.pins),
         landing=tuple(r for made in found for r in made.landing),
         surfaces=tuple(surface for made in found for surface in made.surfaces),
     )
@@ -81,8 +83,7 @@ def _results(
         required_safety_factor=table.analysis.required_safety_factor,
         tolerance=tolerance,
         pins=tuple(
-            replace(_pin_result(study, loads, task, peak, published), joint=joint)
-            for task, peak, joint in rows
+            _pin_result(study, loads, task, peak, published, joint) for task, peak, joint in rows
         ),
         shapes=tuple(_shape(tasks[name]) for name in table.pin if name in tasks),
         **mechanics(study, loads, published),
@@ -101,6 +102,7 @@ def _pin_result(
     task: Task,
     peak: Peak,
     published: Published,
+    joint: JointResult | None,
 ) -> plain.PinResult:
     strength = task.material.yield_strength
     required = study.table.analysis.required_safety_factor
@@ -128,7 +130,8 @@ def _pin_result(
         dofs=peak.dofs,
         seconds=peak.seconds,
         history=peak.history,
-        held=_held(task),
+        held=_held(task, joint),
+        joint=joint,
         left_out=task.left_out[peak.case],
         published_max_von_mises=theirs[0],
         published_safety_factor=theirs[1],
@@ -142,9 +145,9 @@ def _pin_result(
     )
 
 
-def _held(task: Task) -> str:
+def _held(task: Task, joint: JointResult | None) -> str:
     if task.lugs:
-        return "its lugs (contact)"
+        return f"its lugs ({joint.model if joint else 'contact'})"
     return ", ".join(task.clamps) or "nothing (loads in balance)"
 
 

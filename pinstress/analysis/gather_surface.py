@@ -7,19 +7,20 @@ from dataclasses import replace
 
 import numpy as np
 
-from fea.core.pin_loads import Floats
+from fea.core.pin_loads import Floats, PinLoads
 from fea.core.solution import Answer
 from fea.harmonic.evaluate import HarmonicAnswer
+from fea.harmonic.half_section import MeridianPlane
 from fea.joint.cell_pressure import CellPressure
 from fea.solid.evaluate import SolidAnswer
 from fea.solve_pin import Solution
-from fea.surface_fields import UnitSurface, amounts, excluded, largest_there, unit_surface
+from fea.surface_fields import amounts, excluded, largest_there, unit_surface
 from pinstress.analysis.gather_fields import shown_at
+from pinstress.analysis.gather_section import half_section
+from pinstress.analysis.thinning import meridian_points
 from pinstress.model.cases import CaseLoads
 from pinstress.model.tasks import Task
-from reports.data.surface import Mask, Surface, SurfaceCase
-
-APART = 0.1  # of a zone's size: nearer points show nothing where nothing is to be read
+from reports.data.surface import LoadCourse, Mask, Surface, SurfaceCase
 
 
 def surfaces_of(
@@ -60,13 +61,18 @@ def _surface(
         return None
     surface = unit_surface(with_fields[0][1])
     assert surface is not None
+    plane = _plane(with_fields[0][1])
     cases = [
-        _pressed(_case(loads[s.peak.case], s, a), surface.points, p) for s, a, p in with_fields
+        _pressed(_case(loads[s.peak.case], task, s, plane), surface.points, p)
+        for s, _, p in with_fields
     ]
+    keep = np.ones(len(surface.points), dtype=bool)
     if surface.revolved:
-        keep = _thinned(surface, np.all([c.excluded for c in cases], axis=0))
-    else:
-        keep = np.ones(len(surface.points), dtype=bool)
+        kept = np.any(
+            [_own(c, s, surface.points) for c, (s, _, _) in zip(cases, with_fields, strict=True)],
+            axis=0,
+        )
+        keep = meridian_points(surface, cases, kept)
     return Surface(
         pin=task.pin.name,
         points=surface.points[keep],
@@ -80,17 +86,49 @@ def _surface(
     )
 
 
-def _case(case: CaseLoads, solution: Solution, answer: Answer) -> SurfaceCase:
+def _plane(answer: Answer) -> MeridianPlane | None:
+    if not isinstance(answer, HarmonicAnswer):
+        return None
+    return MeridianPlane(answer.fields, answer.singularities)
+
+
+def _case(
+    case: CaseLoads, task: Task, solution: Solution, plane: MeridianPlane | None
+) -> SurfaceCase:
     """At the case's samples and the governing instant."""
-    shown = shown_at(solution, case)
+    shown, answer = shown_at(solution, case), solution.answer
+    assert answer is not None
+    maxima = answer.maxima(shown.loads)
+    top, at = float(maxima[shown.instant]), solution.peak.location
     return SurfaceCase(
         case=solution.peak.case,
         times=shown.loads.times,
         instant=shown.instant,
         amounts=amounts(answer, shown.loads),
-        maxima=answer.maxima(shown.loads),
+        maxima=maxima,
         excluded=excluded(answer),
         largest=largest_there(answer, shown.loads, shown.instant),
+        zones=_zones(answer),
+        loads=_courses(task, shown.loads),
+        section=half_section(plane, shown.loads, shown.instant, top, at) if plane and at else None,
+    )
+
+
+def _zones(answer: Answer) -> Floats:
+    found = answer.singularities if isinstance(answer, HarmonicAnswer) else ()
+    return np.array([(p.r, p.z, p.radius) for p in found]).reshape(-1, 3)
+
+
+def _courses(task: Task, loads: PinLoads) -> tuple[LoadCourse, ...]:
+    """Of every band on which a link bears."""
+    links = loads.links
+    none = np.zeros((len(loads), 3))
+    acting = {name: links.forces[:, c] for c, name in enumerate(links.surfaces)}
+    acting |= {name: none for name in task.left_out[loads.case] if name not in acting}
+    bands = {name: task.pin.band(name) for name in acting}
+    return tuple(
+        LoadCourse(name, band.middle, band.radius, acting[name], name not in links.surfaces)
+        for name, band in bands.items()
     )
 
 
@@ -100,24 +138,19 @@ def _pressed(case: SurfaceCase, points: Floats, pressure: CellPressure | None) -
     return replace(case, rings=pressure.rings(points), pressure=pressure.pressure)
 
 
-def _thinned(surface: UnitSurface, excluded: Mask) -> Mask:
-    """Which points (P,) to keep: all outside of what every case excludes, and inside those that
-    are apart; a mesh has most of its points there.
+def _own(case: SurfaceCase, solution: Solution, points: Floats) -> Mask:
+    """Points (P,) of a meridian that the case needs: where its maximum is if it is on the surface,
+    and where contact pressure jumps.
     """
-    x, keep = surface.points, np.ones(len(surface.points), dtype=bool)
-    edges = np.flatnonzero(np.diff(excluded.astype(int), prepend=0, append=0)).reshape(-1, 2)
-    for first, end in edges.tolist():
-        along = _length(x[first:end])
-        last = 0.0
-        for k in range(first + 1, end - 1):
-            keep[k] = along[k - first] - last > APART * along[-1] / 2.0
-            last = along[k - first] if keep[k] else last
-    return keep
-
-
-def _length(points: Floats) -> Floats:
-    step = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    return np.concatenate([[0.0], np.cumsum(step)])
+    kept = np.zeros(len(points), dtype=bool)
+    if case.rings is not None:
+        jumps = np.flatnonzero(np.diff(case.rings))
+        kept[jumps] = kept[jumps + 1] = True
+    if solution.peak.location is not None:
+        x, y, z = solution.peak.location
+        away = np.hypot(points[:, 0] - np.hypot(x, y), points[:, 2] - z)
+        kept |= away <= away.min() * (1.0 + 1e-9)
+    return kept
 
 
 def _kept(case: SurfaceCase, keep: Mask) -> SurfaceCase:

@@ -100,15 +100,22 @@ def prepare(
                 at=f"pin.{task.pin.name}",
                 code="not-of-revolution",
             )
-        if asked.model in ("beam", "solid") and task.lugs:
-            raise study.error(
-                f"pin {task.pin.name} is in contact with its lugs, which requires the harmonic "
-                f'model: use auto or harmonic, or analysis.joints = "prescribed" for the '
-                f"{asked.model} model",
-                at=f"pin.{task.pin.name}",
-                code="model-without-contact",
-            )
+        if task.lugs:
+            _require_model(study, asked.model, task.pin.name)
     return Plan(study, asked, loads, todo, published, checked, also)
+
+
+def _require_model(study: Study, model: Model, pin: str) -> None:
+    """Raises: InputError for a model that cannot answer for a pin in its lugs."""
+    beam = study.table.analysis.joints == "foundation"
+    how, fits = ("on foundations in", "beam") if beam else ("in contact with", "harmonic")
+    if model not in ("auto", fits):
+        raise study.error(
+            f"pin {pin} is {how} its lugs, which requires the {fits} model: use auto or {fits}, "
+            f'or analysis.joints = "prescribed" for the {model} model',
+            at=f"pin.{pin}",
+            code="model-without-contact",
+        )
 
 
 def _asked(

@@ -6,11 +6,14 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
-from fea.checks.calculix_compare import Opinion
+from fea.checks.opinions import Opinion
 from fea.core.memory import allowed_memory, solid_memory
 from fea.core.peak import Peak
 from fea.core.pin_loads import PinLoads
-from fea.joint.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
+from fea.joint.foundation.solve_on_foundations import solve_joints
+from fea.joint.foundation.variations import prescribed_ranges
+from fea.joint.records import JointResult
+from fea.joint.solve_in_lugs import InLugs, LugSolution
 from fea.solve_pin import MOST_UNKNOWNS, solve_pin
 from geometry import Pin
 from pinstress.analysis import checks, gather, gather_fields
@@ -25,14 +28,14 @@ from reports.data.in_units import Unit, in_units
 from reports.data.results import Field
 
 Keep = Callable[[Field], None]
-Ask = Callable[[Task, tuple[Peak, ...], Tell], tuple[Opinion, ...]]
+Ask = Callable[[Plan, Task, Solved, Tell], tuple[Opinion, ...]]
 
 
 def keep_none(_: Field) -> None:
     """Keep no field. Not a lambda: it is sent to processes that are started anew."""
 
 
-def _ask_none(_: Task, __: tuple[Peak, ...], ___: Tell) -> tuple[Opinion, ...]:
+def _ask_none(_: Plan, __: Task, ___: Solved, ____: Tell) -> tuple[Opinion, ...]:
     return ()
 
 
@@ -49,7 +52,7 @@ def solve_tasks(
     last bit.
 
     keep: called with every field, in the study's units, as soon as it is there. ask: for a second
-    opinion on a task's peaks, with what to report progress to. Both are called in the task's
+    opinion on a task, with what to report progress to. Both are called in the task's
     process. progress: called with what is being done and the part of the work that is behind.
     cache: where tasks that were solved before are found, and the others kept.
 
@@ -93,7 +96,7 @@ def _attempt(
             solved = _solve(plan, task, keep, tell)
         else:
             solved = _solve_once(plan, task, keep, cache, tell)
-        return replace(solved, opinions=ask(task, solved.peaks, tell))
+        return replace(solved, opinions=ask(plan, task, solved, tell))
     except MemoryError:
         return _failed(plan, task, "out of memory; a larger tolerance needs less")
     except ArithmeticError as error:  # MeshError, SolveError and what numpy raises
@@ -151,18 +154,32 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
     if task is plan.checked and study.table.beam_check is not None:
         tell(f"pin {task.pin.name}, beam check")
         beam = checks.beam_check(study, task)
-    joints = tuple(j.joint for j in joined)
+    joints = tuple(j.joint for j in joined) or _around(plan, task, peaks)
     surfaces = surfaces_of(plan.loads, task, found, pressures)
     return Solved(peaks, landing, beam, surfaces, joints=joints)
 
 
 def _in_lugs(plan: Plan, task: Task, tell: Tell) -> tuple[LugSolution, ...]:
-    """Solutions of a pin that is in contact with its lugs; none of any other."""
+    """Solutions of a pin that its lugs support; none of any other."""
     if not task.lugs:
         return ()
     assert isinstance(task.pin, Pin)
     given = InLugs(task.pin, task.material, task.lugs, task.loads, task.between, task.ranges)
-    return solve_in_lugs(given, plan.asked, tell)
+    joints = plan.study.table.analysis.joints
+    return solve_joints(given, plan.asked, "auto" if joints == "prescribed" else joints, tell)
+
+
+def _around(plan: Plan, task: Task, peaks: tuple[Peak, ...]) -> tuple[JointResult | None, ...]:
+    """Of a pin with prescribed clamps and loads, the range over lugs around it."""
+    around, loads = task.surroundings, [peak.governing for peak in peaks]
+    if around is None:
+        return ()
+    if around.pin is None:
+        none = JointResult("prescribed", remark=around.why)
+        return tuple(none if here is not None else None for here in loads)
+    return prescribed_ranges(
+        around.pin, task.material, around.lugs, loads, (plan.asked.distance, around.assumed)
+    )
 
 
 def _as_given(loads: PinLoads) -> PinLoads:

@@ -6,7 +6,7 @@ import hashlib
 from dataclasses import dataclass, replace
 from math import inf
 
-from fea.checks.calculix_compare import Opinion
+from fea.checks.opinions import Opinion
 from fea.checks.records import BeamCheck
 from fea.core.memory import too_much
 from fea.core.peak import Peak
@@ -60,6 +60,8 @@ def question(plan: Plan, task: Task) -> object:
         _shape(task.pin),
         task.clamps,
         task.lugs,
+        task.surroundings,
+        study.table.analysis.joints,
         task.loads,
         task.left_out,
         task.ranges,

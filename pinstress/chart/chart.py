@@ -8,12 +8,16 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 
 from fea.core.peak import Peak
+from fea.joint.pressure_loads import PressureLoads
+from fea.joint.solve_in_lugs import InLugs, solve_in_lugs
+from fea.single_joint import JointProblem, JointRung
 from fea.single_mesh import Problem, Rung
 from fea.solve_pin import Asked, Solution, solve_pin
 from fea.verdict import Seen
 from geometry import Pin
 from geometry.mesh.elements import Element
 from pinstress.analysis.plan import all_loads
+from pinstress.chart.in_lugs import chosen_in_lugs, climb_in_lugs, contact_reference
 from pinstress.chart.measured_process import Measure, Measured
 from pinstress.chart.mesh_sequences import (
     HARMONIC,
@@ -26,7 +30,7 @@ from pinstress.chart.mesh_sequences import (
     solid_reference,
 )
 from pinstress.model.pins import pin as pin_of
-from pinstress.model.tasks import tasks
+from pinstress.model.tasks import Task, tasks
 from pinstress.processes.pool import Progress
 from pinstress.study.choices import require_tolerance, select
 from pinstress.study.file import Study
@@ -44,14 +48,16 @@ NAMES = {
 @dataclass(frozen=True)
 class ChartPlan:
     """What is to be charted, every input read and found usable. peak: what `auto` says of it on
-    its first mesh. beam_error: relative, of the beam by itself.
+    its first mesh. beam_error: relative, of the beam by itself. chosen: of a pin in its lugs, on
+    which mesh of contact a run ends.
     """
 
     study: Study
-    problem: Problem
+    problem: Problem | JointProblem
     asked: Asked
     peak: Peak
-    beam_error: float | None
+    beam_error: float | None = None
+    chosen: JointRung | None = None
 
 
 def plan_chart(study: Study, pin: str, case: str, tolerance: float | None = None) -> ChartPlan:
@@ -66,6 +72,8 @@ def plan_chart(study: Study, pin: str, case: str, tolerance: float | None = None
         required=table.required_safety_factor,
         distance=table.excluded_distance,
     )
+    if task.lugs:
+        return _plan_in_lugs(study, task, asked)
     clamps = tuple(task.pin.surface(c) for c in task.clamps)
 
     def first(model: Asked) -> Solution:
@@ -77,10 +85,7 @@ def plan_chart(study: Study, pin: str, case: str, tolerance: float | None = None
     solution = first(replace(asked, meshes=1))
     peak = solution.peak
     problem = Problem(task.pin, task.material, clamps, solution.loads, asked.distance)
-    if not peak.max_von_mises:
-        why = peak.note if peak.verdict == "rigid" else "its loads cause no stress"
-        text = f"pin {pin}, case {case}: there is nothing to chart: {why}"
-        raise study.error(text, at=f"pin.{pin}", code="nothing-to-chart")
+    _require_stress(study, peak)
     beam_error = None
     if isinstance(task.pin, Pin):
         with suppress(ValueError, ArithmeticError):  # the chart will say why
@@ -90,15 +95,44 @@ def plan_chart(study: Study, pin: str, case: str, tolerance: float | None = None
     return ChartPlan(study, problem, asked, peak, beam_error)
 
 
+def _require_stress(study: Study, peak: Peak) -> None:
+    if not peak.max_von_mises:
+        why = "its loads cause no stress" if peak.verdict == "converged" else peak.note
+        text = f"pin {peak.pin}, case {peak.case}: there is nothing to chart: {why}"
+        raise study.error(text, at=f"pin.{peak.pin}", code="nothing-to-chart")
+
+
+def _plan_in_lugs(study: Study, task: Task, asked: Asked) -> ChartPlan:
+    """Of a pin in its lugs: solved as a run would."""
+    assert isinstance(task.pin, Pin)
+    given = InLugs(task.pin, task.material, task.lugs, task.loads, task.between)
+    (found,) = solve_in_lugs(given, asked)
+    solution = found.solution
+    _require_stress(study, solution.peak)
+    assert found.joint is not None
+    loads = solution.loads
+    problem = JointProblem(
+        task.pin,
+        task.material,
+        task.lugs,
+        loads.links if isinstance(loads, PressureLoads) else loads,
+        solution.instant,
+        asked.distance,
+    )
+    end = chosen_in_lugs(problem, solution.peak, found.joint)
+    return ChartPlan(study, problem, asked, solution.peak, chosen=end)
+
+
 def chart(
     plan: ChartPlan,
     measure: Measure,
     meshes: int | None = None,
     runs: int = 3,
     progress: Progress = lambda _, __: None,
+    calculix: bool = False,
 ) -> Chart:
     """Climb all ladders. measure: of one rung. meshes: of each solid element, by default as many as
-    are quick. runs: the times are their medians.
+    are quick. runs: the times are their medians. calculix: of a pin in its lugs also by CalculiX.
 
     Raises: SolveError when there is no reference.
     """
@@ -110,6 +144,10 @@ def chart(
         behind += 1
 
     climb = Climb(plan.problem, plan.asked, plan.peak.model, measure, runs, tell)
+    if plan.chosen is not None:
+        climb_in_lugs(climb, plan.chosen, calculix)
+        rung, seen, cells = contact_reference(climb)
+        return _joined(plan, climb, (rung, seen), runs, cells)
     pin = plan.problem.pin
     if isinstance(pin, Pin):
         climb.to(Rung("beam"))
@@ -124,11 +162,21 @@ def chart(
     return _joined(plan, climb, reference, runs)
 
 
-def _joined(plan: ChartPlan, climb: Climb, reference: tuple[Rung, Seen], runs: int) -> Chart:
+def _joined(
+    plan: ChartPlan,
+    climb: Climb,
+    reference: tuple[Rung | JointRung, Seen],
+    runs: int,
+    cells: float = 0.0,
+) -> Chart:
+    """cells: the part of the reference's error from cells of contact, relative."""
     at, seen = reference
-    stress, best, ends = plan.study.system.factor("stress"), seen.results[-1], chosen(climb)
+    stress, best = plan.study.system.factor("stress"), seen.results[-1]
+    ends = plan.chosen or chosen(climb)
 
-    def name(rung: Rung) -> str:
+    def name(rung: Rung | JointRung) -> str:
+        if isinstance(rung, JointRung):
+            return rung.element
         return NAMES.get(rung.model, NAMES[rung.element])
 
     points = [
@@ -154,7 +202,7 @@ def _joined(plan: ChartPlan, climb: Climb, reference: tuple[Rung, Seen], runs: i
         points=tuple(points),
         reference=Reference(
             at.model, name(at), best.unknowns,
-            best.maximum / stress, seen.relative,
+            best.maximum / stress, seen.relative + cells,
         ),
         bare=max(m.bare for _, m in climb.done),
         runs=runs,

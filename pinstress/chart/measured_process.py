@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import gc
 import math
+import os
 import pickle
 import re
+import signal
 import statistics
 import subprocess
 import tempfile
@@ -15,7 +17,9 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from fea.checks.calculix import CalculixError
 from fea.core.mesh_result import MeshResult
+from fea.single_joint import JointProblem, JointRung, joint_result_on
 from fea.single_mesh import Problem, Rung, result_on
 from pinstress.processes.current_folder import trusting_python
 
@@ -51,12 +55,12 @@ class Measured:
 
 @dataclass(frozen=True)
 class MeasureJob:
-    """A rung to be climbed, with mesh results `before` (fea.single_mesh), so many times. reference:
-    whatever time it takes.
+    """A rung of its problem to be climbed, with mesh results `before` (fea.single_mesh), so many
+    times. reference: whatever time it takes.
     """
 
-    problem: Problem
-    rung: Rung
+    problem: Problem | JointProblem
+    rung: Rung | JointRung
     before: tuple[MeshResult, ...] = ()
     runs: int = 1
     reference: bool = False
@@ -86,7 +90,7 @@ def measure(job: MeasureJob, limits: MeasureLimits) -> Measured:
             passed = _watch(process, limits, place)
         finally:
             if process.poll() is None:
-                process.kill()
+                os.killpg(process.pid, signal.SIGKILL)  # with the programs that it runs
             process.wait()
         if passed:
             return Measured(None, failed=passed, over=True)
@@ -133,11 +137,22 @@ def climb(job: MeasureJob) -> Measured:
         Path("/proc/self/clear_refs").write_text("5")  # forgets what imports took for a moment
     for run in range(job.runs):
         start = time.perf_counter()
-        found = result_on(job.problem, job.rung, job.before)
+        found = _result(job)
         spent.append(time.perf_counter() - start)
         if run == 0:
-            result, peak = found, memory("self", "VmHWM")
+            import resource  # Linux has it
+
+            others = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024.0
+            result, peak = found, memory("self", "VmHWM") + others
     return Measured(result, statistics.median(spent), max(peak - bare, LEAST), bare)
+
+
+def _result(job: MeasureJob) -> MeshResult:
+    if isinstance(job.problem, JointProblem):
+        assert isinstance(job.rung, JointRung)
+        return joint_result_on(job.problem, job.rung, job.before)
+    assert isinstance(job.rung, Rung)
+    return result_on(job.problem, job.rung, job.before)
 
 
 def serve(folder: str) -> None:
@@ -149,6 +164,10 @@ def serve(folder: str) -> None:
         found = climb(job)
     except MemoryError:
         found = Measured(None, failed="out of memory")
-    except (ArithmeticError, ValueError) as error:  # MeshError, SolveError; what cannot be asked
+    except (
+        ArithmeticError,
+        CalculixError,
+        ValueError,
+    ) as error:  # MeshError, SolveError; what cannot be asked
         found = Measured(None, failed=str(error))
     (place / "result").write_bytes(pickle.dumps(found))

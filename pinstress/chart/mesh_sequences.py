@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from fea.core.linear_solver import SolveError
 from fea.core.mesh_result import MeshResult
+from fea.single_joint import JointProblem, JointRung
 from fea.single_mesh import Problem, Rung
 from fea.solve_pin import MESHES, MOST_UNKNOWNS, STEP, Asked, enough
 from fea.verdict import Seen
@@ -22,27 +23,28 @@ MOST_BELOW_REFERENCE = 50_000
 MOST_OF_REFERENCE = 400_000
 ORDER = 10.0  # times the unknowns of the finest that is charted
 FEWEST_OF_REFERENCE = 3
+ADAPTED = "harmonic", "contact", "prescribed"  # models whose meshes are finer where stress is high
 
 
 @dataclass
 class Climb:
     """Rungs climbed so far, in their order. auto: the model that it chooses."""
 
-    problem: Problem
+    problem: Problem | JointProblem
     asked: Asked
     auto: str
     measure: Measure
     runs: int
     tell: Callable[[str], None]
-    done: list[tuple[Rung, Measured]] = field(default_factory=list)
+    done: list[tuple[Rung | JointRung, Measured]] = field(default_factory=list)
 
-    def to(self, rung: Rung, keep: bool = True) -> Measured:
+    def to(self, rung: Rung | JointRung, keep: bool = True) -> Measured:
         """Climb a rung; `keep` it as a point of the chart."""
         self.tell(f"{rung.model} model")
-        below = self.results(rung) if rung.model == "harmonic" and rung.level > 0 else ()
+        below = self.results(rung) if rung.model in ADAPTED and rung.level > 0 else ()
         if not keep:  # refined everywhere: it is what the others are measured by
             below = tuple(replace(result, high=()) for result in below)
-        runs = self.runs if keep else 1
+        runs = self.runs if keep and rung.model != "calculix" else 1
         found = self.measure(MeasureJob(self.problem, rung, below[-1:], runs, reference=not keep))
         if keep:
             self.done.append((rung, found))
@@ -56,7 +58,7 @@ class Climb:
         if one.result and two.result and one.result.unknowns == two.result.unknowns:
             del self.done[-2]
 
-    def results(self, like: Rung) -> tuple[MeshResult, ...]:
+    def results(self, like: Rung | JointRung) -> tuple[MeshResult, ...]:
         """Of the same model and element, from a run's first mesh on."""
         return tuple(
             m.result for r, m in self.done
@@ -161,7 +163,7 @@ def _finest(climb: Climb, model: str) -> tuple[int, tuple[MeshResult, ...]]:
     return max(level for level, m in of_it if m.result), results
 
 
-def chosen(climb: Climb) -> Rung | None:
+def chosen(climb: Climb) -> Rung | JointRung | None:
     """Where `auto` ends; None where it goes on to finer meshes than there are here."""
     model = climb.auto
     if model == "beam":

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from pinstress.chart.chart import chart, plan_chart
+from pinstress.chart.chart import ChartPlan, chart, plan_chart
 from pinstress.chart.measured_process import MeasureLimits, measure
 from pinstress.cli.output_folder import replacing, require_replaceable
 from pinstress.cli.run import PLOTTERS, console, progress_bar
@@ -35,8 +35,12 @@ def chart_and_write(
     meshes: int | None,
     runs: int,
     limits: MeasureLimits,
+    calculix: bool = False,
 ) -> int:
-    """Chart a pin into a folder; returns the exit status. Raises: InputError, ArithmeticError."""
+    """Chart a pin into a folder; returns the exit status. calculix: also by CalculiX.
+
+    Raises: InputError, ArithmeticError.
+    """
     if portable():
         raise InputError(
             "chart measures the memory of processes, which works on Linux only", code="linux-only"
@@ -49,15 +53,32 @@ def chart_and_write(
     require_positive("time_limit", limits.seconds, endless=True)
     require_positive("memory_limit", limits.memory, endless=True)
     plan = plan_chart(study, pin, case, tolerance)
+    if calculix:
+        _announce_calculix(plan)
     with replacing(directory, MARK) as staging:
         with progress_bar() as progress:
-            found = chart(plan, partial(measure, limits=limits), meshes, runs, progress)
+            found = chart(plan, partial(measure, limits=limits), meshes, runs, progress, calculix)
         write_chart_csv(found, staging)
         chart_plot(found, staging)
     with unneeded(directory):
         print_chart(found, console())
     click.echo(f"Chart: {directory / NAME}.svg", err=True)
     return _report_missed(found)
+
+
+def _announce_calculix(plan: ChartPlan) -> None:
+    """Raises: InputError for a pin that is not in contact."""
+    if plan.chosen is None:
+        raise InputError(
+            "--second-opinion ccx: charts include CalculiX only for pins in contact with their "
+            "lugs; for others use pinstress run --second-opinion ccx",
+            code="no-contact",
+        )
+    click.echo(
+        "CalculiX solves contact in three dimensions on three meshes, which takes minutes; one "
+        "that takes longer than --time-limit fails.",
+        err=True,
+    )
 
 
 def _report_missed(found: Chart) -> int:

@@ -60,7 +60,8 @@ def _pin(study: Study, name: str) -> str:
 
 def _support(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> str:
     if lugs(study, pin, clamps):
-        return "in contact with its lugs"
+        beam = study.table.analysis.joints == "foundation"
+        return f"{'on foundations in' if beam else 'in contact with'} its lugs"
     return f"clamped at {', '.join(clamps) or 'nowhere (loads must balance)'}"
 
 

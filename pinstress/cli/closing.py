@@ -1,4 +1,6 @@
-"""The closing lines of a run on stderr: loads left out, reused pins, unconverged rows."""
+"""The closing lines of a run on stderr: loads left out, reused pins, unconverged rows, where
+CalculiX differs; and before it, what will take long.
+"""
 
 from __future__ import annotations
 
@@ -44,6 +46,27 @@ def report_reused(plan: Plan, found: list[Solved]) -> None:
             "(--no-cache solves all again).",
             err=True,
         )
+
+
+def report_slow_rows(rows: list[tuple[str, str]]) -> None:
+    """Before a run, the rows that take CalculiX minutes."""
+    if rows:
+        named = ", ".join(f"{pin} ({case})" for pin, case in rows)
+        click.echo(
+            "CalculiX solves contact in three dimensions on two meshes, which takes one to ten "
+            f"minutes a row: {named}.",
+            err=True,
+        )
+
+
+def report_disagreements(results: Results) -> int:
+    """The rows in which CalculiX differs or gave no answer; returns the exit status."""
+    opinions = [p.second_opinion for p in results.pins if p.second_opinion]
+    for o in opinions:
+        if o.complaint:
+            what = "No second opinion" if o.failure else "Second opinion differs"
+            click.echo(f"{what}: pin {o.pin} ({o.case}): {o.complaint}.", err=True)
+    return int(any(o.complaint for o in opinions))
 
 
 def report_missed(results: Results, decide: bool) -> int:

@@ -125,7 +125,8 @@ def commands() -> None:
 @click.option(
     "--second-opinion",
     type=click.Choice(["ccx"]),
-    help="Solve every row again with CalculiX on the solid model's mesh, and compare.",
+    help="Solve every row again with CalculiX and compare: on the solid model's mesh; a pin in its "
+    "lugs by contact in three dimensions, which takes minutes.",
 )
 @click.option("--no-cache", is_flag=True, help="Solve all pins again; do not reuse cached results.")
 @click.option("--json", "as_json", is_flag=True, help="Print results.json instead of the table.")
@@ -248,6 +249,12 @@ def loads(
     "--memory-limit", type=click.FloatRange(0.0, min_open=True), default=4000.0,
     show_default=True, help="Memory limit per mesh, MB above the bare process.",
 )  # fmt: skip
+@click.option(
+    "--second-opinion",
+    type=click.Choice(["ccx"]),
+    help="For a pin in its lugs: also CalculiX with contact in three dimensions, which takes "
+    "minutes.",
+)
 def chart(
     study: Path,
     pin: str,
@@ -258,13 +265,17 @@ def chart(
     runs: int,
     time_limit: float,
     memory_limit: float,
+    second_opinion: str | None,
 ) -> int:
+    if second_opinion is not None:
+        _require_calculix()
     loaded = read_study(study)
     from pinstress.chart.measured_process import MeasureLimits
     from pinstress.cli.chart import chart_and_write
 
     limits = MeasureLimits(time_limit, memory_limit)
-    return chart_and_write(loaded, pin, case, out, tolerance, meshes, runs, limits)
+    calculix = second_opinion is not None
+    return chart_and_write(loaded, pin, case, out, tolerance, meshes, runs, limits, calculix)
 
 
 @commands.command(

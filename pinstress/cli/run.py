@@ -13,13 +13,19 @@ from typing import Any, Unpack
 import click
 from rich.console import Console
 
-from pinstress.analysis.calculix import Opinions
+from pinstress.analysis.calculix import ask_calculix, slow_rows
 from pinstress.analysis.gather import loads_only, results_of
 from pinstress.analysis.plan import prepare
 from pinstress.analysis.solve import solve_tasks
 from pinstress.cache.plots import draw_once, plot_once
 from pinstress.cache.store import Cache, user_cache
-from pinstress.cli.closing import report_left_out, report_missed, report_reused
+from pinstress.cli.closing import (
+    report_disagreements,
+    report_left_out,
+    report_missed,
+    report_reused,
+    report_slow_rows,
+)
 from pinstress.cli.output_folder import replacing, require_replaceable
 from pinstress.cli.shared import open_page
 from pinstress.cli.streams import unneeded
@@ -32,6 +38,7 @@ from reports.files import write_loads, write_reports
 from reports.plots.jobs import Plot
 from reports.text.loads import print_loads
 from reports.text.safety_factors import print_safety_factors
+from reports.text.second_opinion import print_second_opinion
 from reports.vtk.fields import render_pin, renderer_problem, surface, write_pin
 
 SOLVERS = (
@@ -72,15 +79,16 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
     plan = prepare(study, also=also, **chosen)
     problem = renderer_problem() if wanted.pictures else None
     most, paints = processes(wanted.jobs), wanted.pictures and problem is None
-    opinions = Opinions(plan) if wanted.second else None
     cache = user_cache() if wanted.cached else None
+    if wanted.second and not wanted.quiet:
+        report_slow_rows(slow_rows(plan))
     with replacing(directory) as staging:
         if wanted.vtk != "none":
             (staging / "vtk").mkdir()
         keep = partial(_keep, staging, _units(study), wanted.vtk, paints, cache)
         with progress_bar(alone=most == 1, quiet=wanted.quiet) as progress:
             preload(*SOLVERS, *(PAINTERS if paints else PLOTTERS if wanted.pictures else ()))
-            ask = {"ask": opinions.ask} if opinions else {}
+            ask = {"ask": ask_calculix} if wanted.second else {}
             found = solve_tasks(plan, keep, progress, jobs=most, cache=cache, **ask)
             results = results_of(plan, found)
             drawn = {
@@ -90,9 +98,6 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
             }
             progress("report", 1.0)
             write_reports(results, staging, drawn, wanted.pictures, partial(_draw, most, cache))
-            if opinions:
-                opinions.hear(o for made in found for o in made.opinions)
-                opinions.write(staging)
     if cache:
         cache.trim()
     if wanted.as_json:
@@ -100,8 +105,8 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
     else:
         with unneeded(directory):
             print_safety_factors(results, console())
-            if opinions:
-                opinions.show(console())
+            if wanted.second:
+                print_second_opinion(results, console())
     if not wanted.quiet:
         report_left_out(results)
         report_reused(plan, found)
@@ -111,7 +116,7 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
     if wanted.opens:
         open_page(directory / "report.html")
     status = report_missed(results, study.table.analysis.goal == "decide")
-    return max(status, opinions.tell_disagreements()) if opinions else status
+    return max(status, report_disagreements(results))
 
 
 def _units(study: Study) -> Units:

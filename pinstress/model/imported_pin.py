@@ -86,20 +86,16 @@ def _limited(limits: Limits, work: Work, file: BodyFile, *arguments: object) -> 
     keep_within(limits)
     try:
         return work(file, *arguments)
-    except MemoryError:
-        raise _out_of_memory(limits, file) from None
-    except (GeometryError, MeshError) as error:
-        if error.code == "out-of-memory":  # of gmsh
-            raise _out_of_memory(limits, file) from None
-        raise
-
-
-def _out_of_memory(limits: Limits, file: BodyFile) -> GeometryError:
-    return GeometryError(
-        f"pin {file.name}: reading {file.path.name} needs more than the limit of "
-        f"{limits.memory / 2**30:g} GB of memory; it is damaged, or too fine: give a coarser mesh",
-        "out-of-memory",
-    )
+    except (MemoryError, GeometryError, MeshError) as error:
+        code = "out-of-memory"
+        if getattr(error, "code", code) != code:  # gmsh's error has it
+            raise
+        raise GeometryError(
+            f"pin {file.name}: reading {file.path.name} needs more than the limit of "
+            f"{limits.memory / 2**30:g} GB of memory; it is damaged, or too fine: give a coarser "
+            "mesh",
+            code,
+        ) from None
 
 
 def _why(died: Died, limits: Limits) -> str:

@@ -1,11 +1,12 @@
-"""From a study to the lugs in which its pins sit."""
+"""From a study to the lugs in which its pins sit, or may sit."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, replace
 
 from fea.core.material import Material
-from fea.joint.lugs.fit import fitted, on_structure
+from fea.joint.lugs.fit import beyond_foundations, fitted, on_structure
 from fea.joint.lugs.lug import Bushing, Lug
 from geometry import ArgumentError, Pin, PinLike
 from pinstress.model.pins import material
@@ -19,10 +20,10 @@ CLAMP_DISTANCE = (
 
 
 def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]:
-    """Those of a pin, one for every connection and those of a structure that are named, if contact
-    with them holds it; else none.
+    """Those of a pin, one for every connection and those of a structure that are named, if they
+    support it; else none.
 
-    Raises: InputError for impossible lugs, and for a pin that contact cannot support.
+    Raises: InputError for impossible lugs, and for a pin that lugs cannot support.
     """
     table, joints = study.table.pin[pin.name], study.table.analysis.joints
     if joints == "prescribed" or (joints == "auto" and not table.lug):
@@ -31,8 +32,8 @@ def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]
     instead = 'or set analysis.joints = "prescribed"'
     if not isinstance(pin, Pin):
         raise study.error(
-            f"pin {pin.name} has holes or flats or is from a file; contact with lugs requires "
-            f"a plain profile: remove its lugs, {instead}",
+            f"pin {pin.name} has holes or flats or is from a file; lugs require a plain profile: "
+            f"remove its lugs, {instead}",
             at,
             "not-axisymmetric",
         )
@@ -56,7 +57,62 @@ def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]
         fitted(on_structure(pin, out), made_of, out)
     except ArgumentError as error:
         raise study.error(str(error), at, error.code) from None
+    if joints == "foundation" and (reason := beyond_foundations(out)):
+        raise study.error(
+            f'pin {pin.name} on foundations: {reason}; use analysis.joints = "contact"',
+            at,
+            "beyond-foundations",
+        )
     return tuple(out)
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """Lugs in which a pin may sit that the study loads and clamps otherwise: pin, with its clamped
+    segments as bands on which no link bears. assumed: whether no lug is given. why: there are none.
+    """
+
+    pin: Pin | None = None
+    lugs: tuple[Lug, ...] = ()
+    assumed: bool = True
+    why: str = ""
+
+
+def surroundings(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> Surroundings:
+    """A lug at every connection, and one of the structure at every clamped segment, with the
+    defaults for what the study does not say.
+    """
+    if not isinstance(pin, Pin):
+        return Surroundings(why="the pin has holes or flats or is from a file")
+    clamped = [pin.surface(name) for name in clamps]
+    bare = [name for name in clamped if name not in pin.labels]
+    if bare:
+        return Surroundings(why=f"no lug surrounds its clamp ({', '.join(bare)})")
+    table = study.table.pin[pin.name]
+    free = _freed(pin, clamped)
+    names = dict.fromkeys([*free.connections, *clamped, *table.lug])
+    if len(names) < 2:
+        return Surroundings(why="one band alone does not show how the pin is supported")
+    made_of = material(study, table.material)
+    try:
+        found = tuple(
+            _lug(study, pin, name, table.lug.get(name, LugTable()), made_of) for name in names
+        )
+    except ArgumentError as error:
+        return Surroundings(why=str(error))
+    return Surroundings(free, found, not table.lug)
+
+
+def _freed(pin: Pin, clamped: list[str]) -> Pin:
+    """With clamped segments on which no link bears."""
+    segments = zip(pin.segments, pin.labels, strict=True)
+    return replace(
+        pin,
+        segments=tuple(
+            replace(s, name=label, connection=None) if label in clamped else s
+            for s, label in segments
+        ),
+    )
 
 
 def _lug(study: Study, pin: Pin, connection: str, given: LugTable, of_pin: Material) -> Lug:

@@ -15,7 +15,7 @@ from fea.joint.lugs.lug import Lug
 from geometry import PinLike
 from loads import Reactions
 from pinstress.model.cases import CaseLoads
-from pinstress.model.lugs import lugs
+from pinstress.model.lugs import Surroundings, lugs, surroundings
 from pinstress.model.moving_loads import MovingLoads
 from pinstress.model.pins import material
 from pinstress.study.file import Study
@@ -27,7 +27,8 @@ class Task:
 
     left_out: by case, the connections whose force and moment are not applied because their band is
     clamped. ranges: by case, the loads over the ranges of its impulse. between: of the cases that
-    are motions, the loads at any times. lugs: that hold the pin by contact, if any.
+    are motions, the loads at any times. lugs: that support the pin, if any; surroundings: in which
+    it may sit where none do.
     """
 
     pin: PinLike
@@ -38,6 +39,7 @@ class Task:
     ranges: dict[str, PinLoads]
     between: dict[str, Between]
     lugs: tuple[Lug, ...] = ()
+    surroundings: Surroundings | None = None
 
 
 def tasks(study: Study, pins: list[PinLike], loads: dict[str, CaseLoads]) -> list[Task]:
@@ -96,7 +98,8 @@ def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, 
         if given.range is not None:
             ranges[case] = made(given.range.reactions)
     in_lugs = lugs(study, pin, clamps) if cases else ()
-    return Task(pin, made_of, clamps, tuple(cases), left_out, ranges, between, in_lugs)
+    around = surroundings(study, pin, clamps) if cases and not in_lugs else None
+    return Task(pin, made_of, clamps, tuple(cases), left_out, ranges, between, in_lugs, around)
 
 
 def _at(made: Callable[..., PinLoads], moving: MovingLoads, times: Floats) -> PinLoads:
@@ -135,9 +138,7 @@ def _own_weight(
     for k, joint in enumerate(motion.linkage.joints):
         if any(c.name == connection for c in joint.connections):
             own = motion.joint(joint.name)[2] if accelerations is None else accelerations[:, k]
-            across = np.array(motion.linkage.gravity) - own
-            turn = reactions.turn[:, reactions.connections.index(connection)]
-            c, s = np.cos(turn), np.sin(turn)
-            x, y = np.broadcast_to(across, (len(turn), 2)).T
-            return np.stack([c * x + s * y, c * y - s * x, np.zeros(len(x))], axis=1)
+            across = np.zeros((len(reactions), 3))
+            across[:, :2] = np.array(motion.linkage.gravity) - own
+            return reactions.turned_back(across, connection)
     return np.zeros(3)

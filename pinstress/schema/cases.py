@@ -148,10 +148,6 @@ class MotionCase(MechanismCase):
     """Number of equally spaced instants."""
 
 
-def _one_or_by_drive(value: object) -> str:
-    return "<by drive>" if isinstance(value, dict) else "<one>"
-
-
 def _coordinate(value: object) -> float | str:
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         raise LoadsArgumentError('must be a number or a text like "45 deg"', "not-a-number")
@@ -162,7 +158,7 @@ def _coordinate(value: object) -> float | str:
 Coordinate = Annotated[float | str, PlainValidator(_coordinate, json_schema_input_type=float | str)]
 Coordinates = Annotated[
     Annotated[Coordinate, Tag("<one>")] | Annotated[dict[str, Coordinate], Tag("<by drive>")],
-    Discriminator(_one_or_by_drive),
+    Discriminator(lambda value: "<by drive>" if isinstance(value, dict) else "<one>"),
 ]
 
 

@@ -241,13 +241,9 @@ class RotaryDrive(LawTable):
         return self
 
 
-def _kind_of_drive(value: object) -> str:
-    return "<slider>" if isinstance(value, dict) and "slider" in value else "<rotary>"
-
-
 AnyDrive = Annotated[
     Annotated[SliderDrive, Tag("<slider>")] | Annotated[RotaryDrive, Tag("<rotary>")],
-    Discriminator(_kind_of_drive),
+    Discriminator(lambda v: "<slider>" if isinstance(v, dict) and "slider" in v else "<rotary>"),
 ]
 
 

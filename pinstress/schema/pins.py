@@ -140,7 +140,7 @@ class PinTable(StrictTable):
     """Bands of a pin from a file, by name. Only with `geometry`."""
     lug: dict[str, LugTable] = {}
     """Lugs, by connection or by the name of a segment; an empty table takes all defaults. With any,
-    the pin is supported by contact with its lugs (see `analysis.joints`). Only with a profile."""
+    the pin is supported by its lugs (see `analysis.joints`). Only with a profile."""
     clamp: list[str] = []
     """Clamped surfaces: "start" and "end" (the end faces), the name or connection of a segment (its
     outer surface), "hole 1", "flat 1", or a band. Default: none; the loads must then be nearly in

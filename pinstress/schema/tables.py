@@ -16,9 +16,11 @@ class AnalysisTable(StrictTable):
 
     model: Literal["auto", "beam", "harmonic", "solid"] = "auto"
     """The model; "auto" uses the simplest that is accurate enough."""
-    joints: Literal["auto", "contact", "prescribed"] = "auto"
-    """How links load the pins: by contact with elastic lugs ("contact"), or by prescribed clamps
-    and load distributions ("prescribed"). "auto" uses contact for the pins that have a `lug`."""
+    joints: Literal["auto", "contact", "foundation", "prescribed"] = "auto"
+    """How links load the pins: by contact with elastic lugs ("contact"), on elastic foundations in
+    them, a quick beam with a model error ("foundation"), or by prescribed clamps and load
+    distributions ("prescribed"). "auto" uses contact for the pins that have a `lug`, or the beam
+    where its error is within the tolerance and bending governs."""
     goal: Literal["value", "decide"] = "value"
     """Refine until the maximum is within the tolerance ("value"), or only until it is decided
     whether the required safety factor is met ("decide", which needs a yield strength)."""

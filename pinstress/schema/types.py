@@ -32,6 +32,7 @@ from pinstress.schema.units import DIMENSIONS, LARGEST, SYSTEMS, to_si
 KINDS = ("given", "derived", "fitted", "assumed")
 UNKNOWN_KEY = "unknown_key"  # the type of pydantic's error
 SMALLEST = 1.0 / LARGEST  # in SI: its square does not underflow
+FORBIDDEN = '/\\:*?"<>|'  # in names of files, on some system
 LONGEST_NAME = 100  # characters as quoted: two names fit into a file name
 
 
@@ -140,28 +141,21 @@ PIN_SIZED = Within(_pin_sized, "from 1 µm to 1 km")
 
 
 def usable_name(name: str) -> str:
-    if bad := [c for c in dict.fromkeys(name) if c in '/\\:*?"<>|']:
-        raise LoadsArgumentError(
-            f"{shown(name)} cannot be part of a file name on every system, because of "
-            f"{' '.join(bad)}; use letters, digits, - and _",
-            "unusable-name",
+    bad, instead = [c for c in dict.fromkeys(name) if c in FORBIDDEN], "letters, digits, - and _"
+    what = ""
+    if bad:
+        what = f"cannot be part of a file name on every system, because of {' '.join(bad)}"
+    elif not name or name[0] in ". ":
+        what = "cannot be part of a file name"
+    elif len(quote(name)) > LONGEST_NAME:
+        what, instead = (
+            "is too long for a part of a file name",
+            f"at most {LONGEST_NAME} characters",
         )
-    if not name or name[0] in ". ":
-        raise LoadsArgumentError(
-            f"{shown(name)} cannot be part of a file name; use letters, digits, - and _",
-            "unusable-name",
-        )
-    if len(quote(name)) > LONGEST_NAME:
-        raise LoadsArgumentError(
-            f"{shown(name)} is too long to be part of a file name; use at most {LONGEST_NAME} "
-            "characters",
-            "unusable-name",
-        )
-    if not name.isprintable():
-        raise LoadsArgumentError(
-            f"{shown(name)} has unprintable characters; use letters, digits, - and _",
-            "unusable-name",
-        )
+    elif not name.isprintable():
+        what = "has unprintable characters"
+    if what:
+        raise LoadsArgumentError(f"{shown(name)} {what}; use {instead}", "unusable-name")
     return name
 
 
@@ -190,26 +184,16 @@ Name = Annotated[str, AfterValidator(usable_name)]
 Point = tuple[Length, Length]
 TiltStiffness = Annotated[Annotated[float, Quantity("tilt stiffness")], POSITIVE]
 
-
-def _joint_or_point(value: object) -> str:
-    return "<joint>" if isinstance(value, str) else "<point>"
-
-
 JointOrPoint = Annotated[
     Annotated[str, Tag("<joint>")] | Annotated[Point, Tag("<point>")],
-    Discriminator(_joint_or_point),
+    Discriminator(lambda value: "<joint>" if isinstance(value, str) else "<point>"),
 ]
-
-
-def _way_or_stiffness(value: object) -> str:
-    return "<way>" if value in TILTS else "<stiffness>"
-
 
 TILTS = ("guided", "free")
 Tilt = Annotated[
     Annotated[Literal["guided", "free"], Tag("<way>")]
     | Annotated[TiltStiffness, Tag("<stiffness>")],
-    Discriminator(_way_or_stiffness),
+    Discriminator(lambda value: "<way>" if value in TILTS else "<stiffness>"),
 ]
 
 

@@ -239,7 +239,7 @@ def _unit_factor(unit: str, dimension: str, text: str) -> float:
 def _by_pint(unit: str, dimension: str, text: str) -> float:
     import pint
 
-    _, example = DIMENSIONS[dimension]
+    near = _meant(unit, dimension)
     try:
         if NUMBERS.search(POWER.sub("", unit)):
             raise ValueError("a number other than a power")
@@ -248,25 +248,15 @@ def _by_pint(unit: str, dimension: str, text: str) -> float:
     except pint.UndefinedUnitError as error:
         names: Any = error.unit_names
         unknown = str(names if isinstance(names, str) else names[0])
-        near = _meant(unit, dimension) or nearest(unknown, [*_symbols(), *map(str, _registry())])
-        hint = _hint(near, example)
-        raise LoadsArgumentError(
-            f"unknown unit {shown(unknown)} in {shown(text)}; {hint}", "unknown-unit"
-        ) from None
+        near = near or nearest(unknown, [*_symbols(), *map(str, _registry())])
+        what, code = f"unknown unit {shown(unknown)} in {shown(text)}", "unknown-unit"
     except pint.DimensionalityError:
-        hint = _hint(_meant(unit, dimension), example)
-        raise LoadsArgumentError(
-            f"{shown(text)} is not {_a(dimension)}; {hint}", "wrong-dimension"
-        ) from None
+        what, code = f"{shown(text)} is not {_a(dimension)}", "wrong-dimension"
     except Exception:  # pint's parser raises what its tokenizer raises
-        hint = _hint(_meant(unit, dimension), example)
-        raise LoadsArgumentError(
-            f"cannot read the unit in {shown(text)}; {hint}", "unreadable-unit"
-        ) from None
-
-
-def _hint(near: str | None, example: str) -> str:
-    return f"did you mean {near!r}?" if near else f"write for instance {example!r}"
+        what, code = f"cannot read the unit in {shown(text)}", "unreadable-unit"
+    _, example = DIMENSIONS[dimension]
+    hint = f"did you mean {near!r}?" if near else f"write for instance {example!r}"
+    raise LoadsArgumentError(f"{what}; {hint}", code)
 
 
 def _meant(unit: str, dimension: str) -> str | None:

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Iterable
 from numbers import Integral, Real
-from typing import TYPE_CHECKING, TypedDict, get_args
+from typing import TYPE_CHECKING, TypedDict, TypeVar, get_args
 
 from pinstress.schema.shown import listed, near, shown
 from pinstress.study.errors import InputError
 
 if TYPE_CHECKING:
     from fea.solve_pin import Model
+
+
+V = TypeVar("V")
+LARGEST = sys.float_info.max
 
 
 class Chosen(TypedDict, total=False):
@@ -71,39 +76,34 @@ def require_model(model: Model | None) -> Model | None:
     """The same. Raises: ChoiceError for an unknown model."""
     from fea.solve_pin import Model  # which is slow to import
 
-    if model is not None and model not in get_args(Model):
-        raise ChoiceError(
-            f"model: must be one of {listed(get_args(Model))}, not {shown(model)}",
-            code="unknown-model",
-        )
-    return model
+    must = f"must be one of {listed(get_args(Model))}"
+    right = model is None or model in get_args(Model)
+    return _require(right, "model", model, must, "unknown-model")
 
 
 def require_tolerance(tolerance: float | None) -> float | None:
     """The same. Raises: ChoiceError unless it is between 0 and 1."""
-    if tolerance is not None and not (_is_number(tolerance) and 0.0 < tolerance < 1.0):
-        raise ChoiceError(
-            f"tolerance: must be between 0 and 1, not {shown(tolerance)}", code="out-of-range"
-        )
-    return tolerance
+    right = tolerance is None or (_is_number(tolerance) and 0.0 < tolerance < 1.0)
+    return _require(right, "tolerance", tolerance, "must be between 0 and 1", "out-of-range")
 
 
 def require_positive(argument: str, value: float | None, endless: bool = False) -> float | None:
     """The same. endless: whether it may be infinite. Raises: ChoiceError unless it is positive."""
-    if value is None or (_is_number(value) and value > 0.0 and (endless or math.isfinite(value))):
-        return value
-    raise ChoiceError(
-        f"{argument}: must be a positive number, not {shown(value)}", code="not-positive"
-    )
+    most = math.inf if endless else LARGEST
+    right = value is None or (_is_number(value) and 0.0 < value <= most)
+    return _require(right, argument, value, "must be a positive number", "not-positive")
 
 
 def require_count(argument: str, value: int | None) -> int | None:
     """The same. Raises: ChoiceError unless it is a whole number from 1 on."""
-    if value is None or _is_count(value):
-        return value
-    raise ChoiceError(
-        f"{argument}: must be a whole number of at least 1, not {shown(value)}", code="not-a-count"
-    )
+    right = value is None or _is_count(value)
+    return _require(right, argument, value, "must be a whole number of at least 1", "not-a-count")
+
+
+def _require(right: bool, argument: str, value: V, must: str, code: str) -> V:
+    if not right:
+        raise ChoiceError(f"{argument}: {must}, not {shown(value)}", code=code)
+    return value
 
 
 def _is_count(value: object) -> bool:

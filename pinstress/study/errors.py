@@ -45,10 +45,6 @@ def clipped(line: str) -> str:
     return f"{line[:half]} {ELLIPSIS} {line[-half:]}"
 
 
-def no_hint() -> str:
-    return ""
-
-
 @dataclass(frozen=True)
 class Wrong:
     """An error: a message that begins with its key, or the key `at` to point at. hint: a
@@ -56,35 +52,24 @@ class Wrong:
     """
 
     message: str
-    hint: Callable[[], str] = no_hint
+    hint: Callable[[], str] = str
     at: str = ""
     code: str = ""
 
 
 def study_error(path: Path, text: str, wrong: Sequence[Wrong]) -> InputError:
-    """The errors of a valid TOML text, each with its line as "file:line: key: remedy"."""
-    listed = _located(path, text, wrong, MOST_LISTED)
-    return _listed(path, listed, len(wrong) - len(listed))
-
-
-def located(path: Path, text: str, wrong: Sequence[Wrong], most: int) -> list[str]:
-    """The first of these messages in the order of the file, each with its line."""
-    return [line for line, _ in _located(path, text, wrong, most)]
-
-
-def _located(path: Path, text: str, wrong: Sequence[Wrong], most: int) -> list[tuple[str, str]]:
-    """The same, each with its code."""
+    """The errors of a valid TOML text, the first of them in the order of the file, each with its
+    line as "file:line: key: remedy".
+    """
     from pinstress.study.toml_lines import lines_of  # only for studies that are wrong
 
     lines = lines_of(text, [f"{w.at}:" if w.at else w.message for w in wrong])
-    first = sorted(zip(lines, wrong, strict=True), key=lambda pair: pair[0] or 0)[:most]
-    return [
-        (
-            f"{path}:{line}: {w.message}{w.hint()}" if line else f"{path}: {w.message}{w.hint()}",
-            w.code,
-        )
-        for line, w in first
-    ]
+    first = sorted(zip(lines, wrong, strict=True), key=lambda pair: pair[0] or 0)[:MOST_LISTED]
+    listed = []
+    for line, w in first:
+        where = f"{path}:{line}" if line else f"{path}"
+        listed.append((f"{where}: {w.message}{w.hint()}", w.code))
+    return _listed(path, listed, len(wrong) - len(listed))
 
 
 def _listed(path: Path, listed: Sequence[tuple[str, str]], more: int) -> InputError:

@@ -16,7 +16,7 @@ from pinstress.schema.shown import shown
 from pinstress.schema.tables import StudyTable
 from pinstress.schema.types import KINDS
 from pinstress.schema.units import SYSTEMS, UnitSystem
-from pinstress.study.errors import MOST_LISTED, InputError, Wrong, located, study_error
+from pinstress.study.errors import InputError, Wrong, study_error
 from pinstress.study.file_names import same_files
 from pinstress.study.limits import too_many
 from pinstress.study.plausible import questions
@@ -58,9 +58,8 @@ class Study:
         """Implausible values, each with its line: the first ones, and the number of others."""
         if not self.questions:
             return ()
-        listed = located(self.path, self._lines, [Wrong(q) for q in self.questions], MOST_LISTED)
-        more = len(self.questions) - len(listed)
-        return (*listed, f"{self.path}: and {more:,} more") if more else tuple(listed)
+        found = self.errors([Wrong(question) for question in self.questions])
+        return found.lines + ((f"{self.path}: and {found.more:,} more",) if found.more else ())
 
     @property
     def system(self) -> UnitSystem:

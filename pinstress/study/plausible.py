@@ -53,96 +53,97 @@ MOST_STRAIN = 1.0 / 20.0  # at which a material yields
 
 @dataclass(frozen=True)
 class Stated:
-    """A number of the study: its key, its value in SI and as it is written."""
+    """A number of the study: a key of USUAL, its own key, its value in SI and as it is written;
+    most: in SI, where less than the usual is plausible.
+    """
 
+    kind: str
     key: str
     value: float
     written: Any
+    most: float = math.inf
+
+    @property
+    def usual(self) -> Usual:
+        """What it usually is."""
+        return USUAL[self.kind]
+
+    def plausible(self, value: float) -> bool:
+        """Whether a value (SI) would be."""
+        return self.usual.low <= value <= min(self.usual.high, self.most)
 
 
 def questions(table: StudyTable, raw: dict[str, Any], system: UnitSystem) -> tuple[str, ...]:
     """What is hardly meant, each with the key and the likely unit. raw: what the table is from."""
-    return tuple(
-        question
-        for kind, stated, high in _numbers(table, raw)
-        if (question := _question(kind, stated, high, system))
-    )
+    return tuple(text for each in _numbers(table, raw) if (text := _question(each, system)))
 
 
-def _numbers(table: StudyTable, raw: Any) -> Iterator[tuple[str, Stated, float]]:
-    """Everything that has a usual range, which, and up to where."""
+def _numbers(table: StudyTable, raw: Any) -> Iterator[Stated]:
+    """Everything that has a usual range."""
     for name, material in table.material.items():
         yield from _of_material(f"material.{name}", material, raw["material"][name])
     for name, pin in table.pin.items():
         yield from _of_pin(f"pin.{name}", pin, raw["pin"][name])
-    if table.mechanism is not None and (gravity := raw["mechanism"].get("gravity")):
-        x, y = table.mechanism.gravity
-        stated = Stated("mechanism.gravity", math.hypot(x, y), gravity[abs(y) >= abs(x)])
-        yield "gravity", stated, USUAL["gravity"].high
+    if table.mechanism is not None:
+        if gravity := raw["mechanism"].get("gravity"):
+            x, y = table.mechanism.gravity
+            written = gravity[abs(y) >= abs(x)]
+            yield Stated("gravity", "mechanism.gravity", math.hypot(x, y), written)
+        for name, body in table.mechanism.body.items():
+            if body.bar is not None:
+                written = raw["mechanism"]["body"][name]["bar"]["density"]
+                key = f"mechanism.body.{name}.bar.density"
+                yield Stated("density", key, body.bar.density, written)
     if table.spatial_leg is not None and "gravity" in raw["spatial_leg"]:
-        stated = Stated(
-            "spatial_leg.gravity", table.spatial_leg.gravity, raw["spatial_leg"]["gravity"]
-        )
-        yield "gravity", stated, USUAL["gravity"].high
-    bodies = table.mechanism.body if table.mechanism is not None else {}
-    for name, body in bodies.items():
-        if body.bar is not None:
-            written = raw["mechanism"]["body"][name]["bar"]["density"]
-            stated = Stated(f"mechanism.body.{name}.bar.density", body.bar.density, written)
-            yield "density", stated, USUAL["density"].high
+        written = raw["spatial_leg"]["gravity"]
+        yield Stated("gravity", "spatial_leg.gravity", table.spatial_leg.gravity, written)
 
 
-def _of_material(
-    key: str, material: MaterialTable, raw: dict[str, Any]
-) -> Iterator[tuple[str, Stated, float]]:
-    modulus, most = USUAL["modulus"], USUAL["strength"].high
-    stated = Stated(f"{key}.youngs_modulus", material.youngs_modulus, raw["youngs_modulus"])
-    yield "modulus", stated, modulus.high
+def _of_material(key: str, material: MaterialTable, raw: dict[str, Any]) -> Iterator[Stated]:
+    E, strength = material.youngs_modulus, material.yield_strength
+    modulus = Stated("modulus", f"{key}.youngs_modulus", E, raw["youngs_modulus"])
+    yield modulus
     if material.density is not None:
-        stated = Stated(f"{key}.density", material.density, raw["density"])
-        yield "density", stated, USUAL["density"].high
-    if material.yield_strength is not None:
-        if modulus.low <= material.youngs_modulus <= modulus.high:
-            most = min(most, MOST_STRAIN * material.youngs_modulus)
-        stated = Stated(f"{key}.yield_strength", material.yield_strength, raw["yield_strength"])
-        yield "strength", stated, most
+        yield Stated("density", f"{key}.density", material.density, raw["density"])
+    if strength is not None:
+        most = MOST_STRAIN * E if modulus.plausible(E) else math.inf
+        yield Stated("strength", f"{key}.yield_strength", strength, raw["yield_strength"], most)
 
 
-def _of_pin(key: str, pin: PinTable, raw: dict[str, Any]) -> Iterator[tuple[str, Stated, float]]:
+def _of_pin(key: str, pin: PinTable, raw: dict[str, Any]) -> Iterator[Stated]:
     for i, segment in enumerate(pin.profile or ()):
         for kind, value in (("diameter", segment.diameter), ("length", segment.length)):
-            stated = Stated(f"{key}.profile[{i + 1}].{kind}", value, raw["profile"][i][kind])
-            yield kind, stated, USUAL[kind].high
+            yield Stated(kind, f"{key}.profile[{i + 1}].{kind}", value, raw["profile"][i][kind])
 
 
-def _question(kind: str, stated: Stated, high: float, system: UnitSystem) -> str:
-    usual = USUAL[kind]
-    if stated.value == 0.0 or usual.low <= abs(stated.value) <= high:
+def _question(stated: Stated, system: UnitSystem) -> str:
+    usual = stated.usual
+    if stated.value == 0.0 or stated.plausible(abs(stated.value)):
         return ""
-    unit = usual.metric[0]
+    unit, ends = usual.metric[0], (usual.low, min(usual.high, stated.most))
     one = to_si(f"1 {unit}", usual.dimension, system)
-    is_, low, most = (f"{value / one:,.4g}" for value in (stated.value, usual.low, high))
-    hint = f"; did you mean {likely}?" if (likely := _likely(usual, stated, high, system)) else ""
+    is_, low, most = (f"{value / one:,.4g}" for value in (stated.value, *ends))
+    hint = f"; did you mean {likely}?" if (likely := _likely(stated, system)) else ""
     return (
         f"{stated.key}: {shown(stated.written)} is {is_} {unit}, but the usual range for "
         f"{usual.whose} is {low} to {most} {unit}{hint}"
     )
 
 
-def _likely(usual: Usual, stated: Stated, high: float, system: UnitSystem) -> str:
+def _likely(stated: Stated, system: UnitSystem) -> str:
     """The number as it is written with the unit in which it is most usual, if there is one: of the
     units of its own kind the one nearest to the typical value, else of the others.
     """
     found = split(stated.written) if isinstance(stated.written, str) else (stated.written, "")
     if found is None:
         return ""
-    number, unit = found
+    (number, unit), usual = found, stated.usual
     kinds = [usual.metric, usual.imperial]
     if unit in usual.imperial or (not unit and system is SYSTEMS["in-lbf-s"]):
         kinds.reverse()
     for units in kinds:
         values = {u: abs(number) * to_si(f"1 {u}", usual.dimension, system) for u in units}
-        usable = {u: v for u, v in values.items() if usual.low <= v <= high}
+        usable = {u: v for u, v in values.items() if stated.plausible(v)}
         if usable:
             best = min(usable, key=lambda u: abs(math.log(usable[u] / usual.typical)))
             return f'"{number:.10g} {best}"'

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -9,7 +10,7 @@ from pydantic import ValidationError
 
 from pinstress.schema.shown import in_toml
 from pinstress.schema.types import UNKNOWN_KEY, hint_for_key
-from pinstress.study.errors import Wrong, no_hint
+from pinstress.study.errors import Wrong
 
 # By pydantic's type of error: our code, and what would be right. Its other types need a field of a
 # type that no table has; a test feeds every kind of mistake to every key.
@@ -48,7 +49,8 @@ def explain(error: ValidationError) -> list[Wrong]:
 
 def _explained(item: dict[str, Any]) -> Wrong:
     kind, context, value = item["type"], item.get("ctx", {}), item.get("input")
-    key, hint = _key(item["loc"], kind), no_hint
+    key = _key(item["loc"], kind)
+    hint: Callable[[], str] = str
     if kind == UNKNOWN_KEY:
         code, message = "unknown-key", item["msg"]
         hint = partial(hint_for_key, context["key"], context["known"])

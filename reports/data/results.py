@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Self
 
+from fea.checks.opinions import Opinion
 from fea.checks.records import BeamCheck, HandCheck
 from fea.core.dimensions import (
     Floats,
@@ -91,6 +92,7 @@ class PinResult:
     the history; the intervals are those over half and twice the excluded distance, and
     error_estimate reaches both ends. error_parts: stresses by what they come from (mesh, time,
     ..). loads: at the governing instant. joint: contact with the lugs there, if that holds the pin.
+    second_opinion: that of CalculiX, if there is one.
     """
 
     pin: str
@@ -122,6 +124,7 @@ class PinResult:
     loads: tuple[GoverningLoad, ...] = ()
     position_unit: str = ""
     joint: JointResult | None = None
+    second_opinion: Opinion | None = None
 
     @property
     def instead(self) -> dict[str, str]:

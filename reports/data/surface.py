@@ -2,15 +2,45 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.core.dimensions import Floats, Lengths, Stress, Stresses, Times
+from fea.core.dimensions import Floats, Forces, Length, Lengths, Stress, Stresses, Times
 
 Ints = NDArray[np.int64]
 Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class HalfSection:
+    """Von Mises stress on the plane through the axis and a pin's maximum, (2, Z, R): of the half at
+    `angle` (rad) from x, and of the one opposite to it, at Z stations z from the bore's radius
+    `inner` (0 without one) to `outer`, where `part` (R,) goes from 0 to 1.
+
+    A shoulder is two stations close to each other.
+    """
+
+    angle: float
+    z: Lengths
+    inner: Lengths
+    outer: Lengths
+    part: Floats
+    von_mises: Stresses
+
+
+@dataclass(frozen=True)
+class LoadCourse:
+    """A connection's band of a pin, its middle at z, with the force (T, 3) there at every instant,
+    in the pin's axes; none where the band is `held`.
+    """
+
+    connection: str
+    z: Length
+    radius: Length
+    forces: Forces
+    held: bool
 
 
 @dataclass(frozen=True)
@@ -22,7 +52,8 @@ class SurfaceCase:
     excluded: (P,) whether no stress is read there. largest: (P,) von Mises stress at the governing
     instant, of a meridian the maximum over the circumference. pressure: (R, M) of contact with lugs
     at that instant, on M sectors of R rings, the first about x; rings: (P,) on which of them a
-    point is, -1 on none; None without contact.
+    point is, -1 on none; None without contact. zones: (Z, 3) of circles that are excluded: r, z,
+    distance. section: at that instant, of a body of revolution.
     """
 
     case: str
@@ -34,6 +65,9 @@ class SurfaceCase:
     largest: Stresses
     rings: Ints | None = None
     pressure: Stresses | None = None
+    zones: Lengths = field(default_factory=lambda: np.zeros((0, 3)))
+    loads: tuple[LoadCourse, ...] = ()
+    section: HalfSection | None = None
 
 
 @dataclass(frozen=True)

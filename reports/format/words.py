@@ -18,7 +18,9 @@ READING = (
 JOINT = (
     "Joint is the range of the maximum over properties of the joint that are seldom known: other "
     "clearances, lugs of half and twice the stiffness, and lugs that are guided or free to tilt. "
-    "It is not part of the ±, and the result is decided without it."
+    "It is not part of the ±, and the result is decided without it. For pins that are not solved "
+    "in contact, it is that of a beam on foundations in their lugs, or in assumed ones, with its "
+    "error."
 )
 RESULTS = {
     SAFE: "the pin meets its required safety factor.",

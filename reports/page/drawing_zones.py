@@ -1,8 +1,11 @@
-"""Numbered rings on the drawing of a pin at stress singularities, with their kind."""
+"""Numbered rings on the drawing of a pin at stress singularities, with their kind, and stripes
+where stress is excluded about them.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import hypot
 
 from reports.format.spread import rows
 from reports.format.svg import line, text, wide
@@ -12,14 +15,20 @@ RED = "#a8211b"
 RING = 4.0  # radius
 LINE = 14.0  # height of a row of words
 ABOVE = 10.0  # between the section and the first row
+STRIPES = (
+    '<pattern id="excluded" width="5" height="5" patternUnits="userSpaceOnUse" '
+    'patternTransform="rotate(-45)"><rect width="5" height="5" fill="#fff"/>'
+    '<rect width="2" height="5" fill="#a8211b"/></pattern>'
+)
 
 
 @dataclass(frozen=True)
 class _Mark:
-    """A zone on the drawing: position x, distance r from the axis, label."""
+    """A zone on the drawing: position x, distance r from the axis, what is excluded, label."""
 
     x: float
     r: float
+    excluded: float
     words: str
     governs: bool
 
@@ -31,7 +40,13 @@ class ZoneMarks:
 
     def __init__(self, zones: list[Zone], left: float, scale: float, width: float) -> None:
         self.marks = [
-            _Mark(left + scale * zone.z, scale * zone.r, _words(zone), zone.found.governs)
+            _Mark(
+                left + scale * zone.z,
+                scale * zone.r,
+                scale * zone.found.excluded,
+                _words(zone),
+                zone.found.governs,
+            )
             for zone in zones
         ]
         self.places = [_within(m, width) for m in self.marks]
@@ -41,6 +56,23 @@ class ZoneMarks:
     def height(self) -> float:
         """Height of the labels below the section."""
         return ABOVE + LINE * (max(self.rows) + 1) if self.marks else 0.0
+
+    def stripes(self, axis: float, wall: tuple[float, float, float, float]) -> list[str]:
+        """What is excluded of a wall of the section: x, y, width, height of its rectangle, outside
+        of which an inner <svg> draws nothing.
+        """
+        x, y, width, height = wall
+        discs = [
+            f'<circle cx="{mark.x - x:.2f}" cy="{axis + side * mark.r - y:.2f}" '
+            f'r="{mark.excluded:.2f}" fill="url(#excluded)"/>'
+            for mark in self.marks
+            for side in (-1.0, 1.0)
+            if _touches(mark.x, axis + side * mark.r, mark.excluded, wall)
+        ]
+        if not discs:
+            return []
+        frame = f'<svg x="{x:.2f}" y="{y:.2f}" width="{width:.2f}" height="{height:.2f}">'
+        return [frame, *discs, "</svg>"]
 
     def draw(self, axis: float, foot: float) -> list[str]:
         """Rings above and below the axis, leaders, labels; foot: the section's lower edge."""
@@ -57,6 +89,13 @@ class ZoneMarks:
 
 def _words(zone: Zone) -> str:
     return f"{zone.number} {zone.short_kind}" + (", governs" if zone.found.governs else "")
+
+
+def _touches(x: float, y: float, radius: float, wall: tuple[float, float, float, float]) -> bool:
+    """Whether a disc reaches into a rectangle."""
+    left, top, width, height = wall
+    off = x - min(max(x, left), left + width), y - min(max(y, top), top + height)
+    return hypot(*off) < radius
 
 
 def _within(mark: _Mark, width: float) -> float:

@@ -1,4 +1,4 @@
-"""What the page says of a pin's contact with its lugs."""
+"""The page's part on a pin in its lugs."""
 
 from __future__ import annotations
 
@@ -8,34 +8,53 @@ from fea.joint.records import JointResult, Variation
 from reports.data.results import PinResult, Units
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering, short
-from reports.format.ranges import error_words, joint_range, part_words
+from reports.format.ranges import END, error_words, joint_range, part_words
+
+TITLES = {"contact": "Contact with the lugs", "foundation": "Load from the lugs"}
+PLANE = (
+    "By a beam on foundations; contact angles and largest pressures are those of plane contact at "
+    "the largest load per length, without peaks at edges."
+)
 
 
 @dataclass(frozen=True)
 class JointPart:
-    """A sentence on the maximum, the bands, and the maximum with the joint changed, if it was."""
+    """A sentence on the maximum, the bands if lugs support the pin, and the maximum with the joint
+    changed, if it was; assumed: in lugs that were not given.
+    """
 
+    title: str
     sentence: str
-    bands: Grid
+    bands: Grid | None
     range: Grid | None
+    assumed: bool
 
 
 def joint_part(pin: PinResult, units: Units) -> JointPart | None:
-    """None where nothing is in contact."""
-    if pin.joint is None:
+    """None where nothing is known of the joint."""
+    joint = pin.joint
+    if joint is None:
         return None
-    return JointPart(_sentence(pin, units), _bands(pin.joint, units), _range(pin.joint, units))
+    title = TITLES.get(joint.model, "Range over the joint")
+    bands = _bands(joint, units) if joint.bands else None
+    assumed = joint.range is not None and joint.range.assumed
+    return JointPart(title, _sentence(pin, joint, units), bands, _range(joint, units), assumed)
 
 
-def _sentence(pin: PinResult, units: Units) -> str:
+def _sentence(pin: PinResult, joint: JointResult, units: Units) -> str:
     outside = " outside the excluded zones" if pin.verdict == "singular" else ""
     largest = f"{engineering(pin.max_von_mises)} {units.stress}"
     parts = part_words(pin)
     error = f"{error_words(pin)}; errors of {parts}" if parts else error_words(pin)
-    over = ""
-    if pin.joint and pin.joint.range:
+    over = "" if joint.bands else "; no range over the joint"
+    if joint.range:
         over = f"; {joint_range(pin)} {units.stress} over what is not known of the joint"
-    return f"Maximum von Mises stress{outside} {largest} ({error}){over}."
+        if joint.range.model == "foundation":
+            lugs = "assumed lugs" if joint.range.assumed else "its lugs"
+            over += f" (beam on foundations in {lugs}, its error included)"
+    why = f": {joint.remark}" if joint.remark else ""
+    more = f" {PLANE}" if joint.model == "foundation" else ""
+    return f"Maximum von Mises stress{outside} {largest} ({error}){over}{why}.{more}"
 
 
 def _bands(joint: JointResult, units: Units) -> Grid:
@@ -62,12 +81,19 @@ def _bands(joint: JointResult, units: Units) -> Grid:
 def _range(joint: JointResult, units: Units) -> Grid | None:
     if joint.range is None or not joint.range.variations:
         return None
-    body = [
-        [v.what, value_words(v, units), engineering(v.max_von_mises)]
-        for v in joint.range.variations
-    ]
-    head = ["changed", "to", f"max von Mises [{units.stress}]"]
-    return Grid(head, body, [False, False, True])
+    body = [[v.what, value_words(v, units), *_maximum(v)] for v in joint.range.variations]
+    head = ["changed", "to", f"max von Mises [{units.stress}]", "with error"]
+    if joint.range.model == "contact":
+        head.pop()
+    return Grid(head, body, [False, False, *[True] * (len(head) - 2)])
+
+
+def _maximum(variation: Variation) -> list[str]:
+    """With its range, where it has one."""
+    size = engineering(variation.max_von_mises)
+    if variation.interval is None:
+        return [size]
+    return [size, " to ".join(engineering(end, END) for end in variation.interval)]
 
 
 def value_words(variation: Variation, units: Units) -> str:

@@ -9,7 +9,7 @@ from reports.data.results import PinShape, Units
 from reports.format.numbers import short
 from reports.format.spread import rows
 from reports.format.svg import INK, line, text, wide
-from reports.page.drawing_zones import ZoneMarks
+from reports.page.drawing_zones import STRIPES, ZoneMarks
 from reports.tables.singular_zones import Zone
 
 WIDTH, MARGIN, TALLEST = 760.0, 45.0, 150.0
@@ -56,9 +56,12 @@ def draw_pin(shape: PinShape, units: Units, zones: list[Zone] | None = None) -> 
         f"<title>{escape(f'Profile of pin {shape.pin}')}</title>",
         '<defs><pattern id="held" width="6" height="6" patternUnits="userSpaceOnUse" '
         'patternTransform="rotate(45)"><rect width="6" height="6" fill="#fff"/>'
-        '<rect width="2" height="6" fill="#777"/></pattern></defs>',
+        f'<rect width="2" height="6" fill="#777"/></pattern>{STRIPES}</defs>',
     ]
     parts += [_section(p, axis) for p in pieces]
+    parts += [
+        part for p in pieces for wall in _walls(p, axis) for part in marks.stripes(axis, wall)
+    ]
     parts.append(line(left - 14, axis, right + 14, axis, 'stroke-dasharray="12 3 2 3"'))
     parts += [_leader(p, axis, tops[i]) for i, p in enumerate(pieces)]
     parts += [_label(p, tops[i]) for i, p in enumerate(pieces)]
@@ -95,14 +98,19 @@ def _pieces(shape: PinShape) -> list[_Piece]:
 
 def _section(piece: _Piece, axis: float) -> str:
     """The section: the walls above and below the axis."""
-    wall = piece.radius - piece.bore
     fill = FILLS.get(piece.kind, FILLS["plain"])
     rectangles = [
-        f'<rect x="{piece.x:.2f}" y="{y:.2f}" width="{piece.width:.2f}" height="{wall:.2f}" '
+        f'<rect x="{x:.2f}" y="{y:.2f}" width="{width:.2f}" height="{height:.2f}" '
         f'fill="{fill}" stroke="{INK}" stroke-width="1"/>'
-        for y in (axis - piece.radius, axis + piece.bore)
+        for x, y, width, height in _walls(piece, axis)
     ]
     return "".join(rectangles)
+
+
+def _walls(piece: _Piece, axis: float) -> list[tuple[float, float, float, float]]:
+    """x, y, width, height of the walls."""
+    wall = piece.radius - piece.bore
+    return [(piece.x, y, piece.width, wall) for y in (axis - piece.radius, axis + piece.bore)]
 
 
 def _leader(piece: _Piece, axis: float, row: int) -> str:

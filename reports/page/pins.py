@@ -10,6 +10,7 @@ from reports.format.numbers import ratio
 from reports.format.words import outcome
 from reports.page.joint import JointPart, joint_part
 from reports.page.loads import loads_at
+from reports.page.second_opinion import OpinionPart, opinion_part
 from reports.page.viewer import PinView, pin_views
 from reports.tables.hand_checks import hand_check_table
 from reports.tables.singular_zones import Zone, pin_zones, zone_table
@@ -20,7 +21,8 @@ ZONE_NUMBERS = ("zone", "exponent")
 @dataclass(frozen=True)
 class PinCase:
     """A pin in one case: result, outcome, picture address, unit of the drive position, singular
-    zones, hand checks, loads, contact with lugs, and our maximum over the published one.
+    zones, hand checks, loads, contact with lugs, CalculiX's opinion, and our maximum over the
+    published one.
     """
 
     result: PinResult
@@ -31,6 +33,7 @@ class PinCase:
     checks: Grid | None
     loads: Grid | None
     joint: JointPart | None
+    opinion: OpinionPart | None
     ratio: float | None
 
 
@@ -76,6 +79,7 @@ def pin_parts(
                     Grid(*hand_check_table(p, results.units)) if p.hand_checks else None,
                     loads_at(p, results.units),
                     joint_part(p, results.units),
+                    opinion_part(p.second_opinion, results.units),
                     ratio(p.max_von_mises, p.published_max_von_mises),
                 )
                 for p in results.pins

@@ -4,107 +4,176 @@ from __future__ import annotations
 
 from base64 import b64encode
 from dataclasses import dataclass
+from math import inf
 from typing import Any
 
 import numpy as np
 from markupsafe import Markup
 
 from reports.animation.player_data import script_json
-from reports.data.results import Floats, PinResult, Results
-from reports.data.surface import Surface, SurfaceCase
+from reports.data.results import Floats, PinResult, PinShape, Results
+from reports.data.surface import HalfSection, LoadCourse, Surface, SurfaceCase
 from reports.format.camera import View
+from reports.format.grid import Grid
+from reports.format.numbers import DASH, engineering
 from reports.format.ranges import error_words, factor_range
 from reports.format.words import verdict_words
 
 SECTORS = 72  # of a body of revolution
 WHOLE = 32767  # fields are integers up to this, scaled by the largest value at a point
+COARSE = 127  # the same of displacements, which are shown by nothing but the shape
+PARTS = 65535  # stresses on a section are integers up to this, at the maximum
 BENEATH = 0.999  # of the maximum; if the whole surface is below it, the maximum is inside
 
 
 @dataclass(frozen=True)
 class PinView:
-    """A 3D view: its cases, whether any has a motion, whether there is a yield strength, whether
-    any case has contact pressure.
+    """A 3D view: its cases, which of them it opens on, whether any has a motion, whether there is a
+    yield strength, whether any case has contact pressure or a section; the maxima along the pin.
     """
 
     pin: str
     cases: tuple[str, ...]
+    opens: int
     moving: bool
     factors: bool
     pressed: bool
+    sections: bool
     data: Markup
+    along: Grid | None
 
 
 def pin_views(results: Results, pin: str) -> list[PinView]:
-    """The 3D views of a pin, one for each mesh on which its cases were solved."""
+    """The 3D view of a pin in all its cases; none where no model has fields."""
+    surfaces = [s for s in results.surfaces if s.pin == pin]
+    if not surfaces:
+        return []
     found = {p.case: p for p in results.pins if p.pin == pin}
+    order = {case: k for k, case in enumerate(found)}
+    shown = sorted(
+        ((c, k, s) for k, s in enumerate(surfaces) for c in s.cases), key=lambda x: order[x[0].case]
+    )
+    cases = [c for c, _, _ in shown]
+    shape = next((s for s in results.shapes if s.pin == pin), None)
+    opens = _governing([found[c.case] for c in cases])
+    box = _box(surfaces[0])
+    data = {
+        "units": vars(results.units),
+        "strength": surfaces[0].yield_strength,
+        "required": results.required_safety_factor,
+        "surfaces": [_surface(s) for s in surfaces],
+        "cases": [_case(c, found[c.case], k, s) for c, k, s in shown],
+        "opens": opens,
+        "box": box.tolist(),
+        "centre": (0.5 * (box[0] + box[-1])).tolist(),
+        "size": float(np.ptp(box, axis=0).max()),
+    }
     return [
         PinView(
             pin=pin,
-            cases=tuple(c.case for c in surface.cases),
-            moving=any(c.times is not None for c in surface.cases),
-            factors=surface.yield_strength is not None,
-            pressed=any(c.pressure is not None for c in surface.cases),
-            data=script_json(_data(surface, found, results)),
+            cases=tuple(c.case for c in cases),
+            opens=opens,
+            moving=any(c.times is not None for c in cases),
+            factors=surfaces[0].yield_strength is not None,
+            pressed=any(c.pressure is not None for c in cases),
+            sections=any(c.section is not None for c in cases),
+            data=script_json(data),
+            along=None if shape is None else _along(results, shape, shown),
         )
-        for surface in results.surfaces
-        if surface.pin == pin
     ]
 
 
-def _data(surface: Surface, found: dict[str, PinResult], results: Results) -> dict[str, Any]:
-    every = np.concatenate([c.amounts for c in surface.cases])
-    largest = np.abs(every).max(axis=(0, 2), initial=0.0)
-    largest[largest == 0.0] = 1.0
+def _governing(pins: list[PinResult]) -> int:
+    """The case with the lowest safety factor, or else with the largest stress."""
+    factors = [inf if p.safety_factor is None else p.safety_factor for p in pins]
+    return min(range(len(pins)), key=lambda k: (factors[k], -(pins[k].max_von_mises or 0.0)))
+
+
+def _surface(surface: Surface) -> dict[str, Any]:
+    largest = _largest(surface)
     # In units of stress: a point's error is a part of the point's own stress, not of the pin's.
     stress, moved = surface.stress * largest, surface.displacement * largest
     each = np.abs(stress).max(axis=(1, 2), initial=0.0)
-    longest = np.asarray(np.abs(moved).max(initial=0.0))
-    box = _box(surface)
+    longest = np.abs(moved).max(axis=(0, 1), initial=0.0)
     return {
-        "units": {"stress": results.units.stress, "time": results.units.time},
-        "strength": surface.yield_strength,
         "sectors": SECTORS if surface.revolved else 1,
         "points": _packed(surface.points, "<f4"),
         "triangles": None if surface.revolved else _packed(surface.triangles, "<u4"),
         "n": surface.n.tolist(),
         "even": [int(e) for e in surface.even],
-        "stress": _packed(np.rint(_parts(stress, each[:, None, None])), "<i2"),
+        "stress": _packed(np.rint(_parts(stress, each[:, None, None], WHOLE)), "<i2"),
         "stress_scale": _packed(each / WHOLE, "<f4"),
-        "moved": _packed(np.rint(_parts(moved, longest)), "<i2"),
-        "moved_scale": float(longest) / WHOLE,
-        "cases": [
-            {
-                **_case(c, found[c.case], surface.revolved),
-                "turn": _turn(box, found[c.case]),
-                "amounts": _packed(c.amounts / largest[:, None], "<f4"),
-            }
-            for c in surface.cases
-        ],
-        "box": box.tolist(),
-        "centre": (0.5 * (box[0] + box[-1])).tolist(),
-        "size": float(np.ptp(box, axis=0).max()),
+        "moved": _packed(np.rint(_parts(moved, longest, COARSE)), "<i1"),
+        "moved_scale": _packed(longest / COARSE, "<f4"),
     }
 
 
-def _case(case: SurfaceCase, pin: PinResult, revolved: bool) -> dict[str, Any]:
+def _largest(surface: Surface) -> Floats:
+    """Of the amounts of each unit load (K,) in all cases; 1 of what never acts."""
+    every = np.concatenate([c.amounts for c in surface.cases])
+    largest = np.abs(every).max(axis=(0, 2), initial=0.0)
+    return np.where(largest > 0.0, largest, 1.0)
+
+
+def _case(case: SurfaceCase, pin: PinResult, number: int, surface: Surface) -> dict[str, Any]:
     on_surface = float(case.largest[~case.excluded].max(initial=0.0))
     # The solid model's maximum is a mean over directions of the loads.
     error = sum(pin.error_parts.values())
-    least = BENEATH * (pin.max_von_mises or 0.0) - (0.0 if revolved else error)
+    least = BENEATH * (pin.max_von_mises or 0.0) - (0.0 if surface.revolved else error)
+    amounts = case.amounts / _largest(surface)[:, None]
+    scale = np.abs(amounts).max(axis=(0, 2), initial=0.0)
     return {
         "name": case.case,
-        "times": None if case.times is None else case.times.tolist(),
+        "surface": number,
+        "times": None if case.times is None else [float(f"{t:.7g}") for t in case.times],
         "instant": case.instant,
-        "maxima": case.maxima.tolist(),
+        "maxima": _short(case.maxima, case.instant),
         "error": error_words(pin),
         "factor": factor_range(pin),
         "verdict": verdict_words(pin.verdict, pin.yields),
         "location": pin.location,
         "beneath": on_surface < least,
-        "zoned": bool(case.excluded.any()),
-        "excluded": _packed(case.excluded, "u1"),
+        "zoned": bool(case.excluded.any() or len(case.zones)),
+        "zones": case.zones.tolist(),
+        "excluded": None if surface.revolved else _packed(case.excluded, "u1"),
         "pressure": _pressure(case),
+        "loads": [_load(load) for load in case.loads],
+        "section": None if case.section is None else _section(case.section),
+        "turn": _turn(_box(surface), pin),
+        "amounts": _packed(np.rint(_parts(amounts, scale[:, None], WHOLE)), "<i2"),
+        "amounts_scale": (scale / WHOLE).tolist(),
+    }
+
+
+def _short(maxima: Floats, instant: int) -> list[float]:
+    """Seven digits, but all of the governing one."""
+    found = [float(f"{value:.7g}") for value in maxima]
+    found[instant] = float(maxima[instant])
+    return found
+
+
+def _load(load: LoadCourse) -> dict[str, Any]:
+    scale = float(np.abs(load.forces).max(initial=0.0)) / WHOLE or 1.0
+    return {
+        "name": load.connection,
+        "z": load.z,
+        "radius": load.radius,
+        "held": load.held,
+        "forces": _packed(np.rint(load.forces / scale), "<i2"),
+        "scale": scale,
+    }
+
+
+def _section(section: HalfSection) -> dict[str, Any]:
+    largest = float(section.von_mises.max())
+    return {
+        "angle": section.angle,
+        "z": _packed(section.z, "<f4"),
+        "inner": _packed(section.inner, "<f4"),
+        "outer": _packed(section.outer, "<f4"),
+        "part": _packed(section.part, "<f4"),
+        "values": _packed(np.rint(_parts(section.von_mises, np.asarray(largest), PARTS)), "<u2"),
+        "scale": largest / PARTS,
     }
 
 
@@ -138,9 +207,38 @@ def _box(surface: Surface) -> Floats:
     return np.array([[both[i, 0], both[j, 1], both[k, 2]] for i, j, k in np.ndindex(2, 2, 2)])
 
 
-def _parts(values: Floats, largest: Floats) -> Floats:
-    """Values scaled to `WHOLE` at `largest`, not rounded."""
-    return np.asarray(WHOLE * values / np.where(largest > 0.0, largest, 1.0))
+def _along(
+    results: Results, shape: PinShape, shown: list[tuple[SurfaceCase, int, Surface]]
+) -> Grid:
+    """The largest stress on each segment's surface outside of what is excluded, and where, for
+    every case at its governing instant.
+    """
+    units = results.units
+    head = ["segment", f"z from [{units.length}]", f"to [{units.length}]"]
+    for case, _, _ in shown:
+        head += [f"{case.case}: maximum [{units.stress}]", f"at z [{units.length}]"]
+    body, at = [], float(shown[0][2].points[:, 2].min())
+    for length, _, _, label, _ in shape.segments:
+        row = [label or DASH, engineering(at), engineering(at + length)]
+        for case, _, surface in shown:
+            row += _most(case, surface.points[:, 2], at, at + length)
+        body.append(row)
+        at += length
+    return Grid(head, body, [False, *[True] * (len(head) - 1)])
+
+
+def _most(case: SurfaceCase, z: Floats, low: float, high: float) -> list[str]:
+    little = 1e-6 * float(np.ptp(z))
+    here = np.flatnonzero((z >= low - little) & (z <= high + little) & ~case.excluded)
+    if not len(here):
+        return [DASH, DASH]
+    most = here[case.largest[here].argmax()]
+    return [engineering(float(case.largest[most])), engineering(float(z[most]))]
+
+
+def _parts(values: Floats, largest: Floats, whole: int) -> Floats:
+    """Values scaled to `whole` at `largest`, not rounded."""
+    return np.asarray(whole * values / np.where(largest > 0.0, largest, 1.0))
 
 
 def _packed(values: np.ndarray[Any, Any], kind: str) -> str:

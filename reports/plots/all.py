@@ -63,7 +63,7 @@ def _pins(results: Results, directory: Path) -> Iterator[Plot]:
         if any(len(pin.history) > 1 for pin in refined):
             yield partial(pin_refinement_plot, name, refined, units, directory)
     for pin in results.pins:
-        if pin.joint is not None:
+        if pin.joint is not None and pin.joint.bands:
             yield partial(joint_plot, pin.pin, pin.case, pin.joint, units, directory)
     found = {(p.pin, p.case): p for p in results.pins}
     shapes = {s.pin: s for s in results.shapes}

@@ -13,16 +13,9 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 from reports.data.chart import NAME, Chart, ChartPoint
 from reports.format.plot_labels import Label, place_texts
 from reports.format.style import GREY, INK, clipped, line_style, panels, plain_numbers, save
-from reports.text.chart_summary import error, failures, percent, reference_line
+from reports.text.chart_summary import curve_name, error, failures, percent, reference_line
 
 MARKS = "Dos^v"
-SHORT = {
-    "Timoshenko beam": "beam",
-    "quadratic triangles": "harmonic",
-    "linear tetrahedra": "solid, linear",
-    "straight quadratic tetrahedra": "solid, straight",
-    "curved quadratic tetrahedra": "solid, curved",
-}
 ROOM = 2.5  # factor beyond the outermost points
 LINE = 128  # letters of a line of the foot
 
@@ -98,10 +91,10 @@ def _labels(chart: Chart, value: Callable[[ChartPoint], float]) -> list[Label]:
         return value(p), max(error(p), floor / 3.0)
 
     labels = [Label("auto", *at(p), {"color": INK}) for p in chart.points if p.chosen]
-    for order, ((_, element), curve) in enumerate(chart.curves.items()):
+    for order, ((model, element), curve) in enumerate(chart.curves.items()):
         middle = curve[len(curve) // 2]
         colour = line_style(order)["color"]
-        labels.append(Label(SHORT.get(element, element), *at(middle), {"color": colour}))
+        labels.append(Label(curve_name(model, element), *at(middle), {"color": colour}))
     return labels
 
 

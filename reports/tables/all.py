@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from reports.data.results import Results
+from reports.tables.calculix import opinion_tables
 from reports.tables.hand_checks import hand_check_rows
 from reports.tables.joint import joint_tables
 from reports.tables.landing import landing_table
@@ -23,6 +24,7 @@ from reports.tables.table import Table
 # Long tables of the motion, seldom read in a spreadsheet, are left out of the workbook.
 CSV_ONLY = (
     "line_loads",
+    "second_opinion_loads",
     "reactions_pin_axes",
     "motion",
     "joints",
@@ -36,7 +38,7 @@ def stress_tables(results: Results) -> list[Table]:
     """Tables that need stresses, without empty ones; safety factors first."""
     check = results.beam_check
     rest = [hand_check_rows(results), zones_table(results), landing_table(results)]
-    rest += joint_tables(results)
+    rest += [*joint_tables(results), *opinion_tables(results)]
     rest += [] if check is None else [beam_check_table(check)]
     return [safety_factors_table(results), *(table for table in rest if table.rows)]
 

@@ -1,11 +1,11 @@
-"""Contact of pins with their lugs: tables, JSON, and the range of the maximum over the joint."""
+"""Pins in their lugs: tables, JSON, and the range of the maximum over the joint."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import Any
 
-from fea.joint.records import JointResult
+from fea.joint.records import JointRange, JointResult
 from reports.data.results import PinResult, Results
 from reports.format.csv import Cell
 from reports.format.numbers import finite
@@ -21,13 +21,13 @@ LINES = (
 )
 RANGES = (
     *("pin", "case", "what", "value", "max_von_mises", "stress_unit"),
-    *("length", "length_unit"),
+    *("length", "length_unit", "model", "lugs", "max_von_mises_low", "max_von_mises_high"),
 )
 
 
 def joint_tables(results: Results) -> list[Table]:
-    """Of all pins in contact: their bands, the load per length along these, and the maximum with
-    the joint changed.
+    """Of all pins in lugs: their bands, the load per length along these, and the maximum with the
+    joint changed.
     """
     return [
         Table.of("joint_bands", BANDS, _bands(results)),
@@ -59,20 +59,29 @@ def joint_json(joint: JointResult | None) -> dict[str, Any] | None:
         ],
         "bending_moment": finite(joint.bending_moment),
         "bending_moments": [[finite(z), finite(m)] for z, m in joint.bending_moments],
+        "remark": joint.remark,
         "range": over
         and {
             "max_von_mises": [finite(x) for x in over.max_von_mises],
+            "model": over.model,
+            "lugs": lugs_word(over),
             "over": [
                 {
                     "what": v.what,
                     "value": v.value,
                     "length": finite(v.length),
                     "max_von_mises": finite(v.max_von_mises),
+                    "max_von_mises_interval": v.interval and [finite(x) for x in v.interval],
                 }
                 for v in over.variations
             ],
         },
     }
+
+
+def lugs_word(over: JointRange) -> str:
+    """Whose the lugs of a range are."""
+    return "assumed" if over.assumed else "study"
 
 
 def _joined(results: Results) -> Iterator[tuple[PinResult, JointResult]]:
@@ -102,6 +111,12 @@ def _lines(results: Results) -> Iterator[list[Cell]]:
 def _ranges(results: Results) -> Iterator[list[Cell]]:
     u = results.units
     for pin, joint in _joined(results):
-        for v in joint.range.variations if joint.range else ():
+        if joint.range is None:
+            continue
+        by = joint.range.model, lugs_word(joint.range)
+        for v in joint.range.variations:
             unit = None if v.length is None else u.length
-            yield [pin.pin, pin.case, v.what, v.value, v.max_von_mises, u.stress, v.length, unit]
+            yield [
+                *(pin.pin, pin.case, v.what, v.value, v.max_von_mises, u.stress, v.length, unit),
+                *(*by, *(v.interval or (None, None))),
+            ]

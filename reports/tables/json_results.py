@@ -9,6 +9,7 @@ from typing import Any
 
 from reports.data.results import HandCheck, PinResult, ReactionTable, Results, SingularZone
 from reports.format.numbers import finite
+from reports.tables.calculix import opinion_json
 from reports.tables.joint import joint_json
 
 SCHEMA = "pinstress-results/1"
@@ -96,6 +97,7 @@ def _pin(pin: PinResult) -> dict[str, Any]:
         "singular_at": [_zone(zone) for zone in pin.singular_at],
         "hand_checks": [_check(check) for check in pin.hand_checks],
         "joint": joint_json(pin.joint),
+        "second_opinion": opinion_json(pin.second_opinion),
         "held": pin.held,
         "left_out": list(pin.left_out),
     }

@@ -10,6 +10,7 @@ from reports.format import markdown
 from reports.format.numbers import DASH, engineering, finite, ratio, short
 from reports.format.ranges import error_range, factor_range, joint_range
 from reports.format.words import JOINT, MEANING, READING, verdict_words
+from reports.tables.joint import lugs_word
 from reports.tables.table import Table
 
 Row = dict[str, str | float | None]
@@ -34,7 +35,7 @@ LATER = (
     "yields",
     *("max_von_mises_low", "max_von_mises_high", "safety_factor_low", "safety_factor_high"),
     *("error_mesh", "error_time", "error_series", "error_model"),
-    *("error_cells", "joint_low", "joint_high"),
+    *("error_cells", "joint_low", "joint_high", "joint_model", "joint_lugs"),
 )
 TEXTS = ("pin", "case", "meets_required", "verdict", "model")
 PUBLISHED = ("published_max_von_mises", "ratio", "published_safety_factor")
@@ -93,7 +94,12 @@ def _joint(pin: PinResult) -> Row:
     """The maximum over what is not known of the joint."""
     over = pin.joint.range if pin.joint else None
     low, high = over.max_von_mises if over else (None, None)
-    return {"joint_low": finite(low), "joint_high": finite(high)}
+    return {
+        "joint_low": finite(low),
+        "joint_high": finite(high),
+        "joint_model": over.model if over else None,
+        "joint_lugs": lugs_word(over) if over else None,
+    }
 
 
 def _yes(value: bool) -> str:

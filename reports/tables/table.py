@@ -27,9 +27,11 @@ DIMENSIONS = {
         ("error_mesh", "error_time", "error_series", "error_model", "error_cells"), "stress"
     ),
     **dict.fromkeys(("joint_low", "joint_high", "largest_pressure"), "stress"),
+    **dict.fromkeys(("max_von_mises_same_mesh", "max_von_mises_calculix"), "stress"),
+    **dict.fromkeys(("bending_moment", "bending_moment_calculix"), "moment"),
     **dict.fromkeys(("clearance", "outer_diameter", "length", "z_start", "z_end"), "length"),
     "contact_angle": "degrees",
-    "line_load": "force per length",
+    **dict.fromkeys(("line_load", "line_load_calculix"), "force per length"),
     **dict.fromkeys(("stress", "strength", "beam_axial_stress"), "stress"),
     **dict.fromkeys(("fea_axial_stress", "fea_axial_stress_axis_load"), "stress"),
     **dict.fromkeys(("power", "power_drives", "power_gravity", "power_applied"), "power"),

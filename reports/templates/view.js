@@ -14,10 +14,12 @@ const written = (value, digits = 4) => {
   return `${plain(rounded / 10 ** power, size - power)}×10${raised}`;
 };
 
-const short = (value) => written(value, 6).replace(/(\.\d*?)0+(?=×|$)/, "$1").replace(/\.(?=×|$)/, "");
+const short = (value, digits = 6) => written(value, digits).replace(/(\.\d*?)0+(?=×|$)/, "$1").replace(/\.(?=×|$)/, "");
 
 const product = (a, b) => a.map((row) => b[0].map((_, j) => row.reduce((sum, x, k) => sum + x * b[k][j], 0)));
 const applied = (a, x) => a.map((row) => row.reduce((sum, y, k) => sum + y * x[k], 0));
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const unit = (a) => a.map((x) => x / Math.hypot(...a));
 const about = (axis, angle) => {
   const c = Math.cos(angle), s = Math.sin(angle), [i, j] = axis === "up" ? [2, 0] : [1, 2];
   const out = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
@@ -26,118 +28,315 @@ const about = (axis, angle) => {
   out[j][i] = s;
   return out;
 };
+// Rows right, up and towards the viewer, with z across the picture.
+const facing = (direction) => {
+  const towards = unit(direction), up = unit(cross([0, 0, 1], towards));
+  return [cross(up, towards), up, towards];
+};
+const NONE = [0, 0, 0], RED = "#d01c1c", NOWHERE = -1e30;
 
 const startView = (root, paint) => {
-  const data = JSON.parse(root.querySelector("script").textContent);
-  const surface = surfaceOf(data), shape = paint.upload(surface);
+  const data = JSON.parse(root.querySelector("script").textContent), { units, strength } = data;
+  const surfaces = data.surfaces.map(surfaceOf), cases = data.cases.map(caseOf);
   const one = (name) => root.querySelector(`[data-is="${name}"]`);
   const canvas = root.querySelector("canvas"), flat = canvas.getContext("2d");
-  let turn, zoom, chosen, exaggeration, drawn = 0, largestMoved;
+  const allowed = strength && data.required ? strength / data.required : null;
+  let turn, first, zoom, middle, chosen, surface, mesh, shape, cut, exaggeration = 0, drawn = 0, largestMoved, longest, probe, drawnAt;
 
-  const reset = () => { turn = chosen.turn; zoom = 1; };
   const instant = () => (chosen.times ? Number(one("time").value) : chosen.instant);
+  const governs = () => instant() === chosen.instant;
   const factors = () => one("colour").value === "factor";
   const pressed = () => one("colour").value === "pressure";
+  const opened = () => one("cut").checked;
 
-  const compute = () => {
-    if (pressed() && !(chosen.pressure && instant() === chosen.instant)) one("colour").value = "stress";
-    const found = superposed(surface, chosen, instant());
-    shape.set("value", pressed() ? pressing(surface, chosen.pressure) : found.value);
-    shape.set("excluded", Float32Array.from({ length: surface.count * surface.around }, (_, v) => (pressed() ? 0 : chosen.excluded[Math.floor(v / surface.around)])));
-    shape.set("moved", found.moved);
-    return found;
+  // Facing the maximum, from the end from which nothing hides it; of a pin that is cut open, the section.
+  const base = () => {
+    const outwards = [Math.cos(chosen.start), Math.sin(chosen.start), 0], [x, y, z] = chosen.turn[2];
+    if (opened()) return facing(chosen.section.away.map((c, i) => c + 0.3 * outwards[i] + (i === 2 ? 0.3 * Math.sign(z) : 0)));
+    return [chosen.turn, facing([x, y, -z]), facing(outwards)].find(clear) ?? chosen.turn;
   };
+  const clear = ([, , towards]) => !hitOf(mesh, chosen.location.map((c, i) => c + 1e-3 * data.size * towards[i]), towards);
+  const reset = () => { turn = first = base(); zoom = 1; middle = data.centre; };
 
   const choose = () => {
-    chosen = surface.cases[Number(one("case").value)];
+    chosen = cases[Number(one("case").value)];
+    surface = surfaces[chosen.surface];
+    shape?.drop();
+    cut?.drop();
+    mesh = meshOf(surface, chosen);
+    shape = paint.upload(mesh);
+    cut = chosen.section && paint.upload(chosen.section);
+    cut?.set("value", chosen.section.value);
+    longest = largestForce(chosen);
     one("when").hidden = !chosen.times;
     if (chosen.times) {
       one("time").max = chosen.times.length - 1;
       one("time").value = chosen.instant;
     }
-    const { moved } = compute();
+    one("cut").disabled = !cut;
+    one("cut").checked = chosen.beneath && Boolean(cut);
+    compute();
     largestMoved = 0;
-    for (let v = 0; v < moved.length; v += 3) largestMoved = Math.max(largestMoved, Math.hypot(moved[v], moved[v + 1], moved[v + 2]));
+    for (let v = 0; v < mesh.moved.length; v += 3) largestMoved = Math.max(largestMoved, Math.hypot(mesh.moved[v], mesh.moved[v + 1], mesh.moved[v + 2]));
     reset();
+    toMaximum();
+  };
+
+  // The section and the contact pressure are known at the governing instant alone.
+  const compute = () => {
+    if (pressed() && !(chosen.pressure && governs())) one("colour").value = "stress";
+    if (pressed() || !governs()) one("cut").checked = false;
+    const found = superposed(surface, chosen, instant());
+    mesh.value = pressed() ? pressing(surface, chosen) : found.value;
+    mesh.moved = found.moved;
+    shape.set("value", mesh.value);
+    shape.set("moved", mesh.moved);
+    if (chosen.excluded) shape.set("excluded", Float32Array.from(chosen.excluded, (x) => (pressed() ? 0 : x)));
+  };
+  const update = () => {
+    compute();
+    if (probe) place(probe.z, probe.angle, probe.radius);
     tell();
   };
 
   const tell = () => {
-    const k = instant(), value = chosen.maxima[k], governs = k === chosen.instant, { units } = data;
-    const when = chosen.times ? `t = ${short(chosen.times[k])} ${units.time}${governs ? ", the governing instant" : ""}: ` : "";
-    const error = governs ? ` (${chosen.error})` : "";
+    const k = instant(), value = chosen.maxima[k];
+    const when = chosen.times ? `t = ${short(chosen.times[k])} ${units.time}${governs() ? ", the governing instant" : ""}: ` : "";
+    const error = governs() ? ` (${chosen.error})` : "";
     const where = chosen.zoned ? " outside the excluded zones" : "";
-    const factor = data.strength ? `; safety factor ${governs ? chosen.factor : written(data.strength / value)} (${chosen.verdict})` : "";
+    const factor = strength ? `; safety factor ${governs() ? chosen.factor : written(strength / value)} (${chosen.verdict})` : "";
     const largest = when ? "maximum" : "Maximum";
     one("told").textContent = `${when}${largest} von Mises stress${where} ${written(value)} ${units.stress}${error}${factor}.`;
     one("told").dataset.maximum = value;
-    one("beneath").hidden = !(chosen.beneath && governs) || pressed();
+    one("beneath").hidden = !(chosen.beneath && governs()) || opened() || pressed();
     one("zones").hidden = !chosen.zoned || pressed();
+    const loads = forcesAt(chosen, k).map((f) => `${f.name} ${f.held ? "clamped" : `${short(f.size, 4)} ${units.force}`}`);
+    one("loads").textContent = loads.length ? `Forces on the pin: ${loads.join(", ")}.` : "";
     if (chosen.times) one("time").setAttribute("aria-valuetext", `${short(chosen.times[k])} ${units.time}`);
     scale();
     draw();
   };
 
   const top = () => (pressed() ? chosen.pressure.largest : chosen.maxima[chosen.instant]) || 1;
+  // Where a stress is on the colour bar, of its length.
+  const along = (stress) => (factors() ? 1 + Math.log10(stress / top()) / DECADES : stress / top());
   const scale = () => {
-    const ticks = [0, 0.25, 0.5, 0.75, 1].map((part) => {
-      if (!factors()) return written(part * top(), 3);
-      return (part === 0 ? "≥ " : "") + written((data.strength / top()) * 10 ** (DECADES * (1 - part)), 3);
-    });
-    const shown = pressed() ? "contact pressure" : "von Mises stress";
-    one("unit").textContent = factors() ? `safety factor (${chosen.verdict})` : `${shown} [${data.units.stress}]`;
-    one("ticks").replaceChildren(...ticks.map((t) => Object.assign(document.createElement("span"), { textContent: t })));
+    const shown = pressed() ? "contact pressure" : "von Mises stress", least = strength / top();
+    one("unit").textContent = factors() ? `safety factor (${chosen.verdict})` : `${shown} [${units.stress}]`;
+    const ticks = factors() ? decadeTicks(least, least * 10 ** DECADES).map((f) => [along(strength / f), short(f, 3)]) : roundTicks(top()).map((s) => [along(s), short(s, 4)]);
+    const clear = ticks.filter(([at]) => at < 0.8).map(([at, text]) => tick(at, text));
+    one("ticks").replaceChildren(...clear, tick(1, written(factors() ? least : top(), 3), "end"));
+    const marks = pressed() || !strength ? [] : [[strength, "yield", "black"], ...(allowed ? [[allowed, `required factor ${short(data.required)}`, "white"]] : [])];
+    const on = marks.filter(([stress]) => along(stress) >= 0 && along(stress) <= 1), off = marks.filter((mark) => !on.includes(mark));
+    one("marks").style.height = `${1.4 * on.length}em`;
+    one("marks").replaceChildren(...on.map(([stress, name, line]) => tick(along(stress), factors() ? name : `${name} (${line} line)`, along(stress) > 0.6 ? "end" : "")));
+    [...one("marks").children].forEach((mark, k) => { mark.style.height = `${1.4 * (on.length - k)}em`; }); // one row each
+    one("off").textContent = off.length ? `not on the scale: ${off.map(([stress, name]) => `${name} at ${written(stress, 3)}`).join(", ")}` : "";
     exaggeration = largestMoved > 0 ? (0.15 * data.size * Number(one("deform").value)) / 100 / largestMoved : 0;
     one("deformed").textContent = exaggeration ? `× ${written(exaggeration, 3)}` : "not shown";
+  };
+  const tick = (at, text, side = "") => {
+    const found = Object.assign(document.createElement("span"), { textContent: text, className: side });
+    found.style.left = `${100 * at}%`;
+    return found;
   };
 
   const draw = () => {
     cancelAnimationFrame(drawn);
     drawn = requestAnimationFrame(paintNow);
   };
-  const paintNow = () => {
-    const ratio = Math.min(devicePixelRatio, 2);
+  const paintNow = (onPaper = false) => {
+    const ratio = onPaper === true ? 2 : Math.min(devicePixelRatio, 2);
     const width = Math.round(canvas.clientWidth * ratio), height = Math.round(canvas.clientHeight * ratio);
     if (!width) return;
     canvas.width = width;
     canvas.height = height;
-    // The whole bounding box fits the initial view.
-    const half = data.box.map((c) => applied(chosen.turn, c.map((x, i) => x - data.centre[i])));
+    // The pin and its loads at the governing instant fit the initial view.
+    const tails = forcesAt(chosen, chosen.instant).filter((f) => f.size).map((f) => arrowOf(f, longest, data.size)[0]);
+    const half = [...data.box, ...tails].map((c) => applied(first, c.map((x, i) => x - data.centre[i])));
     const reach = (i) => Math.max(...half.map((c) => Math.abs(c[i])));
-    const fit = (0.9 * zoom) / Math.max(reach(0), (reach(1) * width) / height);
+    const fit = (0.88 * zoom) / Math.max(reach(0), (reach(1) * width) / height);
     const scale = [fit, (fit * width) / height, -0.3 / data.size];
-    flat.drawImage(paint.draw(shape, width, height, {
-      turn, centre: data.centre, scale, exaggerated: exaggeration, top: top(), decades: factors() ? DECADES : 0,
+    drawnAt = { width, height, scale, ratio };
+    const marked = pressed() || factors() ? [NOWHERE, NOWHERE] : [strength ?? NOWHERE, allowed ?? NOWHERE];
+    const shapes = opened() ? [[shape, chosen.section.away], [cut, NONE]] : [[shape, NONE]];
+    flat.drawImage(paint.draw(shapes, width, height, {
+      turn, middle, scale, exaggerated: exaggeration, top: top(), decades: factors() ? DECADES : 0,
+      zones: pressed() ? [] : chosen.zones, levels: marked, stripe: 4 * ratio,
     }), 0, 0);
-    if (instant() === chosen.instant && !exaggeration && !pressed()) mark(width, height, scale, ratio);
+    const style = getComputedStyle(root);
+    const [ink, halo] = onPaper === true ? ["#000", "#fff"] : [style.color, style.getPropertyValue("background-color")];
+    const label = labels(flat, ratio, ink, halo);
+    axes(label, ink, halo);
+    if (governs() && !exaggeration && !pressed()) mark(label);
+    if (probe) cursor(ink);
+    forces(label, ink, halo);
+  };
+  const onCanvas = (x) => {
+    const [right, up, towards] = applied(turn, x.map((c, i) => c - middle[i])), { width, height, scale } = drawnAt;
+    return [(width * (1 + right * scale[0])) / 2, (height * (1 - up * scale[1])) / 2, towards];
   };
 
-  // A dot at the maximum; a ring when it is on the far side.
-  const mark = (width, height, scale, ratio) => {
-    const [x, y, z] = applied(turn, chosen.location.map((c, i) => c - data.centre[i]));
+  const forces = (label, ink, halo) => {
+    const { ratio } = drawnAt;
+    for (const force of forcesAt(chosen, instant())) {
+      const { name, z, size, held } = force;
+      if (held) {
+        const [x, y] = onCanvas([0, 0, z]);
+        label(`${name} clamped`, x + 4 * ratio, y + 4 * ratio);
+      } else if (size) {
+        const [from, to] = arrowOf(force, longest, data.size).map(onCanvas);
+        arrow(flat, from, to, ink, halo, ratio);
+        label(`${name} ${short(size, 4)} ${units.force}`, from[0] + 6 * ratio, from[1] + (from[1] > to[1] ? 14 : -5) * ratio);
+      }
+    }
+  };
+  const axes = (label, ink, halo) => {
+    const { ratio, height } = drawnAt, from = [40 * ratio, height - 40 * ratio];
+    [0, 1, 2].map((i) => [i, turn[2][i]]).sort((a, b) => a[1] - b[1]).forEach(([i]) => {
+      const to = [from[0] + 28 * ratio * turn[0][i], from[1] - 28 * ratio * turn[1][i]];
+      arrow(flat, from, to, ink, halo, 0.6 * ratio);
+      label("xyz"[i], to[0] + 4 * ratio * Math.sign(turn[0][i]) - 3 * ratio, to[1] + (turn[1][i] > 0 ? -4 : 12) * ratio);
+    });
+  };
+
+  // The maximum: a dot; a ring when something is in front of it.
+  const mark = (label) => {
+    const [x, y, towards] = onCanvas(chosen.location), { ratio } = drawnAt, near = hit(x / ratio, y / ratio);
+    const seen = !near || towards >= applied(turn, near.place.map((c, i) => c - middle[i]))[2] - 0.01 * data.size;
     flat.beginPath();
-    flat.arc((width * (1 + x * scale[0])) / 2, (height * (1 - y * scale[1])) / 2, 5 * ratio, 0, 7);
+    flat.arc(x, y, 6 * ratio, 0, 7);
+    flat.setLineDash(seen ? [] : [3 * ratio, 3 * ratio]);
     flat.lineWidth = 2 * ratio;
-    flat.fillStyle = flat.strokeStyle = "#d01c1c";
+    flat.fillStyle = RED;
+    if (seen) flat.fill();
+    flat.strokeStyle = "#fff";
+    flat.lineWidth = 4 * ratio;
     flat.stroke();
-    if (z > 0 && !chosen.beneath) flat.fill();
+    flat.strokeStyle = RED;
+    flat.lineWidth = 2 * ratio;
+    flat.stroke();
+    flat.setLineDash([]);
+    const hidden = chosen.beneath && !opened() ? ", inside" : ", behind";
+    label(`max ${written(chosen.maxima[chosen.instant])} ${units.stress}${seen ? "" : hidden}`, x + 10 * ratio, y - 8 * ratio);
+    Object.assign(one("told").dataset, { seen, x: x / ratio, y: y / ratio });
+  };
+
+  // The nearest point that is drawn at a place of the canvas, in CSS pixels.
+  const hit = (x, y) => {
+    const { width, height, scale, ratio } = drawnAt;
+    const at = [(2 * x * ratio) / width - 1, 1 - (2 * y * ratio) / height].map((c, i) => c / scale[i]);
+    const from = middle.map((c, i) => c + at[0] * turn[0][i] + at[1] * turn[1][i] + 2 * data.size * turn[2][i]);
+    return struck(from, turn[2].map((c) => -c));
+  };
+  const struck = (from, way) => {
+    const places = exaggeration ? mesh.places.map((x, i) => x + exaggeration * mesh.moved[i]) : mesh.places;
+    const outer = hitOf({ ...mesh, places }, from, way, opened() ? chosen.section.away : null);
+    const inner = opened() ? hitOf(chosen.section, from, way) : null;
+    return inner && (!outer || inner.depth <= outer.depth + 1e-6 * data.size) ? { ...inner, inside: true } : outer;
+  };
+  const excluded = ({ place: [x, y, z], corners, inside }) => !pressed() && (
+    chosen.zones.some(([r, height, radius]) => Math.hypot(Math.hypot(x, y) - r, z - height) < radius * (1 - 1e-6))
+    || Boolean(chosen.excluded && !inside && corners.some((v) => chosen.excluded[v])));
+  const read = (found) => {
+    const [x, y, z] = found.place, degrees = (Math.atan2(y, x) * 180) / Math.PI, radius = Math.hypot(x, y);
+    const value = found.value, shown = pressed() ? "contact pressure" : "von Mises stress";
+    const factor = strength && !pressed() ? `, safety factor ${written(strength / value, 3)}` : "";
+    const what = excluded(found) ? "excluded zone, stress not evaluated" : `${shown} ${written(value)} ${units.stress}${factor}`;
+    return { value, z, angle: degrees, radius, place: found.place, text: `${what}; z = ${short(z, 4)} ${units.length}, angle ${short(Number(degrees.toFixed(1)), 4)}°, radius ${short(radius, 4)} ${units.length}` };
+  };
+
+  // The probe: at a place of the canvas, or at z and an angle on the outside, or at a radius of the section.
+  const show = (found, fields = true) => {
+    probe = found && read(found);
+    one("probed").textContent = probe ? `${probe.text}.` : "No point of the pin is there.";
+    if (probe) {
+      one("probed").dataset.value = probe.value;
+      if (fields) {
+        one("z").value = Number(probe.z.toPrecision(5));
+        one("angle").value = Number(probe.angle.toFixed(2));
+        one("radius").value = Number((side(probe.angle) * probe.radius).toPrecision(5));
+      }
+    } else delete one("probed").dataset.value;
+    one("radial").hidden = !opened();
+    one("turned").hidden = opened();
+    draw();
+  };
+  const side = (degrees) => (Math.cos((degrees * Math.PI) / 180 - chosen.start) < 0 ? -1 : 1);
+  // radius: of a point in the section, given only if that is open; else the outermost point is taken.
+  const place = (z, degrees, radius = null, fields = true) => {
+    if (opened() && radius !== null) {
+      const r = side(degrees) * radius, at = [r * Math.cos(chosen.start), r * Math.sin(chosen.start), z];
+      const inner = hitOf(chosen.section, at.map((c, i) => c + data.size * chosen.section.away[i]), chosen.section.away.map((c) => -c));
+      show(inner && { ...inner, inside: true }, fields);
+      return;
+    }
+    const way = [Math.cos((degrees * Math.PI) / 180), Math.sin((degrees * Math.PI) / 180), 0];
+    const from = way.map((c, i) => (i === 2 ? z : 2 * data.size * c));
+    show(hitOf(mesh, from, way.map((c) => -c), opened() ? chosen.section.away : null), fields);
+  };
+  const toMaximum = () => {
+    const [x, y, z] = chosen.location;
+    place(z, (Math.atan2(y, x) * 180) / Math.PI, Math.hypot(x, y));
+    tell();
+  };
+  const cursor = (ink) => {
+    const [x, y] = onCanvas(probe.place), { ratio } = drawnAt;
+    flat.strokeStyle = ink;
+    flat.lineWidth = 1.5 * ratio;
+    flat.beginPath();
+    for (const [dx, dy] of [[1, 0], [-1, 0], [0, 1], [0, -1]]) {
+      flat.moveTo(x + 9 * ratio * dx, y + 9 * ratio * dy);
+      flat.lineTo(x + 15 * ratio * dx, y + 15 * ratio * dy);
+    }
+    flat.stroke();
   };
 
   const spin = (across, up) => { turn = product(about("up", across), product(about("right", up), turn)); draw(); };
+  const pan = (right, up) => {
+    const by = 1 / (drawnAt.scale[0] * zoom);
+    middle = middle.map((c, i) => c - zoom * by * (right * turn[0][i] + up * turn[1][i]));
+    draw();
+  };
   const nearer = (by) => { zoom = Math.min(40, Math.max(0.3, zoom * by)); draw(); };
 
-  canvas.addEventListener("pointerdown", (event) => canvas.setPointerCapture(event.pointerId));
-  canvas.addEventListener("pointermove", (event) => { if (event.buttons & 1) spin(-event.movementX / 120, event.movementY / 120); });
+  let held = null, gone = 0;
+  canvas.addEventListener("pointerdown", (event) => {
+    canvas.setPointerCapture(event.pointerId);
+    held = [event.clientX, event.clientY];
+    gone = 0;
+  });
+  canvas.addEventListener("pointermove", (event) => {
+    if (held && event.buttons & 1) {
+      const [x, y] = [event.clientX - held[0], event.clientY - held[1]];
+      held = [event.clientX, event.clientY];
+      gone += Math.hypot(x, y);
+      if (event.shiftKey) pan((2 * x) / canvas.clientWidth, (-2 * y) / canvas.clientWidth);
+      else spin(-x / 120, y / 120);
+      one("tip").hidden = true;
+      return;
+    }
+    const found = drawnAt && event.pointerType === "mouse" ? hit(event.offsetX, event.offsetY) : null;
+    one("tip").hidden = !found;
+    if (!found) return;
+    one("tip").textContent = read(found).text;
+    one("tip").style.left = `${Math.min(event.offsetX + 14, canvas.clientWidth - 180)}px`;
+    one("tip").style.top = `${event.offsetY + 18}px`;
+  });
+  canvas.addEventListener("pointerleave", () => { one("tip").hidden = true; });
+  canvas.addEventListener("pointerup", (event) => {
+    if (held && gone < 4) show(hit(event.offsetX, event.offsetY));
+    held = null;
+  });
   canvas.addEventListener("wheel", (event) => {
     if (document.activeElement !== canvas) return; // the page scrolls
     event.preventDefault();
     nearer(Math.exp(-event.deltaY / 500));
   }, { passive: false });
   canvas.addEventListener("keydown", (event) => {
-    const act = {
-      ArrowLeft: () => spin(0.1, 0), ArrowRight: () => spin(-0.1, 0), ArrowUp: () => spin(0, -0.1), ArrowDown: () => spin(0, 0.1),
-      "+": () => nearer(1.2), "-": () => nearer(1 / 1.2), 0: () => { reset(); draw(); },
-    }[event.key];
+    const turns = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+    const move = turns && (event.shiftKey ? () => pan(0.1 * turns[0], 0.1 * turns[1]) : () => spin(-0.1 * turns[0], -0.1 * turns[1]));
+    const act = move ?? { "+": () => nearer(1.2), "-": () => nearer(1 / 1.2), 0: () => { reset(); draw(); } }[event.key];
     if (!act || event.ctrlKey || event.metaKey || event.altKey) return;
     event.preventDefault();
     act();
@@ -145,31 +344,69 @@ const startView = (root, paint) => {
   one("case").addEventListener("change", choose);
   one("colour").addEventListener("change", () => {
     if (pressed() && chosen.times) one("time").value = chosen.instant; // no other is known
-    compute();
+    update();
+  });
+  one("deform").addEventListener("input", () => {
+    if (opened() && Number(one("deform").value)) open(false); // a section is shown as it was drawn
     tell();
   });
-  one("deform").addEventListener("input", tell);
-  one("time").addEventListener("input", () => { compute(); tell(); });
-  one("governs").addEventListener("click", () => { one("time").value = chosen.instant; compute(); tell(); });
+  const open = (wide) => {
+    one("cut").checked = wide;
+    if (wide) {
+      one("deform").value = 0;
+      if (pressed()) one("colour").value = "stress";
+      if (chosen.times) one("time").value = chosen.instant;
+    }
+    compute();
+    reset();
+    toMaximum();
+  };
+  one("cut").addEventListener("change", () => open(opened()));
+  one("time").addEventListener("input", update);
+  one("governs").addEventListener("click", () => { one("time").value = chosen.instant; update(); });
+  one("maximum").addEventListener("click", () => {
+    if (chosen.times) one("time").value = chosen.instant;
+    compute();
+    toMaximum();
+  });
+  for (const name of ["z", "angle", "radius"]) {
+    one(name).addEventListener("input", () => {
+      const radius = Number(one("radius").value), on = (chosen.start * 180) / Math.PI;
+      if (opened()) place(Number(one("z").value), radius < 0 ? on + 180 : on, Math.abs(radius), false);
+      else place(Number(one("z").value), Number(one("angle").value), null, false);
+    });
+  }
+  const fine = (size) => Number((10 ** Math.floor(Math.log10(size / 50))).toPrecision(1));
+  one("z").step = one("radius").step = fine(data.size);
   one("nearer").addEventListener("click", () => nearer(1.3));
   one("further").addEventListener("click", () => nearer(1 / 1.3));
   one("reset").addEventListener("click", () => { reset(); draw(); });
+  for (const [name, across, up] of [["left", 1, 0], ["right", -1, 0], ["up", 0, -1], ["down", 0, 1]]) one(name).addEventListener("click", () => spin(0.26 * across, 0.26 * up));
   new ResizeObserver(draw).observe(canvas);
+  new MutationObserver(draw).observe(document.documentElement, { attributeFilter: ["style", "class"] });
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
+  addEventListener("beforeprint", () => paintNow(true));
+  addEventListener("afterprint", draw);
+  one("case").value = data.opens;
   choose();
+  paintNow();
 };
 
 const startViews = () => {
   const views = [...document.querySelectorAll("[data-view]")];
   const paint = views.length ? painter() : null;
-  if (!paint) return; // the still pictures stay visible
+  if (!paint) {
+    document.querySelectorAll("[data-unseen]").forEach((text) => { text.hidden = false; });
+    return;
+  }
   document.documentElement.classList.add("live");
+  const waiting = new Set(views), begin = (view) => {
+    if (waiting.delete(view)) startView(view, paint);
+  };
   const watcher = new IntersectionObserver((seen) => {
-    for (const { isIntersecting, target } of seen) {
-      if (!isIntersecting) continue;
-      watcher.unobserve(target);
-      startView(target, paint);
-    }
+    for (const { isIntersecting, target } of seen) if (isIntersecting) begin(target);
   }, { rootMargin: "300px" });
   views.forEach((view) => watcher.observe(view));
+  addEventListener("beforeprint", () => [...waiting].forEach(begin));
 };
 startViews();

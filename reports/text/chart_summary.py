@@ -10,6 +10,18 @@ from reports.data.chart import Chart, ChartPoint
 from reports.format.numbers import engineering, short
 
 LEAST = 1e-12  # replaces an error of zero
+ANOTHER_FORM = "foundation", "prescribed"  # whose error is not that of a mesh
+OURS = {"harmonic": "the harmonic model", "contact": "contact by the harmonic model"}
+THEIRS = {"solid": "the solid model", "calculix": "CalculiX"}
+SHORT = {
+    "foundation": "foundation",
+    "calculix": "CalculiX",
+    "Timoshenko beam": "beam",
+    "quadratic triangles": "harmonic",
+    "linear tetrahedra": "solid, linear",
+    "straight quadratic tetrahedra": "solid, straight",
+    "curved quadratic tetrahedra": "solid, curved",
+}
 Curve = Sequence[ChartPoint]
 
 
@@ -60,13 +72,20 @@ def cost(curve: Curve, wanted: float) -> Cost | None:
 
 
 def summary(chart: Chart) -> str:
-    """The sentences under the table: cheapest model within the tolerance, cost of equal errors."""
-    return f"{_cheapest(chart)} {_ratio(chart)}".strip()
+    """The sentences under the table: cheapest model within the tolerance, cost of equal errors, and
+    errors of models of another form.
+    """
+    said = (_cheapest(chart), _ratio(chart), _another_form(chart))
+    return " ".join(text for text in said if text)
 
 
 def _cheapest(chart: Chart) -> str:
     tolerance = percent(chart.tolerance)
-    found = [staying(curve, chart.tolerance) for curve in chart.curves.values()]
+    found = [
+        staying(curve, chart.tolerance)
+        for (model, _), curve in chart.curves.items()
+        if model not in ANOTHER_FORM
+    ]
     first = [within[0] for within in found if within]
     if not first:
         return f"No model stays within {tolerance}."
@@ -82,48 +101,79 @@ def _cheapest(chart: Chart) -> str:
     return text
 
 
+def _another_form(chart: Chart) -> str:
+    """Errors that finer meshes do not reduce."""
+    found = [
+        f"{model} ({element}) {percent(error(curve[-1]))}"
+        for (model, element), curve in chart.curves.items()
+        if model in ANOTHER_FORM
+    ]
+    if not found:
+        return ""
+    return f"Errors of simpler models of the joint, on their finest meshes: {', '.join(found)}."
+
+
+def _curves(chart: Chart, models: dict[str, str]) -> tuple[str, dict[str, Curve]]:
+    """Those of the first of some models that is charted, by element, and its name."""
+    for model, name in models.items():
+        found = {element: c for (m, element), c in chart.curves.items() if m == model}
+        if found:
+            return name, dict(found)
+    return "", {}
+
+
+def _fastest(curves: dict[str, Curve], wanted: float) -> tuple[str, Cost] | None:
+    costs = [(name, found) for name, c in curves.items() if (found := cost(c, wanted))]
+    return min(costs, key=lambda c: c[1].seconds, default=None)
+
+
 def _ratio(chart: Chart) -> str:
-    """The harmonic model compared with the fastest solid element at equal error."""
-    harmonic = [c for (model, _), c in chart.curves.items() if model == "harmonic"]
-    solids = {name: c for (model, name), c in chart.curves.items() if model == "solid"}
-    if not harmonic or not solids:
+    """Our model compared with the fastest solid element at equal error."""
+    (ours, planes), (theirs, solids) = _curves(chart, OURS), _curves(chart, THEIRS)
+    if not planes or not solids:
         return ""
     text, wanted = "", chart.tolerance
-
-    def fastest(wanted: float) -> tuple[str, Cost] | None:
-        costs = [(name, found) for name, c in solids.items() if (found := cost(c, wanted))]
-        return min(costs, key=lambda c: c[1].seconds, default=None)
-
-    solid = fastest(wanted)
+    solid = _fastest(solids, wanted)
     if solid is None:
         wanted = min(error(c[-1]) for c in solids.values()) * (1.0 + 1e-9)
         text = (
-            f"The solid model does not stay within {percent(chart.tolerance)} on these meshes; its "
-            f"smallest error is {percent(wanted)}. "
+            f"{_start(theirs)} does not stay within {percent(chart.tolerance)} on these meshes; "
+            f"its smallest error is {percent(wanted)}. "
         )
-        solid = fastest(wanted)
-    plane = cost(harmonic[0], wanted)
+        solid = _fastest(solids, wanted)
+    plane = _fastest(planes, wanted)
     if solid is None or plane is None:
-        return text + f"The harmonic model does not stay within {percent(wanted)}."
-    name, body = solid
-    least = "at least " if plane.at_most else ""
+        return text + f"{_start(ours)} does not stay within {percent(wanted)}."
+    (_, own), (name, body) = plane, solid
+    least = "at least " if own.at_most else ""
     if body.at_most:
-        least = "about " if plane.at_most else "at most "
-    times = [body.seconds / plane.seconds, body.memory / plane.memory]
+        least = "about " if own.at_most else "at most "
+    times = [body.seconds / own.seconds, body.memory / own.memory]
     slow, large = (f"{least}{engineering(x, 2)}" for x in times)
-    ends = [who for who, c in (("harmonic", plane), ("solid", body)) if c.at_most]
-    also = f"; the {' and the '.join(ends)} model is within it on the coarsest mesh" if ends else ""
+    ends = [who for who, c in ((ours, own), (theirs, body)) if c.at_most]
+    verb = "are" if len(ends) > 1 else "is"
+    also = f"; {' and '.join(ends)} {verb} within it on the coarsest mesh" if ends else ""
     return (
-        f"{text}At an equal error of {percent(wanted)} the solid model ({name}) takes {slow} times "
-        f"the time and {large} times the memory of the harmonic model (interpolated on the "
-        f"log-log chart{also})."
+        f"{text}At an equal error of {percent(wanted)} {theirs} ({name}) takes {slow} times "
+        f"the time and {large} times the memory of {ours} (interpolated on the log-log chart"
+        f"{also})."
     )
+
+
+def _start(text: str) -> str:
+    """With a capital letter."""
+    return text[0].upper() + text[1:]
+
+
+def curve_name(model: str, element: str) -> str:
+    """Short, for labels."""
+    return SHORT.get(model) or SHORT.get(element) or f"{model}, {element}"
 
 
 def label(point: ChartPoint) -> str:
     """A point as text."""
-    if point.model == "beam":
-        return "beam"
+    if point.model in ("beam", "foundation"):
+        return point.model
     dofs = f", {point.dofs:,} unknowns" if point.dofs else ""
     return f"{point.model} ({point.element}{dofs})"
 

@@ -15,8 +15,8 @@ pytestmark = pytest.mark.browser
 
 LARGEST = """
 const data = JSON.parse(arguments[0].querySelector("script").textContent);
-const surface = surfaceOf(data);
-return Math.max(...pressing(surface, surface.cases[0].pressure));
+const chosen = caseOf(data.cases[0]);
+return Math.max(...pressing(surfaceOf(data.surfaces[0]), chosen));
 """
 
 

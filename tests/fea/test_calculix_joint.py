@@ -117,7 +117,7 @@ def test_what_this_mesh_lacks_is_refused() -> None:
 
 def test_weights_of_the_outer_surface() -> None:
     """Its area and first moment, of a half; as close as parabolas come to arcs."""
-    mesh = annulus_mesh(0.01, 0.025, np.array([0.01, 0.013, 0.02]), Fineness(sectors=32), True)
+    mesh = annulus_mesh((0.01, 0.025), np.array([0.01, 0.013, 0.02]), Fineness(sectors=32), True)
     _, weights = surface_weights(mesh)
     area = math.pi * 0.025 * 0.01
     assert weights.sum(axis=0) == pytest.approx([area, area * 0.015], rel=1e-5)
@@ -193,6 +193,23 @@ def test_clearance_and_rounded_edges_are_in_the_bore() -> None:
         middle = np.abs(x[bore, 2] - eye.part.mesh.nodes[:, 2].mean()) < 2e-3
         assert r[end] == pytest.approx(np.full(end.sum(), 0.01 + 5e-5 + 5e-4))
         assert r[middle] == pytest.approx(np.full(middle.sum(), 0.01 + 5e-5))
+
+
+def test_the_rounding_of_a_bore_never_presses_on_the_pin() -> None:
+    """Elements are parabolas along z: with too few of them in the rounding one dips below the
+    pin's surface, and the edges carry everything.
+    """
+    pin, lugs = clevis(radius=1e-3)
+    deck, _ = joint_deck(pin, STEEL, lugs, PULL, replace(COARSE, rings=6))
+    assert [len(eye.rings) for eye in deck.eyes] == [10, 10, 10]
+    for eye in deck.eyes:
+        mesh = eye.part.mesh
+        faces = mesh.face(np.flatnonzero(mesh.inner == mesh.inner.min()), 6)
+        r, z = np.hypot(*mesh.nodes[:, :2].T)[faces], mesh.nodes[:, 2][faces]
+        for depth, height in zip(r - D / 2.0, z, strict=True):
+            along = np.polyfit(height, depth, 2)
+            between = np.linspace(height.min(), height.max(), 9)
+            assert np.polyval(along, between).min() > -1e-7
 
 
 def test_forces_of_contact_are_read(tmp_path: Path) -> None:

@@ -76,7 +76,7 @@ def test_factors_are_those_of_another_fit(
     found = shoulder_factor(fits, ratio * D_SMALL, D_SMALL, radius * D_SMALL)
     if found is None:
         h = (ratio - 1.0) / 2.0 / radius
-        assert not fits[0][0] <= h <= fits[-1][1]
+        assert not fits[0][0][0] <= h <= fits[-1][0][1]
     else:
         assert found == pytest.approx(a * radius**b, rel=0.06 if radius > 0.05 else 0.09)
 
@@ -92,7 +92,7 @@ def test_a_value_that_is_read_off_the_chart() -> None:
 @pytest.mark.parametrize("fits", [BENDING, TENSION, TORSION])
 def test_a_shaft_that_is_all_shoulder_has_no_notch(fits: tuple[Fit, ...]) -> None:
     """2h/D = 1: no shaft is left and Peterson's factors end at 1; the fits do within 4 %."""
-    for low, high, fit in fits:
+    for (low, high), *fit in fits:
         for ratio in (low, 0.5 * (low + high), high):
             total = sum(a + b * ratio**0.5 + c * ratio for a, b, c in fit)
             assert total == pytest.approx(1.0, abs=0.04)

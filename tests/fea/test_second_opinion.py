@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from fea.checks import calculix
-from fea.checks.calculix_compare import Opinion, _outside, second_opinions
+from fea.checks.calculix_compare import _outside, second_opinions
+from fea.checks.opinions import Opinion
 from fea.core.material import Material
 from fea.core.peak import Peak
 from fea.core.pin_loads import PinLoads

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from fea.checks.cantilever_theory import cantilever
+from fea.checks.cantilever import cantilever
 from fea.core.equilibrium import out_of_balance
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads

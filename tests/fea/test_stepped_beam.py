@@ -7,12 +7,12 @@ import math
 import numpy as np
 import pytest
 
-from fea.beam.deflection import deflections
 from fea.beam.round_section import Circle
 from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, stepped_beam
 from fea.core.material import Material
 from fea.core.pin_loads import BODY, UnitLoad
 from geometry import GeometryError, Pin, Segment
+from tests.support.beam_deflection import deflections
 from tests.support.errors import raises
 from tests.support.plain_pins import COUPLE, PLAIN, PULL, SPIN, A, B, I, L, d
 

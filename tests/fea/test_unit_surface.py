@@ -11,8 +11,9 @@ from fea.core.pin_loads import Floats, PinLoads
 from fea.core.solution import Answer
 from fea.core.voigt import von_mises
 from fea.solve_pin import Asked, Model, solve_pin
-from fea.surface_fields import Mask, UnitSurface, amounts, excluded, largest_there, unit_surface
+from fea.surface_fields import UnitSurface, amounts, excluded, largest_there, unit_surface
 from geometry import Pin
+from geometry.arrays import Mask
 
 INSTANT = 1
 FORCES = np.array([[[30.0, -70.0, 20.0]], [[500.0, 200.0, -900.0]]])  # two instants, one band

@@ -7,6 +7,7 @@ import math
 import pytest
 
 from geometry import CutPin, Flat, GeometryError, Hole, Pin, PinLike, Segment
+from pinstress.model.pins import weight
 from tests.support.errors import raises
 
 TURNED = Pin(
@@ -56,8 +57,8 @@ def test_a_cut_takes_its_volume() -> None:
 
 
 def test_weight_and_bore() -> None:
-    assert TURNED.weight(7850.0) == pytest.approx(7850.0 * 9.80665 * TURNED.volume, rel=1e-15)
-    assert TURNED.weight(1000.0, 2.0) == pytest.approx(2000.0 * TURNED.volume, rel=1e-15)
+    assert weight(TURNED, 7850.0) == pytest.approx(7850.0 * 9.80665 * TURNED.volume, rel=1e-15)
+    assert weight(TURNED, 1000.0, 2.0) == pytest.approx(2000.0 * TURNED.volume, rel=1e-15)
     bored = TURNED.with_bore("P1", 0.004)
     assert TURNED.volume - bored.volume == pytest.approx(0.03 * math.pi * 0.002**2, rel=1e-12)
     inner = bored.band("bore P1")

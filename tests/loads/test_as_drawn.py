@@ -17,7 +17,8 @@ from loads import (
     Sharing,
     Slider,
     Turn,
-    static_reactions,
+    at_rest,
+    motion_reactions,
 )
 from loads.mobility import mobility, require_determined
 from tests.support.errors import raises
@@ -143,4 +144,4 @@ def test_a_sharing_that_leaves_a_redundant_way_open_is_refused() -> None:
         sharing=(Sharing(("F15",), (1.0,)),),
     )
     with raises(LinkageError, "sharing-incomplete", "F15"):
-        static_reactions("held", fourth, [1.0])
+        motion_reactions("held", at_rest(fourth, [1.0]))

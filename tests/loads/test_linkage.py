@@ -22,10 +22,10 @@ from loads import (
     LinkageError,
     Motion,
     Slider,
+    at_rest,
     mobility,
     motion_reactions,
     move,
-    static_reactions,
 )
 from tests.support.errors import raises
 
@@ -102,7 +102,8 @@ def test_static_forces_follow_from_moments_about_the_pivot() -> None:
     linkage = lever()
     length = linkage.sliders[0].drawn + 0.05
     load = Applied("LEVER", linkage.joints[2].at, (30.0, -500.0))
-    found = static_reactions("held", replace(linkage, gravity=(0.0, 0.0)), [length], [load])
+    motion = at_rest(replace(linkage, gravity=(0.0, 0.0)), [length])
+    found = motion_reactions("held", motion, [load], timed=False)
     (g,) = found.motion.joint("G")[0]
     along = (g - np.array([0.0, 0.9])) / length
     moment = g[0] * -500.0 - g[1] * 30.0

@@ -32,7 +32,11 @@ def row(out: Path) -> dict[str, Any]:
 
 @pytest.mark.parametrize(
     ("joints", "held"),
-    [("auto", "in contact with its lugs"), ("prescribed", "clamped at nowhere")],
+    [
+        ("auto", "in contact with its lugs"),
+        ("foundation", "on foundations in its lugs"),
+        ("prescribed", "clamped at nowhere"),
+    ],
 )
 def test_check_says_what_holds_the_pin(
     joints: str, held: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 
 from fea.joint.lugs.lug import Bushing, Lug
 from pinstress import InputError, load_study, prepare, run
+from pinstress.model.lugs import Surroundings
 from tests.support.errors import raises
 
 STUDY = """
@@ -99,9 +101,10 @@ def test_what_is_not_given(tmp_path: Path) -> None:
         ("lug.M = {}", "auto", 3),
         ("lug.M = {}", "prescribed", 0),
         ("", "contact", 3),
+        ("", "foundation", 3),
     ],
 )
-def test_whose_pins_are_in_contact(tmp_path: Path, pin: str, joints: str, held: int) -> None:
+def test_whose_pins_are_in_lugs(tmp_path: Path, pin: str, joints: str, held: int) -> None:
     assert len(lugs(tmp_path, pin, f'joints = "{joints}"')) == held
 
 
@@ -140,6 +143,99 @@ def test_what_cannot_be_is_refused_before_anything_is_solved(
     with raises(InputError, code) as caught:
         prepare(load_study(path))
     assert said in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "lug", ["{ clearance = -0.001 }", '{ bushing = { thickness = 1, material = "bronze" } }']
+)
+def test_what_foundations_cannot_answer_is_refused(tmp_path: Path, lug: str) -> None:
+    path = study(tmp_path, f"lug.M = {lug}", 'joints = "foundation"')
+    with raises(InputError, "beyond-foundations", "lug M", '"contact"'):
+        prepare(load_study(path))
+    assert len(lugs(tmp_path, f"lug.M = {lug}")) == 3
+
+
+@pytest.mark.parametrize("model", ["harmonic", "solid"])
+def test_foundations_are_a_beams_alone(tmp_path: Path, model: str) -> None:
+    path = study(tmp_path, "", f'joints = "foundation"\nmodel = "{model}"')
+    with raises(InputError, "model-without-contact", "pin P", "beam"):
+        prepare(load_study(path))
+
+
+def around(folder: Path, pin: str, analysis: str = "") -> Surroundings:
+    (task,) = prepare(load_study(study(folder, pin, analysis))).tasks
+    assert task.surroundings is not None
+    return task.surroundings
+
+
+def test_a_pin_without_lugs_may_sit_in_default_ones(tmp_path: Path) -> None:
+    found = around(tmp_path, "")
+    assert [lug.connection for lug in found.lugs] == ["L", "M", "R"]
+    assert [lug.outer_diameter for lug in found.lugs] == pytest.approx([0.05] * 3)
+    assert found.assumed
+    (task,) = prepare(load_study(study(tmp_path, "lug.M = {}"))).tasks
+    assert task.surroundings is None
+
+
+def test_a_clamped_segment_is_a_lug_of_the_structure(tmp_path: Path) -> None:
+    found = around(tmp_path, 'clamp = ["L", "gap"]')
+    assert found.pin is not None
+    assert tuple(found.pin.connections) == ("M", "R")
+    assert {lug.connection for lug in found.lugs} == {"L", "M", "R", "gap"}
+
+
+def test_given_lugs_of_a_prescribed_pin_are_those_of_its_range(tmp_path: Path) -> None:
+    found = around(tmp_path, "lug.M = { outer_diameter = 60 }", 'joints = "prescribed"')
+    assert not found.assumed
+    assert [lug.outer_diameter for lug in found.lugs] == pytest.approx([0.05, 0.06, 0.05])
+
+
+@pytest.mark.parametrize(
+    "pin", ['clamp = ["start"]', 'clamp = ["M", "end"]', "hole = [{ z = 20, diameter = 4 }]"]
+)
+def test_where_no_lugs_can_be_assumed(tmp_path: Path, pin: str) -> None:
+    found = around(tmp_path, pin)
+    assert (found.pin, found.lugs) == (None, ())
+    assert found.why
+
+
+def test_one_band_alone_has_no_lugs(tmp_path: Path) -> None:
+    path = study(tmp_path)
+    text = re.sub(r', connection = "[LR]"', "", path.read_text())
+    path.write_text(re.sub(r"forces = .*", "forces = { M = [0, 0] }", text))
+    (task,) = prepare(load_study(path)).tasks
+    assert task.surroundings is not None
+    assert task.surroundings.why
+
+
+def test_foundations_from_study_to_results(tmp_path: Path) -> None:
+    row = run(load_study(study(tmp_path, "", 'joints = "foundation"')))["P", "pull"]
+    assert (row.model, row.verdict) == ("foundation", "unconverged")
+    assert row.held == "its lugs (foundation)"
+    assert row.error_estimate == row.error_parts["model"]
+    assert row.joint is not None
+    assert [band.force for band in row.joint.bands] == pytest.approx([25e3, 50e3, 25e3])
+    assert row.joint.range is not None
+    assert not row.joint.range.assumed
+    low, high = row.joint.range.max_von_mises
+    assert low < (row.max_von_mises or 0.0) < high
+
+
+def test_a_prescribed_pin_has_a_range(tmp_path: Path) -> None:
+    row = run(load_study(study(tmp_path)))["P", "pull"]
+    assert (row.model, row.held) == ("harmonic", "nothing (loads in balance)")
+    assert row.joint is not None
+    assert (row.joint.model, row.joint.bands) == ("prescribed", ())
+    assert row.joint.range is not None
+    assert row.joint.range.assumed
+    assert row.joint.range.model == "foundation"
+
+
+def test_a_prescribed_pin_without_a_range_says_why(tmp_path: Path) -> None:
+    row = run(load_study(study(tmp_path, 'clamp = ["start"]')))["P", "pull"]
+    assert row.joint is not None
+    assert row.joint.range is None
+    assert "start" in row.joint.remark
 
 
 @pytest.mark.parametrize("model", ["beam", "solid"])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 import os
 import subprocess
 import sys
@@ -54,12 +55,34 @@ def test_without_calculix_it_says_how_to_get_it(
 def test_a_calculix_that_fails_is_told_and_the_results_are_kept(tmp_path: Path) -> None:
     done = run(tmp_path, **put(tmp_path, "echo no luck; exit 201"))
     assert done.returncode == 1
-    assert "Second opinion differs: pin B (landing): ccx ended with status 201" in done.stderr
+    assert "No second opinion: pin B (landing): ccx ended with status 201" in done.stderr
     assert "CalculiX agrees in 0 of 1 rows" in done.stdout
     row = opinion(tmp_path)
     assert row["agrees"] == "no"
     assert "no luck" in row["note"]
     assert (tmp_path / "out" / "results.json").is_file()
+
+
+@pytest.mark.slow
+def test_a_joint_that_calculix_has_no_model_of_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With the reason, in results.json too; what takes long is named before it starts."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PATH", put(tmp_path, "exit 1")["PATH"])
+    clevis = (ROOT / "studies" / "clevis.toml").read_text()
+    tight = clevis.replace("edge_radius = 0.5", "").replace("clearance = 0.05", "clearance = -0.01")
+    Path("study.toml").write_text(tight.replace("[analysis]", "[analysis]\ntolerance = 0.1"))
+    command = "run study.toml --second-opinion ccx --no-pictures --no-cache --jobs 1 --out out"
+    assert run_command_line(command.split()) == 1
+    said = capsys.readouterr()
+    assert "takes one to ten minutes a row: P (pull)." in said.err
+    assert "No second opinion: pin P (pull): CalculiX's model has no interference" in said.err
+    assert "not compared" in said.out
+    (row,) = json.loads(Path("out/results.json").read_text())["pins"]
+    assert row["second_opinion"]["agrees"] is False
+    assert "interference" in row["second_opinion"]["note"]
+    assert "not compared" in Path("out/report.html").read_text()
 
 
 @pytest.mark.peers

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
+from fea.joint.records import JointRange, JointResult, Variation
 from pinstress.schema.units import SYSTEMS
 from reports.data.in_units import in_units
 from reports.data.results import Field, Results
@@ -78,6 +79,70 @@ def test_loads_without_rings_have_no_ends(small: Results) -> None:
     smooth = replace(CONTACT, bands=(replace(CONTACT.bands[0], ends=()),))
     lines = joint_tables(in_lugs(small, smooth))[1]
     assert [row[-2:] for row in lines.rows] == [[None, None], [None, None]]
+
+
+def around(results: Results, **changes: object) -> Results:
+    """The first pin prescribed, with a range by a beam on foundations in assumed lugs."""
+    over = JointRange(
+        (1100.0, 1900.0), (Variation("tilt", "free", 1500.0, None, (1200.0, 1800.0)),),
+        "foundation", True,
+    )  # fmt: skip
+    joint = JointResult("prescribed", range=over)
+    return in_lugs(results, replace(joint, **changes))  # type: ignore[arg-type]
+
+
+def test_a_range_in_assumed_lugs_is_marked(small: Results, tmp_path: Path) -> None:
+    odd = around(small)
+    found = joint_json(odd.pins[0].joint)
+    assert found is not None
+    assert (found["model"], found["bands"]) == ("prescribed", [])
+    assert (found["range"]["model"], found["range"]["lugs"]) == ("foundation", "assumed")
+    assert found["range"]["over"][0]["max_von_mises_interval"] == [1200.0, 1800.0]
+    row = shown_rows(odd)[0]
+    assert row["joint_high"] == "1,100 to 1,900"
+    assert (row["joint_model"], row["joint_lugs"]) == ("foundation", "assumed")
+    last = joint_tables(odd)[2].rows[0][-4:]
+    assert list(last) == ["foundation", "assumed", 1200.0, 1800.0]
+    assert not any(name.name.startswith("joint") for name in save_plots(odd, tmp_path))
+
+
+def test_the_page_shows_a_range_in_assumed_lugs(small: Results, tmp_path: Path) -> None:
+    path = write_reports(around(small), tmp_path, {}, False)
+    text = parse(path).text
+    assert "1,100 to 1,900 psi over what is not known of the joint" in text
+    assert "in assumed lugs" in text
+    assert "1,200 to 1,800" in text
+    assert "Contact with the lugs" not in text
+    assert "half contact angle" not in text
+    assert "<dt>Held by</dt>" not in path.read_text(encoding="utf-8")
+
+
+def test_the_page_says_why_there_is_no_range(small: Results, tmp_path: Path) -> None:
+    odd = around(small, range=None, remark="no lug surrounds its clamp (start)")
+    text = parse(write_reports(odd, tmp_path, {}, False)).text
+    assert "no range over the joint: no lug surrounds its clamp (start)." in text
+
+
+def test_foundations_have_the_section_of_contact(small: Results, tmp_path: Path) -> None:
+    text = parse(
+        write_reports(in_lugs(small, replace(CONTACT, model="foundation")), tmp_path, {}, False)
+    ).text
+    assert "Load from the lugs" in text
+    assert "beam on foundations" in text
+    assert "half contact angle" in text
+
+
+def test_a_narrow_terminal_drops_the_published_value(results: Results) -> None:
+    theirs = replace(results.pins[0], published_max_von_mises=2000.0)
+    odd = around(replace(results, pins=(theirs, *results.pins[1:])))
+    texts = []
+    for width in (80, 100):
+        out = StringIO()
+        print_safety_factors(odd, Console(file=out, width=width, no_color=True))
+        assert max(len(line) for line in out.getvalue().splitlines()) <= width
+        texts.append(out.getvalue())
+    assert ["ratio" in text for text in texts] == [True, True]
+    assert ["published" in text for text in texts] == [False, True]
 
 
 def test_a_column_only_where_a_range_was_found(small: Results, tmp_path: Path) -> None:

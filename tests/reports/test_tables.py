@@ -105,6 +105,7 @@ def test_json_holds_the_contract(results: Results) -> None:
         "singular_at",
         "hand_checks",
         "joint",
+        "second_opinion",
         "held",
         "left_out",
     }

@@ -153,6 +153,21 @@ def test_drawing_marks_the_zones(found: Results) -> None:
     assert "zone" not in draw_pin(found.shapes[0], found.units)
 
 
+def test_drawing_stripes_what_is_excluded_of_the_walls(found: Results) -> None:
+    """At a step the disc reaches into both segments; nothing outside of the section is drawn."""
+    (zone,) = [z for z in circles(pin_zones(found, "A")["sharp"]) if z.number == 2]
+    svg = draw_pin(found.shapes[0], found.units, [zone])
+    walls = re.findall(r'<svg x="([\d.]+)" y="[\d.]+" width="([\d.]+)" height="[\d.]+">', svg)
+    discs = re.findall(r'cx="(-?[\d.]+)" cy="-?[\d.]+" r="([\d.]+)" fill="url\(#excluded\)"', svg)
+    assert len(discs) == len(walls) == 4
+    ring = float(re.findall(r'class="zone" cx="([\d.]+)"', svg)[0])
+    assert [float(x) + float(w[0]) for (x, _), w in zip(discs, walls, strict=True)] == (
+        pytest.approx([ring] * 4, abs=0.02)
+    )
+    scale = float(walls[-1][1]) / found.shapes[0].segments[1][0]
+    assert float(discs[0][1]) == pytest.approx(scale * zone.found.excluded, abs=0.02)
+
+
 def test_the_edge_of_a_lug_is_drawn_like_the_others(found: Results) -> None:
     """In theory a power, and not measured."""
     lug = replace(zones()[1], kind="the edge of a lug", exponent_theory=0.226, governs=True)

@@ -12,8 +12,9 @@ from skfem import Basis, ElementTriP2
 from fea.core.linear_solver import factorize
 from fea.core.material import Material
 from fea.core.pin_loads import Floats
-from fea.harmonic.assembly import Ints, Section, around, elasticity, gradients, strain_map
+from fea.harmonic.assembly import Section, around, elasticity, gradients, strain_map
 from fea.harmonic.boundary import Outline, shapes, slopes
+from geometry.arrays import Ints
 
 Field = Callable[[Floats, Floats], Floats]  # of r and z (...), with components last
 

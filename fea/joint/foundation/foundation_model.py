@@ -16,6 +16,7 @@ compares the model with contact.
 
 from __future__ import annotations
 
+import copy
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -28,11 +29,11 @@ from fea.beam.timoshenko import MOMENT, SHEAR, compliances
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.joint.bending import bending_moment, mass_per_length
+from fea.joint.bending import bending_moment, mass_per_length, shear_force
 from fea.joint.contact import Bands
 from fea.joint.foundation.plane_contact import plane_stiffness
 from fea.joint.foundation.supported_beam import Response, SupportedBeam, refined, respond
-from fea.joint.lugs.fit import fitted
+from fea.joint.lugs.fit import fitted, on_structure
 from fea.joint.lugs.links import link_forces
 from fea.joint.lugs.lug import Lug
 from fea.joint.lugs.rings import graded, ring, ringed
@@ -92,12 +93,25 @@ class JointFoundation:
         """
         return bending_moment(self.pin, self.mass, self.bands, self.loads, z)
 
+    def shear_force(self, z: Floats) -> Floats:
+        """Sum of the loads across before z (Z,) m: (T, Z, 2) N."""
+        return shear_force(self.pin, self.mass, self.bands, self.loads, z)
+
+    def along(self, z: Floats) -> tuple[Floats, Floats]:
+        """Of what acts before z (Z,) m, the axial force (T, Z) N and the torque (T, Z) N m."""
+        part = np.clip((z[:, None] - self.bands.z) / self.bands.length + 0.5, 0.0, 1.0)
+        ends = np.array(self.pin.stations)
+        mass = np.clip(z[:, None] - ends[:-1], 0.0, np.diff(ends)) @ self.mass
+        pull = self.loads.forces[:, :, 2] @ part.T + np.outer(self.loads.body[:, 2], mass)
+        return pull, self.loads.moments[:, :, 2] @ part.T
+
 
 class FoundationModel:
     """A pin in its lugs as a beam, factorised for all cases. rings: of each band, into which loads
-    are cut; what they add up to does not depend on their number. stiffness: of foundations.
+    are cut; what they add up to does not depend on their number. stiffness: of foundations. Lugs
+    named after segments on which no link bears are those of a structure, which stands still.
 
-    Raises: ValueError for a lug where no link bears, or a band without one.
+    Raises: ValueError for a lug where nothing has its name, or a band without one.
     """
 
     def __init__(
@@ -108,8 +122,10 @@ class FoundationModel:
         rings: int = 8,
         stiffness: Stiffness = foundation_stiffness,
     ) -> None:
+        self.given, self.material = pin, material
+        self.whole = pin = on_structure(pin, lugs)
         self.lugs = fitted(pin, material, lugs)
-        self.whole, self.material = pin, material
+        self.structure = [name not in self.given.connections for name in pin.connections]
         self.pin = ringed(
             pin, {name: graded(pin.band(name).length, rings) for name in pin.connections}
         )
@@ -120,30 +136,56 @@ class FoundationModel:
         soft = [stiffness(s, material, lug) for s, lug in zip(own, self.lugs, strict=True)]
         self._unit = self._of_rings(np.array(soft))
 
-    def solve(self, loads: PinLoads) -> JointFoundation:
-        """All instants of a case. loads: of links on all the lugs' bands or on some; of their
-        moments only those about the axis count.
+    def solve(self, loads: PinLoads, whole: bool = True) -> JointFoundation:
+        """All instants of a case. loads: of links on all the lugs' bands or on some. whole: false
+        for a part of loads, which need not be in balance.
 
-        Raises: SolveError where forces are not in balance, or no lug reacts a couple.
+        Raises: SolveError where forces are not in balance, no lug reacts a couple, or links exert
+        moments across the axis.
         """
-        weight = float(self.mass @ np.diff(self.pin.stations))
-        asked = link_forces(self.whole, weight, loads)
-        acting = np.concatenate([asked, loads.body[:, None, :2]], axis=1)
+        asked = link_forces(self.given, self._weight, loads, any(self.structure), whole)
+        on = np.zeros((len(loads), len(self.lugs), 2))
+        on[:, np.logical_not(self.structure)] = asked[:, : len(self.given.connections)]
+        acting = np.concatenate([on, loads.body[:, None, :2]], axis=1)
         force = np.einsum("rp,tpa->tra", self._unit.force, acting)
         moment = np.einsum("rp,tpa->tra", self._unit.moment, acting)
-        self._require_couples(loads.case, moment, force, asked)
-        share = ring_shares(self.pin, self.rings, loads.surfaces)
-        forces = np.dstack([force, loads.forces[:, :, 2] @ share])
-        about = np.dstack([-moment[..., 1], moment[..., 0], loads.moments[:, :, 2] @ share])
+        if whole:
+            self._require_couples(loads.case, moment, force, asked)
+        pull = loads.body[:, 2] * self._weight
+        forces = np.dstack([force, self._along(loads, loads.forces[:, :, 2], pull)])
+        torque = self._along(loads, loads.moments[:, :, 2], 0.0 * pull)
+        about = np.dstack([-moment[..., 1], moment[..., 0], torque])
         made = replace(
             loads, surfaces=self.rings, forces=forces, moments=about, distribution="cosine"
         )
         return JointFoundation(self.pin, self.lugs, self.bands, made, self.mass)
 
+    def with_clearances(self, lugs: Sequence[Lug]) -> FoundationModel:
+        """The same, of which only the error depends on them; lugs: in the order of the bands."""
+        other = copy.copy(self)
+        other.lugs = tuple(lugs)
+        return other
+
+    @property
+    def _weight(self) -> float:
+        """Mass of the pin, kg."""
+        return float(self.mass @ np.diff(self.pin.stations))
+
+    def _along(self, loads: PinLoads, amounts: Floats, body: Floats) -> Floats:
+        """Axial forces or torques (T, C) of the links as those of the rings, (T, R), even along a
+        band; a structure reacts, evenly, what they and the body's (T,) leave over.
+        """
+        out = amounts @ ring_shares(self.pin, self.rings, loads.surfaces)
+        react = self.bands.length * np.array(self.structure)[self.bands.band]
+        if react.any():
+            out = out - np.outer(amounts.sum(axis=1) + body, react / react.sum())
+        return np.asarray(out)
+
     def _of_rings(self, stiffness: Floats) -> Response:
         """Of the rings, what the lugs do under unit loads."""
         beam, number = self._beam(stiffness)
-        found = respond(beam, self.bands.middles, [lug.tilt for lug in self.lugs])
+        still = np.flatnonzero(self.structure).tolist() or [0]
+        found = respond(beam, self.bands.middles, [lug.tilt for lug in self.lugs], still)
         own = (number == np.arange(len(self.rings))[:, None]).astype(float)
         middles = 0.5 * (beam.stations[1:] + beam.stations[:-1])
         arms = own * (middles - self.bands.z[:, None])
@@ -194,6 +236,7 @@ def moment_error(pin: Pin, material: Material, lugs: Sequence[Lug]) -> float:
 
     Raises: ValueError as FoundationModel.
     """
+    pin = on_structure(pin, lugs)
     every = fitted(pin, material, lugs)
     bands = [pin.band(lug.connection) for lug in every]
     stiff = [lug.material.youngs_modulus / material.youngs_modulus for lug in every]

@@ -14,8 +14,10 @@ J. Appl. Mech. 33 (1966) 335 (the mean motion).
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
+from scipy.optimize import brentq
 
 from fea.core.material import Material
 from fea.core.pin_loads import Floats
@@ -26,6 +28,7 @@ HIGHEST, SECTORS = 16, 60
 _GAUSS, _WEIGHT = np.polynomial.legendre.leggauss(8)  # exact for the powers of r, near for 1 / r
 
 
+@lru_cache(maxsize=512)  # eyes of a study are much alike
 def plane_stiffness(
     radii: tuple[float, float], pin: Material, outer: float, lug: Material
 ) -> float:
@@ -40,6 +43,28 @@ def plane_stiffness(
     tail = np.array([half_plane(pin, r) + half_plane(lug, r)])
     problem = ContactProblem(bands, flexible[:, None, None], tail, (math.inf,), SECTORS)
     return 1.0 / abs(float(problem.solve(np.array([[1.0, 0.0]])).shift[0, 0]))
+
+
+def largest_pressure(gap: float) -> float:
+    """p0 R / Q of a disc in a plate of its material: the largest pressure p0 under a load per
+    length Q; gap: E / (1 - nu^2) times the radial clearance over Q.
+
+    Source: Persson 1964; Ciavarella & Decuzzi, Int. J. Solids Struct. 38 (2001) 4507.
+    """
+    b = math.tan(half_angle(gap) / 2.0)
+    even = b * b + 1.0
+    tight = math.log(math.sqrt(even) + b) / (math.pi * b * b * even)
+    return 2.0 / math.pi * b / math.sqrt(even) + tight
+
+
+def half_angle(gap: float) -> float:
+    """Of contact, rad, by the same."""
+
+    def off(angle: float) -> float:
+        b2 = math.tan(angle / 2.0) ** 2
+        return 2.0 - math.log(b2 + 1.0) - 2.0 * b2 * b2 - gap * math.pi * b2 * (b2 + 1.0)
+
+    return float(brentq(off, 1e-6, 0.5 * math.pi, xtol=1e-12))
 
 
 def pin_harmonics(inner: float, outer: float, material: Material) -> Floats:

@@ -51,7 +51,8 @@ class SupportedBeam:
 class Response:
     """What the lugs do to the pieces of a beam under P loads, one newton on each lug and a body
     force of 1 m/s^2: force (N, P), N, and moment (N, P), N m, about the middles of the pieces, of
-    forces along x. The first lug reacts what each load leaves over.
+    forces along x. The lugs that stand still react what each load leaves over; one newton on one of
+    them does nothing.
     """
 
     force: Floats
@@ -70,14 +71,18 @@ def refined(stations: Floats, bending: Floats, foundation: Floats) -> Floats:
     return np.concatenate([*cuts, stations[-1:]])
 
 
-def respond(beam: SupportedBeam, middles: Floats, tilt: Sequence[float]) -> Response:
-    """middles: of the lugs, (B,) m. tilt: N m/rad of the lugs' tilt, inf guided, 0 free; where all
-    are free, the first is guided and reacts the couple that is left over.
+def respond(
+    beam: SupportedBeam, middles: Floats, tilt: Sequence[float], still: Sequence[int] = (0,)
+) -> Response:
+    """middles: of the lugs, (B,) m. tilt: N m/rad of the lugs' tilt, inf guided, 0 free. still: the
+    lugs that do not shift; where there is one, and all are free, it is guided and reacts the couple
+    that is left over.
     """
     length = float(beam.stations[-1] - beam.stations[0]) / len(beam)
     stiff = 1.0 / float(beam.bending.max() * length**2)  # N; makes numbers near 1 of all
     held = np.asarray(tilt, dtype=float) / (stiff * length)
-    held[0] = held[0] if held.any() else np.inf
+    if len(still) == 1 and not held.any():
+        held[still[0]] = np.inf
     unit = replace(
         beam,
         stations=beam.stations / length,
@@ -86,15 +91,17 @@ def respond(beam: SupportedBeam, middles: Floats, tilt: Sequence[float]) -> Resp
         foundation=beam.foundation * length**2 / stiff,
         mass=beam.mass * length,
     )
-    found = _System(unit, np.asarray(middles) / length, held).solve()
+    found = _System(unit, np.asarray(middles) / length, held, still).solve()
     return Response(found.force, found.moment * length)
 
 
 class _System:
     """The states (w, phi, M, V) at all stations, then shift and tilt of each lug, as one vector."""
 
-    def __init__(self, beam: SupportedBeam, middles: Floats, tilt: Floats) -> None:
-        self.beam, self.middles, self.tilt = beam, middles, tilt
+    def __init__(
+        self, beam: SupportedBeam, middles: Floats, tilt: Floats, still: Sequence[int]
+    ) -> None:
+        self.beam, self.middles, self.tilt, self.still = beam, middles, tilt, still
         self.lengths = np.diff(beam.stations)
         self.steps = expm(_rates(beam) * self.lengths[:, None, None])
         self.motions = STATES * (len(beam) + 1)  # where the lugs' begin
@@ -128,16 +135,18 @@ class _System:
         return out
 
     def _hold(self, rows: Floats, loads: Floats) -> None:
-        """Equations of the lugs: a force and a couple each; the first does not shift."""
+        """Equations of the lugs: a force, or no shift, and a couple each."""
         for b, stiffness in enumerate(self.tilt.tolist()):
             force, couple = self._reactions(b)
-            rows[2 * b], loads[2 * b, -1], loads[2 * b, b] = force[:-1], -force[-1], 1.0
+            if b in self.still:
+                rows[2 * b] = np.eye(self.size)[self.motions + 2 * b]
+            else:
+                rows[2 * b], loads[2 * b, -1], loads[2 * b, b] = force[:-1], -force[-1], 1.0
             turn = np.eye(self.size)[self.motions + 2 * b + 1]
             if np.isfinite(stiffness):  # scaled so that very stiff and very soft are harmless
                 turn = (stiffness * turn + couple[:-1]) / (1.0 + stiffness)
                 loads[2 * b + 1, -1] = -couple[-1] / (1.0 + stiffness)
             rows[2 * b + 1] = turn
-        rows[0], loads[0] = np.eye(self.size)[self.motions], 0.0
 
     def _reactions(self, lug: int) -> tuple[Floats, Floats]:
         """Force and couple about its middle that a lug exerts on the beam, (size + 1,) each, by the

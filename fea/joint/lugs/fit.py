@@ -159,3 +159,13 @@ def _widening(r: float, material: Material) -> Floats:
     """u_r by A and by B."""
     E, nu = material.youngs_modulus, material.poisson_ratio
     return np.array([r * (1.0 - nu) / E, (1.0 + nu) / (E * r)])
+
+
+def beyond_foundations(lugs: Iterable[Lug]) -> str:
+    """What of lugs a beam on foundations cannot answer (fea.joint.foundation), if anything."""
+    for lug in lugs:
+        if lug.clearance < 0.0:
+            return f"lug {lug.connection} has an interference, whose stress it does not include"
+        if lug.bushing is not None:
+            return f"lug {lug.connection} has a bushing, for which it has no stiffness"
+    return ""

@@ -23,10 +23,13 @@ def link_numbers(connections: Sequence[str], links: Sequence[str]) -> NDArray[np
     return np.array([number.get(name, len(links)) for name in connections], dtype=np.int64)
 
 
-def link_forces(pin: Pin, mass: float, loads: PinLoads, structure: bool = False) -> Floats:
+def link_forces(
+    pin: Pin, mass: float, loads: PinLoads, structure: bool = False, whole: bool = True
+) -> Floats:
     """Of the links along x and y by connection, (T, L, 2) N, and last of the structure, if any of
     the lugs is its; mass: of the pin, kg. A small imbalance with the body force, as where a weight
-    is rounded, is shared by the links.
+    is rounded, is shared by the links. whole: false for a part of loads, whose imbalance need not
+    be small.
 
     Raises: SolveError where it is not small, and for moments of links across the axis.
     """
@@ -43,8 +46,8 @@ def link_forces(pin: Pin, mass: float, loads: PinLoads, structure: bool = False)
     left = out.sum(axis=1) + loads.body[:, :2] * mass
     if structure:
         return np.concatenate([out, -left[:, None]], axis=1)
-    largest = np.linalg.norm(left, axis=1).max()
-    if largest > MOST * np.linalg.norm(out, axis=2).max(initial=1e-300):
+    largest = np.linalg.norm(left, axis=1).max(initial=0.0)
+    if whole and largest > MOST * np.linalg.norm(out, axis=2).max(initial=1e-300):
         raise SolveError(
             f"pin {pin.name}, case {loads.case}: the forces of its links have "
             f"a resultant of {largest:.3g} N, which no contact reacts",

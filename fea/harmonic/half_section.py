@@ -1,0 +1,65 @@
+"""Von Mises stress on a plane through a pin's axis: what is seen if it is cut open."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import LinearNDInterpolator
+from scipy.spatial import Delaunay
+
+from fea.core.pin_loads import AnyLoads, Floats
+from fea.core.voigt import von_mises
+from fea.harmonic.fields import MeridianFields
+from fea.harmonic.superposition import Circumference
+from fea.singular.singularities import Singularity, outside
+
+LEVEL = 1e-9  # of the length: a smaller rise of the outline is round-off
+
+
+class MeridianPlane:
+    """The section of one mesh, on which any point can be asked for; zones: excluded ones."""
+
+    def __init__(self, fields: MeridianFields, zones: Iterable[Singularity] = ()) -> None:
+        self.fields, self.zones = fields, tuple(zones)
+        self.skin = fields.points[: fields.skin]
+
+    @cached_property
+    def _between(self) -> Delaunay:
+        return Delaunay(self.fields.points[: len(self.fields.displacement)])
+
+    def walls(self, z: Floats) -> tuple[Floats, Floats]:
+        """Radii (Z,) of the bore (0 without one) and of the outside at z (Z,), m."""
+        first, second = self.skin[:-1], self.skin[1:]
+        low, high = np.minimum(first, second)[:, 1], np.maximum(first, second)[:, 1]
+        inner, outer = np.zeros(len(z)), np.zeros(len(z))
+        for k, height in enumerate(z):
+            here = np.flatnonzero((low <= height) & (height <= high))
+            rise = second[here, 1] - first[here, 1]
+            part = (height - first[here, 1]) / np.where(rise == 0.0, 1.0, rise)
+            r = first[here, 0] + part * (second[here, 0] - first[here, 0])
+            outer[k] = r.max()
+            # Going up the outside, down the bore: without a bore nothing goes down.
+            down = (rise < -LEVEL * float(np.ptp(self.skin[:, 1]))) & (r > 0.0)
+            inner[k] = r[down].max(initial=0.0)
+        return inner, outer
+
+    def outside(self, points: Floats) -> NDArray[np.bool_]:
+        """Which of the points (.., 2) are in no excluded zone."""
+        r, z = points.reshape(-1, 2).T
+        return outside(self.zones, r, z).reshape(points.shape[:-1])
+
+    def von_mises(self, loads: AnyLoads, instant: int, angle: float, points: Floats) -> Floats:
+        """Stress (2, ..) Pa at points (.., 2), r and z in m, of the half plane at an angle (rad),
+        and of the one opposite to it.
+        """
+        rows = np.arange(len(self.fields.displacement))
+        around, instants = Circumference(self.fields, loads), np.full(len(rows), instant)
+        sides = [
+            von_mises(around.stress(rows, instants, np.full(len(rows), theta)))
+            for theta in (angle, angle + np.pi)
+        ]
+        found = LinearNDInterpolator(self._between, np.stack(sides, axis=1))(points)
+        return np.asarray(np.moveaxis(found, -1, 0))

@@ -1,0 +1,121 @@
+"""Von Mises stress of a pin on foundations, from its section forces at points of its sections.
+
+Points nearer to sharp corners than the excluded distance are left out, as for other models.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.beam.error_model import SHOULDER
+from fea.beam.maximum import Highest, highest
+from fea.beam.round_section import circle
+from fea.beam.stress import TZ, ZZ, notch_stress, section_stress
+from fea.beam.stress_concentration import Notch, notches
+from fea.beam.timoshenko import AXIAL, MOMENT
+from fea.core.pin_loads import Floats
+from fea.joint.foundation.foundation_model import FoundationModel, JointFoundation
+from fea.singular.singularities import Singularity, find_singularities, outside
+from geometry import Pin
+
+NEAR = 0.5  # of the diameter: so far a sharp shoulder is felt
+NEGLIGIBLE = 1e-6  # of the largest
+EACH = 17  # points of a segment at a radius, besides the ends of rings
+
+
+@dataclass(frozen=True)
+class FoundationStress:
+    """What serves all loads of a pin. r, z: of the points (S,), m. per_force: (S, 6, 4), amplitudes
+    there per V, M, N, T. near: (S,) what shoulders may add, relative. notches: those that are not
+    left out, whose points are the last.
+    """
+
+    model: FoundationModel
+    r: Floats
+    z: Floats
+    per_force: Floats
+    near: Floats
+    notches: tuple[Notch, ...]
+
+    @classmethod
+    def of(cls, model: FoundationModel, distance: float = 0.1) -> Self:
+        """distance: of the local diameter, that is left out at sharp corners."""
+        pin, nu = model.whole, model.material.poisson_ratio
+        corners = find_singularities(pin, (), (), nu, distance)
+        every = notches(pin)
+        shaft = list(_shaft(pin, np.array(model.pin.stations), nu))
+        local = [_at(pin, notch, nu) for notch in every]
+        r, z, per_force = (np.concatenate(parts) for parts in zip(*shaft, *local, strict=True))
+        near = _near(corners, r, z)
+        near[len(r) - len(local) :] = SHOULDER
+        keep = outside(corners, r, z)
+        free = keep[len(r) - len(local) :]
+        left = tuple(n for n, out in zip(every, free, strict=True) if out)
+        return cls(model, r[keep], z[keep], per_force[keep], near[keep], left)
+
+    def in_lugs(self, model: FoundationModel) -> FoundationStress:
+        """Of the same pin in other lugs."""
+        return replace(self, model=model)
+
+    @property
+    def bending(self) -> Floats:
+        """Stress along the axis per bending moment, (S,) 1/m^3."""
+        return np.abs(self.per_force[:, ZZ, MOMENT])
+
+    def von_mises(self, found: JointFoundation) -> Highest:
+        """At all points and instants, the largest over the circumference."""
+        return highest(self._harmonics(found))
+
+    def lacking(self, found: JointFoundation, von_mises: Floats) -> list[str]:
+        """Of the notches that loads reach, why there is no factor. von_mises: (S, T) Pa."""
+        first = len(self.z) - len(self.notches)
+        torque = np.abs(found.along(self.z[first:])[1]).max(axis=0)
+        turned = torque > NEGLIGIBLE * np.abs(found.loads.moments).max(initial=0.0)
+        reached = von_mises[first:].max(axis=1) > NEGLIGIBLE * von_mises.max()
+        return [
+            n.why
+            for n, t, any_ in zip(self.notches, turned, reached, strict=True)
+            if (any_ and n.bending is None) or (t and n.torsion is None)
+        ]
+
+    def _harmonics(self, found: JointFoundation) -> Floats:
+        """(3, S, 6, T): even, times cos theta, times sin theta, as fea.beam.maximum has them."""
+        across = np.stack([-found.shear_force(self.z), found.bending_moment(self.z)], axis=-1)
+        first, second = np.einsum("siq,tsaq->asit", self.per_force[:, :, :AXIAL], across)
+        rest = -np.stack(found.along(self.z), axis=-1)
+        even = np.einsum("siq,tsq->sit", self.per_force[:, :, AXIAL:], rest)
+        even[:, TZ] *= -1.0
+        cosine, sine = first.copy(), second.copy()
+        cosine[:, TZ], sine[:, TZ] = -second[:, TZ], first[:, TZ]
+        return np.stack([even, cosine, sine])
+
+
+Points = tuple[Floats, Floats, Floats]  # r, z and per_force
+
+
+def _shaft(pin: Pin, cuts: Floats, nu: float) -> Iterator[Points]:
+    """Along every segment, at its surface and its bore or axis."""
+    for (a, b), segment in zip(pairwise(pin.stations), pin.segments, strict=True):
+        z = np.union1d(np.linspace(a, b, EACH), cuts[(cuts >= a) & (cuts <= b)])
+        for r in (segment.diameter / 2.0, segment.bore / 2.0):
+            amplitudes = section_stress(circle(segment), r, nu)
+            yield np.full(len(z), r), z, np.broadcast_to(amplitudes, (len(z), 6, 4))
+
+
+def _at(pin: Pin, notch: Notch, nu: float) -> Points:
+    section = circle(pin.segments[notch.on])
+    stress = notch_stress(notch, section, nu)
+    return np.array([section.outer]), np.array([notch.z]), stress[None]
+
+
+def _near(corners: tuple[Singularity, ...], r: Floats, z: Floats) -> NDArray[np.float64]:
+    out = np.zeros(len(r))
+    for corner in corners:
+        out[np.hypot(r - corner.r, z - corner.z) <= 2.0 * NEAR * corner.r] = SHOULDER
+    return out

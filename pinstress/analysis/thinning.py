@@ -1,0 +1,105 @@
+"""Which points of a curve, or of a pin's meridian, are needed to draw what is known on it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from fea.core.pin_loads import Floats
+from fea.surface_fields import UnitSurface
+from reports.data.surface import Mask, SurfaceCase
+
+STRESS = 8e-3  # of the stress at a point, or of LEAST of the largest one at the instant
+LEAST = 0.1
+ANGLES = 16
+STRESSES, MOTIONS = slice(0, 5), slice(5, 8)  # of the eight numbers of a surface
+INSTANTS = 8  # of a motion, about, besides the governing one
+MOVED = 5e-3  # of the largest displacement
+PLACE = 2e-4  # of the length
+SHARP = 0.94  # cosine of the turn at a corner, at most
+CLOSE = 1e-9  # of the length: points that are one
+
+
+def needed(at: Floats, values: Floats, allowed: Floats, kept: Mask) -> Mask:
+    """Which of N points to keep so that straight lines between them miss no value (N, V) at the
+    others by more than is `allowed` (the same shape). at: (N,) along the curve. kept: (N,) points
+    that are kept in any case, with the first and the last.
+
+    After Ramer (1972), Douglas and Peucker (1973).
+    """
+    keep = kept.copy()
+    keep[[0, -1]] = True
+    open_ = list(pairwise(np.flatnonzero(keep).tolist()))
+    while open_:
+        first, last = open_.pop()
+        if last - first < 2:
+            continue
+        inner = slice(first + 1, last)
+        part = (at[inner] - at[first]) / ((at[last] - at[first]) or 1.0)
+        line = values[first] + part[:, None] * (values[last] - values[first])
+        excess = (np.abs(values[inner] - line) / allowed[inner]).max(axis=1)
+        worst = first + 1 + int(excess.argmax())
+        if excess[worst - first - 1] > 1.0:
+            keep[worst] = True
+            open_ += [(first, worst), (worst, last)]
+    return keep
+
+
+def meridian_points(surface: UnitSurface, cases: Sequence[SurfaceCase], kept: Mask) -> Mask:
+    """Which points (P,) of a meridian to keep so that its shape, displacements and stresses in all
+    cases stay what they are, but for the stresses that every case excludes. kept: (P,) points that
+    are kept in any case.
+    """
+    x, excluded = surface.points, np.all([c.excluded for c in cases], axis=0)
+    size = float(np.ptp(x, axis=0).max())
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(x, axis=0), axis=1))])
+    values, allowed = [x[:, [0, 2]]], [np.full((len(x), 2), PLACE * size)]
+    for case in cases:
+        for instant in sorted({case.instant, *range(0, len(case.amounts), _step(case))}):
+            stress = np.linalg.norm(_around(surface, case.amounts[instant], STRESSES), axis=1)
+            top = max(stress[~excluded].max(initial=0.0), LEAST * case.maxima.max())
+            values.append(stress)
+            allowed.append(STRESS * np.maximum(stress, LEAST * top))
+            allowed[-1][excluded] = np.inf
+        moved = _around(surface, case.amounts[case.instant], MOTIONS).reshape(len(x), -1)
+        values.append(moved)
+        allowed.append(np.full(moved.shape, MOVED * float(np.abs(moved).max())))
+    keep = kept | _corners(x, CLOSE * size) | _ends(excluded)
+    # What never acts allows nothing, and misses nothing.
+    within = np.concatenate(allowed, axis=1) + np.finfo(float).tiny
+    return needed(along, np.concatenate(values, axis=1), within, keep)
+
+
+def _step(case: SurfaceCase) -> int:
+    return max(1, len(case.amounts) // INSTANTS)
+
+
+def _around(surface: UnitSurface, amount: Floats, which: slice) -> Floats:
+    """Those of the eight numbers of the surface, (P, C, ANGLES), under amounts (K, 2)."""
+    turns = surface.n * np.linspace(0.0, 2.0 * np.pi, ANGLES, endpoint=False)[:, None]
+    c, s = np.cos(turns), np.sin(turns)
+    first, second = amount.T
+    eight = np.concatenate([surface.stress, surface.displacement], axis=1)[:, which]
+    even = np.array(surface.even)[which, None]
+    found = np.where(even, eight @ (c * first + s * second).T, eight @ (s * first - c * second).T)
+    return np.asarray(found)
+
+
+def _ends(mask: Mask) -> Mask:
+    """Points whose neighbour differs."""
+    differs = mask[1:] != mask[:-1]
+    return np.asarray(np.append(differs, False) | np.insert(differs, 0, False))
+
+
+def _corners(x: Floats, close: float) -> Mask:
+    """Points (P,) at which the meridian turns sharply; where it does so they come in pairs."""
+    step = np.diff(x, axis=0)
+    length = np.linalg.norm(step, axis=1)
+    found = np.zeros(len(x), dtype=bool)
+    for k in np.flatnonzero(length[1:-1] < close) + 1:
+        turn = step[k - 1] @ step[k + 1]
+        if turn < SHARP * length[k - 1] * length[k + 1]:
+            found[[k, k + 1]] = True
+    return found

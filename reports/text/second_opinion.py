@@ -1,0 +1,203 @@
+"""CalculiX's second opinion in sentences, and as tables on the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from fea.checks.opinions import (
+    SAME_DISPLACEMENT,
+    SAME_LOAD,
+    SAME_MAXIMUM,
+    SAME_MOMENT,
+    SAME_STRESS,
+    ContactOpinion,
+    Opinion,
+)
+from reports.data.results import Results, Units
+from reports.format.numbers import DASH, engineering
+from reports.tables.calculix import opinions_of
+from reports.text.chart_summary import percent
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+AGREES, DIFFERS, NOT_COMPARED = "agrees", "differs", "not compared"
+
+
+def outcome_of(opinion: Opinion) -> str:
+    """In one word or two."""
+    if opinion.failure:
+        return NOT_COMPARED
+    return DIFFERS if opinion.complaint else AGREES
+
+
+def sentences(opinion: Opinion, units: Units) -> list[str]:
+    """What CalculiX found for a row, and how it compares."""
+    if opinion.failure:
+        return [f"Not compared with CalculiX: {opinion.failure}."]
+    said = _contact(opinion, units) if opinion.contact else [_same_mesh(opinion, units)]
+    if opinion.complaint:
+        return [*said, f"Beyond the limits: {opinion.complaint}."]
+    return said
+
+
+def _same_mesh(o: Opinion, units: Units) -> str:
+    largest = f"{engineering(o.theirs)} {units.stress}"
+    return (
+        f"On our mesh of the solid model ({o.unknowns:,} unknowns) CalculiX's displacements differ "
+        f"from ours by {_small(o.displacement)} and its von Mises stresses by {_small(o.stress)} "
+        f"of the largest; its maximum there is {largest} ({_signed(o.deviation)} from the result)."
+    )
+
+
+def _contact(o: Opinion, units: Units) -> list[str]:
+    c = o.contact
+    assert c is not None
+    moment = f"{units.force}·{units.length}"
+    worst = max(c.bands, key=lambda band: band.elsewhere, default=None)
+    loads = ""
+    if worst is not None:
+        others = "; in the other lugs it is less" if len(c.bands) > 1 else ""
+        loads = (
+            f" Of the load of {worst.name} {percent(worst.elsewhere)} acts elsewhere along the lug "
+            f"according to CalculiX{others}."
+        )
+    said = [
+        f"CalculiX, with contact in three dimensions ({o.unknowns:,} unknowns): largest bending "
+        f"moment {engineering(c.moment)} {moment}, ours {engineering(c.our_moment)} "
+        f"({_signed(c.moment_difference)}); von Mises stress at the point of our maximum "
+        f"{engineering(o.theirs)} {units.stress}, ours {engineering(o.answer)} "
+        f"({_signed(o.deviation)}).{loads}",
+        _meshes(o, c),
+    ]
+    if c.tension:
+        said.append(
+            "CalculiX found tension in the contact and repeated an increment without load, which "
+            "makes its answer less accurate."
+        )
+    return said
+
+
+def _meshes(o: Opinion, c: ContactOpinion) -> str:
+    """Whether CalculiX's mesh explains the difference in stress."""
+    change, error, difference = abs(c.stress_change), o.own_error, abs(o.deviation or 0.0)
+    text = (
+        f"From its coarser mesh ({c.coarser:,} unknowns) to this one CalculiX's stress there "
+        f"changed by {percent(change)} and its moment by {percent(abs(c.moment_change))}; the "
+        f"error of our stress is estimated at {percent(error)}."
+    )
+    if difference > change + error:
+        return text + " The meshes do not explain the whole difference."
+    return text + (" Its mesh is the larger part of the difference." if change > error else "")
+
+
+def print_second_opinion(results: Results, console: Console) -> None:
+    """Print a table of the rows on the same mesh, one of those in contact, and a summary."""
+    from rich.text import Text
+
+    opinions, units = opinions_of(results), results.units
+    pressed = [o for o in opinions if o.contact or _in_lugs(results, o)]
+    others = [o for o in opinions if o not in pressed]
+    for rows, headings, cells in (
+        (others, _headings(units), _cells),
+        (pressed, _contact_headings(units), _contact_cells),
+    ):
+        if rows:
+            table = _table(headings)
+            for o in rows:
+                table.add_row(Text(o.pin, "bold"), Text(o.case), *cells(o), _word(o))
+            console.print()
+            console.print(table)
+    console.print(Text(summary(others, pressed)))
+
+
+def _in_lugs(results: Results, opinion: Opinion) -> bool:
+    return results[opinion.pin, opinion.case].joint is not None
+
+
+def _table(headings: Sequence[str]) -> Table:
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0), header_style="bold")
+    table.add_column("Pin", overflow="fold", min_width=3)
+    table.add_column("Case", overflow="fold", min_width=7)
+    for heading in (*headings, ""):
+        table.add_column(Text(heading), justify="right", no_wrap=True)
+    return table
+
+
+def _headings(units: Units) -> tuple[str, ...]:
+    return (
+        *("unknowns", "displace-\nments\ndiffer", "von Mises\nstresses\ndiffer"),
+        *(f"CalculiX's\nmaximum\n[{units.stress}]", f"result\n[{units.stress}]", "±", "ratio"),
+    )
+
+
+def _cells(o: Opinion) -> tuple[str, ...]:
+    same = str(o.unknowns or DASH), _small(o.displacement), _small(o.stress)
+    return (*same, *_stresses(o))
+
+
+def _contact_headings(units: Units) -> tuple[str, ...]:
+    return (
+        *("unknowns", f"CalculiX's\nmoment\n[{units.force}·{units.length}]", "over\nours"),
+        *("load\nelsewhere", f"stress at\nour point\n[{units.stress}]"),
+        *(f"result\n[{units.stress}]", "±", "ratio", "its mesh\nchanges it"),
+    )
+
+
+def _contact_cells(o: Opinion) -> tuple[str, ...]:
+    c = o.contact
+    if c is None:
+        return (*(DASH,) * 5, *_stresses(o)[1:], DASH)
+    moments = engineering(c.moment), engineering(1.0 + c.moment_difference, 3)
+    return (
+        *(str(o.unknowns), *moments, percent(c.elsewhere), *_stresses(o)),
+        percent(abs(c.stress_change)),
+    )
+
+
+def _stresses(o: Opinion) -> tuple[str, str, str, str]:
+    ratio = engineering(None if o.deviation is None else 1.0 + o.deviation, 3)
+    return engineering(o.theirs), engineering(o.answer), engineering(o.error, 2), ratio
+
+
+def _word(o: Opinion) -> Text:
+    from rich.text import Text
+
+    word = outcome_of(o)
+    return Text(word, {AGREES: "green", DIFFERS: "red", NOT_COMPARED: "yellow"}[word])
+
+
+def _small(value: float | None) -> str:
+    return DASH if value is None else f"{value:.0e}"
+
+
+def _signed(value: float | None) -> str:
+    return DASH if value is None else f"{100.0 * value:+.1f} %"
+
+
+def summary(others: Sequence[Opinion], pressed: Sequence[Opinion]) -> str:
+    """The number of rows in which CalculiX agrees, and the limits."""
+    every = (*others, *pressed)
+    if not every:
+        return "Second opinion: no row was solved, so CalculiX was not run."
+    agree = sum(not o.complaint for o in every)
+    text = f"Second opinion: CalculiX agrees in {agree} of {len(every)} rows."
+    if others:
+        text += (
+            f" Limits: on the same mesh, {SAME_DISPLACEMENT:.0e} of the largest displacement and "
+            f"{SAME_STRESS:.0e} of the largest von Mises stress; its maximum, from that mesh only, "
+            f"{SAME_MAXIMUM:.0%} plus the error from our result."
+        )
+    if pressed:
+        text += (
+            f" Limits for contact: {SAME_MOMENT:.0%} of the largest bending moment and "
+            f"{SAME_MAXIMUM:.0%} of the stress at the point of our maximum, each plus the error; "
+            f"{SAME_LOAD:.0%} of the load of a lug elsewhere along it."
+        )
+    return text

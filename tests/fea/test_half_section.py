@@ -1,0 +1,56 @@
+"""What a pin shows when it is cut open, beside what its fields have on the same meridian."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fea.core.material import Material
+from fea.core.pin_loads import PinLoads
+from fea.core.voigt import von_mises
+from fea.harmonic.evaluate import HarmonicAnswer
+from fea.harmonic.half_section import MeridianPlane
+from fea.harmonic.superposition import Circumference
+from fea.solve_pin import Asked, solve_pin
+from geometry import Pin, Segment
+
+ANGLE = 0.7
+LOADS = PinLoads("c", ("P1",), np.array([[[500.0, 200.0, -900.0]]]))
+
+
+@pytest.fixture(scope="module")
+def plane() -> MeridianPlane:
+    """A tube with a head and a bore that ends at half its length."""
+    segments = (
+        Segment(0.02, 0.03, 0.01, "head"),
+        Segment(0.02, 0.02, 0.01),
+        Segment(0.02, 0.02, 0.0, "P1", "P1"),
+    )
+    steel = Material("steel", 200e9, 0.3)
+    asked = Asked(model="harmonic", meshes=1)
+    (found,) = solve_pin(Pin("p", segments), steel, ("start",), (LOADS,), asked)
+    assert isinstance(found.answer, HarmonicAnswer)
+    return MeridianPlane(found.answer.fields, found.answer.singularities)
+
+
+def test_walls_are_those_of_the_profile(plane: MeridianPlane) -> None:
+    inner, outer = plane.walls(np.array([0.0, 0.01, 0.03, 0.05, 0.06]))
+    assert inner == pytest.approx([0.005, 0.005, 0.005, 0.0, 0.0])
+    assert outer == pytest.approx([0.015, 0.015, 0.01, 0.01, 0.01])
+
+
+def test_stress_at_nodes_is_that_of_the_fields(plane: MeridianPlane) -> None:
+    fields = plane.fields
+    rows = np.arange(fields.skin, len(fields.displacement))[::7]
+    found = plane.von_mises(LOADS, 0, ANGLE, fields.points[rows])
+    around, first = Circumference(fields, LOADS), np.zeros(len(rows), dtype=np.int64)
+    for side, theta in zip(found, (ANGLE, ANGLE + np.pi), strict=True):
+        assert side == pytest.approx(
+            von_mises(around.stress(rows, first, np.full(len(rows), theta))), rel=1e-9
+        )
+    assert found[0] != pytest.approx(found[1], rel=1e-3)  # axial force and bending
+
+
+def test_zones_are_marked(plane: MeridianPlane) -> None:
+    corner = np.array([[[0.01, 0.02], [0.008, 0.03]]])
+    assert plane.outside(corner).tolist() == [[False, True]]
