@@ -56,10 +56,7 @@ class MeridianPlane:
         and of the one opposite to it.
         """
         rows = np.arange(len(self.fields.displacement))
-        around, instants = Circumference(self.fields, loads), np.full(len(rows), instant)
-        sides = [
-            von_mises(around.stress(rows, instants, np.full(len(rows), theta)))
-            for theta in (angle, angle + np.pi)
-        ]
-        found = LinearNDInterpolator(self._between, np.stack(sides, axis=1))(points)
+        angles = np.array([angle, angle + np.pi])
+        sides = von_mises(Circumference(self.fields, loads).stress(rows, instant, angles))
+        found = LinearNDInterpolator(self._between, sides)(points)
         return np.asarray(np.moveaxis(found, -1, 0))

@@ -21,7 +21,7 @@ from fea.core.equilibrium import out_of_balance
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.over_time import Between
-from fea.core.peak import Note, Peak
+from fea.core.peak import Note, Peak, decides
 from fea.core.pin_loads import Floats, PinLoads
 from fea.harmonic.evaluate import HarmonicAnswer, harmonic_solution
 from fea.joint.cell_pressure import CellPressure
@@ -87,12 +87,22 @@ def solve_in_lugs(
         near = near or contact.near(asked)
         contact.follow(near)
         compared = contact.compared(near, asked)
-        fine = all(x.fine(given.material, asked) for x in compared.values())
-        if fine or finer is None or _count(model, finer) > MOST_CELLS:
+        last = finer is None or _count(model, finer) > MOST_CELLS
+        if not last and not all(x.fine(given.material, asked) for x in compared.values()):
+            continue
+        found = contact.solved(compared, asked, progress)
+        if last or all(_enough(x.solution.peak, given.material, asked) for x in found.values()):
             break
-    found = contact.solved(compared, asked, progress)
     failed = {case: _failed(given, case, why) for case, why in contact.failed.items()}
     return tuple((found | failed)[case.case] for case in given.cases)
+
+
+def _enough(peak: Peak, material: Material, asked: Asked) -> bool:
+    """Whether finer cells would not decide the required factor either, or it is not asked for."""
+    strength, required = material.yield_strength, asked.required
+    if asked.goal == "value" or strength is None or required is None:
+        return True
+    return peak.verdict == "singular" or decides(peak, strength / required) is not None
 
 
 def _count(model: JointModel, cells: Cells) -> int:

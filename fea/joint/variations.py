@@ -50,12 +50,11 @@ class Comparison:
         uncertain anyway, or the required factor is decided.
         """
         low, high = self.interval
-        apart = (high - low) / 2.0 / self.largest
-        if self.cells <= max(CELLS * asked.tolerance, APART * apart):
+        apart = APART * (high - low) / 2.0 / self.largest
+        if self.cells <= max(CELLS * asked.tolerance, apart * (asked.goal == "value")):
             return True
-        return decided(
-            asked, material, low * (1.0 - self.cells) / FIRST, high * (1.0 + self.cells) * FIRST
-        )
+        factor = FIRST * (1.0 + self.cells)
+        return decided(asked, material, low / factor, high * factor)
 
     def range(self, largest: float) -> JointRange:
         """Over the joint, of a maximum in Pa."""

@@ -135,7 +135,8 @@ def _courses(task: Task, loads: PinLoads) -> tuple[LoadCourse, ...]:
 def _pressed(case: SurfaceCase, points: Floats, pressure: CellPressure | None) -> SurfaceCase:
     if pressure is None:
         return case
-    return replace(case, rings=pressure.rings(points), pressure=pressure.pressure)
+    rings = pressure.rings(points)
+    return replace(case, rings=rings, pressure=pressure.pressure, first=pressure.angle)
 
 
 def _own(case: SurfaceCase, solution: Solution, points: Floats) -> Mask:

@@ -182,6 +182,7 @@ def _pressure(case: SurfaceCase) -> dict[str, Any] | None:
         return None
     return {
         "sectors": case.pressure.shape[1],
+        "first": case.first,
         "largest": float(case.pressure.max()),
         "rings": _packed(case.rings, "<i2"),
         "cells": _packed(case.pressure, "<f4"),

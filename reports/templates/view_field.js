@@ -105,10 +105,10 @@ const sectionOf = (data) => {
 };
 
 // Contact pressure of all vertices at the governing instant of a case.
-const pressing = (surface, { start, pressure: { sectors, rings, cells } }) => {
+const pressing = (surface, { start, pressure: { sectors, first, rings, cells } }) => {
   const turns = angles(surface, start);
   return Float32Array.from({ length: surface.count * surface.around }, (_, v) => {
-    const ring = rings[Math.floor(v / surface.around)], sector = Math.round((turns[v % surface.around] * sectors) / (2 * Math.PI));
+    const ring = rings[Math.floor(v / surface.around)], sector = Math.round(((turns[v % surface.around] - first) * sectors) / (2 * Math.PI));
     return ring < 0 ? 0 : cells[ring * sectors + (((sector % sectors) + sectors) % sectors)];
   });
 };

@@ -262,18 +262,18 @@ bushing = { thickness = 2, material = "bronze" }
     assert "bending" in {c.name for c in found.hand_checks}
 
 
-def test_every_case_in_contact_has_its_own_surface(tmp_path: Path) -> None:
-    """Cases have other patterns of pressure, so that unit fields of one say nothing of another: at
-    the angle of the maximum each surface has the stress that its case has there.
+def test_cases_in_contact_share_a_surface(tmp_path: Path) -> None:
+    """All cases of a pin are solved on the same meshes: at the angle of its maximum the surface has
+    the stress that each case has there.
     """
     path = study(tmp_path, "lug.M = {}")
     more = '[case.push]\nkind = "given"\nforces = { L = [0, -9e3], M = [0, 1e4], R = [0, -1e3] }\n'
     path.write_text(path.read_text().replace("[pin.P]", f"{more}\n[pin.P]"))
     found = run(load_study(path))
-    assert [[c.case for c in s.cases] for s in found.surfaces] == [["pull"], ["push"]]
+    (surface,) = found.surfaces
+    assert [case.case for case in surface.cases] == ["pull", "push"]
     turns = np.linspace(0.0, 2.0 * np.pi, 361)
-    for surface in found.surfaces:
-        (case,) = surface.cases
+    for case in surface.cases:
         first, second = case.amounts[case.instant].T
         even, n = np.array(surface.even[:5]), surface.n[:, None]
         c, s = np.cos(n * turns), np.sin(n * turns)
