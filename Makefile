@@ -18,7 +18,7 @@ PORTABLE = $(addprefix tests/pinstress/test_,portable.py workers.py output.py re
 	$(addprefix tests/fea/test_,linear.py memory.py) tests/loads/test_regular_file.py
 
 # Status 1 means: done, but a requested accuracy was not reached (printed last).
-demo: setup ## run studies/grenier2008.toml and tell where its report is
+demo: setup ## run studies/grenier2008.toml and print the path of its report
 	@status=0; PINSTRESS_CACHE=build/cache $(BIN)/pinstress run studies/grenier2008.toml || status=$$?; \
 	if [ $$status -gt 1 ]; then exit $$status; fi
 
@@ -38,7 +38,7 @@ test-browser: setup ## run the tests of the report in Chromium, which root gets 
 		chromium chromedriver
 	$(BIN)/python -m pytest -m browser $(ARGS)
 
-test-peers: setup ## run the tests beside CalculiX, which root gets installed
+test-peers: setup ## run the comparisons with CalculiX, which root gets installed
 	@sh scripts/tools.sh test-peers CalculiX calculix-ccx ccx
 	$(BIN)/python -m pytest -m peers $(ARGS)
 
@@ -70,7 +70,7 @@ docs: setup ## build the documentation into build/docs; a warning is an error
 COMPILE = $(LOCKBIN)/uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest \
 	--generate-hashes --no-emit-index-url --no-annotate --custom-compile-command "make lock" $(LOCKFLAGS)
 
-# The second file has what the benchmarks need besides, in versions that go with the first.
+# The second file has the additional packages of the benchmarks, in versions compatible with the first.
 lock: ## bring the lock files up to pyproject.toml; LOCKFLAGS=--upgrade takes the newest of all
 	@test -x $(LOCKBIN)/uv || { python3 -m venv .venv-lock && $(LOCKBIN)/pip install --quiet uv; }
 	$(COMPILE) --extra dev --output-file requirements.lock pyproject.toml

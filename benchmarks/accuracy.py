@@ -1,4 +1,4 @@
-"""How right the solid model's peak in a fillet is, beside that of a far finer section."""
+"""Accuracy of the solid model's peak in a fillet, compared with that of a much finer section."""
 
 from __future__ import annotations
 

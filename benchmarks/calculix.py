@@ -1,4 +1,4 @@
-"""The solid model beside CalculiX (C3D10, SPOOLES) on the same meshes, nodal forces and supports.
+"""The solid model and CalculiX (C3D10, SPOOLES) on the same meshes, nodal forces and supports.
 
 Both integrate with the same four points, so displacements agree but for the digits that CalculiX
 prints. Its stresses at the nodes are averages of extrapolated values; ours are then corrected on
@@ -74,7 +74,7 @@ def calculix() -> str:
             "processes, ours with Python's start and its libraries:",
             ratios("CalculiX", costs),
             "The same peak by the harmonic model; times of solids are without meshing. The last "
-            "column is beside its first mesh that is at least as right:",
+            "column is relative to its first mesh that is at least as accurate:",
             beside([row for p in pairs for row in _errors(p)]),
         )
     )

@@ -15,7 +15,7 @@ from fea.core.linear_solver import factorize
 from fea.core.material import Material
 from fea.core.pin_loads import UnitLoad
 from fea.solid.assembly import Discretisation
-from fea.solid.boundary import SurfaceMesh, held_nodes, surface
+from fea.solid.boundary import SurfaceMesh, clamped_nodes, surface
 from fea.solid.nodal_loads import Unit, nodal_loads
 from fea.solid.stress_recovery import nodal_stress, with_known_traction
 from geometry import Pin, Segment
@@ -49,7 +49,7 @@ class Loaded:
     def __init__(self, mesh: MeshTet2) -> None:
         self.space = Discretisation(mesh)
         self.boundary: SurfaceMesh = surface(self.space)
-        self.held: Ints = held_nodes(self.space, (CLAMP,))
+        self.held: Ints = clamped_nodes(self.space, (CLAMP,))
         loads = nodal_loads(PIN, STEEL, self.space, self.boundary, ALONG_Y)
         self.traction: Floats = FORCE * loads.traction
         self.forces: Floats = FORCE * loads.forces[..., 0]

@@ -33,7 +33,7 @@ def growth() -> str:
         ]),
     ]  # fmt: skip
     head = ("model", "stage", "unknowns", "s", "unknowns", "s", "time ~")
-    return f"Least of {RUNS} runs; powers fitted over all meshes:\n\n{table(head, rows)}"
+    return f"Minimum of {RUNS} runs; exponents fitted over all meshes:\n\n{table(head, rows)}"
 
 
 Timed = tuple[int, list[float]]

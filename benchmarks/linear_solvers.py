@@ -51,9 +51,9 @@ def linear_solvers() -> str:
         found = dict(zip(NAMES, pool.map(partial(_row, counts, files), NAMES), strict=True))
     return "\n\n".join(
         (
-            f"Factoring and {_RIGHT_HAND_SIDES} right-hand sides, s (MB above the matrix); a "
-            f"point is given up after {SECONDS:.0f} s or {GIGABYTES:.0f} GB, or not begun where "
-            f"the two before it foretell half as much again; {ABREAST} at a time, one thread each:",
+            f"Factoring and {_RIGHT_HAND_SIDES} right-hand sides, s (MB above the matrix); "
+            f"limits {SECONDS:.0f} s and {GIGABYTES:.0f} GB; cases expected to take half as much "
+            f"again from the two before are not run; {ABREAST} at a time, one thread each:",
             table(
                 ("unknowns", *(f"{n:,}" for n in counts), "time ~", "memory ~"),
                 [
@@ -79,7 +79,7 @@ def _row(counts: list[int], files: list[Path], name: str) -> list[Point]:
 
 
 def _hopeless(counts: list[int], row: list[Point]) -> bool:
-    """Whether a smaller size was over the limit, or the last two foretell half as much again."""
+    """Whether a smaller size was over the limit, or the last two predict half as much again."""
     if OVER in row:
         return True
     if len(row) < 2 or any(isinstance(point, str) for point in row):
@@ -124,11 +124,11 @@ def _matrix(across: float, file: Path) -> dict[str, float]:
     """Write the matrix of a cantilever with a fillet, and the nodes of its unknowns."""
     from benchmarks.speed import PIN, STEEL
     from fea.solid.assembly import Discretisation
-    from fea.solid.boundary import held_nodes
+    from fea.solid.boundary import clamped_nodes
     from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 
     space = Discretisation(solid_mesh(PIN, MeshSize(across, arc=1.5)).mesh)
-    fixed = (3 * held_nodes(space, ("start",))[:, None] + np.arange(3)).ravel()
+    fixed = (3 * clamped_nodes(space, ("start",))[:, None] + np.arange(3)).ravel()
     free = np.setdiff1d(np.arange(space.unknowns), fixed)
     K = space.stiffness(STEEL)[free][:, free]
     np.savez(file, data=K.data, indices=K.indices, indptr=K.indptr, free=free, nodes=space.nodes)

@@ -1,5 +1,5 @@
 """What choices of the model are worth, on the floating pins of the landing gear with fillets:
-how they are held, how links press on them, Fourier terms of that pressure, instants of the motion.
+their supports, how links press on them, Fourier terms of that pressure, instants of the motion.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from pinstress.model.cases import CaseLoads
 from pinstress.model.pins import material
 from pinstress.model.tasks import Task
 
-STUDY = Path(__file__).parent.parent / "studies" / "grenier2008_improved.toml"
+STUDY = Path(__file__).parent.parent / "studies" / "landing_gear.toml"
 CASE = "retract"
 PUBLISHED = {"C": "C2", "E": "E1", "F": "F1", "G": "G3", "J": "J3"}  # bands clamped there
 TERMS = (1, 2, 4, 6, 8, 10, 12)
@@ -61,8 +61,8 @@ def holding() -> str:
     head = ("pin", "clamped, uniform", "balanced, uniform", "balanced, pressure")
     return "\n\n".join(
         (
-            "Largest von Mises stress of the retraction, MPa; of singular ones that outside the "
-            "excluded zones. The ratios are to the last way:",
+            "Largest von Mises stress of the retraction, MPa; for singular ones outside the "
+            "excluded zones. The ratios are relative to the balanced pin with bearing pressure:",
             table((*head, "clamped / pressure", "uniform / pressure"), rows),
         )
     )
@@ -101,7 +101,9 @@ def instants() -> str:
         among = solution.fields.outside(singularities)
         *few, true = (Circumference(solution.fields, loads).top(among).value for loads in cases)
         rows.append((name, *(f"{100.0 * (value / true - 1.0):+.3f}" for value in few)))
-    told = f"Error of the maximum over the retraction beside that of {TRUE_INSTANTS} instants, %:"
+    told = (
+        f"Error of the maximum over the retraction relative to that of {TRUE_INSTANTS} instants, %:"
+    )
     return f"{told}\n\n{table(('pin', *map(str, INSTANTS)), rows)}"
 
 

@@ -43,12 +43,11 @@ def models() -> str:
         rows.append((f"`{study}`", *_row(_once_more(found, jobs), further)))
     head = ("study", "beam", "its error", "harmonic", "solid", "solid / harmonic", "memory")
     return (
-        f"Time (and memory above the bare process) of an error of {percent(TOLERANCE)}, read "
-        "between the meshes: medians of five runs, of the harmonic model before and after the "
-        "solids, of the solid model one run where it is not drawn; of its elements the curved "
-        f"ones, of `{PINS[DRAWN][0]}`, which is drawn, the fastest kind. Where it does not stay "
-        "within that error, what its finest mesh takes, and how far that is off:\n\n"
-        + table(head, rows)
+        f"Time (and memory above the bare process) for an error of {percent(TOLERANCE)}, "
+        "interpolated between meshes: medians of five runs, of one run for solid models without a "
+        f"chart. Solid elements are the curved ones, for `{PINS[DRAWN][0]}` (in the chart) the "
+        f"fastest kind. Where a model does not reach {percent(TOLERANCE)}, the table has the time "
+        "and the error of its finest mesh:\n\n" + table(head, rows)
     )
 
 

@@ -18,8 +18,7 @@ from pinstress.schema.cases import LegCase
 from reports.data.results import Results
 from reports.format import markdown
 from reports.format.numbers import engineering, ratio
-from reports.tables.published_reactions import published_reactions
-from reports.tables.published_values import published_table
+from reports.tables.published import published_reactions, published_table
 
 ROOT = Path(__file__).parent.parent
 STUDIES = ROOT / "studies"

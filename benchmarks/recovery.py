@@ -45,9 +45,9 @@ def recovery() -> str:
         "with the known traction, %",
     )
     return (
-        "Peak at a fillet in bending beside that of a far finer section. On a section the known "
-        "traction goes with strains along the surface, on a solid with a correction:\n\n"
-        + table(head, rows)
+        "Peak at a fillet in bending compared with that of a much finer section mesh. The known "
+        "traction is used on a section together with the strains along the surface, on a solid as "
+        "a correction:\n\n" + table(head, rows)
     )
 
 

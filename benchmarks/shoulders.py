@@ -1,5 +1,5 @@
-"""Shoulder fillets: peaks of the harmonic model beside a far finer mesh and Peterson's charts, and
-how long they take.
+"""Shoulder fillets: peaks of the harmonic model compared with a far finer mesh and
+Peterson's charts, and how long they take.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmarks.random_pins import STEEL
+from benchmarks.timing import table
 from fea.beam.stress_concentration import BENDING, TENSION, TORSION, shoulder_factor
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.voigt import TENSOR
@@ -102,12 +103,7 @@ def _peaks(pin: Pin, fields: MeridianFields, case: PinLoads) -> tuple[float, flo
 def shoulders() -> str:
     """The table."""
     run(shoulder(*SHAPES[0]), QUICK)  # libraries loaded
-    lines = [
-        "largest von Mises stress at the fillet over the nominal stress; errors in % of a mesh of",
-        "ten times the unknowns; K: first principal stress, beside Peterson's (Pilkey's fit)",
-    ]
-    head = "  ".join(f"{k:>8} {'err':>6} {'quick':>6} {'K':>6} {'K/Pet.':>6}" for k in KINDS)
-    lines.append(f"{'D/d':>5} {'r/d':>7} {'unkn.':>6} {'ms':>5}  {head}")
+    lines = []
     worst, quick_worst, times = 0.0, 0.0, []
     alone: list[float] = []
     for shape in SHAPES:
@@ -118,22 +114,31 @@ def shoulders() -> str:
         worst, quick_worst = max(worst, *np.abs(error)), max(quick_worst, *np.abs(rough))
         times.append(quick.seconds)
         alone += [min(run(pin, QUICK, (kind,)).seconds for _ in range(RUNS)) for kind in KINDS]
-        cells = []
-        for k in range(len(KINDS)):
+        for k, kind in enumerate(KINDS):
             chart = shoulder_factor(CHARTS[k], shape[0] * D, D, shape[1] * D)
-            nominal = finest.principal[k]
-            beside = "     -" if chart is None else f"{nominal / chart:6.3f}"
-            cells.append(
-                f"{finest.von_mises[k]:8.4f} {error[k]:6.2f} {rough[k]:6.2f} "
-                f"{nominal:6.3f} {beside}"
+            factor = finest.principal[k]
+            lines.append(
+                (
+                    kind,
+                    str(shape[0]),
+                    str(shape[1]),
+                    f"{finest.von_mises[k]:.3f}",
+                    f"{error[k]:+.2f}",
+                    f"{rough[k]:+.2f}",
+                    f"{factor:.3f}",
+                    "" if chart is None else f"{factor / chart:.3f}",
+                )
             )
-        lines.append(
-            f"{shape[0]:5} {shape[1]:7} {quick.unknowns:6} {1e3 * quick.seconds:5.0f}  "
-            + "  ".join(cells)
-        )
-    lines += [
-        f"largest error: {worst:.2f} % (err), {quick_worst:.2f} % (quick)",
-        f"quick mesh, meshing included, median: all three loads {1e3 * np.median(times):.0f} ms, "
-        f"one of them (least of {RUNS} runs) {1e3 * np.median(alone):.0f} ms",
-    ]
-    return "\n".join(lines)
+    head = (
+        "load", "D/d", "r/d", "von Mises / nominal", "error [%]", "error, coarse mesh [%]",
+        "K_t", "K_t / Peterson",
+    )  # fmt: skip
+    return (
+        "Largest von Mises stress at the fillet over the nominal stress; errors relative to a mesh "
+        "of ten times the unknowns; K_t from the first principal stress, and over Peterson's "
+        "(Pilkey's fit).\n\n"
+        + table(head, sorted(lines, key=lambda line: KINDS.index(line[0])))
+        + f"\n\nLargest error {worst:.2f} %, on the coarse mesh {quick_worst:.2f} %. Median time "
+        f"of the coarse mesh, meshing included: {1e3 * np.median(times):.0f} ms for all three "
+        f"loads, {1e3 * np.median(alone):.0f} ms for one (least of {RUNS} runs)."
+    )

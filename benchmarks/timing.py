@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 from collections.abc import Callable, Iterable
 
@@ -22,13 +23,19 @@ def seconds(work: Callable[[], object], runs: int = 3) -> float:
 
 
 def table(head: tuple[str, ...], rows: Iterable[tuple[object, ...]]) -> str:
-    """A Markdown table."""
-    lines = [head, tuple("---" for _ in head), *rows]
-    return "\n".join("| " + " | ".join(_text(c) for c in line) + " |" for line in lines)
+    """A Markdown table; columns of numbers are aligned to the right."""
+    body = [[_text(c) for c in row] for row in rows]
+    columns = zip(*body, strict=True) if body else [()] * len(head)
+    rule = ["---:" if any(c) and all(map(_numeric, c)) else "---" for c in columns]
+    return "\n".join("| " + " | ".join(line) + " |" for line in [head, rule, *body])
 
 
 def _text(cell: object) -> str:
     return f"{cell:.3g}" if isinstance(cell, float) else str(cell)
+
+
+def _numeric(cell: str) -> bool:
+    return not cell or bool(re.fullmatch(r"[-+−]?\d[\d.,]*(e[-+]?\d+)?%?|nan|-", cell))
 
 
 def power(size: Floats, cost: Floats) -> float:

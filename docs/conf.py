@@ -25,19 +25,12 @@ add_module_names = False
 html_math_renderer = "mathml"
 html_title = "pinstress"
 html_static_path = ["static"]
-html_css_files = ["wide.css"]
+html_css_files = ["tables.css"]
+html_theme = "furo"
 html_theme_options = {
-    "description": "Stresses and safety factors of the pins of a linkage",
-    "fixed_sidebar": True,
-    "globaltoc_maxdepth": 2,
-    "sidebar_collapse": True,
-    "page_width": "1000px",
-    "sidebar_width": "230px",
-    "body_max_width": "auto",
-    "font_family": "system-ui, sans-serif",
-    "head_font_family": "system-ui, sans-serif",
-    "show_powered_by": False,
+    "navigation_with_keys": True,
+    "light_css_variables": {"font-stack": "system-ui, sans-serif"},
+    "dark_css_variables": {"font-stack": "system-ui, sans-serif"},
 }
-html_sidebars = {"**": ["about.html", "searchfield.html", "navigation.html"]}
 html_copy_source = False
 html_show_copyright = False

@@ -17,7 +17,7 @@ from packaging.requirements import Requirement
 ROOT = Path(__file__).parent.parent
 PAGE = ROOT / "docs" / "licences.md"
 LOCKS = ("requirements.lock", "requirements-bench.lock")
-RUN, BESIDES = "to run", "to develop"
+RUN, DEVELOP = "to run", "to develop"
 OLDEST = {"extra": "", "python_version": "3.11", "python_full_version": "3.11.0"}
 # Only for other systems than Linux; as the metadata of their wheels say.
 ELSEWHERE = {
@@ -31,7 +31,7 @@ IN_FILES = {"cvxopt": "GPL-3.0-or-later"}  # whose metadata refer to the file th
 HEAD = """# Licences of dependencies
 
 pinstress is GPL-3.0-or-later. `make setup` installs the packages of `requirements.lock`, benchmarks
-those of `requirements-bench.lock`, each under its own licence, as its metadata name it; none is
+those of `requirements-bench.lock`, each under its own licence, as stated in its metadata; none is
 part of pinstress. `tests/browser/axe/` has a copy of axe-core with its licence (MPL-2.0).
 `python -m docs.licences` writes this page.
 
@@ -49,7 +49,7 @@ def locked() -> dict[str, str]:
     return dict(sorted(found.items()))
 
 
-def told() -> dict[str, tuple[str, str, str]]:
+def recorded() -> dict[str, tuple[str, str, str]]:
     """Version, licence and need of every package on the page."""
     if not PAGE.is_file():
         return {}
@@ -73,7 +73,7 @@ def licence(name: str) -> str | None:
 
 
 def needed(lines: Iterable[str], done: set[str]) -> set[str]:
-    """Names of the packages that requirements ask for on Linux, and of what these ask for."""
+    """Names of the packages that requirements need on Linux, and of what these need."""
     for requirement in map(Requirement, lines):
         name = re.sub(r"[-_.]+", "-", requirement.name).lower()
         if name in done or not (requirement.marker is None or requirement.marker.evaluate(OLDEST)):
@@ -89,13 +89,13 @@ def needed(lines: Iterable[str], done: set[str]) -> set[str]:
 def page() -> str:
     """The whole page."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    before, run = told(), needed(project["dependencies"], set())
+    before, run = recorded(), needed(project["dependencies"], set())
     rows = []
     for name, version in locked().items():
         known = licence(name) or before.get(name, ("", "", ""))[1]
         if not known:
             raise SystemExit(f"{name}: its licence is not known; install it, or name it here")
-        rows.append(f"| {name} | {version} | {known} | {RUN if name in run else BESIDES} |")
+        rows.append(f"| {name} | {version} | {known} | {RUN if name in run else DEVELOP} |")
     return HEAD + "\n".join(rows) + "\n"
 
 

@@ -1,8 +1,8 @@
-"""Pages that show a terminal: what they say is typed is typed, what they say is printed compared.
+"""Pages that show a terminal: their commands are run, and their output is compared.
 
-In a page's ```toml blocks the first line is `# FILE`, or `# FILE, continued`; in its ```console
-blocks lines after `$ ` are commands, the others what they print on stdout and then on stderr, where
-`...` stands for any lines. Numbers may differ by a hundredth, and round-off by more.
+In a page's ```toml and ```python blocks the first line is `# FILE`, or `# FILE, continued`; in its
+```console blocks lines after `$ ` are commands, the others what they print on stdout and then on
+stderr, where `...` stands for any lines. Numbers may differ by a hundredth, and round-off by more.
 
     python -m docs.sessions docs/tutorial.md
 
@@ -21,11 +21,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-BLOCK = re.compile(r"^```(toml|console)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+BLOCK = re.compile(r"^```(toml|python|console)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 FILE = re.compile(r"# (?P<name>[\w.-]+)(?P<more>, continued)?$")
 NUMBER = re.compile(r"[-−]?\d[\d,]*\.?\d*(?:e[-+]?\d+)?")
 CLOSE, ROUND_OFF = 0.01, 1e-12
-OTHERS = ("sed", "ls", "echo")  # commands that may be shown besides pinstress
+PROGRAMS = {"pinstress": (sys.executable, "-m", "pinstress"), "python": (sys.executable,)}
+OTHERS = ("sed", "ls", "echo")  # other commands that may be shown
 
 
 @dataclass(frozen=True)
@@ -51,13 +52,13 @@ def play(page: str, folder: Path) -> Iterator[Played]:
     """Write the files of a page into a folder and run its commands there, in the page's order."""
     last = 0
     for block in BLOCK.finditer(page):
-        if block[1] == "toml":
+        if block[1] != "console":
             _write(block[2], folder)
             continue
         for step in _steps(block):
             words = shlex.split(step.command)
-            if words[0] == "pinstress":
-                words = [sys.executable, "-m", *words]
+            if words[0] in PROGRAMS:
+                words = [*PROGRAMS[words[0]], *words[1:]]
             elif words[0] not in OTHERS:
                 raise ValueError(f"a page may not run {words[0]}")
             words = [str(last) if word == "$?" else word for word in words]

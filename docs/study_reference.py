@@ -137,7 +137,7 @@ def _written(section: Section, anchors: dict[str, str]) -> str:
         "",
         " ".join(table.get("description", "").split()),
         "",
-        "| key | takes | default | is |",
+        "| key | type | default | description |",
         "| --- | --- | --- | --- |",
     ]
     for key, value in table["properties"].items():

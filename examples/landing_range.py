@@ -4,7 +4,7 @@ import numpy as np
 
 import pinstress
 
-study = pinstress.load_study(pinstress.shipped_studies()["grenier2008_improved"])
+study = pinstress.load_study(pinstress.shipped_studies()["landing_gear"])
 results = pinstress.run(study, pins=["F", "G", "J"], cases=["landing"])
 
 force = results.landing[0].force

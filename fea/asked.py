@@ -1,4 +1,4 @@
-"""What is requested of a pin, when it is answered, and why by which model."""
+"""Requirements on a pin's solution, when they are met, and the reason for the model."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ DECIDED = "its error does not affect whether the required factor is reached"
 
 @dataclass(frozen=True)
 class Asked:
-    """What is wanted: the maximum to a `tolerance`, or (goal "decide") only on which side of the
-    `required` factor of safety it is. distance: of the local diameter, that is excluded at corners
-    and edges of clamps. meshes: at most so many, as the model has it by default. memory: MB that a
-    mesh may take, by default most of what is free. because: why by this model and no smaller one,
-    where that is not this package's choice.
+    """Requirements on a solution: the maximum to a `tolerance`, or (goal "decide") only whether the
+    `required` safety factor is met. distance: excluded distance around singularities, as a fraction
+    of the local diameter. meshes: maximum number of meshes, by default that of the model. memory:
+    limit for a mesh in MB, by default most of the free memory. because: reason for the model, where
+    this package does not choose it.
     """
 
     tolerance: float = 0.02

@@ -1,4 +1,4 @@
-"""One mesh of one model, from the mesh to the maximum, for whoever compares models.
+"""One mesh of one model, from the mesh to the maximum, for comparisons of models.
 
 All models leave out the same singularities, those at edges of loads included: what they say differs
 by the models and their meshes alone. A harmonic mesh is the one that `fea.solve_pin` makes at that
@@ -58,8 +58,8 @@ def result_on(problem: Problem, rung: Rung, before: tuple[MeshResult, ...] = ())
     """The maximum on one mesh. before: the mesh result of the harmonic model at the level below,
     where a run has one, by which it decides how fine its elements at singularities are.
 
-    Raises: MeshError, SolveError; ValueError for a beam or section of what is no body of revolution
-    and for loads that a beam cannot take.
+    Raises: MeshError, SolveError; ValueError for a beam or section of a pin that is not a body of
+    revolution and for loads that a beam cannot take.
     """
     pin, material, clamps, loads = problem.pin, problem.material, problem.clamps, problem.loads
     if rung.model == "solid":

@@ -89,8 +89,8 @@ def solve_pin(
             "auto or solid",
             "not-axisymmetric",
         )
-    held = tuple(pin.surface(name) for name in clamps)
-    job = _Job(pin, material, held, asked, progress, between)
+    constrained = tuple(pin.surface(name) for name in clamps)
+    job = _Job(pin, material, constrained, asked, progress, between)
     balances = {} if clamps else {c.case: out_of_balance(pin, c, material.density) for c in cases}
     shares = {case: imbalance(pin, balance) for case, balance in balances.items()}
     notes = {case: _reacted(share) for case, share in shares.items() if share}
@@ -122,7 +122,7 @@ def solve_pin(
 class _Job:
     pin: PinLike
     material: Material
-    held: tuple[str, ...]
+    constrained: tuple[str, ...]
     asked: Asked
     progress: Progress
     between: Mapping[str, Between]
@@ -165,7 +165,7 @@ def singularities_of(
 
 
 def _singularities(job: _Job, cases: tuple[PinLoads, ...]) -> tuple[Singularity, ...]:
-    return singularities_of(job.pin, job.material, job.held, cases, job.asked.distance)
+    return singularities_of(job.pin, job.material, job.constrained, cases, job.asked.distance)
 
 
 def _beam(
@@ -203,11 +203,11 @@ def _because(peak: Peak, why: Note) -> Peak:
 
 def _by_beam(job: _Job, pin: Pin, case: PinLoads, notes: dict[str, Note]) -> Solution:
     start, rise = time.perf_counter(), 0.0
-    answer = BeamAnswer(pin, job.material, job.held, case)
+    answer = BeamAnswer(pin, job.material, job.constrained, case)
     if between := job.between.get(case.case):
         case = through_time(answer, case, between, job.asked.tolerance)
         rise = rise_between(answer, case, between)
-        answer = BeamAnswer(pin, job.material, job.held, case)
+        answer = BeamAnswer(pin, job.material, job.constrained, case)
     instant, spent = answer.estimate.instant, time.perf_counter() - start
     peak = answer.peak(job.asked.tolerance, spent, notes.get(case.case, NOTHING), rise)
     return Solution(replace(peak, governing=case.at(np.array([instant]))), answer, case, instant)
@@ -293,7 +293,7 @@ def _mesh(
     if model == "harmonic":
         assert isinstance(pin, Pin)
         section = harmonic_solution(
-            pin, job.material, job.held, cases, singularities, level, ratio, before.values()
+            pin, job.material, job.constrained, cases, singularities, level, ratio, before.values()
         )
         answers: dict[str, Answer] = {c: HarmonicAnswer(section, mine) for c, mine in own.items()}
 
@@ -303,7 +303,14 @@ def _mesh(
         return _Mesh(singularities, result, answers)
     size, asked = MeshSize().finer(ratio**level), job.asked
     solid = solid_solution(
-        pin, job.material, job.held, cases, singularities, size, asked.distance, memory=asked.memory
+        pin,
+        job.material,
+        job.constrained,
+        cases,
+        singularities,
+        size,
+        asked.distance,
+        memory=asked.memory,
     )
     answers = dict.fromkeys(own, SolidAnswer(solid))
     return _Mesh(solid.singularities, partial(solid_result, solid, before, ratio), answers)

@@ -1,4 +1,4 @@
-"""What unit loads do on a pin's surface, for whoever superposes them himself: a view that moves."""
+"""Fields of the unit loads on a pin's surface, for views that superpose them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether what a linkage can do as drawn is only so there: a singular position, not its kind."""
+"""Whether a linkage is drawn in a singular position."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ def singular_as_drawn(loops: Loops) -> Singular | None:
     change point when its loops do, a dead point when it is the drives that guide it there.
     """
     closing, whole = _ranks(loops, np.zeros(loops.columns))
-    beside = [_ranks(loops, q) for q in _beside(loops)]
-    if any(there[0] > closing for there in beside):
+    nearby = [_ranks(loops, q) for q in _nearby(loops)]
+    if any(there[0] > closing for there in nearby):
         return "change point"
-    return "dead point" if any(there[1] > whole for there in beside) else None
+    return "dead point" if any(there[1] > whole for there in nearby) else None
 
 
 def _ranks(loops: Loops, q: Floats) -> tuple[int, int]:
@@ -41,7 +41,7 @@ def _ranks(loops: Loops, q: Floats) -> tuple[int, int]:
     return rank(closing), rank(whole)
 
 
-def _beside(loops: Loops) -> list[Floats]:
+def _nearby(loops: Loops) -> list[Floats]:
     """Coordinates (n,) near the drawing at which all loops are closed, drives free."""
     first = loops.jacobian(loops.pose(np.zeros((1, loops.columns))))[0]
     closing = first[: 2 * len(loops.closing)]

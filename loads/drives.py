@@ -120,7 +120,7 @@ class StateDrive:
 
 @dataclass(frozen=True)
 class TableDrive:
-    """A table made smooth by polynomials of degree five.
+    """A table interpolated by polynomials of degree five.
 
     times (N,) s, rising; values (N,); rates and seconds (N,), both or neither. With them every
     piece meets the rows' own rates; without it is the interpolating spline, smooth to the fourth

@@ -22,9 +22,9 @@ SAME = 1e-9  # of the largest contact force: what counts as zero and as the same
 
 
 class JammingError(LinkageError):
-    """Friction has no answer, or several.
+    """The friction problem has no solution, or several.
 
-    instants: indices of those concerned. none: whether there is none at the first of them. grip:
+    instants: their indices. none: whether there is no solution at the first of them. grip:
     gain of the loop from contact force to friction to contact force there (from 1 on it can jam).
     """
 

@@ -55,11 +55,11 @@ class SliderForces:
 
 @dataclass(frozen=True)
 class Dynamics:
-    """Reactions with what goes along.
+    """Reactions, with the forces of the drives and the loads.
 
-    drive: (T, D) N, pushing a slider longer, or N m, turning a body on. needed, couples: (T, items)
-    forces (complex, N) and couples (N m) that joints and drives bring to each item. applied: the
-    loads. shared: connections whose forces follow the sharing rule.
+    drive: (T, D) N, positive if it extends a slider, or N m, positive counter-clockwise. needed,
+    couples: (T, items) forces (complex, N) and couples (N m) that joints and drives bring to each
+    item. applied: the loads. shared: connections whose forces follow the sharing rule.
     """
 
     reactions: Reactions
@@ -241,7 +241,7 @@ class _Balance:
         try:
             n = np.abs(contact_forces(free, feedback))
         except JammingError as error:
-            raise self._told(error, feedback, owner) from None
+            raise self._named(error, feedback, owner) from None
         friction = np.zeros((len(f), len(sliders)))
         for i, k in enumerate(owner):
             friction[:, k] += sliders[k].friction * opposes[:, k] * n[:, i]
@@ -249,7 +249,7 @@ class _Balance:
             f = f + friction[:, k, None] * response[k]
         return friction, f
 
-    def _told(self, error: JammingError, feedback: Floats, owner: list[int]) -> JammingError:
+    def _named(self, error: JammingError, feedback: Floats, owner: list[int]) -> JammingError:
         """The same with the sliders named and the time."""
         t = int(error.instants[0])
         grips = np.abs(np.diagonal(feedback[t]))

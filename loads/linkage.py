@@ -99,7 +99,7 @@ class Slider:
 
     @property
     def axis(self) -> Point:
-        """Unit vector along which it slides, as drawn; zero when the points coincide."""
+        """Unit vector of the sliding direction, as drawn; zero when the points coincide."""
         x, y = self.direction or (self.end[0] - self.start[0], self.end[1] - self.start[1])
         size = float(np.hypot(x, y)) or 1.0
         return x / size, y / size
@@ -123,7 +123,7 @@ class Turn:
 
 @dataclass(frozen=True)
 class Sharing:
-    """How redundant connections share: like springs of these stiffnesses (any common unit)."""
+    """How redundant connections share their load: as springs of these stiffnesses (in any unit)."""
 
     connections: tuple[str, ...]
     stiffness: tuple[float, ...]

@@ -17,11 +17,11 @@ TAKES_PART = 1e-6  # of the largest part in a null vector
 
 @dataclass(frozen=True)
 class Mobility:
-    """The freedom that joints and drives leave in the drawn position.
+    """Degrees of freedom and redundancy in the drawn position.
 
     kutzbach: degrees of freedom by counting links and joints. degrees: by rank, without drives.
     free: motions that remain with the drives locked (0 when the position is determined). loose:
-    bodies that take part in them. redundant: number of equations too many. shared: connections
+    bodies that move in them. redundant: number of redundant equations. shared: connections
     whose force rigid-body statics does not determine.
     """
 

@@ -17,7 +17,7 @@ from loads.mobility import Mobility, require_determined
 from loads.positions import Path
 from loads.singular_positions import impasse
 
-GRID = 257  # instants at which a course looks where its drives go, besides their laws' own
+GRID = 257  # instants at which a course evaluates its drives, in addition to those of their laws
 SAME = 1e-12  # of the whole time: this close to a corner is at it
 
 

@@ -24,7 +24,7 @@ AGREES = (
 
 @dataclass(frozen=True)
 class Extreme:
-    """A largest or smallest value over a time and when it is taken, s."""
+    """A maximum or minimum over time, and its time, s."""
 
     value: float
     time: float
@@ -59,8 +59,8 @@ class OverTime:
     """Results for a motion as a whole.
 
     drives: in the linkage's order. transmission: smallest angle (rad) by link and joint.
-    condition: largest. violation: of the power ledger, largest at any instant looked at. corners:
-    where something may jump, s.
+    condition: largest. violation: largest relative violation of the power balance at any solved
+    instant. corners: times at which something may jump, s.
     """
 
     peaks: PeakForces
@@ -106,9 +106,9 @@ def _peaks(found: Resolved, at: Callable[[Floats], Reactions], unit: list[float]
     exact = vectors[rows, rows]
     limit = found.interpolate(when)[:, : 6 * count].reshape(len(when), -1, 3)[rows, rows]
     size = np.linalg.norm(exact, axis=1)
-    told = np.abs(size - best) <= AGREES * best
-    value = np.where(told, size, best) * np.repeat(unit, count)
-    vector = np.where(told[:, None], exact, limit) * unit[0]
+    agrees = np.abs(size - best) <= AGREES * best
+    value = np.where(agrees, size, best) * np.repeat(unit, count)
+    vector = np.where(agrees[:, None], exact, limit) * unit[0]
 
     def named(part: slice) -> dict[str, Extreme]:
         pairs = zip(names, value[part].tolist(), when[part].tolist(), strict=True)

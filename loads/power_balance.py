@@ -21,7 +21,7 @@ class Energy:
 
 
 def energy(motion: Motion) -> Energy:
-    """Energies of all items; the potential is zero at the world's origin."""
+    """Energies of all items; the potential energy is zero at the world's origin."""
     centres, velocity, _ = motion.centres
     weight = motion.masses * number(motion.linkage.gravity)
     return Energy(
@@ -52,7 +52,7 @@ class Ledger:
 
 
 def ledger(dynamics: Dynamics) -> Ledger:
-    """The power ledger at every instant."""
+    """The power balance at every instant."""
     motion = dynamics.motion
     _, velocity, acceleration = motion.centres
     pull = np.conj(number(motion.linkage.gravity))

@@ -1,4 +1,4 @@
-"""What happens between the samples of a motion: instants so dense that polynomials give the rest.
+"""Quantities between the samples of a motion, by polynomials on a sufficient number of instants.
 
 The time is cut at its corners (where something may jump) into spans and these into panels of nine
 equidistant instants. A panel's polynomial must predict the eight instants halfway between, and the
@@ -169,7 +169,7 @@ def resolved(
     most: int = 4096,
     groups: Sequence[int] | None = None,
 ) -> Resolved:
-    """Quantities at `times` (T,) s, rising, and at as many instants between as it takes.
+    """Quantities at `times` (T,) s, increasing, and at as many instants in between as necessary.
 
     at: values (T, K) at times (T,) in any order. corners: where values or their derivatives may
     jump, s. groups: (K,) numbers of those whose tolerance is a part of the largest magnitude of

@@ -1,4 +1,4 @@
-"""Where a linkage cannot follow its drives: dead points, change points, loops that do not close.
+"""Positions in which a linkage cannot follow its drives: dead points, change points, open loops.
 
 In such a position the loop equations lose rank. The right null vector shows which bodies can still
 move while the drives are locked; the left one, which forces are unbounded, and whether the drive

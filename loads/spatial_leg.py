@@ -123,7 +123,7 @@ class LegMotion:
 
 @dataclass(frozen=True)
 class Contact:
-    """What the ground does to the tyre, primed axes.
+    """Force of the ground on the tyre, primed axes.
 
     force: (T, 3) N. arm: (T, 3) m, from C to the point of contact.
     """
@@ -134,7 +134,7 @@ class Contact:
 
 @dataclass(frozen=True)
 class LegDynamics:
-    """What the motion is and needs; (T, 3) arrays in primed axes, see `to_world`, `to_leg`.
+    """Motion, momenta, and required forces; (T, 3) arrays in primed axes, see `to_world`, `to_leg`.
 
     leg_omega, wheel_omega: rad/s; leg_alpha, wheel_alpha: their rates, rad/s^2.
     r_BC, r_BD: m. v_B, v_C, v_D: m/s. a_B, a_C, a_D: m/s^2. coriolis_C: the part of a_C that an

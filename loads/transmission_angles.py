@@ -1,4 +1,4 @@
-"""Transmission angles: how well a link pushes the joint that it moves.
+"""Transmission angles: how effectively a link drives the joint that it moves.
 
 The force of a two-joint link acts along it. The angle is 90 degrees minus that between the link and
 the way its far joint goes: 90 is best, at 0 the link cannot move the joint (a dead point). For a

@@ -13,8 +13,7 @@ from reports.tables.all import CSV_ONLY, load_tables, stress_tables
 from reports.tables.hand_checks import write_hand_checks
 from reports.tables.json_results import write_json
 from reports.tables.landing import write_landing
-from reports.tables.published_reactions import write_published_reactions
-from reports.tables.published_values import write_published_values
+from reports.tables.published import write_published_reactions, write_published_values
 from reports.tables.safety_factors import write_safety_factors
 from reports.tables.table import Table
 from reports.tables.workbook import write_workbook

@@ -179,8 +179,8 @@ def _supports() -> Entry:
         "One of the two, chosen by habit.",
         "Between the two: it depends on the stiffness of the lugs, which are not part of the "
         "study.",
-        "Pinstress has no elastic supports; it computes both ends of the range. "
-        "Clamped: "
+        "Without [lugs](lugs.md), whose contact it computes, pinstress gives both ends of the "
+        "range. Clamped: "
         f"{told(stiff)} With the lug forces applied and no clamp: {told(soft)} With real lugs the "
         f"maximum is between {values[0]} and {values[1]} MPa. Meshes with four times the unknowns "
         "give "

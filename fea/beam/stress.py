@@ -22,7 +22,7 @@ from geometry import Pin
 from geometry.arrays import Floats
 
 ZZ, TZ, RZ = 2, 3, 4
-PER_CELL = 33  # points in a cell, besides where a moment is largest
+PER_CELL = 33  # points in a cell, in addition to where a moment is largest
 
 
 @dataclass(frozen=True)

@@ -84,8 +84,8 @@ def stepped_beam(
 
     Raises: GeometryError for a clamp that is not there; ValueError as fea.beam.line_load.
     """
-    held = [_held(pin, pin.surface(name)) for name in clamps]
-    stations = _stations(pin, held)
+    constrained = [_constrained(pin, pin.surface(name)) for name in clamps]
+    stations = _stations(pin, constrained)
     middles = 0.5 * (stations[1:] + stations[:-1])
     segments = np.searchsorted(pin.stations[1:-1], middles, side="right")
     sections = tuple(circle(pin.segments[i]) for i in segments)
@@ -94,7 +94,7 @@ def stepped_beam(
     for k, load in enumerate(loads):
         q[:, :, SHEAR if load.n else (AXIAL, TORQUE)[load.phases[0]], k] = w[:, :, k]
     out = np.zeros((len(sections), 4, 4, len(loads)))
-    spans = _spans(stations, held)
+    spans = _spans(stations, constrained)
     lengths, soft = np.diff(stations), np.array([compliances(s, material) for s in sections])
     for span in spans:
         here = slice(span.first, span.last)
@@ -109,7 +109,7 @@ def compliances(section: Circle, material: Material) -> Floats:
     return 1.0 / np.array([shear, E * section.inertia, E * section.area, G * section.polar])
 
 
-def _held(pin: Pin, surface: str) -> tuple[float, float]:
+def _constrained(pin: Pin, surface: str) -> tuple[float, float]:
     """Start and end (m) of a clamp."""
     if surface == "start":
         return 0.0, 0.0
@@ -119,15 +119,17 @@ def _held(pin: Pin, surface: str) -> tuple[float, float]:
     return band.z0, band.z1
 
 
-def _stations(pin: Pin, held: list[tuple[float, float]]) -> Floats:
-    z = np.sort([*pin.stations, *(e for b in pin.bands for e in (b.z0, b.z1)), *np.ravel(held)])
+def _stations(pin: Pin, constrained: list[tuple[float, float]]) -> Floats:
+    z = np.sort(
+        [*pin.stations, *(e for b in pin.bands for e in (b.z0, b.z1)), *np.ravel(constrained)]
+    )
     return np.asarray(z[np.r_[True, np.diff(z) > 1e-12 * pin.length]])
 
 
-def _spans(stations: Floats, held: list[tuple[float, float]]) -> tuple[Span, ...]:
+def _spans(stations: Floats, constrained: list[tuple[float, float]]) -> tuple[Span, ...]:
     near = 1e-12 * stations[-1]
     spans, z, left = [], 0.0, False
-    ends = [*((a, b, True) for a, b in sorted(held)), (stations[-1], stations[-1], False)]
+    ends = [*((a, b, True) for a, b in sorted(constrained)), (stations[-1], stations[-1], False)]
     for a, b, right in ends:
         if a - z > near:
             first, last = (int(np.abs(stations - x).argmin()) for x in (z, a))

@@ -51,13 +51,13 @@ def second_opinions(
 
     Raises: MeshError, SolveError from our own side; a failure of CalculiX is in the opinion.
     """
-    held = tuple(pin.surface(name) for name in clamps)
+    constrained = tuple(pin.surface(name) for name in clamps)
     instants = {p.case: p for p in peaks if p.verdict != "rigid"}
     live = tuple(case for case in cases if case.case in instants)
     if not live:
         return ()
-    singularities = singularities_of(pin, material, held, live, distance)
-    solution = solid_solution(pin, material, held, live, singularities, MeshSize(), distance)
+    singularities = singularities_of(pin, material, constrained, live, distance)
+    solution = solid_solution(pin, material, constrained, live, singularities, MeshSize(), distance)
     out = []
     for case in live:
         progress(f"pin {pin.name}, {case.case}, CalculiX")
@@ -102,7 +102,7 @@ def _compared(
 
 
 def _outside(solution: SolidSolution) -> Ints:
-    """Nodes outside of the singular places of a body of revolution, in which all models also look
+    """Nodes outside the excluded zones of a body of revolution, where all models search
     inside, where such a singularity ends; of any other body those of its surface.
     """
     fields = solution.fields

@@ -1,8 +1,8 @@
 """A second opinion on a pin in its lugs: CalculiX's contact at the governing instant, on two
-meshes, beside our load per length, largest bending moment, and stress at the point of our maximum.
+meshes, compared with our load per length, largest bending moment, and stress at our maximum.
 
-The meshes are its own, so that its differences from ours are mostly theirs; the change from the
-coarser to the finer one says how much of them it explains.
+CalculiX has its own meshes, which cause most of the differences; the change from the coarser to the
+finer one shows how much they explain.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ STATIONS = 401
 
 @dataclass(frozen=True)
 class Seated:
-    """A pin in its lugs, as its opinion needs it."""
+    """A pin in its lugs."""
 
     pin: Pin
     material: Material
@@ -49,7 +49,7 @@ def opinion_in_lugs(
     progress: Callable[[str], None] = lambda _: None,
     meshes: Meshes | None = None,
 ) -> Opinion:
-    """On a case with a peak and what contact says there; why there is none is in the opinion."""
+    """Of a case with a peak and its contact there; the opinion has the reason if there is none."""
     answer = Opinion(peak.pin, peak.case, peak.max_von_mises, peak.own_error)
     try:
         loads = across(seated, peak.governing)

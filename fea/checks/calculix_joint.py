@@ -1,7 +1,7 @@
 """A second opinion on a pin in its lugs: CalculiX's contact in three dimensions.
 
 The geometry is that of fea.joint: the pin as it is, each lug an annulus as thick as its band is
-long, a bushing in it, with the clearance and the edges' rounding in the bore. Lugs are held as
+long, a bushing in it, with the clearance and the edges' rounding in the bore. Lugs are supported as
 there: the link's force is a traction of constant direction on the outer surface, whose mean tilt is
 guided or sprung.
 What differs: elements (C3D20R), contact (surface to surface, by a penalty), solver, stress

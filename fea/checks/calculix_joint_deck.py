@@ -1,7 +1,7 @@
 """An input deck for CalculiX: a pin and its lugs in frictionless contact, surface to surface.
 
 The pin is the slave, ring by ring, so that CalculiX prints the force on every ring; the bore of a
-lug is the master. A lug is held as in fea.joint: on its outer surface a traction of constant
+lug is the master. A lug is supported as in fea.joint: on its outer surface a traction of constant
 direction, linear along z, which is what *EQUATION of the mean motion of that surface makes of a
 force or a spring on an auxiliary node.
 """
@@ -53,7 +53,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Eye:
-    """A lug as it is held: force (2,) N of its link on it; tilt: N m/rad; inf, 0 as of fea.joint's
+    """Support of a lug: force (2,) N of its link on it; tilt: N m/rad; inf, 0 as of fea.joint's
     Lug. rings: the elements of the pin on each of its rings.
     """
 
@@ -155,14 +155,14 @@ class JointDeck:
         mesh, E = self.pin.mesh, self.pin.material.youngs_modulus
         length = float(np.ptp(mesh.nodes[:, 2]))
         weak = WEAK * E * length
-        held = [(1 + n, axis, weak) for n in _ends(mesh) for axis in self.axes]
+        constrained = [(1 + n, axis, weak) for n in _ends(mesh) for axis in self.axes]
         for b, eye in enumerate(self.eyes):
             shift, tilt = self._auxiliary(b)
-            held += [(shift, axis, weak) for axis in self.axes if b]
+            constrained += [(shift, axis, weak) for axis in self.axes if b]
             if np.isfinite(eye.tilt):
                 stiff = max(eye.tilt, weak * length**2)
-                held += [(tilt, axis, stiff) for axis in self.axes]
-        for k, (node, axis, stiffness) in enumerate(held):
+                constrained += [(tilt, axis, stiff) for axis in self.axes]
+        for k, (node, axis, stiffness) in enumerate(constrained):
             yield f"*ELEMENT, TYPE=SPRING1, ELSET=SPRING{k}"
             yield f"{number + k}, {node}"
             yield f"*SPRING, ELSET=SPRING{k}"

@@ -28,7 +28,9 @@ FACES = {OUTER: [1, 5, 6, 2, 17, 13, 18, 9], INNER: [3, 7, 4, 0, 19, 15, 16, 11]
 # Of the contact, times Young's modulus over the diameter. Halved or doubled it changes the moment
 # and the stress of a clevis by 0.1 to 0.2 %, of two lugs with clearance by up to 0.6 %.
 STIFFNESS = 200.0
-SMALL = 0.01  # so that displacements are small beside elements: contact is found on moved nodes
+SMALL = (
+    0.01  # so that displacements are small compared with elements: contact is found on moved nodes
+)
 CORE = 0.55  # of the least radius of a solid pin: half the side of the core, about
 ROUND = 0.4  # how round the core is: 0 a square, 1 a circle
 
@@ -40,7 +42,7 @@ class Fineness:
     rings: of a band between its rounded edges; parts: elements along each. sectors: round the
     whole circle, a multiple of 8. layers: across the pin's wall, or from the core of a solid
     one to its surface. eye: across the wall of a lug, besides one in a bushing. along: elements of
-    a segment that no lug holds, for every length of a diameter; at least two. stiffness: of the
+    a segment without a lug, for every length of a diameter; at least two. stiffness: of the
     contact, times Young's modulus of the pin over its smallest diameter. scale: of forces and gaps,
     of which results are the same multiple where displacements are small.
     """

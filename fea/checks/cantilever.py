@@ -87,7 +87,7 @@ def beam_check(
 
 
 def tension(pin: Pin, material: Material, loaded: str, radius: float, z: Floats) -> Floats:
-    """Axial stress (Z,) in Pa at z (m) on the side in tension of a shaft of `radius` (m) held at
+    """Axial stress (Z,) in Pa at z (m) on the side in tension of a shaft of `radius` (m) clamped at
     its start, for one newton across on the surface `loaded`.
 
     Raises: MeshError, SolveError.

@@ -1,7 +1,7 @@
-"""The hand checks that engineers sign off on: shear, bearing and bending of a pin.
+"""Hand checks of a pin: shear, bearing and bending.
 
 Nominal stresses of the textbooks from the beam's internal forces (fea.beam.timoshenko), each at the
-place and the instant where it is largest. Beside them the strengths: yield in bending, yield over
+place and the instant where it is largest. With their strengths: yield in bending, yield over
 sqrt(3) in shear (von Mises), and yield in bearing. The last is a convention, and a safe one: a pin
 whose neighbour holds it in bears more before it is marked.
 
@@ -101,15 +101,15 @@ def _double_shear(
     for name in dict.fromkeys(loads.surfaces):
         band = pin.band(name)
         left, right = (int(np.abs(forces.stations - z).argmin()) for z in (band.z0, band.z1))
-        beside = {left - 1, left, right - 1, right}
-        if not beside <= set(forces.free):
+        adjacent = {left - 1, left, right - 1, right}
+        if not adjacent <= set(forces.free):
             continue
         ends = forces.inside(np.array([left, right - 1]), np.array([band.z0, band.z1]))
         V = np.einsum("sk,tpk->stp", ends[:, SHEAR], c)
         load = np.linalg.norm(V[0] - V[1], axis=1)
         t = int(load.argmax())
         if load[t] > 0.0 and np.linalg.norm(V[0, t] + V[1, t]) <= HALVES * load[t]:
-            area = min(forces.sections[i].area for i in beside)
+            area = min(forces.sections[i].area for i in adjacent)
             stress, at = float(load[t]) / (2.0 * area), (band.name, band.middle, _time(loads, t))
             out.append(HandCheck("double shear, mean", *at, stress, strength, "F / (2 A)", JOINTS))
     return out

@@ -9,9 +9,9 @@ if its link pulled with the largest force F of the case:
 
 The shear planes run along the force from the bore, 40 degrees off it, to the outer edge: L is their
 length in a round eye, at most 5 % less than the W / 2 - D / 2 cos 40 of a square end if W >= 2.5 D.
-Beside them are the lug's strengths: yield, yield over sqrt(3) in shear (von Mises), and yield in
-bearing, a convention. Neither the stress concentration at the bore nor a load across the link is in
-them.
+They are compared with yield, in shear with yield over sqrt(3) (von Mises); yield as the strength in
+bearing is a convention. Neither the stress concentration at the bore nor a load across the link is
+in them.
 
 Source: R. G. Budynas & J. K. Nisbett, Shigley's Mechanical Engineering Design, 8-12 (net section,
 edge shear, bearing); E. F. Bruhn, Analysis and Design of Flight Vehicle Structures, D1 (planes at
@@ -41,7 +41,7 @@ BORED_FOR_THE_PIN: Mapping[str, float] = MappingProxyType({})
 
 
 def net_section_stress(force: float, outer: float, bore: float, thickness: float) -> float:
-    """Tension beside the bore, Pa; N, and diameters and thickness in m.
+    """Net-section tension at the bore, Pa; N, and diameters and thickness in m.
 
     Raises: ArgumentError where the eye is not wider than its bore. Source: as the module.
     """

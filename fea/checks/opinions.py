@@ -1,4 +1,4 @@
-"""What CalculiX says of a pin in one case, beside our own answer."""
+"""What CalculiX finds for a pin in one case, compared with our own answer."""
 
 from __future__ import annotations
 
@@ -10,11 +10,12 @@ from fea.joint.records import Couple, LineLoad
 
 SAME_DISPLACEMENT = 1e-5  # of the largest; CalculiX prints 7 digits
 SAME_STRESS = 1e-4  # of the largest; CalculiX prints 6 digits of each component
-# Of the answer, beside its error: what the solid model's first mesh may be off, at a fillet or
-# where a singularity ends (22 % at most in studies/grenier2008.toml). It finds mistakes only.
+# Allowed deviation from the answer, in addition to its error, of the solid model's first mesh at a
+# fillet or where a singularity ends (22 % at most in studies/grenier2008.toml). It finds mistakes
+# only.
 SAME_MAXIMUM = 0.30
-# Of contact with lugs, on meshes that CalculiX solves in minutes: on joints drawn at random
-# moments differ by 3.5 % and loads by 6 % at most.
+# For contact with lugs, on meshes that CalculiX solves in minutes: on random joints moments differ
+# by 3.5 % and loads by 6 % at most.
 SAME_MOMENT, SAME_LOAD = 0.05, 0.10
 
 
@@ -71,7 +72,7 @@ class Opinion:
     displacement, stress: largest differences, relative to the largest displacement and von Mises
     stress. ours, theirs: largest von Mises stress outside of singularities, both averaged
     at the nodes, Pa. answer, error: the run's, Pa. failure: why there is none of this, or empty.
-    contact: of a pin in its lugs, which CalculiX solves on a mesh of its own of so many unknowns;
+    contact: of a pin in its lugs, which CalculiX solves on its own mesh of `unknowns`;
     `theirs` is then its stress at the point of our maximum.
     """
 
@@ -88,7 +89,7 @@ class Opinion:
     contact: ContactOpinion | None = None
 
     @property
-    def beside(self) -> float | None:
+    def deviation(self) -> float | None:
         """How far their maximum is from the run's answer, relative to it."""
         if self.theirs is None or not self.answer:
             return None
@@ -112,19 +113,21 @@ class Opinion:
         ):
             if value is None or not value <= limit:
                 yield f"{what} on the same mesh differ by {value:.1e}, allowed {limit:.0e}"
-        yield from _beyond("its maximum is", self.beside, SAME_MAXIMUM + self.own_error)
+        yield from _beyond("its maximum is", self.deviation, SAME_MAXIMUM + self.own_error)
 
     def _contact(self) -> Iterator[str]:
         assert self.contact is not None
         limit = SAME_MOMENT + self.own_error
         yield from _beyond("its largest bending moment is", self.contact.moment_difference, limit)
         yield from _beyond(
-            "its stress at the point of our maximum is", self.beside, SAME_MAXIMUM + self.own_error
+            "its stress at the point of our maximum is",
+            self.deviation,
+            SAME_MAXIMUM + self.own_error,
         )
         for band in self.contact.bands:
             if not band.elsewhere <= SAME_LOAD:
                 yield (
-                    f"{band.elsewhere:.1%} of the load of {band.name} bears in other places, "
+                    f"{band.elsewhere:.1%} of the load of {band.name} acts at other places, "
                     f"allowed {SAME_LOAD:.0%}"
                 )
 

@@ -1,4 +1,4 @@
-"""What one mesh says of one case: the noun between the models and the verdict."""
+"""The result of one mesh in one case, from which the verdict is judged."""
 
 from __future__ import annotations
 

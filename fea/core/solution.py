@@ -1,4 +1,4 @@
-"""The face that all models show to whoever draws or tabulates what they found."""
+"""The interface of a solution that is common to all models."""
 
 from __future__ import annotations
 

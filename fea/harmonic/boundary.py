@@ -38,7 +38,7 @@ class Outline:
             for (name, found), end in zip(edges.items(), ends, strict=True)
         }
 
-    def held(self, surfaces: tuple[str, ...]) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    def constrained(self, surfaces: tuple[str, ...]) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
         """(E,) which edges are on one of the surfaces."""
         out = np.zeros(len(self.nodes), dtype=bool)
         for name in surfaces:

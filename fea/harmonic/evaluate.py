@@ -1,4 +1,4 @@
-"""What the harmonic model says of a pin's cases on one mesh."""
+"""Results of the harmonic model for a pin's cases on one mesh."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ from geometry.mesh.section_mesh import MeridianMesh
 
 
 class HarmonicBody:
-    """A body of revolution on one mesh of its section, held at surfaces (by name): how it moves.
+    """A body of revolution on one mesh of its section, clamped at surfaces (by name): how it moves.
 
     material: one, or those of the section's parts. Without surfaces as many unknowns are
     constrained as there are rigid motions, about `pivot` (0 to 1, of the length).
@@ -53,7 +53,7 @@ class HarmonicBody:
 
     def displace(self, n: int, forces: Floats) -> Floats:
         """Unknowns (unknowns, K) of harmonic n under forces on them."""
-        fixed = np.concatenate([self._on_axis(n), self._held(n)])
+        fixed = np.concatenate([self._on_axis(n), self._constrained(n)])
         K = self.space.stiffness(self._materials, n)
         if n < 2:
             self._require_equilibrium(K, n)
@@ -82,9 +82,9 @@ class HarmonicBody:
         p, m, w = axis, axis + 1, axis + 2
         return np.concatenate({0: [p, m], 1: [p, w]}.get(n, [p, m, w]))
 
-    def _held(self, n: int) -> Ints:
+    def _constrained(self, n: int) -> Ints:
         if self.clamps:
-            edges = self.outline.nodes[self.outline.held(self.clamps)]
+            edges = self.outline.nodes[self.outline.constrained(self.clamps)]
             return (3 * np.unique(edges)[:, None] + np.arange(3)).ravel()
         if n > 1:
             return np.zeros(0, dtype=np.int64)
@@ -194,11 +194,11 @@ class _System:
 
     def solve(self, K: sp.csr_matrix, free: Floats, forces: Floats) -> Floats:
         """Unknowns (n, K) under forces, zero where `free` (n,) is 0 and not 1; K is changed."""
-        held = self._diagonal[free == 0.0]
+        fixed = self._diagonal[free == 0.0]
         largest = K.data.max()
         K.data *= free[self._row]
         K.data *= free[K.indices]
-        K.data[held] = largest  # of no effect
+        K.data[fixed] = largest  # of no effect
         return self._analysis.factorize(K)(forces * free[:, None])
 
 

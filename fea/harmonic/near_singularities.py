@@ -1,4 +1,4 @@
-"""What one mesh of the harmonic model says of a singularity: how stress grows towards it, how
+"""A singularity on one mesh of the harmonic model: how stress grows towards it, how
 strongly, and how much the maximum outside depends on the distance that is left out.
 """
 

@@ -1,4 +1,4 @@
-"""Stress where a pressure ends on a smooth surface: bounded, but another from every direction.
+"""Stress where a pressure ends on a smooth surface: bounded, but dependent on direction.
 
 Close to such an edge a body is a half-plane with a pressure p on one half of its surface, whose
 stress is the same at all distances. With x along the surface away from the pressure, y into the
@@ -90,11 +90,11 @@ def _jump(space: Section, outline: Outline, material: Material, before: int) -> 
     first, singularity, last = space.nodes[
         [outline.nodes[before, 0], outline.nodes[before, 1], outline.nodes[after, 1]]
     ]
-    beside = float(max(np.linalg.norm(singularity - first), np.linalg.norm(last - singularity)))
+    spacing = float(max(np.linalg.norm(singularity - first), np.linalg.norm(last - singularity)))
     along = (last - first) / np.linalg.norm(last - first)
     normal = np.array([along[1], -along[0]])
     distance = np.hypot(*(space.samples - singularity).T)
-    far = np.flatnonzero(distance > TOUCHED * beside)
+    far = np.flatnonzero(distance > TOUCHED * spacing)
     nearest = far[np.argsort(distance[far], kind="stable")[:SAMPLES]]
     weights = at_one_place(space.samples[nearest] - singularity, np.ones(len(nearest)))
     x, y = np.stack([along, -normal]) @ (space.samples[nearest] - singularity).T
@@ -103,7 +103,7 @@ def _jump(space: Section, outline: Outline, material: Material, before: int) -> 
     field = _field(np.linspace(0.0, np.pi, DIRECTIONS), along, nu)
     r, z = (float(x) for x in singularity)
     return Jump(
-        r, z, before, after, normal, UNREAD * beside, nearest, weights, field - weights @ there
+        r, z, before, after, normal, UNREAD * spacing, nearest, weights, field - weights @ there
     )
 
 

@@ -26,9 +26,9 @@ class Reading:
     which the first, `skin`, are five to each edge of the outline, the next those of `inner` nodes,
     and the others, where stress alone is read, I inside the section and those of the jumps.
 
-    held: (E, 5) which points of the skin have their stress from inside, at `rough` nodes, because
-    the surface is clamped and its traction unknown, or on the axis. continued: takes values at
-    samples in the elements to inner nodes, rough nodes and the I points
+    extrapolated: (E, 5) which points of the skin have their stress from inside, at `rough` nodes,
+    because the surface is clamped and its traction unknown, or on the axis. continued: takes values
+    at samples in the elements to inner nodes, rough nodes and the I points
     (fea.core.local_fit.continuation).
     """
 
@@ -38,7 +38,7 @@ class Reading:
     points: Floats
     skin: int
     inner: Ints
-    held: Mask
+    extrapolated: Mask
     rough: Ints
     continued: sp.csr_matrix
     jumps: tuple[Jump, ...]
@@ -57,7 +57,7 @@ class Reading:
         at_nodes[self.rough] = rough
         from_inside = np.einsum("qi,eiak->eqak", shapes(AT), at_nodes[self.outline.nodes])
         found = skin(self.space, self.outline, self.material, n, u, traction)
-        on_skin = np.where(self.held[..., None, None], from_inside, found.stress)
+        on_skin = np.where(self.extrapolated[..., None, None], from_inside, found.stress)
         displacements = [found.displacement.reshape(-1, 3, K), u[self.inner]]
         stresses = [on_skin.reshape(-1, 6, K), inner, inside]
         stresses.extend(jump.stress(sampled, traction) for jump in self.jumps)
@@ -88,10 +88,10 @@ def reading(
     on_jumps = np.array([[j.r, j.z] for j in found]).reshape(-1, 2).repeat(DIRECTIONS, axis=0)
     skin_at = np.einsum("qi,eia->eqa", shapes(AT), space.nodes[outline.nodes])
     inner = np.setdiff1d(np.arange(len(space.nodes)), outline.nodes)
-    held = outline.held(clamps)
+    constrained = outline.constrained(clamps)
     on_axis = AXIS * space.nodes[:, 0].max()
     axis = outline.nodes[space.nodes[outline.nodes, 0] < on_axis]
-    rough = np.union1d(outline.nodes[held], axis)
+    rough = np.union1d(outline.nodes[constrained], axis)
     points = [skin_at.reshape(-1, 2), space.nodes[inner], inside, on_jumps]
     there = np.concatenate([space.nodes[inner], space.nodes[rough], inside])
     continued = continuation(space.samples, there)
@@ -102,7 +102,7 @@ def reading(
         np.concatenate(points),
         len(points[0]),
         inner,
-        held[:, None] | (skin_at[..., 0] < on_axis),
+        constrained[:, None] | (skin_at[..., 0] < on_axis),
         rough,
         continued,
         found,

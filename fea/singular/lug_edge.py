@@ -1,4 +1,4 @@
-"""How strongly pressure grows towards the sharp edge of a lug on a smooth pin: like d^-s.
+"""Exponent of pressure at the sharp edge of a lug on a smooth pin: it grows like d^-s.
 
 The pin is a half plane -pi < theta < 0, the lug a wedge 0 < theta < w; they touch without friction
 at theta = 0, and their other sides are free. With Williams' stress function r^(L + 1) f(theta), f a

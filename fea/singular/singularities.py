@@ -1,4 +1,4 @@
-"""Places on a pin where stress has no bound, whatever the mesh, and what would give it one."""
+"""The stress singularities of a pin, and their remedies."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ class Singularity:
     @property
     def following_torsion(self) -> float:
         """The same in torsion: eigenvalues are multiples of the first, odd ones if one side is
-        held.
+        constrained.
         """
         times = 3.0 if self.kind == "edge of a clamp" else 2.0
         return times * (1.0 - self.torsion_theory) - 1.0
@@ -97,12 +97,12 @@ def find_singularities(
 
     Raises: GeometryError for a surface that the pin has not; ValueError outside -1 < nu < 0.5.
     """
-    held = {pin.surface(name) for name in clamps}
+    constrained = {pin.surface(name) for name in clamps}
     pushed = {pin.surface(name) for name in loaded}
     every = vertices(pin)
-    found = (_singularity(pin, v, held, pushed, nu, distance) for v in every)
+    found = (_singularity(pin, v, constrained, pushed, nu, distance) for v in every)
     return tuple(
-        replace(singularity, feature=min(singularity.radius, _feature(every, k, held)))
+        replace(singularity, feature=min(singularity.radius, _feature(every, k, constrained)))
         for k, singularity in enumerate(found)
         if singularity is not None
     )
@@ -160,24 +160,26 @@ def smooth_edges(
     """Rims (r, z), m, of surfaces (by the pin's names) that go on smoothly, neither side
     clamped.
     """
-    names, held = ({pin.surface(name) for name in found} for found in (surfaces, clamps))
+    names, constrained = ({pin.surface(name) for name in found} for found in (surfaces, clamps))
     return tuple(
         (v.r, v.z)
         for v in vertices(pin)
-        if names & set(v.between) and not held & set(v.between) and abs(v.angle - math.pi) <= FLAT
+        if names & set(v.between)
+        and not constrained & set(v.between)
+        and abs(v.angle - math.pi) <= FLAT
     )
 
 
 def clamp_rims(pin: Pin, clamps: tuple[str, ...]) -> tuple[tuple[float, float], ...]:
     """Rims (r, z) of the clamped surfaces, m."""
-    held = {pin.surface(name) for name in clamps}
-    return tuple((v.r, v.z) for v in vertices(pin) if held & set(v.between))
+    constrained = {pin.surface(name) for name in clamps}
+    return tuple((v.r, v.z) for v in vertices(pin) if constrained & set(v.between))
 
 
 def _singularity(
-    pin: Pin, v: Vertex, held: set[str], pushed: set[str], nu: float, distance: float
+    pin: Pin, v: Vertex, constrained: set[str], pushed: set[str], nu: float, distance: float
 ) -> Singularity | None:
-    first, second = (_side(name, held) for name in v.between)
+    first, second = (_side(name, constrained) for name in v.between)
     smooth = abs(v.angle - math.pi) <= FLAT
     omega = math.pi if smooth else v.angle
     plane = plane_exponent(omega, nu, first, second)
@@ -195,7 +197,7 @@ def _singularity(
     return Singularity(v.r, v.z, kind, v.between, plane, torsion, reach, advice, angle=v.angle)
 
 
-def _feature(every: tuple[Vertex, ...], k: int, held: set[str]) -> float:
+def _feature(every: tuple[Vertex, ...], k: int, constrained: set[str]) -> float:
     """The shorter of the two surfaces that meet at vertex k, m: on each side as far as the outline
     goes on smoothly, all of it clamped or all of it free.
     """
@@ -205,7 +207,7 @@ def _feature(every: tuple[Vertex, ...], k: int, held: set[str]) -> float:
         for _ in every:
             here, i = every[i], (i + step) % len(every)
             total += math.dist((here.r, here.z), (every[i].r, every[i].z))
-            clamped = {name in held for name in every[i].between}
+            clamped = {name in constrained for name in every[i].between}
             if len(clamped) > 1 or abs(every[i].angle - math.pi) > FLAT:
                 break
         return total
@@ -213,8 +215,8 @@ def _feature(every: tuple[Vertex, ...], k: int, held: set[str]) -> float:
     return min(length(1), length(-1))
 
 
-def _side(name: str, held: set[str]) -> Side:
-    return "clamped" if name in held else "free"
+def _side(name: str, constrained: set[str]) -> Side:
+    return "clamped" if name in constrained else "free"
 
 
 INSTEAD_OF_CLAMP = (

@@ -1,4 +1,4 @@
-"""How strongly stress grows at a corner: like d^-s at the distance d.
+"""Exponents of stress at corners and clamps: stress grows like d^-s with the distance d.
 
 At a corner of interior angle w the plane strain displacements go like r^L, so s = 1 - Re L for the
 root L with the least real part in 0 < Re L < 1 (Williams), k = 3 - 4 nu:

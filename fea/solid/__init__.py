@@ -1,1 +1,1 @@
-"""A pin as tetrahedra: for what is no body of revolution, and to check the others."""
+"""A pin as tetrahedra: for pins that are not bodies of revolution, and to check the others."""

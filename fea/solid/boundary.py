@@ -81,7 +81,7 @@ def surface(space: Discretisation) -> SurfaceMesh:
     return SurfaceMesh(np.unique(corners), facets, corners, normals)
 
 
-def held_nodes(space: Discretisation, surfaces: tuple[str, ...]) -> Ints:
+def clamped_nodes(space: Discretisation, surfaces: tuple[str, ...]) -> Ints:
     """Nodes on the named surfaces."""
     found = [space.basis.get_dofs(space.mesh.boundaries[s]).flatten() for s in surfaces]
     return np.unique(np.concatenate(found)).astype(np.int64)

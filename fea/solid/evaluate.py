@@ -1,4 +1,4 @@
-"""What the solid model says of a pin's cases on one mesh."""
+"""Results of the solid model for a pin's cases on one mesh."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import AnyLoads, PinLoads, require_solved
 from fea.singular.probes import interpolation
 from fea.solid.assembly import Discretisation
-from fea.solid.boundary import SurfaceMesh, held_nodes, resultants, surface
+from fea.solid.boundary import SurfaceMesh, clamped_nodes, resultants, surface
 from fea.solid.nodal_loads import Unit, closed, nodal_loads, part
 from fea.solid.stress_recovery import nodal_stress, with_known_traction
 from geometry import PinLike
@@ -114,7 +114,7 @@ class SolidModel:
     def fixed(self) -> Ints:
         """Held unknowns."""
         if self.clamps:
-            nodes = held_nodes(self.space, self.clamps)
+            nodes = clamped_nodes(self.space, self.clamps)
             return (3 * nodes[:, None] + np.arange(3)).ravel()
         return _isostatic(self.space.nodes)
 
@@ -130,9 +130,9 @@ class SolidModel:
             pressing = np.array([not load.shears for load, _ in units])
             loads = closed(self.pin, self.space, boundary, loads, pressing)
         displacement, support = self._displace(loads.forces)
-        held = boundary.on(self.space, self.clamps)
+        clamped = boundary.on(self.space, self.clamps)
         stress = nodal_stress(self.space, self.material, displacement)
-        stress = with_known_traction(stress, boundary, loads.traction, held)
+        stress = with_known_traction(stress, boundary, loads.traction, clamped)
         return UnitFields(
             self.space,
             boundary,

@@ -60,7 +60,7 @@ _RADIUS = "a radius there would make it finite"
 
 def sharp_edges(space: Discretisation, surface: SurfaceMesh, clamps: tuple[str, ...]) -> SharpEdges:
     """Inner corners that turn by more than TURN, and the rims of the clamped surfaces."""
-    held = surface.on(space, clamps)
+    clamped = surface.on(space, clamps)
     side_of = space.mesh.f2e[:, surface.facets]  # each is shared by two facets
     order = np.argsort(side_of.ravel(), kind="stable").reshape(-1, 2)
     facet, side = (order % len(surface.facets)).T, (order // len(surface.facets)).T
@@ -74,8 +74,8 @@ def sharp_edges(space: Discretisation, surface: SurfaceMesh, clamps: tuple[str, 
     into *= np.sign(np.sum(into * (x[across] - (x[a] + x[b]) / 2), axis=1))[:, None]
     into /= np.linalg.norm(into, axis=1, keepdims=True)
     turn = np.arctan2(np.sum(normal * into, axis=1), np.sum(normal * other, axis=1))
-    corner = (turn > TURN) & ~(held[facet[0]] & held[facet[1]])
-    rim = held[facet[0]] != held[facet[1]]
+    corner = (turn > TURN) & ~(clamped[facet[0]] & clamped[facet[1]])
+    rim = clamped[facet[0]] != clamped[facet[1]]
     edge = np.stack([a, b], axis=1)
     if space.quadratic:
         edge = np.column_stack([edge, two[np.arange(len(two)), 3 + side[1]]])

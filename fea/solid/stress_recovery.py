@@ -27,13 +27,13 @@ def nodal_stress(space: Discretisation, material: Material, displacement: Floats
 
 
 def with_known_traction(
-    stress: Floats, surface: SurfaceMesh, traction: Floats, held: Mask
+    stress: Floats, surface: SurfaceMesh, traction: Floats, clamped: Mask
 ) -> Floats:
     """Stress (N, 6, L) corrected on the surface to carry the traction (F, .., 3, L) at the nodes of
     its facets, Pa.
 
-    held: (F,) facets whose traction is unknown. Nodes there and on edges of the body stay as they
-    are; where two tractions meet on a smooth surface their mean is taken.
+    clamped: (F,) facets whose traction is unknown. Nodes there and on edges of the body are not
+    changed; where two tractions meet on a smooth surface their mean is taken.
     """
     n_nodes = len(stress)
     node = surface.corners.ravel()
@@ -45,7 +45,7 @@ def with_known_traction(
     length = np.linalg.norm(normal, axis=1)
     normal /= np.where(length > 0.0, length, 1.0)[:, None]
     sharp = np.sum(surface.normals * normal[surface.corners], axis=2) < SMOOTH
-    fixed = np.repeat(held[:, None], surface.corners.shape[1], axis=1)
+    fixed = np.repeat(clamped[:, None], surface.corners.shape[1], axis=1)
     known = (count > 0) & (np.bincount(node, (sharp | fixed).ravel(), minlength=n_nodes) == 0)
     out = stress.copy()
     n = normal[known]

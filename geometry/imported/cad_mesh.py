@@ -91,9 +91,9 @@ def _face_names(file: BodyFile, tags: list[int]) -> dict[int, str]:
     names = [f"face {tag}" for tag in tags]
     if file.path.suffix.lower() in (".step", ".stp"):
         text = file.path.read_text(encoding="utf-8", errors="replace")
-        told = dict(re.findall(r"(#\d+)\s*=\s*ADVANCED_FACE\s*\(\s*'([^']*)'", text))
+        named = dict(re.findall(r"(#\d+)\s*=\s*ADVANCED_FACE\s*\(\s*'([^']*)'", text))
         shells = re.findall(r"CLOSED_SHELL\s*\(\s*'[^']*'\s*,\s*\(([^)]*)\)", text)
-        listed = [told.get(f, "") for s in shells for f in re.findall(r"#\d+", s)]
+        listed = [named.get(f, "") for s in shells for f in re.findall(r"#\d+", s)]
         if len(listed) == len(tags):
             names = [a or b for a, b in zip(listed, names, strict=True)]
     return dict(zip(tags, names, strict=True))

@@ -1,4 +1,4 @@
-"""Whether a mesh has straight sides where its surface is round, and what that cuts off."""
+"""Whether a mesh has straight sides where its surface is round, and the volume they cut off."""
 
 from __future__ import annotations
 

@@ -43,8 +43,8 @@ def mesh_from_file(file: BodyFile) -> SolidMesh:
     cells = np.concatenate([b.data for b in mesh.cells if b.type.startswith("tetra")])
     named = _triangles(mesh)
     sets = {str(name): np.asarray(n, dtype=np.int64) for name, n in mesh.point_sets.items()}
-    for told in (cells, *named.values(), *sets.values()):
-        if not ((told >= 0) & (told < len(points))).all():
+    for indices in (cells, *named.values(), *sets.values()):
+        if not ((indices >= 0) & (indices < len(points))).all():
             raise GeometryError(
                 f"{where}: the file is damaged: elements refer to nodes that do not exist",
                 "unknown-nodes",
@@ -102,8 +102,8 @@ def _require_tetrahedra(kinds: set[str], where: str) -> None:
 def _read(file: BodyFile) -> meshio.Mesh:
     try:
         # meshio prints its warnings, and finds a format by trying several
-        told = io.StringIO()
-        with redirect_stdout(told), redirect_stderr(told), warnings.catch_warnings():
+        printed = io.StringIO()
+        with redirect_stdout(printed), redirect_stderr(printed), warnings.catch_warnings():
             warnings.simplefilter("ignore")
             return meshio.read(file.path)
     except MemoryError:

@@ -15,7 +15,7 @@ from geometry.shape.pin import Band, GeometryError, Pin
 
 @dataclass(frozen=True)
 class CutPin:
-    """A profile with holes and flats; its bands keep their names and places, less what is cut.
+    """A profile with holes and flats; its bands keep their names and positions, less what is cut.
     Ends of flats within the profile's tolerance of a band's lie there.
 
     Raises: GeometryError when a feature does not cut the pin, or cuts it in two.

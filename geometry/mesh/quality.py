@@ -1,4 +1,4 @@
-"""Elements of a mesh that are bent inside out, or folded over their neighbours.
+"""Validity of elements: inverted ones, and ones folded over their neighbours.
 
 An assembly takes the size of det J, not its sign, so such a mesh gives a number all the same.
 """

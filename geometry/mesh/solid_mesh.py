@@ -142,7 +142,7 @@ def _far(pin: Pin, size: MeshSize) -> float:
 
 
 def _name_surfaces(gmsh: Any, pin: Pin, outline: tuple[Edge, ...]) -> dict[str, list[int]]:
-    """Surface tags by name, told apart by the end points of the edge that made them."""
+    """Surface tags by name, distinguished by the end points of the edge that made them."""
     named: dict[str, list[int]] = {}
     digits = round(6 - math.log10(pin.smallest_diameter))
 

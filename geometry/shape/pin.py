@@ -42,7 +42,7 @@ class Segment:
 
 @dataclass(frozen=True)
 class Band:
-    """A cylindrical surface: what is left of a segment between its fillets; m."""
+    """A cylindrical surface: the part of a segment between its fillets; m."""
 
     name: str
     z0: float

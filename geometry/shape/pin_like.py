@@ -10,8 +10,8 @@ from geometry.shape.pin import Band
 class PinLike(Protocol):
     """A pin along z between its `ends` (m), with named surfaces and bands; `volume` in m^3.
 
-    revolved: whether it is the same all round its axis. meshed: whether it comes with a mesh, which
-    can only be halved.
+    revolved: whether it is a body of revolution. meshed: whether it is given by a mesh, which
+    can only be refined by halving.
     """
 
     @property

@@ -28,7 +28,7 @@ class Arc(Edge):
 
 @dataclass(frozen=True)
 class Corner:
-    """A sharp inner corner at (r, z), m: stresses there have no bound."""
+    """A sharp inner corner at (r, z), m, where stress is unbounded."""
 
     r: float
     z: float

@@ -1,4 +1,4 @@
-"""The length below which two dimensions of a pin are one.
+"""The tolerance below which two dimensions of a pin are equal.
 
 0.7 in and 17.78 mm differ by one unit in the last place, and no lathe, mesh or stress knows a step
 of 1e-18 m. So dimensions of a pin that are closer than a billionth of its diameter are made equal

@@ -56,7 +56,7 @@ class Row:
 def read_table(
     path: Path, needed: Sequence[str], optional: Sequence[str] | None = None
 ) -> Iterator[Row]:
-    """The rows of a table with a header. optional: columns allowed besides those needed; None: any.
+    """The rows of a table with a header. optional: further columns that are allowed; None: any.
 
     Raises: TableError for a file that is not such a table.
     """
@@ -119,7 +119,7 @@ def _require(
     path: Path, columns: list[str], needed: Sequence[str], optional: Sequence[str] | None
 ) -> None:
     head = ",".join(needed)
-    told = f"needed: {head}" + (f"; optional: {', '.join(optional)}" if optional else "")
+    expected = f"needed: {head}" + (f"; optional: {', '.join(optional)}" if optional else "")
     if len(columns) > MOST_COLUMNS:
         raise TableError(
             f"{path}: has {len(columns):,} columns; the limit is {MOST_COLUMNS:,}",
@@ -128,14 +128,16 @@ def _require(
     for column in needed:
         if column not in columns:
             _require_commas(path, columns, needed)
-            raise TableError(f"{path}: column {column!r} is missing; {told}", "missing-column")
+            raise TableError(f"{path}: column {column!r} is missing; {expected}", "missing-column")
     for column in columns:
         if columns.count(column) > 1:
             raise TableError(
                 f"{path}: column {column[:40]!r} occurs twice; keep one", "duplicate-column"
             )
         if optional is not None and column not in (*needed, *optional):
-            raise TableError(f"{path}: unknown column {column[:40]!r}; {told}", "unknown-column")
+            raise TableError(
+                f"{path}: unknown column {column[:40]!r}; {expected}", "unknown-column"
+            )
 
 
 def _require_commas(path: Path, columns: list[str], needed: Sequence[str]) -> None:

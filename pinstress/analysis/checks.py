@@ -1,4 +1,4 @@
-"""Checks a study may ask for: a cantilever beside beam theory, a motion beside a closed form."""
+"""Optional checks of a study: a cantilever against beam theory, a motion against a closed form."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ def require_cantilever(study: Study, task: Task, case: str) -> None:
     if not turned or task.clamps != ("start",) or len(loads.surfaces) != 1 or loads.moments.any():
         raise study.error(
             f"beam_check: pin {task.pin.name} must be a plain profile, clamped at "
-            "its start face alone and loaded on one band, by forces alone, to be a cantilever"
+            "its start face alone and loaded on one band, by forces alone, to be a cantilever",
+            code="no-cantilever",
         )
 
 
@@ -39,13 +40,13 @@ def beam_check(study: Study, task: Task) -> BeamCheck:
 def motion_check(
     study: Study, loads: dict[str, CaseLoads], published: Published
 ) -> plain.MotionCheck | None:
-    """A joint's speed and acceleration beside the closed form; None when not asked for."""
+    """A joint's speed and acceleration and the closed form; None if not requested."""
     check = study.table.motion_check
     case = loads.get(check.case) if check else None
     if check is None or case is None:
         return None
     if case.dynamics is None or case.reactions.times is None:
-        raise study.error(f"motion_check.case: {check.case!r} is not a motion")
+        raise study.error(f"motion_check.case: {check.case!r} is not a motion", code="no-motion")
     motion, unit = case.dynamics.motion, study.system.factor
     lever, radius = _lever(study, check, motion.linkage)
     _, v, a = motion.joint(check.joint)
@@ -57,7 +58,8 @@ def motion_check(
         there = at_time(case, t * unit("time"))
         if there is None or there.dynamics is None:
             raise study.error(
-                f"published.motion: time {t:g} {study.system.time} is outside case {check.case}"
+                f"published.motion: time {t:g} {study.system.time} is outside case {check.case}",
+                code="time-outside",
             )
         _, *rates = there.dynamics.motion.joint(check.joint)
         at_v, at_a = (float(np.linalg.norm(x)) for x in rates)
@@ -77,10 +79,12 @@ def motion_check(
 def _lever(study: Study, check: MotionCheckTable, linkage: Linkage) -> tuple[Lever, float]:
     pivot, joint = linkage.joint(check.pivot), linkage.joint(check.joint)
     if pivot.fixed_in != GROUND:
-        raise study.error(f"motion_check.pivot: {check.pivot} is not fixed in the ground")
+        raise study.error(
+            f"motion_check.pivot: {check.pivot} is not fixed in the ground", code="pivot-not-fixed"
+        )
     slider = linkage.drives[0]
     if len(linkage.drives) != 1 or not isinstance(slider, Slider):
-        raise study.error("motion_check: it needs one drive, of a slider")
+        raise study.error("motion_check: it needs one drive, of a slider", code="no-single-drive")
 
     def distance(at: tuple[float, float]) -> float:
         return float(np.hypot(at[0] - pivot.at[0], at[1] - pivot.at[1]))

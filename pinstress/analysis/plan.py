@@ -38,7 +38,7 @@ class Plan:
     """All that is known before anything is solved: every input is read and found usable.
 
     checked: the task whose pin the beam check compares, if any. also: which fields are wanted
-    beside those of the model at the governing instant.
+    in addition to those of the model at the governing instant.
     """
 
     study: Study
@@ -60,7 +60,7 @@ def prepare(
     memory: float | None = None,
     also: Also = None,
 ) -> Plan:
-    """Find the reactions and lay out what is to be solved.
+    """Compute the reactions and prepare the pins for `solve`.
 
     pins, cases: names; all by default. model, tolerance: instead of the study's. memory: MB that a
     solid may take, by default most of what is free now. also: fields along the whole motion, or of
@@ -69,7 +69,10 @@ def prepare(
     Raises: InputError for bad input.
     """
     if not isinstance(study, Study):
-        raise InputError(f"{shown(study)} is no study; pinstress.load_study reads one from a file")
+        raise InputError(
+            f"{shown(study)} is not a study; pinstress.load_study reads one from a file",
+            code="not-a-study",
+        )
     names = select(study.table.pin, pins, "pin")
     chosen = select(study.table.case, cases, "case")
     asked = _asked(study, require_model(model), require_tolerance(tolerance), memory)
@@ -92,9 +95,10 @@ def prepare(
     for task in todo:
         if asked.model in ("beam", "harmonic") and not task.pin.revolved:
             raise study.error(
-                f"pin {task.pin.name} is no body of revolution, which the "
+                f"pin {task.pin.name} is not a body of revolution, which the "
                 f"{asked.model} model needs: use auto or solid",
                 at=f"pin.{task.pin.name}",
+                code="not-of-revolution",
             )
         if task.lugs:
             _require_model(study, asked.model, task.pin.name)
@@ -104,11 +108,11 @@ def prepare(
 def _require_model(study: Study, model: Model, pin: str) -> None:
     """Raises: InputError for a model that cannot answer for a pin in its lugs."""
     beam = study.table.analysis.joints == "foundation"
-    by, fits = ("foundations in", "beam") if beam else ("contact with", "harmonic")
+    how, fits = ("on foundations in", "beam") if beam else ("in contact with", "harmonic")
     if model not in ("auto", fits):
         raise study.error(
-            f"pin {pin} is held by {by} its lugs, which the {fits} model finds: use auto or "
-            f'{fits}, or analysis.joints = "prescribed" for the {model} model',
+            f"pin {pin} is {how} its lugs, which requires the {fits} model: use auto or {fits}, "
+            f'or analysis.joints = "prescribed" for the {model} model',
             at=f"pin.{pin}",
             code="model-without-contact",
         )

@@ -47,26 +47,31 @@ def published_values(
 def _beside(study: Study, row: PublishedRow, case: CaseLoads) -> plain.PublishedValue:
     if row.quantity not in QUANTITIES:
         known = ", ".join(QUANTITIES)
-        raise InputError(f"{row.where}: no quantity {row.quantity!r}; there are {known}")
+        raise InputError(
+            f"{row.where}: no quantity {row.quantity!r}; there are {known}", code="unknown-quantity"
+        )
     of, dimension = QUANTITIES[row.quantity]
     if row.time is not None:
         there = at_time(case, row.time * study.system.factor("time"))
         if there is None:
-            raise InputError(f"{row.where}: case {row.case} has no time {row.time:g}")
+            raise InputError(
+                f"{row.where}: case {row.case} has no time {row.time:g}", code="unknown-time"
+            )
         case = there
     try:
         if of == "connection":
             c = case.reactions.connections.index(row.name)
             value = _of_connection(row.quantity, case, c)
         elif case.dynamics is None:
-            raise InputError(f"{row.where}: case {row.case} has no mechanism")
+            raise InputError(f"{row.where}: case {row.case} has no mechanism", code="no-mechanism")
         elif of == "body":
             value = _of_body(row, case.dynamics)[0]
         else:
             value = _of_drive(row, case.dynamics)[0]
     except (IndexError, KeyError, ValueError):  # a particle has no angle
         raise InputError(
-            f"{row.where}: case {row.case} has no {of} {row.name!r} with {row.quantity}"
+            f"{row.where}: case {row.case} has no {of} {row.name!r} with {row.quantity}",
+            code="unknown-name",
         ) from None
     if dimension == "drive":
         dimension = _of_rate(row, case)

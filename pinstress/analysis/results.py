@@ -39,7 +39,7 @@ class Png:
 class Found(Results):
     """Results in the study's units, with tables, frames, and fields by pin and case.
 
-    fields: those that were kept. plan: to solve a pin again for fields that were not.
+    fields: those that were kept. plan: from which pins without a kept field are solved again.
     """
 
     fields: dict[tuple[str, str], Field] = dataclasses.field(default_factory=dict)
@@ -148,11 +148,11 @@ def run(
 ) -> Found:
     """Analyse a study.
 
-    pins, cases: names; all by default. model, tolerance: instead of the study's. memory_limit: MB
-    that a solid may take, by default most of what is free. fields: whether to keep every pin's
-    field (some 10 MB each) for `to_pyvista` and `picture`, which solve the pin again otherwise.
-    jobs: pins at a time, each in a process of its own (None: as many as there are cores); 1, in
-    this process, where fields are kept or other threads run. A pin whose numerics fail has the
+    pins, cases: names; all by default. model, tolerance: override those of the study. memory_limit:
+    limit for a solid model in MB, by default most of the free memory. fields: whether to keep every
+    pin's field (some 10 MB each) for `to_pyvista` and `picture`, which otherwise solve the pin
+    again. jobs: number of parallel processes (None: number of cores); 1, in this process, if fields
+    are kept or other threads run. A pin whose numerics fail has the
     verdict `failed`.
 
     Raises: InputError for bad input.
@@ -165,7 +165,7 @@ def run(
 
 
 def solve(plan: Plan, *, fields: bool = False, jobs: int | None = 1) -> Found:
-    """Solve what `prepare` laid out; fields, jobs: as in `run`."""
+    """Solve what `prepare` returned; fields, jobs: as in `run`."""
     kept: dict[tuple[str, str], Field] = {}
 
     def keep(field: Field) -> None:

@@ -160,7 +160,7 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
 
 
 def _in_lugs(plan: Plan, task: Task, tell: Tell) -> tuple[LugSolution, ...]:
-    """Solutions of a pin that its lugs hold; none of any other."""
+    """Solutions of a pin that its lugs support; none of any other."""
     if not task.lugs:
         return ()
     assert isinstance(task.pin, Pin)
@@ -170,7 +170,7 @@ def _in_lugs(plan: Plan, task: Task, tell: Tell) -> tuple[LugSolution, ...]:
 
 
 def _around(plan: Plan, task: Task, peaks: tuple[Peak, ...]) -> tuple[JointResult | None, ...]:
-    """Of a pin that is loaded and clamped as the study says, the range over lugs around it."""
+    """Of a pin with prescribed clamps and loads, the range over lugs around it."""
     around, loads = task.surroundings, [peak.governing for peak in peaks]
     if around is None:
         return ()

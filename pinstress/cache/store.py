@@ -112,7 +112,7 @@ class Cache:
 
 def user_cache() -> Cache | None:
     """The user's: in the folder that PINSTRESS_CACHE names, else where the system keeps caches
-    (XDG_CACHE_HOME). None when it is switched off or there is no such place.
+    (XDG_CACHE_HOME). None when it is switched off or there is no such folder.
     """
     named = os.environ.get(VARIABLE)
     if named is not None and named.strip().lower() in ("", OFF):
@@ -132,7 +132,7 @@ def _usual() -> Path:
 
 
 def program() -> str:
-    """Hash of what answers depend on besides what is asked: versions, and the source itself, so
+    """Hash of what results depend on in addition to the task: versions, and the source itself, so
     that whoever changes a formula does not meet the answers of the old one.
     """
     versions = PACKAGES + DRAWN_BY

@@ -97,9 +97,9 @@ def plan_chart(study: Study, pin: str, case: str, tolerance: float | None = None
 
 def _require_stress(study: Study, peak: Peak) -> None:
     if not peak.max_von_mises:
-        why = "its loads make no stress" if peak.verdict == "converged" else peak.note
-        told = f"pin {peak.pin}, case {peak.case}: there is nothing to chart: {why}"
-        raise study.error(told, at=f"pin.{peak.pin}")
+        why = "its loads cause no stress" if peak.verdict == "converged" else peak.note
+        text = f"pin {peak.pin}, case {peak.case}: there is nothing to chart: {why}"
+        raise study.error(text, at=f"pin.{peak.pin}", code="nothing-to-chart")
 
 
 def _plan_in_lugs(study: Study, task: Task, asked: Asked) -> ChartPlan:
@@ -219,5 +219,6 @@ def _note(peak: Peak) -> str:
     worst = max(governing, key=lambda zone: zone.max_von_mises)
     return (
         f"No maximum exists: at {worst.kind} ({' / '.join(worst.between)}) stress grows without "
-        "bound. Charted is the largest outside of what is excluded, by one rule for all models."
+        "bound. The chart shows the maximum outside the excluded zones, which all models "
+        "share."
     )

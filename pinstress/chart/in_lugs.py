@@ -1,5 +1,5 @@
-"""The ladders of a chart of a pin in its lugs: contact on several cells and meshes, beside the beam
-on foundations, prescribed tractions and, where it is requested, CalculiX.
+"""The ladders of a chart of a pin in its lugs: contact on several cells and meshes, the beam on
+foundations, prescribed tractions and, where it is requested, CalculiX.
 """
 
 from __future__ import annotations
@@ -86,7 +86,9 @@ def contact_reference(climb: Climb) -> tuple[JointRung, Seen, float]:
     for level in REFERENCE:
         found = climb.to(contact_rung(cells, level), keep=False)
         if found.result is None:
-            raise SolveError(f"the reference, contact on mesh {level + 1}: {found.failed}")
+            raise SolveError(
+                f"the reference, contact on mesh {level + 1}: {found.failed}", code="no-reference"
+            )
         results.append(found.result)
     below = [m.result for r, m in climb.done if r == contact_rung(coarser, REFERENCE[0])]
     error = math.inf

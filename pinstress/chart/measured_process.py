@@ -23,9 +23,9 @@ from fea.single_joint import JointProblem, JointRung, joint_result_on
 from fea.single_mesh import Problem, Rung, result_on
 from pinstress.processes.current_folder import trusting_python
 
-POLL = 0.02  # s between two looks at a process
+POLL = 0.02  # s between two readings
 CODE = "import sys; from pinstress.chart.measured_process import serve; serve(sys.argv[1])"
-LEAST = 0.1  # MB: less is not told apart from the libraries' own
+LEAST = 0.1  # MB: less cannot be distinguished from the libraries' own
 
 
 @dataclass(frozen=True)
@@ -97,8 +97,8 @@ def measure(job: MeasureJob, limits: MeasureLimits) -> Measured:
         with suppress(OSError, EOFError):
             found: Measured = pickle.loads((place / "result").read_bytes())
             return found
-        told = (place / "messages").read_text(errors="replace").strip().splitlines()
-        last = f" ({told[-1]})" if told else ""
+        printed = (place / "messages").read_text(errors="replace").strip().splitlines()
+        last = f" ({printed[-1]})" if printed else ""
         return Measured(None, failed=f"its process ended with status {process.returncode}{last}")
 
 
@@ -107,11 +107,11 @@ def _watch(process: subprocess.Popen[bytes], limits: MeasureLimits, place: Path)
     start = time.monotonic()
     while process.poll() is None:
         if time.monotonic() - start > limits.seconds:
-            return f"passed the limit of {limits.seconds:g} s"
+            return f"exceeded the limit of {limits.seconds:g} s"
         if (place / "bare").exists() and memory(process.pid, "VmRSS") > limits.memory + float(
             (place / "bare").read_text() or 0.0
         ):
-            return f"passed the limit of {limits.memory:g} MB"
+            return f"exceeded the limit of {limits.memory:g} MB"
         time.sleep(POLL)
     return ""
 

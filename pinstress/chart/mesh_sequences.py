@@ -116,7 +116,9 @@ def harmonic_reference(climb: Climb) -> tuple[Rung, Seen]:
         level += 1
         found = climb.to(Rung("harmonic", level=level), keep=False)
         if found.result is None:
-            raise SolveError(f"the reference, harmonic mesh {level + 1}: {found.failed}")
+            raise SolveError(
+                f"the reference, harmonic mesh {level + 1}: {found.failed}", code="no-reference"
+            )
         results.append(found.result)
         if results[-1].unknowns > MOST_OF_REFERENCE:
             break
@@ -139,7 +141,10 @@ def solid_reference(climb: Climb) -> tuple[Rung, Seen]:
         results.append(found.result)
         level += step
     if len(results) == len(charted):
-        raise SolveError("no solid mesh finer than those charted could be solved as a reference")
+        raise SolveError(
+            "no solid mesh finer than those charted could be solved as a reference",
+            code="no-reference",
+        )
     return Rung("solid", "curved", level), climb.seen("solid", tuple(results))
 
 
@@ -151,7 +156,10 @@ def _finest(climb: Climb, model: str) -> tuple[int, tuple[MeshResult, ...]]:
     of_it = [(r.level, m) for r, m in climb.done if r.model == model and r.element == "curved"]
     results = tuple(m.result for _, m in of_it if m.result)
     if not results:
-        raise SolveError(f"no mesh of the {model} model could be solved: {of_it[0][1].failed}")
+        raise SolveError(
+            f"no mesh of the {model} model could be solved: {of_it[0][1].failed}",
+            code="no-mesh-solved",
+        )
     return max(level for level, m in of_it if m.result), results
 
 

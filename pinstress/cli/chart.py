@@ -42,7 +42,9 @@ def chart_and_write(
     Raises: InputError, ArithmeticError.
     """
     if portable():
-        raise InputError("chart measures the memory of processes, which is done on Linux only")
+        raise InputError(
+            "chart measures the memory of processes, which works on Linux only", code="linux-only"
+        )
     preload(*PLOTTERS)
     from reports.plots.chart import chart_plot
 
@@ -68,8 +70,9 @@ def _announce_calculix(plan: ChartPlan) -> None:
     """Raises: InputError for a pin that is not in contact."""
     if plan.chosen is None:
         raise InputError(
-            "--second-opinion ccx: charts have CalculiX only for pins in contact with their lugs; "
-            "for others use pinstress run --second-opinion ccx"
+            "--second-opinion ccx: charts include CalculiX only for pins in contact with their "
+            "lugs; for others use pinstress run --second-opinion ccx",
+            code="no-contact",
         )
     click.echo(
         "CalculiX solves contact in three dimensions on three meshes, which takes minutes; one "

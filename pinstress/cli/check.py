@@ -46,22 +46,22 @@ def describe(study: Study) -> str:
 def _pin(study: Study, name: str) -> str:
     pin, p, system = pin_of(study, name), study.table.pin[name], study.system
     ways = dict.fromkeys(study.clamps(name, case) for case in study.table.case)
-    held = dict.fromkeys(_held(study, pin, way) for way in ways)
+    supports = dict.fromkeys(_support(study, pin, way) for way in ways)
     density = study.table.material[p.material].density
     heavy = ""
     if density:
         heavy = f", {weight(pin, density) / system.factor('force'):.4g} {system.force}"
     return (
         f"pin {name}: {p.material}, {_form(p)}{heavy}; "
-        f"loaded at {', '.join(pin.connections) or 'nothing'}; {' or '.join(held)}"
+        f"loaded at {', '.join(pin.connections) or 'nothing'}; {' or '.join(supports)}"
         + (f"; {lost}" if (lost := lost_shape(pin)) else "")
     )
 
 
-def _held(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> str:
+def _support(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> str:
     if lugs(study, pin, clamps):
         beam = study.table.analysis.joints == "foundation"
-        return f"held by {'foundations in' if beam else 'contact with'} its lugs"
+        return f"{'on foundations in' if beam else 'in contact with'} its lugs"
     return f"clamped at {', '.join(clamps) or 'nowhere (loads must balance)'}"
 
 

@@ -175,7 +175,8 @@ def _require_calculix() -> None:
     if not installed():
         raise InputError(
             "--second-opinion ccx: CalculiX is not installed (no command ccx); on Debian and "
-            "Ubuntu: sudo apt-get install --no-install-recommends calculix-ccx"
+            "Ubuntu: sudo apt-get install --no-install-recommends calculix-ccx",
+            code="no-calculix",
         )
 
 

@@ -1,4 +1,4 @@
-"""The commands besides run, loads, chart and check: init, schema, size, view, completion."""
+"""The commands other than run, loads, chart and check: init, schema, size, view, completion."""
 
 from __future__ import annotations
 
@@ -26,7 +26,9 @@ def init(directory: Path, opens: bool) -> int:
     try:
         directory.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"{target}: cannot be written ({error.strerror})") from None
+        raise InputError(
+            f"{target}: cannot be written ({error.strerror})", code="cannot-write"
+        ) from None
     write_new(target, shipped("one_pin.toml").read_bytes(), "name another folder")
     with unneeded(target):
         click.echo(str(target))
@@ -139,9 +141,9 @@ def size(
     try:
         metres = None if step is None else to_si(step, "length", loaded.system)
     except ValueError as error:
-        raise InputError(f"--step: {error}") from None
+        raise InputError(f"--step: {error}", code="not-a-length") from None
     if metres is not None and metres <= 0.0:
-        raise InputError("--step: must be positive")
+        raise InputError("--step: must be positive", code="not-positive")
     from pinstress.cli.size import size_and_write
 
     return size_and_write(loaded, fos, out, pins, metres, quiet, jobs)

@@ -14,7 +14,7 @@ def require_new(path: Path, remedy: str) -> None:
     remedy: what the user can do.
     """
     if os.path.lexists(path):
-        raise InputError(f"{path} exists already; {remedy}")
+        raise InputError(f"{path} exists already; {remedy}", code="exists")
 
 
 def write_new(path: Path, content: bytes, remedy: str) -> None:
@@ -23,6 +23,8 @@ def write_new(path: Path, content: bytes, remedy: str) -> None:
         with path.open("xb") as file:  # does not follow links
             file.write(content)
     except FileExistsError:
-        raise InputError(f"{path} exists already; {remedy}") from None
+        raise InputError(f"{path} exists already; {remedy}", code="exists") from None
     except OSError as error:
-        raise InputError(f"{path}: cannot be written ({error.strerror})") from None
+        raise InputError(
+            f"{path}: cannot be written ({error.strerror})", code="cannot-write"
+        ) from None

@@ -29,26 +29,29 @@ def require_replaceable(directory: Path, mark: str = MARK) -> None:
     """
     try:
         if directory.exists() and not directory.is_dir():
-            raise InputError(f"--out: {directory} is a file; name a folder")
+            raise InputError(f"--out: {directory} is a file; give a folder", code="not-a-folder")
         there = manifest.entries(directory) if directory.exists() else set()
         known = manifest.listed(directory)
     except OSError as error:  # it cannot be read, or its name is too long
-        raise InputError(f"--out: {directory}: {error.strerror}") from None
+        raise InputError(f"--out: {directory}: {error.strerror}", code="cannot-read") from None
     if there and mark not in there:
         raise InputError(
-            f"--out: {directory} holds files that are not results of pinstress to replace (it has "
-            f"no {mark}, but {_some(there)}); name an empty or new folder"
+            f"--out: {directory} contains files that are not results of this command (it has no "
+            f"{mark}, but {_some(there)}); choose an empty or new folder",
+            code="not-ours",
         )
     if there and known is None:
         raise InputError(
-            f"--out: {directory} holds {_some(there)}, and no list of what pinstress wrote "
-            f"({manifest.NAME}): it is not of pinstress, or of an earlier version, or was copied "
-            "without that file; name another folder, or remove this one if nothing in it is yours"
+            f"--out: {directory} contains {_some(there)}, but no list of what pinstress wrote "
+            f"({manifest.NAME}): it was written by another program or an earlier version, or "
+            "copied without that file; choose another folder, or delete this one",
+            code="not-ours",
         )
     if strange := there - (known or set()):
         raise InputError(
-            f"--out: {directory} holds {_some(strange)}, which pinstress did not write and would "
-            "delete; move that elsewhere or name another folder"
+            f"--out: {directory} contains {_some(strange)}, which pinstress did not write and "
+            "would delete; move them elsewhere or choose another folder",
+            code="not-ours",
         )
 
 
@@ -70,7 +73,7 @@ def replacing(directory: Path, mark: str = MARK) -> Iterator[Path]:
             _recover(earlier, directory)
         except OSError as error:
             raise InputError(
-                f"--out: cannot write to {directory.parent} ({error.strerror})"
+                f"--out: cannot write to {directory.parent} ({error.strerror})", code="cannot-write"
             ) from None
         require_replaceable(directory, mark)
         try:
@@ -79,14 +82,17 @@ def replacing(directory: Path, mark: str = MARK) -> Iterator[Path]:
         except OSError as error:  # a full disk
             if not _is_inside(error, partial):
                 raise
-            raise InputError(f"--out: cannot write to {directory} ({error.strerror})") from error
+            raise InputError(
+                f"--out: cannot write to {directory} ({error.strerror})", code="cannot-write"
+            ) from error
         require_replaceable(directory, mark)  # a run takes minutes
         try:
             _replace(partial, directory, earlier)
         except OSError as error:
             raise InputError(
                 f"--out: cannot replace {directory} ({error.strerror}); close programs that have "
-                "one of its files open, or name another folder"
+                "one of its files open, or choose another folder",
+                code="cannot-write",
             ) from error
     finally:
         if release is not None:
@@ -102,7 +108,9 @@ def _resolved(directory: Path) -> Path:
     try:
         return directory.resolve()
     except (OSError, RuntimeError):  # the latter of Python up to 3.12
-        raise InputError(f"--out: {directory} is a link that leads back to itself") from None
+        raise InputError(
+            f"--out: {directory} is a link that leads back to itself", code="circular-link"
+        ) from None
 
 
 def _some(names: set[str]) -> str:
@@ -126,7 +134,8 @@ def _claim(partial: Path, directory: Path) -> Release:
             raise _in_the_way(partial) from None
         except BlockingIOError:
             raise InputError(
-                f"--out: another run is writing {directory}; wait for it or name another folder"
+                f"--out: another run is writing {directory}; wait for it or choose another folder",
+                code="locked",
             ) from None
         try:
             _empty(partial)  # by a run that was killed
@@ -147,14 +156,15 @@ def _empty(partial: Path) -> None:
 def _clear(folder: Path) -> None:
     """Remove our files from a folder, and the folder if it is then empty."""
     if folder.is_dir() and not folder.is_symlink():
-        with suppress(OSError):  # it holds something else
+        with suppress(OSError):  # it contains something else
             manifest.remove(folder, manifest.ours(folder) or set())
             folder.rmdir()
 
 
 def _in_the_way(path: Path) -> InputError:
     return InputError(
-        f"--out: {path} is in the way and not of pinstress; move it or name another folder"
+        f"--out: {path} exists and was not written by pinstress; move it or choose another folder",
+        code="not-ours",
     )
 
 

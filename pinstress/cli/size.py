@@ -24,7 +24,7 @@ from reports.format.ranges import factor_range
 from reports.text.sizes import SizeRow, print_sizes
 
 PASSES = 4
-ANOTHER = "name another file with --out"
+ANOTHER = "choose another file with --out"
 
 
 def size_and_write(
@@ -46,7 +46,8 @@ def size_and_write(
     if required is None:
         raise study.error(
             "size needs a factor of safety to reach: --fos 10, or "
-            "required_safety_factor in [analysis]"
+            "required_safety_factor in [analysis]",
+            code="no-required-factor",
         )
     target = _target(study, out)
     plan = prepare(study, pins=pins)
@@ -107,7 +108,7 @@ def _target(study: Study, out: Path | None) -> Path:
     target = out or study.path.with_name(f"{study.name}_sized.toml")
     require_new(target, ANOTHER)
     if not target.parent.is_dir():
-        raise InputError(f"--out: there is no folder {target.parent}")
+        raise InputError(f"--out: there is no folder {target.parent}", code="no-folder")
     return target
 
 

@@ -15,7 +15,7 @@ from reports.vtk.read_back import Opened, open_results
 from reports.vtk.render import render_pin, show_pin
 from reports.vtk.renderer import renderer_problem
 
-OVERWRITE = "name another file, or overwrite it with --force"
+OVERWRITE = "choose another file, or overwrite it with --force"
 
 
 def view(
@@ -35,11 +35,12 @@ def view(
         row = opened.row(pin, case)
         field = opened.field(row)
     except ValueError as error:
-        raise InputError(f"{directory}: {error}") from None
+        raise InputError(f"{directory}: {error}", code="unreadable-results") from None
     except FileNotFoundError as error:
         raise InputError(
-            f"{error}: no such file; a beam has no field, nor has a pin that was not solved, "
-            "nor a run with --vtk none"
+            f"{error}: no such file; there is no field for a beam, for a pin that was not "
+            "solved, or after a run with --vtk none",
+            code="no-field",
         ) from None
     title = opened.title(row)
     preload(*PAINTERS)
@@ -48,12 +49,17 @@ def view(
         show_pin(field, opened.units, title)
         return
     if screenshot.suffix.lower() != ".png" or not screenshot.parent.is_dir():
-        raise InputError(f"--screenshot {screenshot}: name a .png file in a folder that exists")
+        raise InputError(
+            f"--screenshot {screenshot}: give a .png file in an existing folder",
+            code="not-a-picture",
+        )
     if not force:
         require_new(screenshot, OVERWRITE)
     problem = renderer_problem()
     if problem is not None:
-        raise InputError(f"--screenshot: {problem}; install libosmesa6 or libegl1")
+        raise InputError(
+            f"--screenshot: {problem}; install libosmesa6 or libegl1", code="no-display"
+        )
     with TemporaryDirectory(prefix="pinstress-") as folder:
         picture = Path(folder) / "pin.png"
         render_pin(field, picture, opened.units, title)
@@ -65,11 +71,16 @@ def view(
 def _remove(path: Path) -> None:
     """Remove a file or link. Raises: InputError for anything else."""
     if not (path.is_file() or path.is_symlink()):
-        raise InputError(f"--screenshot {path} is no file that can be overwritten; name another")
+        raise InputError(
+            f"--screenshot {path} is not a regular file and cannot be overwritten; choose another",
+            code="not-a-file",
+        )
     try:
         path.unlink()
     except OSError as error:
-        raise InputError(f"{path}: cannot be overwritten ({error.strerror})") from None
+        raise InputError(
+            f"{path}: cannot be overwritten ({error.strerror})", code="cannot-write"
+        ) from None
 
 
 def _opened(directory: Path) -> Opened:
@@ -77,10 +88,11 @@ def _opened(directory: Path) -> Opened:
         return open_results(directory)
     except OSError:
         raise InputError(
-            f"{directory}: no results.json in it; name the folder that `pinstress run` wrote"
+            f"{directory}: contains no results.json; give a folder written by `pinstress run`",
+            code="no-results",
         ) from None
     except ValueError as error:
-        raise InputError(f"{directory}: {error}") from None
+        raise InputError(f"{directory}: {error}", code="unreadable-results") from None
 
 
 def _require_display() -> None:
@@ -88,5 +100,6 @@ def _require_display() -> None:
     if sys.platform == "linux" and not shows:
         raise InputError(
             "there is no display to open a window on (neither DISPLAY nor WAYLAND_DISPLAY is set); "
-            "--screenshot FILE.png writes a picture instead"
+            "--screenshot FILE.png writes a picture instead",
+            code="no-display",
         )

@@ -127,7 +127,7 @@ def case_loads(
         assert mechanism is not None
         if isinstance(case, MotionCase):
             return _motion(study, name, case, mechanism, extremes)
-        return _held(study, name, case, mechanism)
+        return _at_instant(study, name, case, mechanism)
     except TableError as error:
         raise InputError(str(error), code=error.code) from None
     except Impasse as error:
@@ -156,7 +156,7 @@ def _given(study: Study, name: str, case: GivenCase) -> Reactions:
     known = {c for p in study.table.pin for c in study.connections(p)}
     return read_reactions(
         name,
-        study.beside(case.table),
+        study.path_to(case.table),
         study.system.factor("force"),
         study.system.factor("moment"),
         study.system.factor("time"),
@@ -226,10 +226,12 @@ def _motion(
     )
 
 
-def _held(study: Study, name: str, case: StaticCase | InstantCase, mechanism: Linkage) -> CaseLoads:
+def _at_instant(
+    study: Study, name: str, case: StaticCase | InstantCase, mechanism: Linkage
+) -> CaseLoads:
     applied, note = _applied(study, case, mechanism)
-    held = [StateDrive(*values) for values in state(study, name, case, mechanism)]
-    motion = move(mechanism, held, np.zeros(1))
+    drives = [StateDrive(*values) for values in state(study, name, case, mechanism)]
+    motion = move(mechanism, drives, np.zeros(1))
     found = motion_reactions(name, motion, applied, timed=False)
     return CaseLoads(found.reactions, found, note, range=_range(study, name, case, motion))
 
@@ -239,7 +241,7 @@ def _applied(
 ) -> tuple[tuple[Applied, ...], str]:
     """The loads of a case, and how impulses among them came about."""
     loads = tuple(_load(load, mechanism, _force(load)) for load in case.apply)
-    notes = [_told(study, load) for load in case.apply if load.impulse is not None]
+    notes = [_impulse_note(study, load) for load in case.apply if load.impulse is not None]
     return loads, " ".join(notes)
 
 
@@ -271,7 +273,7 @@ def _directed(impulse: ImpulseTable, size: float) -> tuple[float, float]:
     return float(size * x), float(size * y)
 
 
-def _told(study: Study, load: ApplyTable) -> str:
+def _impulse_note(study: Study, load: ApplyTable) -> str:
     impulse = load.impulse
     assert impulse is not None
     size = _size(impulse, impulse.velocity_change, impulse.impulse_time)

@@ -28,9 +28,7 @@ def places(mechanism: MechanismTable, show: Show) -> dict[str, Point]:
             key = f"mechanism.joint.{name}.at"
             if unknown:
                 raise LayoutError(f"{key}: there is no joint {unknown[0]!r}", "unknown-joint")
-            circle = (
-                f"{key}: the positions of {', '.join(waiting)} depend on each other in a circle"
-            )
+            circle = f"{key}: the positions of {', '.join(waiting)} depend on each other"
             raise LayoutError(f"{circle}; give one of them as [x, y]", "circular-positions")
         for name in ready:
             found[name] = _placed(name, waiting.pop(name), found, show)

@@ -253,7 +253,7 @@ def span(study: Study) -> float:
 
 
 def _table(study: Study, drive: AnyDriveTable) -> TableDrive:
-    path = study.beside(drive.table or "")
+    path = study.path_to(drive.table or "")
     slides = isinstance(drive, SliderDrive)
     length, time = study.system.factor("length"), study.system.factor("time")
     value = "position" if slides else "position_deg"

@@ -14,31 +14,33 @@ from pinstress.schema.pins import LugTable
 from pinstress.study.file import Study
 
 EYE = 2.5  # outer diameter over the band's
-HELD = 0.8  # of the outer diameter: how far from the bore's middle the link holds its eye
+CLAMP_DISTANCE = (
+    0.8  # of the outer diameter: distance from the bore's centre to where the link clamps the eye
+)
 
 
 def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]:
     """Those of a pin, one for every connection and those of a structure that are named, if they
-    hold it; else none.
+    support it; else none.
 
-    Raises: InputError for lugs that cannot be, and for a pin that lugs cannot hold.
+    Raises: InputError for impossible lugs, and for a pin that lugs cannot support.
     """
     table, joints = study.table.pin[pin.name], study.table.analysis.joints
     if joints == "prescribed" or (joints == "auto" and not table.lug):
         return ()
     at = f"pin.{pin.name}" + ".lug" * bool(table.lug)
-    instead = 'or take analysis.joints = "prescribed"'
+    instead = 'or set analysis.joints = "prescribed"'
     if not isinstance(pin, Pin):
         raise study.error(
-            f"pin {pin.name} is cut or from a file; only turned pins can sit in lugs: remove its "
-            f"lugs {instead}",
+            f"pin {pin.name} has holes or flats or is from a file; lugs require a plain profile: "
+            f"remove its lugs, {instead}",
             at,
             "not-axisymmetric",
         )
     if clamps:
         raise study.error(
-            f"pin {pin.name} is clamped at {', '.join(clamps)}, and its lugs hold it at the same "
-            f"time: remove either, {instead}",
+            f"pin {pin.name} is clamped at {', '.join(clamps)}, and also supported by lugs: "
+            f"remove the clamp or the lugs, {instead}",
             at,
             "clamped-in-lugs",
         )
@@ -57,7 +59,7 @@ def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]
         raise study.error(str(error), at, error.code) from None
     if joints == "foundation" and (reason := beyond_foundations(out)):
         raise study.error(
-            f'pin {pin.name} on foundations: {reason}; take analysis.joints = "contact"',
+            f'pin {pin.name} on foundations: {reason}; use analysis.joints = "contact"',
             at,
             "beyond-foundations",
         )
@@ -81,14 +83,14 @@ def surroundings(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> Surroun
     defaults for what the study does not say.
     """
     if not isinstance(pin, Pin):
-        return Surroundings(why="the pin is cut or from a file, not turned")
-    held = [pin.surface(name) for name in clamps]
-    bare = [name for name in held if name not in pin.labels]
+        return Surroundings(why="the pin has holes or flats or is from a file")
+    clamped = [pin.surface(name) for name in clamps]
+    bare = [name for name in clamped if name not in pin.labels]
     if bare:
         return Surroundings(why=f"no lug surrounds its clamp ({', '.join(bare)})")
     table = study.table.pin[pin.name]
-    free = _freed(pin, held)
-    names = dict.fromkeys([*free.connections, *held, *table.lug])
+    free = _freed(pin, clamped)
+    names = dict.fromkeys([*free.connections, *clamped, *table.lug])
     if len(names) < 2:
         return Surroundings(why="one band alone does not show how the pin is supported")
     made_of = material(study, table.material)
@@ -101,13 +103,14 @@ def surroundings(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> Surroun
     return Surroundings(free, found, not table.lug)
 
 
-def _freed(pin: Pin, held: list[str]) -> Pin:
+def _freed(pin: Pin, clamped: list[str]) -> Pin:
     """With clamped segments on which no link bears."""
     segments = zip(pin.segments, pin.labels, strict=True)
     return replace(
         pin,
         segments=tuple(
-            replace(s, name=label, connection=None) if label in held else s for s, label in segments
+            replace(s, name=label, connection=None) if label in clamped else s
+            for s, label in segments
         ),
     )
 
@@ -128,4 +131,4 @@ def _lug(study: Study, pin: Pin, connection: str, given: LugTable, of_pin: Mater
 
 def _bending(material: Material, outer: float, thickness: float) -> float:
     """Of a shank as wide as the eye, N m/rad."""
-    return material.youngs_modulus * outer * thickness**3 / (12.0 * HELD * outer)
+    return material.youngs_modulus * outer * thickness**3 / (12.0 * CLAMP_DISTANCE * outer)

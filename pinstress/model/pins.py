@@ -137,5 +137,5 @@ def _from_file(study: Study, name: str, p: PinTable) -> PinLike:
 
     assert p.geometry is not None
     places = tuple(Band(n, b.z, b.surface, b.connection) for n, b in p.band.items())
-    file = BodyFile(name, study.beside(p.geometry), METRES[p.geometry_unit], places)
+    file = BodyFile(name, study.path_to(p.geometry), METRES[p.geometry_unit], places)
     return read_body(file)

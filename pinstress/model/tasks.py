@@ -1,4 +1,4 @@
-"""What is to be solved: each pin, how it is held, and its loads in every case."""
+"""What is to be solved: each pin, its constraints, and its loads in every case."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ class Task:
 
     left_out: by case, the connections whose force and moment are not applied because their band is
     clamped. ranges: by case, the loads over the ranges of its impulse. between: of the cases that
-    are motions, the loads at any times. lugs: that hold the pin, if any; surroundings: in which it
-    may sit where none do.
+    are motions, the loads at any times. lugs: that support the pin, if any; surroundings: in which
+    it may sit where none do.
     """
 
     pin: PinLike
@@ -55,18 +55,21 @@ def tasks(study: Study, pins: list[PinLike], loads: dict[str, CaseLoads]) -> lis
             if task.loads:
                 out.append(task)
     if not study.table.pin:
-        raise study.error("the study has no pins; pinstress loads gives the reactions alone")
+        raise study.error(
+            "the study has no pins; use pinstress loads for the reactions only", code="no-pins"
+        )
     if not out:
         many = "s" if len(loads) > 1 else ""
         raise study.error(
             f"case{many} {', '.join(loads)} {'do' if many else 'does'} not load "
-            f"pin{'s' if len(pins) > 1 else ''} {', '.join(pin.name for pin in pins)}"
+            f"pin{'s' if len(pins) > 1 else ''} {', '.join(pin.name for pin in pins)}",
+            code="not-loaded",
         )
     return out
 
 
 def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, CaseLoads]) -> Task:
-    held = {pin.surface(c) for c in clamps}
+    constrained = {pin.surface(c) for c in clamps}
     made_of = material(study, study.table.pin[pin.name].material)
     cases: list[PinLoads] = []
     left_out: dict[str, tuple[str, ...]] = {}
@@ -76,13 +79,14 @@ def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, 
         here = [c for c in pin.connections if c in given.reactions.connections]
         if not here or study.clamps(pin.name, case) != clamps:
             continue
-        applied = [c for c in here if c not in held]
+        applied = [c for c in here if c not in constrained]
         if not applied:
             raise study.error(
                 f"case.{case}: every load on pin {pin.name} is at a clamped band "
-                f"({', '.join(here)}), so nothing loads it; clamp something else"
+                f"({', '.join(here)}), so no load acts on it; clamp another surface",
+                code="not-loaded",
             )
-        left_out[case] = tuple(c for c in here if c in held)
+        left_out[case] = tuple(c for c in here if c in constrained)
         spread = study.table.case[case].distribution
         heavy = not clamps and bool(made_of.density)
         made = partial(_pin_loads, case, given, applied, spread, heavy)
@@ -93,9 +97,9 @@ def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, 
             cases.append(between[case](given.moving.instants))
         if given.range is not None:
             ranges[case] = made(given.range.reactions)
-    held_by = lugs(study, pin, clamps) if cases else ()
-    around = surroundings(study, pin, clamps) if cases and not held_by else None
-    return Task(pin, made_of, clamps, tuple(cases), left_out, ranges, between, held_by, around)
+    in_lugs = lugs(study, pin, clamps) if cases else ()
+    around = surroundings(study, pin, clamps) if cases and not in_lugs else None
+    return Task(pin, made_of, clamps, tuple(cases), left_out, ranges, between, in_lugs, around)
 
 
 def _at(made: Callable[..., PinLoads], moving: MovingLoads, times: Floats) -> PinLoads:

@@ -32,8 +32,8 @@ def _idle(name: str, fixed_in: str | None) -> str:
     if fixed_in is None:
         return ""
     return (
-        f"pin {name} is fixed in {fixed_in}, of whose weight it is a part, so this one is not "
-        "used; take it out"
+        f"pin {name} is fixed in {fixed_in}, whose weight includes it, so this weight is not "
+        "used; remove it"
     )
 
 
@@ -51,7 +51,7 @@ def _differs(study: Study, name: str, stated: float, gravity: float) -> str:
         return ""
     unit, factor = study.system.force, study.system.factor("force")
     return (
-        f"{stated / factor:.4g} {unit} is stated, but the pin's shape and density make "
-        f"{own / factor:.4g} {unit}; the forces are those of the stated weight. Take it out to "
-        "have the pin's own, or correct the shape or the density"
+        f"{stated / factor:.4g} {unit} is stated, but the pin's shape and density give "
+        f"{own / factor:.4g} {unit}; the stated weight is used. Remove it to use the weight of the "
+        "shape, or correct the shape or the density"
     )

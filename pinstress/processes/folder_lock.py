@@ -54,22 +54,22 @@ def _by_database(folder: Path) -> Release:
     name = hashlib.sha256(os.path.normcase(folder).encode()).hexdigest()[:32]
     path = Path(tempfile.gettempdir(), f"pinstress-{name}.lock")
     try:
-        held = sqlite3.connect(path, timeout=0.0, isolation_level=None, check_same_thread=False)
+        lock = sqlite3.connect(path, timeout=0.0, isolation_level=None, check_same_thread=False)
     except sqlite3.Error as error:
         raise OSError(errno.EACCES, str(error), str(path)) from None
     try:
-        held.execute("BEGIN EXCLUSIVE")
+        lock.execute("BEGIN EXCLUSIVE")
         if not stat.S_ISDIR(folder.lstat().st_mode):
             raise _no_folder(folder)
     except sqlite3.Error as error:
-        held.close()
+        lock.close()
         if error.sqlite_errorcode == sqlite3.SQLITE_BUSY:
             raise BlockingIOError(errno.EAGAIN, str(error), str(path)) from None
         raise OSError(errno.EACCES, str(error), str(path)) from None
     except BaseException:
-        held.close()
+        lock.close()
         raise
-    return held.close
+    return lock.close
 
 
 def _no_folder(path: Path) -> NotADirectoryError:

@@ -14,7 +14,7 @@ INTERRUPTS = tuple(getattr(signal, name) for name in NAMES if hasattr(signal, na
 INTERRUPTED = 130  # the exit status
 
 _came = False
-_held = False
+_deferred = False
 
 
 def listen() -> None:
@@ -49,14 +49,14 @@ def require_none() -> None:
 
 
 @contextmanager
-def held() -> Iterator[None]:
+def deferred() -> Iterator[None]:
     """Interrupts wait meanwhile, once `listen` was called."""
-    global _held
-    _held = True
+    global _deferred
+    _deferred = True
     try:
         yield
     finally:
-        _held = False
+        _deferred = False
     require_none()
 
 
@@ -82,5 +82,5 @@ def _interrupt(*_: object) -> None:
     global _came
     _came = True
     ignore()  # clearing up is not interrupted once more
-    if not _held:
+    if not _deferred:
         raise KeyboardInterrupt

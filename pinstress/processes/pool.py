@@ -48,8 +48,8 @@ _preloaded: list[str] = []
 
 @dataclass(frozen=True)
 class Job(Generic[T_co]):
-    """Work under a name, told whom to tell what it is doing. What it returns must be small: it is
-    sent from process to process.
+    """Work under a name; it gets a function to report its progress. What it returns must be small:
+    it is sent from process to process.
     """
 
     name: str
@@ -91,7 +91,7 @@ def preload(*modules: str) -> None:
     Interrupts wait until then: one in the middle of VTK's import crashes it.
     """
     _preloaded.extend(modules)
-    with interrupts.held(), elsewhere():
+    with interrupts.deferred(), elsewhere():
         for name in modules:
             with suppress(ImportError):
                 import_module(name)
@@ -132,9 +132,9 @@ def side_by_side(
                         child.take(waiting.pop(), jobs)
                     else:
                         running.pop(pipe).close()
-            told = "; ".join(child.doing for child in running.values())
+            doing = "; ".join(child.doing for child in running.values())
             interrupts.require_none()
-            progress(told, len(found) / len(jobs))
+            progress(doing, len(found) / len(jobs))
     finally:
         _end(list(running.values()))
     return [found[i] for i in range(len(jobs))]
@@ -185,7 +185,7 @@ def ended(status: int) -> str:
     if status >= 0:
         return f"its process ended with status {status}"
     text = f"its process was ended by signal {-status} ({signal.strsignal(-status)})"
-    return text + "; is there memory enough?" * (status == -KILLED)
+    return text + "; it may have run out of memory" * (status == -KILLED)
 
 
 def _start(jobs: Sequence[Job[T]]) -> _Child:
@@ -229,12 +229,12 @@ def _do_jobs(jobs: Sequence[Job[T]], pipe: Connection) -> None:
         try:
             say("returns", job.work(lambda message: say("tells", message)))
         except Exception as error:
-            told = "".join(traceback.format_exception(error))
-            error.add_note(f"{job.name}, in its own process:\n{told}")
+            text = "".join(traceback.format_exception(error))
+            error.add_note(f"{job.name}, in its own process:\n{text}")
             try:
                 say("raises", error)
             except (pickle.PicklingError, TypeError, AttributeError):
-                say("raises", RuntimeError(f"{job.name}, in its own process:\n{told}"))
+                say("raises", RuntimeError(f"{job.name}, in its own process:\n{text}"))
 
 
 def _leave(*_: object) -> None:

@@ -36,15 +36,14 @@ class GivenCase(CaseTable):
     """Stated forces and moments on pins, or a table of them."""
 
     kind: Literal["given"]
-    """Which kind of case."""
+    """Kind of case."""
     forces: dict[str, Annotated[list[Force], Field(min_length=2, max_length=3)]] | None = None
-    """By connection the force on the pin, in its own x, y (and z, along the axis)."""
+    """Force on the pin at each connection, in pin axes x, y (and z, along the pin)."""
     moments: dict[str, Annotated[list[Moment], Field(min_length=2, max_length=3)]] | None = None
-    """By connection the moment on the pin about x, y (and z) through the middle of the band."""
+    """Moment on the pin at each connection, about x, y (and z) through the middle of the band."""
     table: str | None = None
-    """CSV in the study's folder, instead: connection,fx,fy[,fz][,mx,my,mz][,time]; with time a
-    sweep.
-    """
+    """CSV file in the study's folder with the columns connection,fx,fy[,fz][,mx,my,mz][,time],
+    instead of `forces` and `moments`; a sweep if it has times."""
 
     @model_validator(mode="after")
     def _one_source(self) -> "GivenCase":
@@ -61,12 +60,12 @@ class GivenCase(CaseTable):
 
 
 class ImpulseRange(StrictTable):
-    """Values to try in place of the impulse's own: the factor of safety over all pairs."""
+    """Other values of the impulse: the safety factor is computed for all pairs."""
 
     impulse_time: Annotated[list[Duration], Field(min_length=1)]
     """Durations of the impulse."""
     velocity_change: Annotated[list[Annotated[Velocity, POSITIVE]], Field(min_length=1)]
-    """Changes of velocity."""
+    """Velocity changes."""
 
 
 class ImpulseTable(StrictTable):
@@ -79,19 +78,19 @@ class ImpulseTable(StrictTable):
     gravity: Annotated[
         Acceleration, POSITIVE, Field(json_schema_extra={"default": "9.80665 m/s^2"})
     ] = 9.80665
-    """Turns the weight into a mass."""
+    """Converts the weight to a mass."""
     mass: Mass | None = None
     """Mass of the body that is stopped."""
     velocity_change: Annotated[Velocity, POSITIVE]
-    """Loss of velocity."""
+    """Change of velocity."""
     impulse_time: Duration
     """Duration of the impulse."""
     pulse: Literal["rectangular", "half-sine", "triangular"] = "rectangular"
-    """Shape: the ratio of peak to mean is 1, pi/2 and 2."""
+    """Shape of the pulse; its ratio of peak to mean is 1, pi/2 or 2."""
     direction: tuple[Number, Number]
-    """Direction of the force, in world axes; any length but 0."""
+    """Direction of the force in world axes; a vector of any length except 0."""
     range: ImpulseRange | None = None
-    """Other values to try, for one impulse per case."""
+    """Range of values; for one impulse per case."""
 
     @model_validator(mode="after")
     def _one_mass(self) -> "ImpulseTable":
@@ -108,13 +107,15 @@ class ApplyTable(StrictTable):
     body: str
     """Name of a body of the mechanism."""
     at: JointOrPoint | None = None
-    """A joint by name, or a point as drawn; absent: the body's centre of mass."""
+    """Point of application: a joint, or [x, y] in the drawn position. Default: the centre of
+    mass."""
     force: tuple[Force, Force] | None = None
-    """In world axes as drawn."""
+    """Force in world axes, in the drawn position."""
     couple: Moment = 0.0
-    """Counter-clockwise."""
+    """Couple, positive counter-clockwise."""
     follows: Switch = False
-    """Whether the force turns with the body; otherwise its direction in world axes is constant."""
+    """Whether the force rotates with the body; otherwise its direction is constant in world
+    axes."""
     impulse: ImpulseTable | None = None
     """A force estimated from an impulse, instead of `force`."""
 
@@ -135,16 +136,16 @@ class MechanismCase(CaseTable):
     """Keys of all cases of a mechanism."""
 
     apply: list[ApplyTable] = []
-    """Loads on its bodies."""
+    """Loads on the bodies."""
 
 
 class MotionCase(MechanismCase):
     """The mechanism driven from the start of its drives to the end."""
 
     kind: Literal["motion"]
-    """Which kind of case."""
+    """Kind of case."""
     samples: Annotated[Whole, Field(ge=2, le=100_001)] = 201
-    """Instants, evenly spaced."""
+    """Number of equally spaced instants."""
 
 
 def _coordinate(value: object) -> float | str:
@@ -165,28 +166,30 @@ class StaticCase(MechanismCase):
     """The mechanism at rest, under gravity and applied loads."""
 
     kind: Literal["static"]
-    """Which kind of case."""
+    """Kind of case."""
     position: Coordinates | None = None
-    """Of the drive, a length or an angle with its unit; by drive if several; absent: as drawn."""
+    """Position of the drive, a length or an angle with its unit; for several drives, a table by
+    drive. Default: as drawn."""
 
 
 class InstantCase(MechanismCase):
     """One instant of a motion."""
 
     kind: Literal["instant"]
-    """Which kind of case."""
+    """Kind of case."""
     position: Coordinates | None = None
-    """Of the drive, a length or an angle with its unit; by drive if several; absent: as drawn."""
+    """Position of the drive, a length or an angle with its unit; for several drives, a table by
+    drive. Default: as drawn."""
     velocity: Coordinates = 0.0
-    """Of the drive, or by drive."""
+    """Velocity of the drive, or a table by drive."""
     acceleration: Coordinates = 0.0
-    """Of the drive, or by drive."""
+    """Acceleration of the drive, or a table by drive."""
 
 
 class LegCase(CaseTable):
-    """The leg that folds in space, over its fold."""
+    """The leg in space while it folds."""
 
     kind: Literal["spatial_leg"]
-    """Which kind of case."""
+    """Kind of case."""
     samples: Annotated[Whole, Field(ge=2, le=100_001)] = 201
-    """Instants, evenly spaced."""
+    """Number of equally spaced instants."""

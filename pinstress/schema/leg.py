@@ -24,7 +24,7 @@ class FoldTable(StrictTable):
     """The fold angle: from start to end in `duration`."""
 
     law: Literal["cosine", "cycloidal", "constant"] = "cosine"
-    """How it goes from start to end; as in `[mechanism.drive]`."""
+    """Law of motion, as in `[mechanism.drive]`."""
     start: Angle
     """At the start."""
     end: Angle
@@ -39,7 +39,7 @@ class SpeedTable(StrictTable):
     start: Velocity
     """At the start."""
     rate: Acceleration = 0.0
-    """Constant."""
+    """Constant rate of change."""
 
 
 class YawTable(StrictTable):
@@ -48,7 +48,7 @@ class YawTable(StrictTable):
     start: AngularVelocity
     """At the start."""
     rate: AngularAcceleration = 0.0
-    """Constant."""
+    """Constant rate of change."""
 
 
 class SpinTable(StrictTable):
@@ -57,38 +57,38 @@ class SpinTable(StrictTable):
     start: AngularVelocity
     """At the start."""
     end: AngularVelocity
-    """At the end; in between it changes evenly."""
+    """At the end; it changes linearly in between."""
 
 
 class SpatialLegTable(StrictTable):
-    """A leg on the hinge B of an aircraft that drives on a slope and yaws; loads/spatial_leg.py
-    says what everything means.
+    """A leg on the hinge B of an aircraft that drives on a slope and yaws; `loads/spatial_leg.py`
+    defines the axes and symbols.
     """
 
     connection: str = "B"
-    """Name of the leg's hold on the pin at B."""
+    """Name of the connection between the leg and the pin at B."""
     l1: Length
-    """The hinge B from the aircraft's point A, along x' (to its right)."""
+    """Distance of the hinge B from the aircraft's point A along x' (to the right)."""
     l2: Length
-    """B from A along z' (up from the slope)."""
+    """Distance of B from A along z' (up from the slope)."""
     l3: Annotated[Length, POSITIVE]
-    """The wheel's centre C from B, along -z''' (down the leg)."""
+    """Distance of the wheel's centre C from B along -z''' (down the leg)."""
     l4: Length
-    """C from B along -x''' (inboard)."""
+    """Distance of C from B along -x''' (inboard)."""
     leg_mass: Mass
-    """Of the leg without its wheel; its centre D lies at 3/4 of `l3` and 1/4 of `l4` from B."""
+    """Mass of the leg without the wheel; its centre D is at 3/4 of `l3` and 1/4 of `l4` from B."""
     wheel_mass: Mass
-    """Of the wheel, with tyre and brake."""
+    """Mass of the wheel with tyre and brake."""
     leg_inertia: Annotated[list[SignedInertia], Field(min_length=3, max_length=6)]
-    """About D in leg axes: xx, yy, zz[, xy, xz, yz]."""
+    """Moments of inertia of the leg about D in leg axes: xx, yy, zz[, xy, xz, yz]."""
     wheel_inertia: tuple[Inertia, Inertia]
-    """About its axle, and across it."""
+    """Moments of inertia of the wheel about its axle and across it."""
     slope: Angle = 0.0
-    """Of the ground, about x'."""
+    """Slope of the ground, about x'."""
     gravity: Annotated[
         Acceleration, POSITIVE, Field(json_schema_extra={"default": "9.80665 m/s^2"})
     ] = 9.80665
-    """Downwards in the world."""
+    """Gravity, vertically downwards."""
     speed: SpeedTable
     """The aircraft's speed along y'."""
     yaw: YawTable
@@ -96,6 +96,6 @@ class SpatialLegTable(StrictTable):
     fold: FoldTable
     """The leg's angle beta about y''."""
     spin: SpinTable
-    """The wheel's spin; positive rolls ahead."""
+    """The wheel's spin, positive when rolling forwards."""
     course: Literal["straight", "yaw"] = "straight"
-    """Whether the path of A turns with the yaw; "straight" as in the publication."""
+    """Whether the path of A is straight, as in the publication, or turns with the yaw."""

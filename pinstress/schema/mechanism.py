@@ -32,7 +32,7 @@ class Polar(StrictTable):
     origin: str
     """A joint."""
     distance: PositiveLength
-    """Distance from it."""
+    """Distance from the joint."""
     angle: Angle
     """Counter-clockwise from x."""
 
@@ -43,11 +43,11 @@ class Dyad(StrictTable):
     """
 
     origins: tuple[str, str]
-    """Two joints."""
+    """The two joints."""
     distances: tuple[PositiveLength, PositiveLength]
-    """Distances from the first and from the second."""
+    """Distances from the first and the second joint."""
     side: Literal["left", "right"]
-    """Of the line from the first to the second."""
+    """Side of the line from the first joint to the second."""
 
 
 def _way_of_placing(value: object) -> str:
@@ -68,28 +68,28 @@ class JointTable(StrictTable):
     """A pin of the mechanism as drawn, and the body on each of its connections."""
 
     at: Place
-    """[x, y], { origin, distance, angle } or { origins, distances, side }."""
+    """Position in the drawing: [x, y], { origin, distance, angle } or { origins, distances, side
+    }."""
     connections: Annotated[dict[str, str], Field(min_length=1)]
-    """By the name of the connection the body that turns on the pin; names are unique in the
+    """For each connection, the body that turns on the pin. Names of connections are unique in the
     study."""
     fixed_in: str | None = None
-    """What carries the pin: "ground" or a body of which it is part; absent for a pin that
-    floats."""
+    """The body that carries the pin, or "ground". Default: none, a floating pin."""
     weight: Weight | None = None
-    """Of a pin that floats, as a particle; absent: that of its profile."""
+    """Weight of a floating pin. Default: the weight of its profile."""
 
 
 class BarTable(StrictTable):
     """A uniform straight bar between two joints, round or rectangular."""
 
     joints: tuple[str, str]
-    """Its ends."""
+    """The joints at its ends."""
     diameter: PositiveLength | None = None
-    """Of a round bar. Give either `diameter` or `section`."""
+    """Diameter of a round bar. Give either `diameter` or `section`."""
     section: tuple[PositiveLength, PositiveLength] | None = None
-    """[depth in the plane, width across it] of a rectangular one."""
+    """Section of a rectangular bar: [depth in the plane, width across it]."""
     density: Density
-    """Of its material."""
+    """Density of the material."""
 
     @model_validator(mode="after")
     def _one_section(self) -> "BarTable":
@@ -102,16 +102,17 @@ class BodyTable(StrictTable):
     """A rigid body."""
 
     weight: Weight | None = None
-    """Give one of `weight`, `mass` or `bar`."""
+    """Weight. Give one of `weight`, `mass` or `bar`."""
     mass: Mass | None = None
     """Mass."""
     bar: BarTable | None = None
-    """A uniform straight bar, from which mass, centre and inertia follow."""
+    """A uniform straight bar, which determines mass, centre and inertia."""
     centre: Point | None = None
-    """Centre of mass as drawn; absent: midway between its joints when it has two."""
+    """Centre of mass in the drawn position. Default: midway between the joints, if there are
+    two."""
     inertia: Inertia | None = None
-    """About the centre of mass. Absent: of a bar its own; else the body is a particle, which hangs
-    on one connection or slides on the ground."""
+    """Moment of inertia about the centre of mass. Default: that of the bar; without a bar the body
+    is a particle, which has one connection or slides on the ground."""
 
     @model_validator(mode="after")
     def _one_mass(self) -> "BodyTable":
@@ -132,16 +133,16 @@ class SliderTable(StrictTable):
     bodies: tuple[str, str]
     """[base, moving]; the base may be "ground"."""
     joints: tuple[JointOrPoint, JointOrPoint]
-    """A joint or [x, y] of the base, and one of the moving body. The distance of the two along the
-    direction is its length."""
+    """A point of the base and one of the moving body, each a joint or [x, y]. Their distance along
+    the direction is the length of the slider."""
     direction: tuple[Number, Number] | None = None
-    """Of the axis, as drawn; it turns with the base. Absent: from the first point to the
-    second."""
+    """Direction of the axis in the drawing; it rotates with the base. Default: from the first point
+    to the second."""
     friction: Annotated[Number, Field(ge=0.0, le=10.0)] = 0.0
-    """Coulomb's coefficient."""
+    """Coefficient of Coulomb friction."""
     bearing: Annotated[Length, POSITIVE] | None = None
-    """Distance of the two pads that carry its couple, centred on the second point; absent: the
-    couple is carried without friction."""
+    """Distance between the two pads that carry the couple, centred on the second point. Default:
+    the couple is carried without friction."""
 
     @field_validator("direction")
     @classmethod
@@ -157,16 +158,16 @@ class LawTable(StrictTable):
     """
 
     name: str | None = None
-    """Its name; by default that of its slider or its body."""
+    """Name of the drive. Default: the name of its slider or body."""
     law: Literal["cosine", "cycloidal", "constant", "table"] = "cosine"
-    """The course: "cosine", at rest at both ends; "cycloidal", there also without acceleration;
-    "constant" speed; or a "table"."""
+    """Law of motion: "cosine" (zero velocity at both ends), "cycloidal" (also zero acceleration),
+    "constant" (speed), or "table"."""
     duration: Duration | None = None
     """Time from start to end."""
     begin: Annotated[Time, NOT_NEGATIVE] = 0.0
-    """Time at which it starts to move."""
+    """Time at which the motion starts."""
     table: str | None = None
-    """CSV in the study's folder for `law = "table"`: time,position (or
+    """CSV file in the study's folder for `law = "table"`, with the columns time,position (or
     position_deg)[,velocity,acceleration]."""
 
     @model_validator(mode="after")
@@ -196,13 +197,13 @@ class SliderDrive(LawTable):
     """A drive of a slider's length (hydraulic piston, screw)."""
 
     slider: str
-    """The slider whose length it drives."""
+    """The driven slider."""
     start: Length | None = None
     """Length at the start."""
     end: Length | None = None
     """Length at the end."""
     position_offset: Length = 0.0
-    """Plots show the length less this."""
+    """Offset that plots subtract from the length."""
 
 
 MOST_TURNS = 1000  # each is followed in steps of 0.25 rad
@@ -214,13 +215,13 @@ class RotaryDrive(LawTable):
     """
 
     body: str
-    """The body that it turns."""
+    """The driven body."""
     line: tuple[str, str]
-    """Two joints of the body, from the first to the second, whose direction is the angle."""
+    """Two joints of the body; the angle is that of the line from the first to the second."""
     against: str = "ground"
     """The body from which the angle is measured."""
     against_line: tuple[str, str] | None = None
-    """Two joints of that body; goes with `against`."""
+    """Two joints of that body; required with `against`."""
     start: Angle | None = None
     """Angle at the start."""
     end: Angle | None = None
@@ -247,12 +248,12 @@ AnyDrive = Annotated[
 
 
 class SharingTable(StrictTable):
-    """How redundant connections share their load: as springs."""
+    """How redundant connections share their load, as springs in parallel."""
 
     connections: Annotated[list[str], Field(min_length=1)]
-    """The connections that deform."""
+    """The redundant connections."""
     stiffness: Annotated[list[Annotated[Number, Field(ge=1e-18, le=1e18)]], Field(min_length=1)]
-    """One for each connection; only ratios matter."""
+    """Stiffness of each connection; only the ratios matter."""
 
     @model_validator(mode="after")
     def _same_length(self) -> "SharingTable":
@@ -262,21 +263,21 @@ class SharingTable(StrictTable):
 
 
 class MechanismTable(StrictTable):
-    """A planar linkage in the position in which it is drawn, with one drive or several."""
+    """A planar linkage, drawn in one position, with one or several drives."""
 
     gravity: Annotated[
         tuple[Acceleration, Acceleration],
         Field(json_schema_extra={"default": ["0 m/s^2", "-9.80665 m/s^2"]}),
     ] = (0.0, -9.80665)
-    """[gx, gy]; [0, 0] for none."""
+    """Acceleration of gravity [gx, gy]; [0, 0] switches it off."""
     joint: Annotated[dict[str, JointTable], Field(min_length=1)]
     """Joints by name."""
     body: Annotated[dict[str, BodyTable], Field(min_length=1)]
-    """Bodies by name, without the ground."""
+    """Bodies by name, except the ground."""
     slider: dict[str, SliderTable] = {}
     """Sliders by name."""
     drive: Annotated[list[AnyDrive], Field(min_length=1)]
-    """One table, or several `[[mechanism.drive]]`: as many as degrees of freedom."""
+    """One table, or several `[[mechanism.drive]]`: as many as there are degrees of freedom."""
     sharing: list[SharingTable] = []
     """Redundant connections, and how they share their load."""
 

@@ -27,59 +27,60 @@ class MaterialTable(StrictTable):
     poisson_ratio: Annotated[Number, Field(gt=-1.0, lt=0.5)]
     """Poisson's ratio."""
     density: Density | None = None
-    """For weights; for an unconstrained pin also its inertia. Absent: no weight."""
+    """Density, for the weight and inertia of the pin. Default: no weight."""
     yield_strength: Stress | None = None
-    """For factors of safety, which are absent without it."""
+    """Yield strength. Without it no safety factors are computed."""
 
 
 class SegmentTable(StrictTable):
     """A cylinder of a pin's profile."""
 
     length: PositiveLength
-    """Along the axis."""
+    """Length along the axis."""
     diameter: PositiveLength
     """Outer diameter."""
     bore: NotNegativeLength = 0.0
-    """Inner diameter, less than the outer one; 0: solid."""
+    """Inner diameter; 0 is solid."""
     name: str | None = None
-    """Name of its outer surface, for `clamp`; by default its connection."""
+    """Name of the outer surface, for `clamp`. Default: its connection."""
     connection: str | None = None
-    """The link that bears on its outer surface; also the surface's name."""
+    """Connection of the link that bears on the outer surface; also the name of the surface."""
     fillet: NotNegativeLength | None = None
-    """Radius at the inner corner at its far end, instead of the pin's `fillet`."""
+    """Fillet radius at the inner corner at the far end; overrides the pin's `fillet`."""
 
 
 class HoleTable(StrictTable):
-    """A hole through the whole pin and its axis."""
+    """A cross hole through the whole pin, through its axis."""
 
     z: PositiveLength
-    """Position of its axis along the pin."""
+    """Position of the hole's axis along the pin."""
     diameter: PositiveLength
-    """Of the hole."""
+    """Diameter of the hole."""
     angle: Angle = 0.0
-    """Direction of its axis, from x."""
+    """Direction of the hole's axis, from x."""
 
 
 class FlatTable(StrictTable):
-    """A plane face milled along a stretch of the pin."""
+    """A flat milled on part of the length."""
 
     z: tuple[Length, Length]
-    """Its start and end along the pin."""
+    """Start and end along the pin."""
     distance: PositiveLength
-    """Distance of the plane from the axis; material beyond it, in direction `angle`, is removed."""
+    """Distance of the flat from the axis; the material beyond it is removed."""
     angle: Angle = 0.0
-    """Direction of its normal, from x."""
+    """Direction of the flat's normal, from x."""
 
 
 class BandTable(StrictTable):
     """A band of a pin from a file. Give either `z` or `surface`."""
 
     z: tuple[Length, Length] | None = None
-    """The outermost surface between two z of the file."""
+    """The outermost surface between these two z of the file."""
     surface: str | None = None
-    """The file's surface of that name."""
+    """The surface of this name in the file."""
     connection: Switch = True
-    """Whether the link of the band's name bears on it; false for a band that is only clamped."""
+    """Whether a link bears on the band, at the connection of the same name; false for a band that
+    is only clamped."""
 
     @model_validator(mode="after")
     def _one_place(self) -> "BandTable":
@@ -89,32 +90,32 @@ class BandTable(StrictTable):
 
 
 class BushingTable(StrictTable):
-    """A ring of another material that is bonded in a lug's bore."""
+    """A ring of another material bonded in the bore of a lug."""
 
     thickness: PositiveLength
-    """Of its wall."""
+    """Wall thickness."""
     material: str
     """Name of a `[material]`."""
 
 
 class LugTable(StrictTable):
-    """The eye in which the pin sits, a ring about its band: of the link at a connection, or of the
-    structure at a segment of that name, where no link bears; the structure holds still.
+    """The eye in which a band of the pin sits: of the link at the connection of this name, or of
+    the surrounding structure, which does not move, at the segment of this name.
     """
 
     outer_diameter: PositiveLength | None = None
-    """Of the eye; absent: 2.5 times the band's diameter."""
+    """Outer diameter of the eye. Default: 2.5 times the diameter of the band."""
     material: str | None = None
-    """Name of a `[material]`; absent: the pin's."""
+    """Name of a `[material]`. Default: the pin's material."""
     clearance: Length = 0.0
-    """Of the bore's diameter over the pin's; negative: interference."""
+    """Diameter of the bore minus that of the pin; negative for interference."""
     edge_radius: NotNegativeLength = 0.0
-    """Of the bore's edges. 0 is sharp: a singularity of the contact stress."""
+    """Radius of the edges of the bore. 0 is sharp, where the contact stress is singular."""
     tilt: Tilt | None = None
-    """How the link holds its eye against tilting: "guided" (rigidly), "free", or a stiffness;
-    absent: the bending of an eye that is held 0.8 of its outer diameter away."""
+    """Resistance of the link to tilting of its eye: "guided" (rigid), "free", or a stiffness.
+    Default: the bending stiffness of an eye clamped at a distance of 0.8 outer diameters."""
     bushing: BushingTable | None = None
-    """A ring bonded in the eye, in which the pin turns."""
+    """A bushing bonded in the eye."""
 
 
 class PinTable(StrictTable):
@@ -123,26 +124,27 @@ class PinTable(StrictTable):
     material: str
     """Name of a `[material]`."""
     profile: Annotated[list[SegmentTable], Field(min_length=1)] | None = None
-    """Segments from z = 0 on. Give either `profile` or `geometry`."""
+    """Segments, starting at z = 0. Give either `profile` or `geometry`."""
     fillet: NotNegativeLength = 0.0
     """Radius at every inner corner of the shaft, tangent to the thinner shaft and to the shoulder
-    face; 0: sharp. With a profile only."""
+    face; 0 is sharp. Only with a profile."""
     hole: list[HoleTable] = []
-    """Cross holes. With a profile only."""
+    """Cross holes. Only with a profile."""
     flat: list[FlatTable] = []
-    """Flats. With a profile only."""
+    """Flats. Only with a profile."""
     geometry: str | None = None
     """A CAD file (STEP, BREP, IGES) or a mesh of tetrahedra, in the study's folder."""
     geometry_unit: Literal["mm", "cm", "m", "in"] = "mm"
-    """Unit of the file's numbers. With `geometry` only."""
+    """Unit of length in the file. Only with `geometry`."""
     band: dict[str, BandTable] = {}
-    """Bands of a pin from a file, by name. With `geometry` only."""
+    """Bands of a pin from a file, by name. Only with `geometry`."""
     lug: dict[str, LugTable] = {}
-    """What surrounds its bands, by connection or by the name of a segment; an empty table takes all
-    defaults. With any, its lugs hold the pin (`analysis.joints`). With a profile only."""
+    """Lugs, by connection or by the name of a segment; an empty table takes all defaults. With any,
+    the pin is supported by its lugs (see `analysis.joints`). Only with a profile."""
     clamp: list[str] = []
-    """Clamped surfaces: "start" and "end" (faces), a segment's name or connection (its outer
-    surface), "hole 1", "flat 1", a band. Empty: none, and the loads must be nearly in balance."""
+    """Clamped surfaces: "start" and "end" (the end faces), the name or connection of a segment (its
+    outer surface), "hole 1", "flat 1", or a band. Default: none; the loads must then be nearly in
+    equilibrium."""
 
     @model_validator(mode="after")
     def _one_shape(self) -> "PinTable":

@@ -15,22 +15,22 @@ class AnalysisTable(StrictTable):
     """Requirements on the analysis."""
 
     model: Literal["auto", "beam", "harmonic", "solid"] = "auto"
-    """The model; "auto" uses the smallest that is accurate enough."""
+    """The model; "auto" uses the simplest that is accurate enough."""
     joints: Literal["auto", "contact", "foundation", "prescribed"] = "auto"
-    """How links and pins meet: by contact with elastic lugs ("contact"), on elastic foundations in
-    them, a quick beam with an error of the model ("foundation"), or as the study clamps and
-    distributes ("prescribed"); "auto" is contact for the pins that have a `lug`, or the beam where
-    its error is within the tolerance and bending governs."""
+    """How links load the pins: by contact with elastic lugs ("contact"), on elastic foundations in
+    them, a quick beam with a model error ("foundation"), or by prescribed clamps and load
+    distributions ("prescribed"). "auto" uses contact for the pins that have a `lug`, or the beam
+    where its error is within the tolerance and bending governs."""
     goal: Literal["value", "decide"] = "value"
-    """The maximum to the tolerance ("value"), or only on which side of the required factor of
-    safety it is ("decide"; it needs a yield strength)."""
+    """Refine until the maximum is within the tolerance ("value"), or only until it is decided
+    whether the required safety factor is met ("decide", which needs a yield strength)."""
     tolerance: Annotated[Number, Field(gt=0.0, lt=1.0)] = 0.02
     """Largest relative error of the maximum von Mises stress."""
     excluded_distance: Annotated[Number, Field(ge=0.01, le=0.5)] = 0.1
-    """Fraction of the local diameter around sharp corners and edges of clamps within which stress
-    is excluded if it is singular there."""
+    """Distance from a stress singularity within which stress is not evaluated, as a fraction of the
+    local diameter."""
     required_safety_factor: Annotated[Number, Field(gt=0.0)] | None = None
-    """Factor that every pin must reach; absent: no comparison."""
+    """Safety factor that every pin must reach. Default: no comparison."""
 
 
 class BeamCheckTable(StrictTable):
@@ -41,9 +41,9 @@ class BeamCheckTable(StrictTable):
     pin: str
     """A pin clamped at its start face, loaded on one band."""
     case: str
-    """A case without moments on it."""
+    """A case without moments on the pin."""
     axis_bore: PositiveLength
-    """Diameter of the bore that carries the load."""
+    """Diameter of the thin bore that carries the load."""
 
 
 class MotionCheckTable(StrictTable):
@@ -60,31 +60,31 @@ class MotionCheckTable(StrictTable):
 
 
 class PublishedTable(StrictTable):
-    """Published values to print next to ours, in CSV files in the study's folder."""
+    """Published values for comparison, in CSV files in the study's folder."""
 
     source: str
-    """Their source."""
+    """Source of the values."""
     peaks: str | None = None
-    """pin,case,max_von_mises,safety_factor."""
+    """CSV file with the columns pin,case,max_von_mises,safety_factor."""
     reactions: str | None = None
-    """case,connection,force."""
+    """CSV file with the columns case,connection,force."""
     motion: str | None = None
-    """time,speed,acceleration of the joint in `motion_check`."""
+    """CSV file with the columns time,speed,acceleration, of the joint in `motion_check`."""
     values: str | None = None
-    """case,time,quantity,name,published,reason."""
+    """CSV file with the columns case,time,quantity,name,published,reason."""
 
 
 class StudyTable(StrictTable):
     """A study: pins, their materials, their loads and the requirements on the analysis."""
 
     title: Annotated[str, Field(max_length=1000)]
-    """Heads every table and the report."""
+    """Title of the report and of every table."""
     units: Literal["in-lbf-s", "mm-N-s", "m-N-s"]
     """The unit system of numbers without a unit, and of the results."""
     material: dict[str, MaterialTable] = {}
     """Materials by name."""
     pin: dict[Name, PinTable] = {}
-    """Pins by name; without any, `pinstress loads` gives the reactions alone."""
+    """Pins by name; without pins only `pinstress loads` can be used."""
     case: Annotated[
         dict[
             Name,
@@ -95,11 +95,11 @@ class StudyTable(StrictTable):
         ],
         Field(min_length=1),
     ]
-    """Cases by name; each runs the pins that it loads."""
+    """Load cases by name; each is run for the pins that it loads."""
     mechanism: MechanismTable | None = None
-    """The linkage of the cases "motion", "static" and "instant"."""
+    """The linkage, for cases of kind "motion", "static" and "instant"."""
     spatial_leg: SpatialLegTable | None = None
-    """The leg of the cases "spatial_leg"."""
+    """The leg, for cases of kind "spatial_leg"."""
     analysis: AnalysisTable = AnalysisTable()
     """Requirements on the analysis."""
     beam_check: BeamCheckTable | None = None
@@ -107,6 +107,6 @@ class StudyTable(StrictTable):
     motion_check: MotionCheckTable | None = None
     """A comparison with the closed form of a lever."""
     published: PublishedTable | None = None
-    """Published values to print next to ours."""
+    """Published values for comparison."""
     assumptions: list[str] = []
-    """Sentences for the report."""
+    """Assumptions, as sentences for the report."""

@@ -74,7 +74,7 @@ def described(table: type["StrictTable"]) -> dict[str, str]:
     """The description of each key: the string under the field in the code, read only when a schema
     is requested, since it takes time.
     """
-    told: dict[str, str] = {}
+    descriptions: dict[str, str] = {}
     for one in reversed(table.__mro__):
         if not issubclass(one, StrictTable) or one is StrictTable:
             continue
@@ -86,8 +86,8 @@ def described(table: type["StrictTable"]) -> dict[str, str]:
                     ast.AnnAssign(target=ast.Name(id=key)),
                     ast.Expr(value=ast.Constant(value=str(words))),
                 ):
-                    told[key] = " ".join(words.split())
-    return told
+                    descriptions[key] = " ".join(words.split())
+    return descriptions
 
 
 def sourced(value: list[dict[str, Any]]) -> dict[str, Any]:
@@ -218,8 +218,8 @@ class StrictTable(BaseModel):
 
 
 def _unknown(key: object, known: list[str]) -> InitErrorDetails:
-    told: dict[str, Any] = {"told": f"unknown key {shown(key)}; ", "key": key, "known": known}
-    return InitErrorDetails(type=PydanticCustomError(UNKNOWN_KEY, "{told}", told), input=None)
+    context: dict[str, Any] = {"text": f"unknown key {shown(key)}; ", "key": key, "known": known}
+    return InitErrorDetails(type=PydanticCustomError(UNKNOWN_KEY, "{text}", context), input=None)
 
 
 def hint_for_key(key: str, known: list[str]) -> str:

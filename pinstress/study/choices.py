@@ -1,4 +1,4 @@
-"""Options of an analysis besides its study, checked for the command line and for Python alike."""
+"""Options of an analysis in addition to its study, checked for the command line and for Python."""
 
 from __future__ import annotations
 

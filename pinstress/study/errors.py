@@ -11,24 +11,24 @@ from pinstress.schema.shown import ELLIPSIS
 
 T = TypeVar("T")
 
-MOST_TOLD = 20  # errors in a message; it counts the others
+MOST_LISTED = 20  # errors in a message; it counts the others
 LONGEST_LINE = 800  # characters; a longer line loses its middle
 
 
 class InputError(Exception):
     """Bad input: the message names the file, the key and what would be right. Exit status 2.
 
-    code: short and stable, for programs. told: the errors, one by one, by their codes in `codes`;
-    more: how many errors there are besides.
+    code: short and stable, for programs. lines: the errors, one by one, by their codes in `codes`;
+    more: the number of further errors.
     """
 
     def __init__(
-        self, message: str, told: Iterable[tuple[str, str]] = (), more: int = 0, code: str = ""
+        self, message: str, listed: Iterable[tuple[str, str]] = (), more: int = 0, code: str = ""
     ) -> None:
         super().__init__("\n".join(map(clipped, message.split("\n"))))
-        listed = tuple(told) or ((str(self), code),)
-        self.told = tuple(line for line, _ in listed)
-        self.codes = tuple(each for _, each in listed)
+        errors = tuple(listed) or ((str(self), code),)
+        self.lines = tuple(line for line, _ in errors)
+        self.codes = tuple(each for _, each in errors)
         self.more = more
 
     @property
@@ -47,8 +47,8 @@ def clipped(line: str) -> str:
 
 @dataclass(frozen=True)
 class Wrong:
-    """An error: a message that begins with its key, or the key `at` to point at. hint: what may
-    have been meant, which takes time to find: only errors that are printed look for it.
+    """An error: a message that begins with its key, or the key `at` to point at. hint: a
+    likely intended name, which takes time to find: only errors that are printed search for it.
     """
 
     message: str
@@ -64,21 +64,21 @@ def study_error(path: Path, text: str, wrong: Sequence[Wrong]) -> InputError:
     from pinstress.study.toml_lines import lines_of  # only for studies that are wrong
 
     lines = lines_of(text, [f"{w.at}:" if w.at else w.message for w in wrong])
-    first = sorted(zip(lines, wrong, strict=True), key=lambda pair: pair[0] or 0)[:MOST_TOLD]
-    told = []
+    first = sorted(zip(lines, wrong, strict=True), key=lambda pair: pair[0] or 0)[:MOST_LISTED]
+    listed = []
     for line, w in first:
         where = f"{path}:{line}" if line else f"{path}"
-        told.append((f"{where}: {w.message}{w.hint()}", w.code))
-    return _listed(path, told, len(wrong) - len(told))
+        listed.append((f"{where}: {w.message}{w.hint()}", w.code))
+    return _listed(path, listed, len(wrong) - len(listed))
 
 
-def _listed(path: Path, told: Sequence[tuple[str, str]], more: int) -> InputError:
-    lines = [line for line, _ in told]
-    if len(told) + more > 1:
-        lines.insert(0, f"{path}: {len(told) + more:,} errors")
+def _listed(path: Path, listed: Sequence[tuple[str, str]], more: int) -> InputError:
+    lines = [line for line, _ in listed]
+    if len(listed) + more > 1:
+        lines.insert(0, f"{path}: {len(listed) + more:,} errors")
     if more:
         lines.append(f"{path}: and {more:,} more")
-    return InputError("\n".join(lines), told, more)
+    return InputError("\n".join(lines), listed, more)
 
 
 class Errors:
@@ -86,7 +86,7 @@ class Errors:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.told: dict[str, str] = {}  # codes by message: one part may be read twice
+        self.lines: dict[str, str] = {}  # codes by message: one part may be read twice
         self.more = 0
 
     def attempt(self, make: Callable[[], T]) -> T | None:
@@ -94,13 +94,13 @@ class Errors:
         try:
             return make()
         except InputError as error:
-            self.told |= dict(zip(error.told, error.codes, strict=True))
+            self.lines |= dict(zip(error.lines, error.codes, strict=True))
             self.more += error.more
             return None
 
     def tell(self) -> None:
         """Raises: InputError with all errors, if there are any."""
-        if self.told:
-            told = list(self.told.items())
-            beyond = max(len(told) - MOST_TOLD, 0)
-            raise _listed(self.path, told[:MOST_TOLD], self.more + beyond) from None
+        if self.lines:
+            listed = list(self.lines.items())
+            beyond = max(len(listed) - MOST_LISTED, 0)
+            raise _listed(self.path, listed[:MOST_LISTED], self.more + beyond) from None

@@ -41,9 +41,9 @@ class Sourced:
 
 @dataclass(frozen=True)
 class Study:
-    """A valid study. table: its content in SI. system: the units it speaks. questions: what is
-    hardly meant in it, each after its key. located: whether messages give lines of its text, which
-    was not written by the user where the study was made in Python.
+    """A valid study. table: its content in SI. questions: implausible values, each after its key.
+    located: whether messages give lines of its text, which the user did not write if the study was
+    made in Python.
     """
 
     path: Path
@@ -55,11 +55,11 @@ class Study:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """The first of its questions, each with its line, and how many more there are."""
+        """Implausible values, each with its line: the first ones, and the number of others."""
         if not self.questions:
             return ()
         found = self.errors([Wrong(question) for question in self.questions])
-        return found.told + ((f"{self.path}: and {found.more:,} more",) if found.more else ())
+        return found.lines + ((f"{self.path}: and {found.more:,} more",) if found.more else ())
 
     @property
     def system(self) -> UnitSystem:
@@ -68,7 +68,7 @@ class Study:
 
     @property
     def name(self) -> str:
-        """The file's name without its ending."""
+        """The file's name without its suffix."""
         return self.path.stem
 
     @property
@@ -76,8 +76,8 @@ class Study:
         """Hash of the study file."""
         return hashlib.sha256(self.text.encode()).hexdigest()
 
-    def beside(self, name: str) -> Path:
-        """A file that the study names. Raises: InputError for what can be no file's name."""
+    def path_to(self, name: str) -> Path:
+        """Path of a file that the study refers to. Raises: InputError for an impossible name."""
         if "\0" in name or len(name) > LONGEST_PATH:
             raise self.error(f"{shown(name)} is not a file name", code="not-a-file-name")
         return self.path.parent / name
@@ -97,7 +97,7 @@ class Study:
         return self.text if self.located else ""
 
     def clamps(self, pin: str, case: str) -> tuple[str, ...]:
-        """What holds a pin in a case, in the study's words."""
+        """Clamped surfaces of a pin in a case, as named in the study."""
         return tuple(self.table.case[case].clamp.get(pin, self.table.pin[pin].clamp))
 
     def connections(self, pin: str) -> tuple[str, ...]:

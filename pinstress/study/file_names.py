@@ -23,10 +23,10 @@ def same_files(pins: Iterable[str], cases: Iterable[str]) -> Iterable[str]:
                 yield f"{kind}.{name}: its files would replace those of {kind}.{other}; rename one"
     for pin in pins:
         for case in cases:
-            told = f"pin.{pin} in case.{case}"
-            other = owners.setdefault(_folded(field_name(pin, case)), told)
-            if other != told:
-                yield f"{told}: its files would replace those of {other}; rename one"
+            owner = f"pin.{pin} in case.{case}"
+            other = owners.setdefault(_folded(field_name(pin, case)), owner)
+            if other != owner:
+                yield f"{owner}: its files would replace those of {other}; rename one"
 
 
 def _folded(name: str) -> str:

@@ -21,10 +21,11 @@ INDEX = re.compile(r"\[(\d+)\]")
 def study_from(
     tables: Mapping[str, Any] | str, folder: str | os.PathLike[str] = ".", name: str = "study"
 ) -> Study:
-    """A study from a dict with the keys of a study file (docs/study-file.md), where None is as if
-    the key were not there, or from the text of such a file.
+    """A study from a dict with the keys of a study file (docs/study-file.md), in which None means
+    that the key is absent, or from the text of such a file.
 
-    folder: of files that the study names. name: of the study, in messages and results.
+    folder: folder of the files that the study refers to. name: name of the study in messages and
+    results.
 
     Raises: InputError as load_study.
     """
@@ -32,16 +33,19 @@ def study_from(
     if isinstance(tables, str):
         return parse_study(path, tables)
     if not isinstance(tables, Mapping):
-        raise InputError(f"{shown(tables)} is not a study: give a dict or the text of a study file")
+        raise InputError(
+            f"{shown(tables)} is not a study: give a dict or the text of a study file",
+            code="not-a-study",
+        )
     return parse_study(path, tomlkit.dumps(_plain(tables, name)), located=False)
 
 
 def changed_study(study: Study, changes: Mapping[str, Any]) -> Study:
-    """The study with other values, by key as messages write them: {"pin.E.profile[2].diameter":
-    "1.5 in", "analysis.tolerance": 0.01}. A key that was not there is added. Provenance of what is
-    replaced is dropped; comments stay.
+    """The study with other values, by key as in messages: {"pin.E.profile[2].diameter":
+    "1.5 in", "analysis.tolerance": 0.01}. Missing keys are added. The provenance of replaced
+    values is removed; comments are kept.
 
-    Raises: InputError as load_study, and for a key that leads nowhere.
+    Raises: InputError as load_study, and for a key that does not exist in the study.
     """
     document: Any = tomlkit.parse(study.text)
     for key, value in changes.items():
@@ -62,12 +66,15 @@ def _parts(study: Study, key: str) -> list[str | int]:
     while at < len(key):
         match = PART.match(key, at)
         if match is None:
-            raise study.error(f"{shown(key)} is no key: write pin.E.profile[2].diameter, say")
+            raise study.error(
+                f"{shown(key)} is not a key; a key looks like pin.E.profile[2].diameter",
+                code="not-a-key",
+            )
         found.append(match[1] if match[1] is not None else match[2])
         found += [int(i) - 1 for i in INDEX.findall(match[3])]
         at = match.end()
     if not found:
-        raise study.error("'' is no key")
+        raise study.error("'' is not a key", code="not-a-key")
     return found
 
 
@@ -80,7 +87,9 @@ def _inside(study: Study, table: Any, part: str | int, key: str) -> Any:
         return table[part]
     except (KeyError, IndexError, TypeError):
         there = part + 1 if isinstance(part, int) else part
-        raise study.error(f"{key}: the study has no {shown(there)} there") from None
+        raise study.error(
+            f"{key}: the study has no {shown(there)} there", code="unknown-key"
+        ) from None
 
 
 def _plain(value: Any, key: str) -> Any:
@@ -95,4 +104,7 @@ def _plain(value: Any, key: str) -> Any:
         return [_plain(v, f"{key}[{i}]") for i, v in enumerate(value, 1)]
     if isinstance(value, os.PathLike):
         return os.fspath(value)
-    raise InputError(f"{key}: {shown(value)} is no value of a study: give a number, text or table")
+    raise InputError(
+        f"{key}: {shown(value)} cannot be a value in a study: give a number, text or table",
+        code="not-a-value",
+    )

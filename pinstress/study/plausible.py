@@ -75,7 +75,7 @@ class Stated:
 
 def questions(table: StudyTable, raw: dict[str, Any], system: UnitSystem) -> tuple[str, ...]:
     """What is hardly meant, each with the key and the likely unit. raw: what the table is from."""
-    return tuple(told for each in _numbers(table, raw) if (told := _question(each, system)))
+    return tuple(text for each in _numbers(table, raw) if (text := _question(each, system)))
 
 
 def _numbers(table: StudyTable, raw: Any) -> Iterator[Stated]:
@@ -123,10 +123,10 @@ def _question(stated: Stated, system: UnitSystem) -> str:
     unit, ends = usual.metric[0], (usual.low, min(usual.high, stated.most))
     one = to_si(f"1 {unit}", usual.dimension, system)
     is_, low, most = (f"{value / one:,.4g}" for value in (stated.value, *ends))
-    hint = f"; is it {likely}?" if (likely := _likely(stated, system)) else ""
+    hint = f"; did you mean {likely}?" if (likely := _likely(stated, system)) else ""
     return (
-        f"{stated.key}: {shown(stated.written)} is {is_} {unit}, and that of {usual.whose} lies "
-        f"between {low} and {most} {unit}{hint}"
+        f"{stated.key}: {shown(stated.written)} is {is_} {unit}, but the usual range for "
+        f"{usual.whose} is {low} to {most} {unit}{hint}"
     )
 
 

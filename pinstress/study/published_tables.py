@@ -77,7 +77,7 @@ def _rows(
         return []
     found = []
     try:
-        for row in read_table(study.beside(name), (*names, *numbers)):
+        for row in read_table(study.path_to(name), (*names, *numbers)):
             cells = [row.cells[c] for c in names]
             found.append((row.where, cells, [row.number(c) for c in numbers]))
     except TableError as error:

@@ -80,8 +80,8 @@ def _of_pins(
         return
     for connection, pin in bears.items():
         if connection not in have:
-            told = f"pin.{pin}: connection {shown(connection)} is not in the mechanism; "
-            yield Wrong(told, partial(near, connection, have), code="unknown-connection")
+            text = f"pin.{pin}: connection {shown(connection)} is not in the mechanism; "
+            yield Wrong(text, partial(near, connection, have), code="unknown-connection")
 
 
 def named_joints(mechanism: MechanismTable) -> Iterator[tuple[str, str]]:

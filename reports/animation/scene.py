@@ -140,7 +140,7 @@ class Scene:
         return best if best and 2.0 * clear(best) > LETTER * len(body) else None
 
     def colour(self, body: str) -> str:
-        """The class of a body; what is no body of the linkage is ground."""
+        """The class of a body; anything that is not a body of the linkage is ground."""
         if body not in self.motion.bodies:
             return "ground"
         return f"b{self.motion.bodies.index(body) % COLOURS}"

@@ -11,7 +11,7 @@ NAME = "chart"
 class ChartPoint:
     """One mesh of one element of a model. dofs: unknowns, 0 of a beam. seconds: median wall time
     from the mesh to the maximum over the motion. memory: the most it took above the process with
-    its libraries loaded, MB. error: of the maximum beside the reference, relative. chosen: whether
+    its libraries loaded, MB. error: of the maximum relative to the reference. chosen: whether
     `auto` ends on it. All are None where it `failed`, for that reason.
     """
 

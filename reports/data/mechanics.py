@@ -192,7 +192,7 @@ class GuideForces:
 
 @dataclass(frozen=True)
 class LinkageMotion:
-    """How a linkage moves in one case: T instants (one, without time, when it is held).
+    """How a linkage moves in one case: T instants (one, without time, when it is at rest).
 
     links: for each of B bodies the joints on it, in the order to draw them. centre, velocity,
     acceleration: (T, B, 2) of the centres of mass. angle: (T, B) direction from the body's first

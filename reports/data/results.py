@@ -84,9 +84,9 @@ class GoverningLoad:
 class PinResult:
     """One pin in one case. Numbers are None for `rigid` and `failed`, time without a motion.
 
-    location: x, y, z in the pin's own axes. held: what holds the pin, in words. left_out: given
-    forces that were not applied because their band is held. published_*: the publication's value,
-    in the study's units. position_unit: as a ReactionTable's.
+    location: x, y, z in the pin's own axes. held: the supports of the pin, in words. left_out:
+    given forces that were not applied because their band is clamped. published_*: the publication's
+    value, in the study's units. position_unit: as a ReactionTable's.
     why: which model answered and why it was enough. singular_at: stress singularities; where one
     governs (verdict `singular`) maximum and factor are those outside all of them, as are those of
     the history; the intervals are those over half and twice the excluded distance, and
@@ -174,7 +174,7 @@ class Provenance:
 
 @dataclass(frozen=True)
 class Results:
-    """Everything a run found, without the fields inside of pins (those are written pin by pin)."""
+    """All results of a run, without the fields inside pins (those are written pin by pin)."""
 
     title: str
     study: str

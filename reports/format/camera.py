@@ -43,7 +43,7 @@ class View:
         """Position, focal point and up, as VTK takes them."""
         return [_point(self.eye), _point(self.centre), _point(self.up)]
 
-    def beside(self, points: Floats, place: Floats) -> Floats:
+    def above(self, points: Floats, place: Floats) -> Floats:
         """A point (3,) above `place` in the picture, clear of the pin."""
         heights = (points - self.centre) @ self.up
         height = float((place - self.centre) @ self.up)

@@ -68,5 +68,5 @@ def ratio(ours: float | None, published: float | None) -> float | None:
 
 
 def components(values: Sequence[float], largest: float) -> list[str]:
-    """Numbers of a vector as text; what is round-off beside the largest is zero."""
+    """Numbers of a vector as text; what is round-off compared with the largest is zero."""
     return [engineering(v if abs(v) > ROUNDING * largest else 0.0) for v in values]

@@ -16,10 +16,11 @@ READING = (
     "orientation, so their maximum may differ by up to the ±."
 )
 JOINT = (
-    "Joint is the range of the maximum over what is seldom known of a joint: other clearances of "
-    "the lugs, lugs of half and twice the stiffness, and lugs that are guided or free to tilt. It "
-    "is not part of the ±, and the result is decided without it. Of pins that are not solved in "
-    "contact it is that of a beam on foundations in their lugs, with its error, or in assumed ones."
+    "Joint is the range of the maximum over properties of the joint that are seldom known: other "
+    "clearances, lugs of half and twice the stiffness, and lugs that are guided or free to tilt. "
+    "It is not part of the ±, and the result is decided without it. For pins that are not solved "
+    "in contact, it is that of a beam on foundations in their lugs, or in assumed ones, with its "
+    "error."
 )
 RESULTS = {
     SAFE: "the pin meets its required safety factor.",

@@ -1,4 +1,4 @@
-"""What the page says of a pin in its lugs."""
+"""The page's part on a pin in its lugs."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ PLANE = (
 
 @dataclass(frozen=True)
 class JointPart:
-    """A sentence on the maximum, the bands if lugs hold the pin, and the maximum with the joint
+    """A sentence on the maximum, the bands if lugs support the pin, and the maximum with the joint
     changed, if it was; assumed: in lugs that were not given.
     """
 

@@ -21,7 +21,7 @@ from reports.page.pin_drawing import draw_pin
 from reports.page.pins import pin_parts, reaction_tables
 from reports.tables.hand_checks import HAND_CHECKS
 from reports.tables.landing import NOTE, landing_blocks
-from reports.tables.published_reactions import published_reactions
+from reports.tables.published import published_reactions
 from reports.tables.safety_factors import (
     TEXTS,
     reading,

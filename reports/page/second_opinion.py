@@ -1,4 +1,4 @@
-"""What the page says of CalculiX's second opinion on a row."""
+"""The page's part on CalculiX's second opinion on a row."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def _loads(bands: tuple[BandOpinion, ...], units: Units) -> Grid:
             both = (_mean(band.ends, load, low, high) for load in (band.ours, band.theirs))
             body.append([band.name, name, *map(engineering, both), part])
     unit = f"[{units.force}/{units.length}]"
-    head = ["connection", "part", f"ours {unit}", f"CalculiX {unit}", "of the load elsewhere"]
+    head = ["connection", "part", f"ours {unit}", f"CalculiX {unit}", "load elsewhere"]
     return Grid(head, body, [False, False, True, True, True])
 
 

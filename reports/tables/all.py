@@ -7,17 +7,16 @@ from reports.tables.calculix import opinion_tables
 from reports.tables.hand_checks import hand_check_rows
 from reports.tables.joint import joint_tables
 from reports.tables.landing import landing_table
-from reports.tables.leg import leg_table
 from reports.tables.linkage import linkage_tables
 from reports.tables.motion import (
     beam_check_table,
     drive_table,
+    leg_table,
     motion_check_table,
     reactions_pin_axes_table,
     reactions_table,
 )
-from reports.tables.published_reactions import published_reactions_table
-from reports.tables.published_values import published_values_table
+from reports.tables.published import published_reactions_table, published_values_table
 from reports.tables.safety_factors import safety_factors_table
 from reports.tables.singular_zones import zones_table
 from reports.tables.table import Table

@@ -66,7 +66,7 @@ def opinion_json(opinion: Opinion | None) -> dict[str, Any] | None:
 def _rows(results: Results) -> Iterator[list[Cell]]:
     u = results.units
     for o in opinions_of(results):
-        ratio = None if o.beside is None else 1.0 + o.beside
+        ratio = None if o.deviation is None else 1.0 + o.deviation
         c = o.contact
         own: list[Cell] = [None] * 6
         if c:

@@ -1,4 +1,4 @@
-"""Tables of reactions and drives along a motion, and of the checks."""
+"""Tables of reactions and drives along a motion, of the leg in space, and of the checks."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from reports.data.results import BeamCheck, Floats, MotionCheck, ReactionTable, Results
+from reports.data.results import BeamCheck, Floats, LegTable, MotionCheck, ReactionTable, Results
 from reports.format.csv import Cell
 from reports.tables.table import Table
 
@@ -97,3 +97,21 @@ def motion_check_table(check: MotionCheck) -> Table:
     """A joint's speed and acceleration, from the linkage and in closed form."""
     rows = zip(*(getattr(check, name) for name in MOTION), strict=True)
     return Table.of("motion_check", MOTION, rows)
+
+
+def leg_table(tables: tuple[LegTable, ...]) -> Table:
+    """The dynamics of a spatial leg, all cases: a row per instant, a column per component; the
+    columns carry their units, vectors end in _x, _y, _z (primed axes).
+    """
+    first = tables[0]
+    columns = ["case", "time"]
+    columns += [f"{name} [{q.unit}]" for name, q in first.scalars.items()]
+    columns += [f"{name}_{c} [{q.unit}]" for name, q in first.vectors.items() for c in "xyz"]
+    rows: list[list[Cell]] = []
+    for table in tables:
+        for t, time in enumerate(table.time):
+            row: list[Cell] = [table.case, float(time)]
+            row += [float(q.values[t]) for q in table.scalars.values()]
+            row += [float(x) for q in table.vectors.values() for x in q.values[t]]
+            rows.append(row)
+    return Table.of("leg", columns, rows)

@@ -40,7 +40,7 @@ def sentences(opinion: Opinion, units: Units) -> list[str]:
         return [f"Not compared with CalculiX: {opinion.failure}."]
     said = _contact(opinion, units) if opinion.contact else [_same_mesh(opinion, units)]
     if opinion.complaint:
-        return [*said, f"Beyond what was expected: {opinion.complaint}."]
+        return [*said, f"Beyond the limits: {opinion.complaint}."]
     return said
 
 
@@ -49,7 +49,7 @@ def _same_mesh(o: Opinion, units: Units) -> str:
     return (
         f"On our mesh of the solid model ({o.unknowns:,} unknowns) CalculiX's displacements differ "
         f"from ours by {_small(o.displacement)} and its von Mises stresses by {_small(o.stress)} "
-        f"of the largest; its maximum there is {largest} ({_signed(o.beside)} from the result)."
+        f"of the largest; its maximum there is {largest} ({_signed(o.deviation)} from the result)."
     )
 
 
@@ -70,7 +70,7 @@ def _contact(o: Opinion, units: Units) -> list[str]:
         f"moment {engineering(c.moment)} {moment}, ours {engineering(c.our_moment)} "
         f"({_signed(c.moment_difference)}); von Mises stress at the point of our maximum "
         f"{engineering(o.theirs)} {units.stress}, ours {engineering(o.answer)} "
-        f"({_signed(o.beside)}).{loads}",
+        f"({_signed(o.deviation)}).{loads}",
         _meshes(o, c),
     ]
     if c.tension:
@@ -83,7 +83,7 @@ def _contact(o: Opinion, units: Units) -> list[str]:
 
 def _meshes(o: Opinion, c: ContactOpinion) -> str:
     """Whether CalculiX's mesh explains the difference in stress."""
-    change, error, difference = abs(c.stress_change), o.own_error, abs(o.beside or 0.0)
+    change, error, difference = abs(c.stress_change), o.own_error, abs(o.deviation or 0.0)
     text = (
         f"From its coarser mesh ({c.coarser:,} unknowns) to this one CalculiX's stress there "
         f"changed by {percent(change)} and its moment by {percent(abs(c.moment_change))}; the "
@@ -162,7 +162,7 @@ def _contact_cells(o: Opinion) -> tuple[str, ...]:
 
 
 def _stresses(o: Opinion) -> tuple[str, str, str, str]:
-    ratio = engineering(None if o.beside is None else 1.0 + o.beside, 3)
+    ratio = engineering(None if o.deviation is None else 1.0 + o.deviation, 3)
     return engineering(o.theirs), engineering(o.answer), engineering(o.error, 2), ratio
 
 

@@ -1,4 +1,4 @@
-"""Fields on meshes: VTU files for ParaView with loads and bands beside them, and pictures."""
+"""Fields on meshes: VTU files for ParaView with loads and bands, and pictures."""
 
 from __future__ import annotations
 
@@ -72,20 +72,20 @@ def write_pin(field: Field, name: str, directory: Path, units: Units) -> None:
     write_vtu(field, directory / f"{name}.vtu", units)
     if not field.loads:
         return
-    beside = directory / name
-    beside.mkdir()
+    folder = directory / name
+    folder.mkdir()
     # Here and not in the field's own file, for meshio reads none that has texts.
     texts = {"pin": [field.pin], "case": [field.case], "verdict": [field.verdict]}
-    write_block(replace(_loads(field.loads, units), whole=texts), beside / "loads.vtu")
-    write_block(_bands(field.loads, units), beside / "bands.vtu")
+    write_block(replace(_loads(field.loads, units), whole=texts), folder / "loads.vtu")
+    write_block(_bands(field.loads, units), folder / "bands.vtu")
     kinds = ["loads", "bands"]
     if field.volume is not None:
-        write_block(_volume(field.volume, units), beside / "solid.vtu")
+        write_block(_volume(field.volume, units), folder / "solid.vtu")
         kinds.append("solid")
     blocks = {kind: f"{name}/{kind}.vtu" for kind in kinds}
     write_multiblock({"pin": f"{name}.vtu", **blocks}, directory / f"{name}.vtm")
     if field.stills:
-        parts = _write_stills(surface(field), beside, units)
+        parts = _write_stills(surface(field), folder, units)
         write_series(
             [(time, kind, f"{name}/{file}") for time, kind, file in parts],
             directory / f"{name}.pvd",

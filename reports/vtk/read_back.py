@@ -88,5 +88,5 @@ def open_results(directory: Path) -> Opened:
     except FileError as error:
         raise ValueError(f"its results.json {error}") from None
     if not str(content.get("schema", "")).startswith("pinstress-results/"):
-        raise ValueError("its results.json is not one of pinstress")
+        raise ValueError("its results.json was not written by pinstress")
     return Opened(directory, content)

@@ -45,10 +45,10 @@ def show_pin(field: Field, units: Units, title: str) -> None:
 
 def _draw(plotter: Any, field: Field, units: Units, title: str) -> None:
     peak = int(np.argmax(field.von_mises))
-    largest, place, told = float(field.von_mises[peak]), field.points[peak], "max"
+    largest, place, label = float(field.von_mises[peak]), field.points[peak], "max"
     if field.outside is not None:  # colours would only show how fine the mesh is at the zones
         largest, place = field.outside[0], np.asarray(field.outside[1])
-        told = "max outside excluded zones"
+        label = "max outside excluded zones"
     power = _power(largest)
     # VTK's font has no raised digits.
     unit = units.stress if power == 0 else f"10^{power} {units.stress}"
@@ -57,8 +57,8 @@ def _draw(plotter: Any, field: Field, units: Units, title: str) -> None:
     view = View.of(field.points, place)
     plotter.set_background("white")
     _add_surface(plotter, surface, name, largest / 10.0**power)
-    label = f"{told} {engineering(largest / 10.0**power)} {unit}"
-    _mark(plotter, place, view.beside(field.points, place), label)
+    label = f"{label} {engineering(largest / 10.0**power)} {unit}"
+    _mark(plotter, place, view.above(field.points, place), label)
     plotter.add_text(_drawable(title), position=(24, SIZE[1] - 48), font_size=13, color=INK)
     # Apart from the bar, whose own title lies on its labels.
     plotter.add_text(name, position=(0.2 * SIZE[0], 0.1 * SIZE[1]), font_size=10, color=INK)
@@ -138,13 +138,13 @@ def _bar_format(largest: float) -> str:
     return f"%.{max(0, 2 - int(np.floor(np.log10(largest))))}f"
 
 
-def _mark(plotter: pyvista.Plotter, place: Floats, beside: Floats, text: str) -> None:
-    plotter.add_lines(np.asarray([place, beside]), color=INK, width=1)
+def _mark(plotter: pyvista.Plotter, place: Floats, text_at: Floats, text: str) -> None:
+    plotter.add_lines(np.asarray([place, text_at]), color=INK, width=1)
     plotter.add_points(
         np.asarray([place]), color="red", point_size=12, render_points_as_spheres=True
     )
     plotter.add_point_labels(
-        np.asarray([beside]),
+        np.asarray([text_at]),
         [text],
         font_size=18,
         text_color=INK,

@@ -95,7 +95,7 @@ def _numbers(values: NDArray[Any]) -> NDArray[Any]:
 
 
 def write_multiblock(blocks: Mapping[str, str], path: Path) -> None:
-    """Write a VTM file: blocks by name from files beside it."""
+    """Write a VTM file: blocks by name from files in the same folder."""
     lines = [
         f"    <DataSet index={quoteattr(str(i))} name={quoteattr(name)} file={quoteattr(file)}/>"
         for i, (name, file) in enumerate(blocks.items())
@@ -104,7 +104,7 @@ def write_multiblock(blocks: Mapping[str, str], path: Path) -> None:
 
 
 def write_series(parts: Sequence[tuple[float, str, str]], path: Path) -> None:
-    """Write a PVD file: time, name and file of every part, files beside it."""
+    """Write a PVD file: time, name and file of every part, files in the same folder."""
     names = list(dict.fromkeys(name for _, name, _ in parts))
     lines = [
         f"    <DataSet timestep={quoteattr(repr(time))} part={quoteattr(str(names.index(name)))} "

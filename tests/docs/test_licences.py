@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from docs.licences import PAGE, RUN, page, told
+from docs.licences import PAGE, RUN, page, recorded
 from tests.conftest import ROOT
 
 
@@ -16,7 +16,7 @@ def test_everything_that_is_locked_is_there_at_its_version() -> None:
                 name, version = re.split(r"==|;| ", line)[:2]
                 pinned.add((name, version))
     assert len(pinned) > 100
-    assert {(name, version) for name, (version, _, _) in told().items()} == pinned
+    assert {(name, version) for name, (version, _, _) in recorded().items()} == pinned
 
 
 def test_the_page_is_what_the_packages_say() -> None:
@@ -25,13 +25,13 @@ def test_the_page_is_what_the_packages_say() -> None:
 
 
 def test_what_runs_is_told_from_what_develops() -> None:
-    run = {name for name, (_, _, need) in told().items() if need == RUN}
+    run = {name for name, (_, _, need) in recorded().items() if need == RUN}
     assert {"numpy", "gmsh", "tomlkit", "xlsxwriter", "kiwisolver"} <= run
     assert not run & {"pytest", "sphinx", "ruff", "ngsolve"}
 
 
 def test_the_licences_that_decide_ours_are_named() -> None:
     """README.md: GPL because gmsh and cvxopt are."""
-    licences = {name: licence for name, (_, licence, need) in told().items() if need == RUN}
+    licences = {name: licence for name, (_, licence, need) in recorded().items() if need == RUN}
     ours = {name for name, text in licences.items() if "GPL" in text or "General Public" in text}
     assert ours == {"gmsh", "cvxopt"}

@@ -18,9 +18,16 @@ one = 1
 # a.toml, continued
 two = 2
 ```
+```python
+# b.py
+print("three")
+```
 ```console
 $ ls
 a.toml
+b.py
+$ python b.py
+three
 $ echo 1,002.0 words
 1,000.0 words
 $ ls nowhere
@@ -32,7 +39,7 @@ $ echo $?
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("page", ["start.md", "tutorial.md"])
+@pytest.mark.parametrize("page", ["start.md", "tutorial.md", "recipes.md"])
 def test_a_page_shows_what_happens(page: str, tmp_path: Path) -> None:
     """If it does not: python -m docs.sessions docs/PAGE, and read it again."""
     played = list(play((ROOT / "docs" / page).read_text(encoding="utf-8"), tmp_path))
@@ -46,13 +53,14 @@ def test_files_and_commands_are_taken_from_a_page(tmp_path: Path) -> None:
     assert (tmp_path / "a.toml").read_text() == "one = 1\ntwo = 2\n"
     assert [p.step.command for p in played] == [
         "ls",
+        "python b.py",
         "echo 1,002.0 words",
         "ls nowhere",
         "echo $?",
     ]
     told = [bool(differences(p.step.shown, p.printed)) for p in played]
-    assert told == [False, False, False, True]  # the last status is 2, not 0
-    assert played[2].status == 2
+    assert told == [False, False, False, False, True]  # the last status is 2, not 0
+    assert played[3].status == 2
     assert "$ echo 1,002.0 words\n1,002.0 words\n$ ls nowhere\n...\n" in renewed(MADE_UP, played)
 
 

@@ -40,8 +40,8 @@ def test_the_reference_has_type_unit_domain_default_and_description() -> None:
     text = reference(SCHEMA)
     for row in (
         "| `diameter` | length from 1 µm to 1 km | **required** | Outer diameter. |",
-        '| `gravity` | acceleration > 0 | `"9.80665 m/s^2"` | Turns the weight into a mass. |',
-        "| `samples` | integer ≥ 2, ≤ 100001 | `201` | Instants, evenly spaced. |",
+        '| `gravity` | acceleration > 0 | `"9.80665 m/s^2"` | Converts the weight to a mass. |',
+        "| `samples` | integer ≥ 2, ≤ 100001 | `201` | Number of equally spaced instants. |",
         "| `poisson_ratio` | number > -1, < 0.5 | **required** | Poisson's ratio. |",
     ):
         assert row in text

@@ -135,7 +135,7 @@ def test_clamps_answer_every_load(section: MeridianMesh, steel: Material) -> Non
         assert (modes.T @ forces)[:, 0] == pytest.approx(expected, abs=1e-12)
         left = model.space.stiffness(steel, unit.n) @ model.displace(unit.n, forces) - forces
         held = np.zeros(len(left), dtype=bool)
-        held[model._held(unit.n)] = True
+        held[model._constrained(unit.n)] = True
         reaction = np.where(held[:, None], left, 0.0)
         assert (modes.T @ reaction)[:, 0] == pytest.approx([-x for x in expected], abs=1e-9)
 

@@ -10,7 +10,7 @@ from fea.core import linear_solver as linear
 from fea.core.linear_solver import SolveError, factorize
 from fea.core.material import Material
 from fea.solid.assembly import Discretisation
-from fea.solid.boundary import held_nodes
+from fea.solid.boundary import clamped_nodes
 from geometry import Pin
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 from tests.support.errors import raises
@@ -22,7 +22,7 @@ def system(steel: Material) -> tuple[sp.csr_matrix, np.ndarray, np.ndarray]:
 
     pin = Pin("P", (Segment(0.03, 0.02, connection="B"),))
     space = Discretisation(solid_mesh(pin, MeshSize(across=2.0)).mesh)
-    held = held_nodes(space, ("start",))
+    held = clamped_nodes(space, ("start",))
     free = np.setdiff1d(np.arange(space.unknowns), (3 * held[:, None] + np.arange(3)).ravel())
     return space.stiffness(steel), free, free // 3
 

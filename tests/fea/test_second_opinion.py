@@ -29,7 +29,7 @@ FIRST = UP.at(np.array([0]))
 
 def test_what_is_beyond_its_limit_is_complained_of() -> None:
     assert AGREED.complaint == ""
-    assert AGREED.beside == pytest.approx(-0.05)
+    assert AGREED.deviation == pytest.approx(-0.05)
     told = {
         "displacements on the same mesh differ by 1.0e-03, allowed 1e-05": {"displacement": 1e-3},
         "von Mises stresses on the same mesh differ by 2.0e-02, allowed 1e-04": {"stress": 0.02},

@@ -9,7 +9,7 @@ import pytest
 
 import pinstress
 from pinstress.schema.shown import LONGEST, cut, shown
-from pinstress.study.errors import MOST_TOLD
+from pinstress.study.errors import MOST_LISTED
 from tests.conftest import ROOT
 from tests.support.limited_process import limited as check
 from tests.support.limited_process import start_server
@@ -77,8 +77,8 @@ def test_of_many_errors_the_first_are_told(tmp_path: Path, kind: str, count: int
     assert status == 2
     count += kind in LIMITED  # that there are too many is said once, beside the others
     assert f"{count:,} errors" in heading
-    assert len(lines) == MOST_TOLD + 1
-    assert lines[-1].endswith(f"and {count - MOST_TOLD:,} more")
+    assert len(lines) == MOST_LISTED + 1
+    assert lines[-1].endswith(f"and {count - MOST_LISTED:,} more")
     numbers = [int(line.split(":")[1]) for line in lines[:-1]]
     assert numbers == sorted(numbers)
     assert len(told) < 20_000

@@ -170,12 +170,12 @@ def test_what_failed_is_shown_with_its_reason(
     plan: ChartPlan, made_up: Chart, tmp_path: Path
 ) -> None:
     """One that passes a limit ends its ladder; any other failure is a point among others."""
-    fails = {("solid", "linear"): "passed the limit of 9 s", ("solid", "straight"): "no mesh"}
+    fails = {("solid", "linear"): "exceeded the limit of 9 s", ("solid", "straight"): "no mesh"}
     found = chart(plan, MadeUp(fails))
-    assert [p.failed for p in found.points if p.element == LINEAR] == ["passed the limit of 9 s"]
+    assert [p.failed for p in found.points if p.element == LINEAR] == ["exceeded the limit of 9 s"]
     assert [p.failed for p in found.points if p.element == STRAIGHT] == ["no mesh"] * 5
     assert failures(found) == [
-        f"Failed: solid ({LINEAR}): passed the limit of 9 s",
+        f"Failed: solid ({LINEAR}): exceeded the limit of 9 s",
         f"Failed: solid ({STRAIGHT}), all meshes: no mesh",
     ]
     one = (*made_up.points, ChartPoint("solid", CURVED, failed="no mesh"))
@@ -183,7 +183,7 @@ def test_what_failed_is_shown_with_its_reason(
     write_chart_csv(found, tmp_path)
     rows = list(csv.DictReader((tmp_path / "chart.csv").read_text().splitlines()))
     (row,) = [r for r in rows if r["element"] == LINEAR]
-    assert row["failed"] == "passed the limit of 9 s"
+    assert row["failed"] == "exceeded the limit of 9 s"
     assert [row[c] for c in CONTRACT[2:]] == [""] * 5
     svg = chart_plot(found, tmp_path)[0].read_text()
     assert "<svg" in svg
@@ -223,8 +223,8 @@ def test_a_point_in_its_own_process(plan: ChartPlan) -> None:
 @pytest.mark.parametrize(
     ("rung", "limits", "reason"),
     [
-        (Rung("solid", level=2), MeasureLimits(seconds=0.5), "passed the limit of 0.5 s"),
-        (Rung("solid", level=2), MeasureLimits(memory=20.0), "passed the limit of 20 MB"),
+        (Rung("solid", level=2), MeasureLimits(seconds=0.5), "exceeded the limit of 0.5 s"),
+        (Rung("solid", level=2), MeasureLimits(memory=20.0), "exceeded the limit of 20 MB"),
         (Rung("solid", level=40), MeasureLimits(), "elements, because the thinnest part"),
     ],
 )
@@ -256,7 +256,7 @@ def test_where_no_maximum_exists_the_chart_says_so(tmp_path: Path) -> None:
     found = chart(plan_chart(load_study(tmp_path / "study.toml"), "B", "landing"), MadeUp({}))
     assert found.note.startswith("No maximum exists: at a sharp corner")
     assert "the same" not in found.note
-    assert "one rule for all models" in found.note
+    assert "which all models share" in found.note
 
 
 @pytest.mark.parametrize(
@@ -297,7 +297,7 @@ def test_after_a_failure_there_is_no_folder(
     Path("study.toml").write_text(ONE_PIN)
     arguments = ["chart", "study.toml", "--pin", "B", "--case", "landing", "--time-limit", "0.01"]
     assert run_command_line(arguments) == 3
-    assert "passed the limit of 0.01 s" in capsys.readouterr().err
+    assert "exceeded the limit of 0.01 s" in capsys.readouterr().err
     assert [p.name for p in tmp_path.iterdir()] == ["study.toml"]
 
 

@@ -33,8 +33,8 @@ def row(out: Path) -> dict[str, Any]:
 @pytest.mark.parametrize(
     ("joints", "held"),
     [
-        ("auto", "held by contact with its lugs"),
-        ("foundation", "held by foundations in its lugs"),
+        ("auto", "in contact with its lugs"),
+        ("foundation", "on foundations in its lugs"),
         ("prescribed", "clamped at nowhere"),
     ],
 )

@@ -129,7 +129,7 @@ def test_a_lug_of_the_structure_by_the_name_of_a_segment(tmp_path: Path) -> None
         ('lug.M = { tilt = "loose" }', None, "pin.P.lug.M.tilt"),
         ("lug.M = { tilt = -1 }", None, "pin.P.lug.M.tilt"),
         ('clamp = ["start"]\nlug.M = {}', "clamped-in-lugs", "clamped at start"),
-        ("lug.M = {}\nhole = [{ z = 20, diameter = 4 }]", "not-axisymmetric", "cut"),
+        ("lug.M = {}\nhole = [{ z = 20, diameter = 4 }]", "not-axisymmetric", "plain profile"),
     ],
 )
 def test_what_cannot_be_is_refused_before_anything_is_solved(

@@ -237,7 +237,7 @@ def test_a_link_is_not_followed_by_what_is_cleared_away(
         if target == "results":
             manifest.complete(tmp_path / target)
         (tmp_path / name).symlink_to(tmp_path / target)
-        refused(earlier, f"{name} is in the way")
+        refused(earlier, f"{name} exists and was not written")
         assert os.readlink(tmp_path / name) == str(tmp_path / target)
         (tmp_path / name).unlink()
     assert names(tmp_path / "home") == ["results.json"]
@@ -251,7 +251,7 @@ def test_a_folder_of_the_users_is_not_cleared_away(
 ) -> None:
     (tmp_path / name).mkdir()
     (tmp_path / name / "results.json").write_text("mine")
-    refused(earlier, f"{name}.* is in the way")
+    refused(earlier, f"{name}.* exists and was not written")
     assert (tmp_path / name / "results.json").read_text() == "mine"
     assert (earlier / "results.json").read_text() == "earlier"
 
@@ -288,7 +288,7 @@ def test_results_json_alone_does_not_make_a_folder_ours(tmp_path: Path) -> None:
     """`--out .` where another program's results.json lies beside the study."""
     (tmp_path / "results.json").write_text('{"schema": "pinstress-results/1"}')
     (tmp_path / "study.toml").write_text(SLOW)
-    refused(tmp_path, r"holds results\.json, study\.toml, and no list of what pinstress wrote")
+    refused(tmp_path, r"contains results\.json, study\.toml, but no list of what pinstress wrote")
     assert names(tmp_path) == ["results.json", "study.toml"]
 
 
@@ -296,7 +296,9 @@ def test_a_file_that_the_user_added_is_named_and_kept(earlier: Path) -> None:
     (earlier / "plots").mkdir()
     (earlier / "plots" / "notes.txt").write_text("mine")
     (earlier / "study.toml").write_text("mine")
-    refused(earlier, r"holds plots/, study\.toml, plots/notes\.txt, which pinstress did not write")
+    refused(
+        earlier, r"contains plots/, study\.toml, plots/notes\.txt, which pinstress did not write"
+    )
     assert (earlier / "plots" / "notes.txt").read_text() == "mine"
     (earlier / "plots" / "notes.txt").unlink()
     (earlier / "plots").rmdir()
@@ -313,7 +315,7 @@ def test_a_file_that_is_added_while_a_run_writes_is_kept_too(earlier: Path) -> N
             (staging / "results.json").write_text("next")
             (earlier / "notes.txt").write_text("mine")
 
-    with pytest.raises(InputError, match=r"holds notes\.txt, which"):
+    with pytest.raises(InputError, match=r"contains notes\.txt, which"):
         run()
     assert (earlier / "notes.txt").read_text() == "mine"
     assert (earlier / "results.json").read_text() == "earlier"
@@ -336,7 +338,7 @@ def test_a_list_that_names_files_elsewhere_removes_none_of_them(tmp_path: Path) 
         str(home / "thesis.doc"),
     ]
     (out / manifest.NAME).write_text(json.dumps({"schema": manifest.SCHEMA, "files": files}))
-    refused(out, r"holds thesis\.doc, which pinstress did not write")
+    refused(out, r"contains thesis\.doc, which pinstress did not write")
     (out / "thesis.doc").unlink()
     with replacing(out) as staging:
         (staging / "results.json").write_text("next")

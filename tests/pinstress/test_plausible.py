@@ -91,7 +91,7 @@ def test_a_wrong_unit_is_questioned_with_the_likely_one(
     line = int(place.removeprefix("s.toml:"))
     assert new.split()[-1].strip('"]') in text.replace(old, new).splitlines()[line - 1]
     assert told.split(":")[0].endswith(key)
-    assert told.endswith(f'is it "{likely}"?') if likely else "is it" not in told
+    assert told.endswith(f'did you mean "{likely}"?') if likely else "did you mean" not in told
 
 
 def test_a_shape_that_cannot_be_calculated_is_an_error_with_the_likely_unit() -> None:
@@ -103,15 +103,15 @@ def test_a_shape_that_cannot_be_calculated_is_an_error_with_the_likely_unit() ->
         "s.toml:11: pin.A.profile: the pin is 1,600 times as long as it is wide; the limit is "
         "1,000; check the units",
     ]
-    assert told[2].endswith('is it "0.025 m"?')
+    assert told[2].endswith('did you mean "0.025 m"?')
 
 
 def test_a_modulus_in_question_leaves_its_strength_alone() -> None:
     text = METRIC.replace("= 210000", '= "210 MPa"').replace("= 355", '= "355 MPa"')
     (told,) = parse_study(Path("s.toml"), text).warnings
     assert told == (
-        "s.toml:4: material.steel.youngs_modulus: '210 MPa' is 0.21 GPa, and that of a structural "
-        'material lies between 1 and 1,200 GPa; is it "210 GPa"?'
+        "s.toml:4: material.steel.youngs_modulus: '210 MPa' is 0.21 GPa, but the usual range "
+        'for a structural material is 1 to 1,200 GPa; did you mean "210 GPa"?'
     )
 
 

@@ -178,7 +178,7 @@ def test_a_chart_is_refused_where_memory_is_not_known(tmp_path: Path) -> None:
     )
     assert done.returncode == 2
     assert done.stderr == (
-        "Error: chart measures the memory of processes, which is done on Linux only\n"
+        "Error: chart measures the memory of processes, which works on Linux only\n"
     )
     assert names(tmp_path) == []
 

@@ -174,8 +174,8 @@ def test_all_mistakes_are_told_at_once(tmp_path: Path) -> None:
     with pytest.raises(InputError) as caught:
         load_study(write(tmp_path, text))
     assert caught.value.codes == ("out-of-range", "not-positive")
-    assert "poisson_ratio: " in caught.value.told[0]
-    assert "diameter: " in caught.value.told[1]
+    assert "poisson_ratio: " in caught.value.lines[0]
+    assert "diameter: " in caught.value.lines[1]
 
 
 def test_a_missing_file_is_named(tmp_path: Path) -> None:

@@ -191,7 +191,7 @@ def test_view_overwrites_no_file_unasked(
     link.symlink_to(mine)
     for path in (mine, link):
         assert run_command_line(["view", str(swept), "--screenshot", str(path)]) == 2
-        assert f"{path} exists already; name another file, or" in capsys.readouterr().err
+        assert f"{path} exists already; choose another file, or" in capsys.readouterr().err
     assert run_command_line(["view", str(swept), "--screenshot", str(link), "--force"]) == 0
     assert link.read_bytes().startswith(b"\x89PNG")
     assert not link.is_symlink()
@@ -204,7 +204,7 @@ def test_view_overwrites_no_file_unasked(
         ([], "no display"),
         (["--pin", "Q"], "no Q; there are B in landing"),
         (["--pin", "B", "--case", "taxi"], "no B in taxi; there are B in landing"),
-        (["--screenshot", "b.jpg"], "name a .png file"),
+        (["--screenshot", "b.jpg"], "give a .png file"),
     ],
 )
 def test_view_says_what_is_wrong(
@@ -225,7 +225,7 @@ def test_view_of_no_results(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     assert "no results.json" in capsys.readouterr().err
     (tmp_path / "results.json").write_text("{}")
     assert run_command_line(["view", str(tmp_path)]) == 2
-    assert "not one of pinstress" in capsys.readouterr().err
+    assert "not written by pinstress" in capsys.readouterr().err
     (tmp_path / "results.json").unlink()
     os.mkfifo(tmp_path / "results.json")
     assert run_command_line(["view", str(tmp_path)]) == 2

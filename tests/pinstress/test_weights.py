@@ -44,7 +44,7 @@ def test_both_weights_are_named_on_stderr(tmp_path: Path, command: str) -> None:
     assert "Warning" not in found.stdout
     line = next(i for i, x in enumerate(path.read_text().splitlines(), 1) if "= 28.32" in x)
     assert f"Warning: {path}:{line}: mechanism.joint.E.weight: 28.32 lbf is stated" in found.stderr
-    assert "make 14.17 lbf; the forces are those of the stated weight" in found.stderr
+    assert "give 14.17 lbf; the stated weight is used" in found.stderr
 
 
 def test_a_run_says_so_too(tmp_path: Path) -> None:

@@ -204,7 +204,7 @@ def test_the_page_has_a_section(small: Results, written: Path) -> None:
     assert "half contact angle [°]" in text
     page = written.read_text(encoding="utf-8")
     assert f'alt="Pin A, {small.pins[0].case}: load per length from the lugs' in page
-    assert "<dt>Held by</dt>" in page
+    assert "<dt>Supported by</dt>" in page
     assert "<dt>Clamped</dt>" in page  # of the other row
 
 

@@ -72,7 +72,7 @@ def test_whether_the_mesh_explains_the_difference(opined: Results) -> None:
     near = replace(fine, theirs=1002.0)
     assert "difference" not in sentences(near, units)[1]
     beyond = replace(fine, theirs=1500.0)
-    assert "Beyond what was expected" in sentences(beyond, units)[-1]
+    assert "Beyond the limits" in sentences(beyond, units)[-1]
 
 
 def test_on_the_terminal(opined: Results) -> None:

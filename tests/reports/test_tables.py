@@ -19,7 +19,7 @@ from reports.tables.motion import (
     motion_check_table,
     reactions_table,
 )
-from reports.tables.published_reactions import published_reactions_table, write_published_reactions
+from reports.tables.published import published_reactions_table, write_published_reactions
 from reports.tables.safety_factors import (
     safety_factor_rows,
     safety_factors_table,

@@ -10,7 +10,7 @@ SHOULDER at shoulders. p = q / d, for a tube times radius over wall, is the pres
 there; q is its load per length, at most that farther than EDGE diameters from the lug's edges. With
 clearance p is larger in the ratio of the largest pressures of plane contact.
 
-19 in 20 of 100 pins at random have their largest stress within the bounds, farther than a tenth of
+19 in 20 of 100 random pins have their largest stress within the bounds, farther than a tenth of
 the diameter from sharp edges and corners (python -m benchmarks foundation).
 """
 

@@ -1,4 +1,4 @@
-"""The range of a pin's maximum over what is seldom known of its joint, by beams on foundations.
+"""The range of a pin's maximum over uncertain properties of its joint, by beams on foundations.
 
 At one instant, as fea.joint.variations has it by contact: other clearances, lugs half and twice as
 stiff, tilt free and guided, all in milliseconds. A beam's maximum is only as good as its bounds, so
@@ -72,7 +72,7 @@ class FoundationRange:
             over.append(Variation(joint.what, joint.value, size, joint.length, found.bounds))
         bounds = [own.bounds, *(v.interval for v in over if v.interval)]
         ends = min(low for low, _ in bounds), max(high for _, high in bounds)
-        beyond = f"beyond what was measured, and not included: {', '.join(left_out)}"
+        beyond = f"beyond the range of the measurements, and not included: {', '.join(left_out)}"
         whole = JointRange(ends, tuple(over), "foundation", self.assumed)
         return whole, beyond if left_out else ""
 
@@ -84,8 +84,9 @@ def prescribed_ranges(
     loads: Sequence[PinLoads | None],
     how: tuple[float, bool],
 ) -> tuple[JointResult | None, ...]:
-    """Of a pin that something else holds, if it sat in these lugs. loads: at the governing instants
-    of its cases, None where there is none. how: distance and assumed, as of FoundationRange.
+    """Of a pin that is supported otherwise, if it sat in these lugs. loads: at the governing
+    instants of its cases, None where there is none. how: distance and assumed, as of
+    FoundationRange.
     """
     try:
         over = FoundationRange(pin, material, lugs, *how)

@@ -1,16 +1,17 @@
-"""Reactions compared with the publication's."""
+"""Reactions and single numbers compared with the publication's."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
 
-from reports.data.results import ReactionTable, Results
+from reports.data.results import PublishedValue, ReactionTable, Results
 from reports.format import markdown
 from reports.format.numbers import engineering, ratio
 from reports.tables.table import Table
 
-COLUMNS = ("case", "connection", "ours", "published", "ratio")
+REACTIONS = ("case", "connection", "ours", "published", "ratio")
+VALUES = ("case", "time", "quantity", "name", "published", "ours", "ratio", "unit", "reason")
 
 
 @dataclass(frozen=True)
@@ -43,8 +44,8 @@ def _rows(table: ReactionTable) -> list[PublishedReaction]:
 
 def published_reactions_table(results: Results) -> Table:
     """The same as a table."""
-    rows = ([getattr(row, name) for name in COLUMNS] for row in published_reactions(results))
-    return Table.of("reactions_published", COLUMNS, rows)
+    rows = ([getattr(row, name) for name in REACTIONS] for row in published_reactions(results))
+    return Table.of("reactions_published", REACTIONS, rows)
 
 
 def write_published_reactions(results: Results, directory: Path) -> None:
@@ -63,3 +64,42 @@ def write_published_reactions(results: Results, directory: Path) -> None:
     )
     title = f"# Reactions compared with published values: {markdown.escaped(results.title)}"
     (directory / "reactions_published.md").write_text(f"{title}\n\n{body}\n", encoding="utf-8")
+
+
+def published_values_table(results: Results) -> Table:
+    """Every published value with ours."""
+    return Table.of("published", VALUES, (_cells(v) for v in results.published))
+
+
+def write_published_values(results: Results, directory: Path) -> None:
+    """Write published.md, if there are published values."""
+    if not results.published:
+        return
+    title = f"# Comparison with published values: {markdown.escaped(results.title)}"
+    text = f"{title}\n\n{published_table(results.published)}\n"
+    (directory / "published.md").write_text(text, encoding="utf-8")
+
+
+def _cells(v: PublishedValue) -> tuple[str | float | None, ...]:
+    relative = ratio(v.ours, v.published)
+    return v.case, v.time, v.quantity, v.name, v.published, v.ours, relative, v.unit, v.reason
+
+
+def published_table(values: tuple[PublishedValue, ...]) -> str:
+    """A Markdown table of published values, ours, their ratio and the reason for the difference."""
+    return markdown.table(
+        ("case", "quantity", "of", "published", "ours", "ours / published", "reason"),
+        [
+            [
+                v.case,
+                f"{v.quantity.replace('_', ' ')} [{v.unit}]",
+                v.name,
+                engineering(v.published, 6),
+                engineering(v.ours, 6),
+                engineering(ratio(v.ours, v.published), 5),
+                v.reason,
+            ]
+            for v in values
+        ],
+        (False, False, False, True, True, True, False),
+    )
