@@ -165,11 +165,14 @@ class PinShape:
 
 @dataclass(frozen=True)
 class Provenance:
-    """Where a number of the study comes from: given, derived, fitted or assumed."""
+    """Where a number of the study comes from: given, derived, fitted or assumed. value: as the
+    study writes it, in the study's units where it has none.
+    """
 
     key: str
     kind: str
     note: str
+    value: str = ""
 
 
 @dataclass(frozen=True)
