@@ -88,7 +88,7 @@ def _results(
         shapes=tuple(_shape(tasks[name]) for name in table.pin if name in tasks),
         **mechanics(study, loads, published),
         beam_check=beam,
-        provenance=tuple(plain.Provenance(s.key, s.kind, s.note, s.value) for s in study.provenance),
+        provenance=tuple(plain.Provenance(**asdict(source)) for source in study.provenance),
         published_source=table.published.source if table.published else "",
         assumptions=(*table.assumptions, *(f"Hardly meant: {q}" for q in study.questions)),
         versions={name: version(name) for name in PACKAGES},

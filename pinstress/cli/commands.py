@@ -280,13 +280,18 @@ def chart(
 @commands.command(
     short_help="Validate a study without solving it.",
     help=example("pinstress check studies/grenier2008.toml")
-    + "\nRead and validate a study and all its files without solving; print what would be run.",
+    + "\nRead and validate a study and all its files without solving; print what would be run.\n\n"
+    "Exit status: 0 done; 1 done, but a pin is not held; 2 bad input.",
 )
 @click.argument("study", type=click.Path(path_type=Path))
-def check(study: Path) -> None:
+def check(study: Path) -> int:
     from pinstress.cli.check import describe
 
-    click.echo(describe(read_study(study)))
+    text, unheld = describe(read_study(study))
+    click.echo(text)
+    for line in unheld:
+        click.echo(f"Not decided: {line}.", err=True)
+    return NOT_REACHED if unheld else REACHED
 
 
 for _command in (init, schema, size, view, completion):
