@@ -65,7 +65,8 @@ class PublishedTable(StrictTable):
     source: str
     """Their source."""
     peaks: str | None = None
-    """pin,case,max_von_mises,safety_factor."""
+    """pin,case,max_von_mises,safety_factor. Only for a study with the publication's geometry, since
+    maxima of other shapes cannot be compared."""
     reactions: str | None = None
     """case,connection,force."""
     motion: str | None = None

@@ -7,6 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from reports.data.decision import outcome
 from reports.data.results import HandCheck, PinResult, ReactionTable, Results, SingularZone
 from reports.format.numbers import finite
 from reports.tables.calculix import opinion_json
@@ -84,6 +85,7 @@ def _pin(pin: PinResult) -> dict[str, Any]:
         "safety_factor_interval": _interval(pin.safety_factor_interval),
         "yields": _truth(pin.yields),
         "meets_required": _truth(pin.meets_required),
+        "outcome": outcome(pin),
         "dofs": int(pin.dofs),
         "seconds": finite(pin.seconds),
         "history": [

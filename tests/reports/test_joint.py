@@ -146,11 +146,11 @@ def test_a_narrow_terminal_drops_the_published_value(results: Results) -> None:
 
 
 def test_a_column_only_where_a_range_was_found(small: Results, tmp_path: Path) -> None:
-    heading = shown_columns(shown_rows(small), small.units)
+    heading = shown_columns(shown_rows(small), small)
     assert heading["joint_high"] == "joint [psi]"
-    assert [row["joint_high"] for row in shown_rows(small)] == ["1,100 to 1,900", "–"]
+    assert [row["joint_high"] for row in shown_rows(small)] == ["–", "1,100 to 1,900"]
     bare = in_lugs(small, make_joint(over=False))
-    assert "joint_high" not in shown_columns(shown_rows(bare), bare.units)
+    assert "joint_high" not in shown_columns(shown_rows(bare), bare)
     for some, has in ((small, True), (bare, False)):
         write_safety_factors(some, tmp_path)
         text = (tmp_path / "safety_factors.md").read_text(encoding="utf-8")
