@@ -16,7 +16,7 @@ from fea.joint.records import JointResult
 from fea.joint.solve_in_lugs import InLugs, LugSolution
 from fea.solve_pin import MOST_UNKNOWNS, Asked, Solution, solve_pin
 from geometry import Pin
-from pinstress.analysis import checks, gather, gather_fields
+from pinstress.analysis import changes, checks, gather, gather_fields
 from pinstress.analysis.gather_surface import surfaces_of
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import Entry, Solved, lasting, question
@@ -168,7 +168,9 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
         beam = checks.beam_check(study, task)
     joints = tuple(j.joint for j in joined) or _around(plan, task, peaks)
     surfaces = surfaces_of(plan.loads, task, found, pressures)
-    return Solved(peaks, landing, beam, surfaces, joints=joints)
+    tell(f"pin {task.pin.name}, what to change")
+    to_do = changes.change(plan, task, found)
+    return Solved(peaks, landing, beam, surfaces, joints=joints, change=to_do)
 
 
 def _in_lugs(study: Study, task: Task, asked: Asked, tell: Tell) -> tuple[LugSolution, ...]:

@@ -104,7 +104,7 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
         click.echo((directory / "results.json").read_bytes(), nl=False)  # bytes: any locale
     else:
         with unneeded(directory):
-            print_safety_factors(results, console())
+            print_safety_factors(results, console(), str(study.path))
             if wanted.second:
                 print_second_opinion(results, console())
     if not wanted.quiet:

@@ -11,14 +11,14 @@ import click
 
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.results import run
+from pinstress.analysis.secant import CLOSE
 from pinstress.cli.new_file import require_new, write_new
 from pinstress.cli.run import SOLVERS, console, progress_bar
 from pinstress.cli.streams import unneeded
 from pinstress.model.pins import pin as pin_of
-from pinstress.model.pins import weight
+from pinstress.model.pins import slenderness, weight
 from pinstress.processes.pool import Died, Job, Progress, preload, processes, side_by_side
 from pinstress.sizing.scaled_study import moved, resized_study
-from pinstress.sizing.secant import CLOSE
 from pinstress.sizing.size_pin import Sized, Wish, size_pin
 from pinstress.study.choices import require_positive
 from pinstress.study.errors import InputError
@@ -165,7 +165,7 @@ def _row(study: Study, new: Study, sized: Sized, results: Results) -> SizeRow:
         governs=DASH if worst is None else worst.case,
         stricter="" if worst is None else _stricter(worst),
         weights=(_weight(study, sized.pin), _weight(new, sized.pin)),
-        slenderness=pin_of(new, sized.pin).length / unit / max(after, default=float("nan")),
+        slenderness=slenderness(pin_of(new, sized.pin)),
         why=_why(sized, mine),
     )
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from reports.data.changes import command
 from reports.data.decision import limit, outcome, utilisation, worst_first
 from reports.data.results import PinResult, Results
 from reports.format.words import MEANING, RESULTS
+from reports.tables.changes import INTRODUCTION, change_notes, changes_grid
 from reports.tables.published_values import published_maxima
 from reports.tables.safety_factors import (
     TEXTS,
@@ -63,6 +65,10 @@ def factor_parts(results: Results) -> dict[str, Any]:
         "explained": RESULTS,
         "meaning": MEANING,
         "maxima": published_maxima(results),
+        "changes": changes_grid(results),
+        "change_introduction": INTRODUCTION,
+        "change_notes": change_notes(results),
+        "size_command": command(results.changes, results.study, results.required_safety_factor),
     }
 
 

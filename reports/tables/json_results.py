@@ -28,6 +28,7 @@ def to_json(results: Results) -> dict[str, Any]:
         "tolerance": finite(results.tolerance),
         "versions": {name: results.versions[name] for name in sorted(results.versions)},
         "pins": [_pin(pin) for pin in results.pins],
+        "changes": [asdict(change) for change in results.changes],
         "loads": [_loads(results, table) for table in results.reactions],
         "provenance": [asdict(entry) for entry in results.provenance],
     }

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from reports.data.changes import command
 from reports.data.decision import BELOW, FAILS, SAFE, YIELDS, limit, outcome, worst_first
 from reports.data.results import PinResult, Results
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering, short
 from reports.format.ranges import factor_range, joint_range, margin_range, utilisation_range
 from reports.format.words import headline, result_words
+from reports.tables.changes import change_notes, changes_grid
 from reports.tables.published_values import published_maxima
 from reports.text.fitted_table import Column, fitted_table
 from reports.text.summary import summary
@@ -22,8 +24,10 @@ COLOURS = {SAFE: "green", BELOW: "green", FAILS: "red", YIELDS: "red"}
 TO = "–"  # of a range
 
 
-def print_safety_factors(results: Results, console: Console) -> None:
-    """Print the worst row in a sentence, the safety factors as a table, then a summary."""
+def print_safety_factors(results: Results, console: Console, study: str = "") -> None:
+    """Print the worst row in a sentence, the safety factors as a table, then a summary and what to
+    change. study: its path, by default its name.
+    """
     from rich.text import Text
 
     if results.pins:
@@ -31,9 +35,22 @@ def print_safety_factors(results: Results, console: Console) -> None:
         console.print(Text(headline(results), "bold"))
         console.print(fitted_table(_columns(results), console.width))
     console.print(Text(summary(results)))
+    if results.changes:
+        _print_changes(results, console, study or results.study)
     if grid := published_maxima(results):
         console.print(Text("Published values", "bold"))
         console.print(fitted_table(_of_grid(grid), console.width))
+
+
+def _print_changes(results: Results, console: Console, study: str) -> None:
+    from rich.text import Text
+
+    console.print(Text("What to change, each alone", "bold"))
+    console.print(fitted_table(_of_grid(changes_grid(results)), console.width))
+    for note in change_notes(results):
+        console.print(Text(note))
+    if line := command(results.changes, study, results.required_safety_factor):
+        console.print(Text(line), soft_wrap=True)  # to be copied
 
 
 def _columns(results: Results) -> list[Column]:

@@ -20,8 +20,8 @@ WIDE = 1.0  # length over diameter below which a pin is wider than long
 class SizeRow:
     """A pin's distinct diameters before and after (None: not sized), its lowest factor before and
     in the run of the new study as text, and the case that governs it there; its weight before and
-    after (None without a density), its length over its largest diameter, why the required factor is
-    not reached, if it is not, and a hand check with a smaller factor, if there is one.
+    after (None without a density), its length over its largest diameter under a link, why the
+    required factor is not reached, if it is not, and a hand check with a smaller factor, if any.
     """
 
     pin: str

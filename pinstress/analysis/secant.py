@@ -28,8 +28,10 @@ class Trial:
     factor: float
 
 
-def smallest(factor_at: Callable[[float], float], required: float, start: float = 1.0) -> Trial:
-    """The smallest scale whose factor is at least `required`, and at most CLOSE more of it, from
+def smallest(
+    factor_at: Callable[[float], float], required: float, start: float = 1.0, close: float = CLOSE
+) -> Trial:
+    """The smallest scale whose factor is at least `required`, and at most `close` more of it, from
     `start` on.
 
     The factor grows with the scale; log factor against log scale is nearly a line, so secants find
@@ -45,7 +47,7 @@ def smallest(factor_at: Callable[[float], float], required: float, start: float 
         now = Trial(scale, factor_at(scale))
         if now.factor >= required:
             above = now if above is None or now.scale < above.scale else above
-            if now.factor <= required * (1.0 + CLOSE):
+            if now.factor <= required * (1.0 + close):
                 return now
         else:
             below = now if below is None or now.scale > below.scale else below
@@ -62,7 +64,7 @@ def smallest(factor_at: Callable[[float], float], required: float, start: float 
             slope = min(max(rise, GENTLE), STEEP)
         before = now
         # Aimed a little high, for only what is not below will do.
-        aim = required * (1.0 + 0.4 * CLOSE)
+        aim = required * (1.0 + 0.4 * close)
         scale = min(now.scale * (aim / now.factor) ** (1.0 / slope), LEAP * now.scale)
         if above and below and not below.scale < scale < above.scale:
             scale = math.sqrt(above.scale * below.scale)

@@ -1,0 +1,60 @@
+"""What to change: for every pin that does not reach its factor, what would do, each alone."""
+
+from __future__ import annotations
+
+from reports.data.changes import Change
+from reports.data.results import Results
+from reports.format.grid import Grid
+from reports.format.numbers import DASH, engineering, short
+
+INTRODUCTION = (
+    "Each of these alone brings the pin to the required factor in the worst of its cases, if "
+    "nothing else is changed. Larger diameters, with bores and fillets, are estimated to a few per "
+    "cent on one mesh, under the same loads."
+)
+CONTACT = (
+    "In contact with lugs stress is not quite proportional to loads: take the load as an estimate."
+)
+SINGULAR = (
+    "Of singular rows the factor is reached only outside the excluded zones: remove the sharp "
+    "corner or clamp edge first."
+)
+
+
+def changes_grid(results: Results) -> Grid:
+    """A row for each pin, the worst first."""
+    units = results.units
+    columns = {
+        "pin": [c.pin for c in results.changes],
+        "case": [c.case for c in results.changes],
+        "× diameters": [engineering(c.diameter_factor, 3) for c in results.changes],
+        f"yield strength [{units.stress}]": [
+            engineering(c.yield_strength) for c in results.changes
+        ],
+        "× loads": [_loads(c) for c in results.changes],
+        f"impulse time [{units.time}]": [_time(c) for c in results.changes],
+    }
+    shown = {head: cells for head, cells in columns.items() if {*cells} != {DASH}}
+    return Grid(
+        [*shown],
+        [list(row) for row in zip(*shown.values(), strict=True)],
+        [False, False, *[True] * (len(shown) - 2)],
+    )
+
+
+def change_notes(results: Results) -> list[str]:
+    """What is to be known of the rows, a sentence or two each."""
+    notes = [f"Pin {c.pin}: {c.diameter_note}." for c in results.changes if c.diameter_note]
+    notes += [CONTACT] * any(not c.proportional for c in results.changes)
+    return notes + [SINGULAR] * any(c.singular for c in results.changes)
+
+
+def _loads(change: Change) -> str:
+    about = "" if change.proportional else "≈ "
+    return f"{about}{engineering(change.load_factor, 3)}"
+
+
+def _time(change: Change) -> str:
+    if change.given_time is None or change.impulse_time is None:
+        return DASH
+    return f"{short(change.given_time)} → {engineering(change.impulse_time, 3)}"
