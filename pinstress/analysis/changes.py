@@ -20,12 +20,14 @@ from fea.solve_pin import Solution
 from geometry import GeometryError, Pin
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.secant import NoSizeError, smallest
+from pinstress.analysis.sensitivities import sensitivities
 from pinstress.model.pins import slenderness
 from pinstress.model.tasks import Task
 from reports.data.changes import Change
 
 FIRST = Rung("harmonic")
 ENOUGH = 0.04  # of the factor: what the first mesh is worth
+STEPS = {"in-lbf-s": 0.1 * 0.0254, "mm-N-s": 1e-3, "m-N-s": 1e-3}  # of a dimension, m
 SHARES, ROUNDS = 17, 3  # of an impulse tried at a time, each time between the last two
 SIZED_BY_COMMAND = "pinstress size finds it"
 
@@ -52,8 +54,10 @@ def change(plan: Plan, task: Task, solutions: tuple[Solution, ...]) -> Change | 
         return None
     low, high = peak.interval or (peak.max_von_mises, peak.max_von_mises)
     failing = Failing(task, worst, strength / required / high)
-    times, why = _diameters(plan, failing, required)
     impulse = task.impulses.get(peak.case)
+    problem = _problem(plan, failing)
+    times, why = _diameters(problem, failing, required)
+    step = STEPS[plan.study.table.units]
     share = None if impulse is None else _share(failing, impulse.loads)
     return Change(
         pin=peak.pin,
@@ -67,6 +71,9 @@ def change(plan: Plan, task: Task, solutions: tuple[Solution, ...]) -> Change | 
         impulse_time=None if impulse is None or not share else impulse.time / share,
         given_time=None if impulse is None else impulse.time,
         singular=low < high,
+        sensitivities=sensitivities(problem, required * failing.part, step)
+        if plan.sensitive and problem
+        else (),
     )
 
 
@@ -97,14 +104,21 @@ def _maxima(answer: Answer, loads: PinLoads, shares: Floats) -> Floats:
     return answer.maxima(replace(loads, forces=forces, moments=moments, body=body))
 
 
-def _diameters(plan: Plan, failing: Failing, required: float) -> tuple[float | None, str]:
+def _problem(plan: Plan, failing: Failing) -> Problem | None:
+    """The governing instant on one mesh; None where contact or a solid would take too long."""
+    task, loads = failing.task, failing.solution.peak.governing
+    if task.lugs or not isinstance(task.pin, Pin) or loads is None:
+        return None
+    return Problem(task.pin, task.material, task.clamps, loads, plan.asked.distance)
+
+
+def _diameters(
+    problem: Problem | None, failing: Failing, required: float
+) -> tuple[float | None, str]:
     """By how much all diameters must be larger, or why no pin does that is longer than wide."""
-    pin, peak = failing.task.pin, failing.solution.peak
-    if failing.task.lugs or not isinstance(pin, Pin) or peak.governing is None:
+    pin = failing.task.pin
+    if problem is None or not isinstance(pin, Pin):
         return None, SIZED_BY_COMMAND
-    problem = Problem(
-        pin, failing.task.material, failing.task.clamps, peak.governing, plan.asked.distance
-    )
     most = slenderness(pin)
     before = result_on(problem, FIRST).maximum
 

@@ -73,6 +73,7 @@ def question(plan: Plan, task: Task) -> object:
         task.material,
         replace(plan.asked, memory=None),
         plan.also,
+        plan.sensitive,
         study.system,
         None if check is None else check.model_dump(),
     )

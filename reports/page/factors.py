@@ -9,7 +9,13 @@ from reports.data.changes import command
 from reports.data.decision import limit, outcome, utilisation, worst_first
 from reports.data.results import PinResult, Results
 from reports.format.words import MEANING, RESULTS
-from reports.tables.changes import INTRODUCTION, change_notes, changes_grid
+from reports.tables.changes import (
+    DIMENSIONS,
+    INTRODUCTION,
+    change_notes,
+    changes_grid,
+    sensitivities_grid,
+)
 from reports.tables.published_values import published_maxima
 from reports.tables.safety_factors import (
     TEXTS,
@@ -66,6 +72,8 @@ def factor_parts(results: Results) -> dict[str, Any]:
         "meaning": MEANING,
         "maxima": published_maxima(results),
         "changes": changes_grid(results),
+        "sensitivities": sensitivities_grid(results),
+        "sensitivities_introduction": DIMENSIONS,
         "change_introduction": INTRODUCTION,
         "change_notes": change_notes(results),
         "size_command": command(results.changes, results.study, results.required_safety_factor),

@@ -12,7 +12,7 @@ from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering, short
 from reports.format.ranges import factor_range, joint_range, margin_range, utilisation_range
 from reports.format.words import headline, result_words
-from reports.tables.changes import change_notes, changes_grid
+from reports.tables.changes import change_notes, changes_grid, sensitivities_grid
 from reports.tables.published_values import published_maxima
 from reports.text.fitted_table import Column, fitted_table
 from reports.text.summary import summary
@@ -49,6 +49,9 @@ def _print_changes(results: Results, console: Console, study: str) -> None:
     console.print(fitted_table(_of_grid(changes_grid(results)), console.width))
     for note in change_notes(results):
         console.print(Text(note))
+    if grid := sensitivities_grid(results):
+        console.print(Text("Sensitivities", "bold"))
+        console.print(fitted_table(_of_grid(grid), console.width))
     if line := command(results.changes, study, results.required_safety_factor):
         console.print(Text(line), soft_wrap=True)  # to be copied
 
