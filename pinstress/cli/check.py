@@ -22,7 +22,7 @@ from pinstress.study.published_tables import read_published
 
 
 def describe(study: Study) -> tuple[str, list[str]]:
-    """A summary of a valid study, and why pins that nothing holds would not be solved.
+    """A summary of a valid study, and why unconstrained pins would not be solved.
 
     Raises: InputError for errors that involve several tables.
     """
