@@ -52,7 +52,7 @@ def change(plan: Plan, task: Task, solutions: tuple[Solution, ...]) -> Change | 
     peak = worst.peak
     if strength is None or not peak.max_von_mises or peak.max_von_mises <= strength / required:
         return None
-    low, high = peak.interval or (peak.max_von_mises, peak.max_von_mises)
+    high = peak.interval[1] if peak.interval else peak.max_von_mises
     failing = Failing(task, worst, strength / required / high)
     impulse = task.impulses.get(peak.case)
     problem = _problem(plan, failing)
@@ -70,7 +70,7 @@ def change(plan: Plan, task: Task, solutions: tuple[Solution, ...]) -> Change | 
         diameter_note=why,
         impulse_time=None if impulse is None or not share else impulse.time / share,
         given_time=None if impulse is None else impulse.time,
-        singular=low < high,
+        singular=peak.verdict == "singular",
         sensitivities=sensitivities(problem, required * failing.part, step)
         if plan.sensitive and problem
         else (),
@@ -119,29 +119,36 @@ def _diameters(
     pin = failing.task.pin
     if problem is None or not isinstance(pin, Pin):
         return None, SIZED_BY_COMMAND
-    most = slenderness(pin)
-    before = result_on(problem, FIRST).maximum
-
-    def factor_at(scale: float) -> float:
-        if scale == 1.0:
-            return required * failing.part
-        larger = result_on(replace(problem, pin=widened(pin, min(scale, most))), FIRST).maximum
-        factor = required * failing.part * before / larger
-        if scale > most and factor < required:
-            raise NoSizeError(
-                f"a pin as wide as long, {most:.2g} times its diameters, has a factor of only "
-                f"{factor:.2g}: lengthen its bands, strengthen it or reduce its loads"
-            )
-        return factor
-
     try:
-        if most <= 1.0:
-            raise NoSizeError("it is wider than long already")
-        return min(smallest(factor_at, required, close=ENOUGH).scale, most), ""
+        return _widening(problem, pin, required * failing.part, required), ""
     except NoSizeError as error:
         return None, str(error)
     except (GeometryError, ArithmeticError) as error:
         return None, f"a larger pin fails: {error}"
+
+
+def _widening(problem: Problem, pin: Pin, factor: float, required: float) -> float:
+    """By how much all diameters must be larger. Raises: NoSizeError, GeometryError, MeshError,
+    SolveError.
+    """
+    most = slenderness(pin)
+    if most <= 1.0:
+        raise NoSizeError("it is wider than long already")
+    before = result_on(problem, FIRST).maximum
+
+    def factor_at(scale: float) -> float:
+        if scale == 1.0:
+            return factor
+        wide = replace(problem, pin=widened(pin, min(scale, most)))
+        found = factor * before / result_on(wide, FIRST).maximum
+        if scale > most and found < required:
+            raise NoSizeError(
+                f"a pin as wide as long, {most:.2g} times its diameters, has a factor of only "
+                f"{found:.2g}: lengthen its bands, strengthen it or reduce its loads"
+            )
+        return found
+
+    return min(smallest(factor_at, required, close=ENOUGH).scale, most)
 
 
 def widened(pin: Pin, scale: float) -> Pin:

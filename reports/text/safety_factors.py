@@ -86,7 +86,7 @@ def _columns(results: Results) -> list[Column]:
 
 def _error(pin: PinResult) -> str:
     """Relative; of a singular row, the range of the factor is larger."""
-    if pin.max_von_mises_interval or not pin.max_von_mises or pin.error_estimate is None:
+    if pin.verdict == "singular" or not pin.max_von_mises or pin.error_estimate is None:
         return DASH
     return f"{engineering(100.0 * pin.error_estimate / pin.max_von_mises, 2)} %"
 
