@@ -16,7 +16,7 @@ from fea.joint.records import JointResult
 from fea.joint.solve_in_lugs import InLugs, LugSolution
 from fea.solve_pin import MOST_UNKNOWNS, Asked, Solution, solve_pin
 from geometry import Pin
-from pinstress.analysis import changes, checks, gather, gather_fields
+from pinstress.analysis import checks, gather, gather_fields
 from pinstress.analysis.gather_surface import surfaces_of
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import Entry, Solved, lasting, question
@@ -24,9 +24,13 @@ from pinstress.cache.store import Cache
 from pinstress.model.pins import lost_shape
 from pinstress.model.tasks import Task
 from pinstress.processes.pool import Died, Job, Progress, Tell, side_by_side
+from pinstress.remedies.changes import change
 from pinstress.study.file import Study
 from reports.data.in_units import Unit, in_units
 from reports.data.results import Field
+
+# Of a dimension, m, whose effect is found.
+STEPS = {"in-lbf-s": 0.1 * 0.0254, "mm-N-s": 1e-3, "m-N-s": 1e-3}
 
 Keep = Callable[[Field], None]
 Ask = Callable[[Plan, Task, Solved, Tell], tuple[Opinion, ...]]
@@ -169,7 +173,7 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
     joints = tuple(j.joint for j in joined) or _around(plan, task, peaks)
     surfaces = surfaces_of(plan.loads, task, found, pressures)
     tell(f"pin {task.pin.name}, what to change")
-    to_do = changes.change(plan, task, found)
+    to_do = change(plan.asked, task, found, STEPS[study.table.units] if plan.sensitive else None)
     return Solved(peaks, landing, beam, surfaces, joints=joints, change=to_do)
 
 

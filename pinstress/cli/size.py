@@ -11,13 +11,13 @@ import click
 
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.results import run
-from pinstress.analysis.secant import CLOSE
 from pinstress.cli.new_file import require_new, write_new
 from pinstress.cli.run import SOLVERS, console, progress_bar
 from pinstress.cli.streams import unneeded
 from pinstress.model.pins import pin as pin_of
 from pinstress.model.pins import slenderness, weight
 from pinstress.processes.pool import Died, Job, Progress, preload, processes, side_by_side
+from pinstress.remedies.secant import CLOSE
 from pinstress.sizing.scaled_study import moved, resized_study
 from pinstress.sizing.size_pin import Sized, Wish, size_pin
 from pinstress.study.choices import require_positive

@@ -14,11 +14,11 @@ from fea.core.peak import Peak, Verdict
 from fea.joint.solve_in_lugs import LugSolution
 from geometry import ArgumentError
 from pinstress.analysis.plan import Plan, all_loads
-from pinstress.analysis.secant import NoSizeError, smallest
 from pinstress.analysis.solve import solutions
 from pinstress.model.pins import material as material_of
 from pinstress.model.pins import pin as pin_of
 from pinstress.model.tasks import tasks
+from pinstress.remedies.secant import NoSizeError, smallest
 from pinstress.sizing.scaled_study import resized_study
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study

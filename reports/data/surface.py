@@ -51,9 +51,9 @@ class SurfaceCase:
     what is excluded, as the analysis found it; `instant` governs. times: None without a motion.
     excluded: (P,) whether no stress is read there. largest: (P,) von Mises stress at the governing
     instant, of a meridian the maximum over the circumference. pressure: (R, M) of contact with lugs
-    at that instant, on M sectors of R rings, the first at `first`, rad, from x; rings: (P,) on which
-    of them a point is, -1 on none; None without contact. zones: (Z, 3) of circles that are excluded: r, z,
-    distance. section: at that instant, of a body of revolution.
+    at that instant, on M sectors of R rings, the first at `first`, rad, from x; rings: (P,) on
+    which of them a point is, -1 on none; None without contact. zones: (Z, 3) of circles that are
+    excluded: r, z, distance. section: at that instant, of a body of revolution.
     """
 
     case: str

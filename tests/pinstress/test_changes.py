@@ -13,8 +13,8 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.single_mesh import Problem
 from geometry import Pin, Segment
-from pinstress.analysis.sensitivities import sensitivities
 from pinstress.cli.commands import run_command_line
+from pinstress.remedies.sensitivities import sensitivities
 from reports.data.changes import Change
 from reports.data.results import Results
 from tests.conftest import ROOT

@@ -12,10 +12,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pinstress.analysis.results import run
-from pinstress.analysis.secant import CLOSE, TRIALS, NoSizeError, smallest
 from pinstress.cli.check import describe
 from pinstress.cli.commands import run_command_line
 from pinstress.model.pins import pin, weight
+from pinstress.remedies.secant import CLOSE, TRIALS, NoSizeError, smallest
 from pinstress.schema.units import SYSTEMS
 from pinstress.sizing.scaled_study import moved, resized, resized_study
 from pinstress.study.file import load_study, parse_study

@@ -16,18 +16,16 @@ import numpy as np
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.solution import Answer
 from fea.single_mesh import Problem, Rung, result_on
-from fea.solve_pin import Solution
+from fea.solve_pin import Asked, Solution
 from geometry import GeometryError, Pin
-from pinstress.analysis.plan import Plan
-from pinstress.analysis.secant import NoSizeError, smallest
-from pinstress.analysis.sensitivities import sensitivities
 from pinstress.model.pins import slenderness
 from pinstress.model.tasks import Task
+from pinstress.remedies.secant import NoSizeError, smallest
+from pinstress.remedies.sensitivities import sensitivities
 from reports.data.changes import Change
 
 FIRST = Rung("harmonic")
 ENOUGH = 0.04  # of the factor: what the first mesh is worth
-STEPS = {"in-lbf-s": 0.1 * 0.0254, "mm-N-s": 1e-3, "m-N-s": 1e-3}  # of a dimension, m
 SHARES, ROUNDS = 17, 3  # of an impulse tried at a time, each time between the last two
 SIZED_BY_COMMAND = "pinstress size finds it"
 
@@ -43,11 +41,14 @@ class Failing:
     part: float
 
 
-def change(plan: Plan, task: Task, solutions: tuple[Solution, ...]) -> Change | None:
+def change(
+    asked: Asked, task: Task, solutions: tuple[Solution, ...], step: float | None
+) -> Change | None:
     """What to change of a pin, for the worst of its cases; None where none is below the required
-    factor (below yield where none is required).
+    factor (below yield where none is required). step: of a dimension (m) for sensitivities, None
+    without them.
     """
-    strength, required = task.material.yield_strength, plan.asked.required or 1.0
+    strength, required = task.material.yield_strength, asked.required or 1.0
     worst = max(solutions, key=lambda s: s.peak.max_von_mises or 0.0)
     peak = worst.peak
     if strength is None or not peak.max_von_mises or peak.max_von_mises <= strength / required:
@@ -55,9 +56,8 @@ def change(plan: Plan, task: Task, solutions: tuple[Solution, ...]) -> Change | 
     high = peak.interval[1] if peak.interval else peak.max_von_mises
     failing = Failing(task, worst, strength / required / high)
     impulse = task.impulses.get(peak.case)
-    problem = _problem(plan, failing)
+    problem = _problem(asked, failing)
     times, why = _diameters(problem, failing, required)
-    step = STEPS[plan.study.table.units]
     share = None if impulse is None else _share(failing, impulse.loads)
     return Change(
         pin=peak.pin,
@@ -72,7 +72,7 @@ def change(plan: Plan, task: Task, solutions: tuple[Solution, ...]) -> Change | 
         given_time=None if impulse is None else impulse.time,
         singular=peak.verdict == "singular",
         sensitivities=sensitivities(problem, required * failing.part, step)
-        if plan.sensitive and problem
+        if step and problem
         else (),
     )
 
@@ -104,12 +104,12 @@ def _maxima(answer: Answer, loads: PinLoads, shares: Floats) -> Floats:
     return answer.maxima(replace(loads, forces=forces, moments=moments, body=body))
 
 
-def _problem(plan: Plan, failing: Failing) -> Problem | None:
+def _problem(asked: Asked, failing: Failing) -> Problem | None:
     """The governing instant on one mesh; None where contact or a solid would take too long."""
     task, loads = failing.task, failing.solution.peak.governing
     if task.lugs or not isinstance(task.pin, Pin) or loads is None:
         return None
-    return Problem(task.pin, task.material, task.clamps, loads, plan.asked.distance)
+    return Problem(task.pin, task.material, task.clamps, loads, asked.distance)
 
 
 def _diameters(
