@@ -76,13 +76,12 @@ def test_a_pin_as_wide_as_long_is_no_remedy(weak: pinstress.Study) -> None:
 
 @pytest.mark.slow
 def test_a_longer_impulse_is_enough() -> None:
-    """With the weights of the linkage, which act as well, so the time is not proportional."""
-    balanced = {"pin.J.clamp": [], "pin.J.fillet": 0.15}
+    """With the weights of the linkage, which act as well."""
+    balanced = {"pin.J.clamp": [], "pin.J.fillet": 0.15, "case.landing.distribution": "cosine"}
     gear = pinstress.changed_study(pinstress.load_study(GEAR), balanced)
     found = only(pinstress.run(gear, pins=["J"], cases=["landing"]))
     assert found.given_time == 0.15
     assert found.impulse_time is not None
-    assert found.impulse_time != pytest.approx(0.15 / found.load_factor, rel=1e-4)
     key = "case.landing.apply[1].impulse.impulse_time"
     longer = pinstress.changed_study(gear, {key: found.impulse_time})
     assert least(pinstress.run(longer, pins=["J"], cases=["landing"])) == pytest.approx(

@@ -167,7 +167,8 @@ def test_a_floating_pin_of_a_linkage_is_sized_and_a_run_confirms_it(
 ) -> None:
     """Its weight is in the loads of every trial; from another folder the study still runs."""
     path = ROOT / "studies" / "grenier2008.toml"
-    balanced = {"pin.J.clamp": [], "pin.J.fillet": 0.15, "case.landing.distribution": "cosine"}
+    balanced = {"pin.J.clamp": [], "pin.J.fillet": 0.15}
+    balanced |= {f"case.{case}.distribution": "cosine" for case in ("retract", "landing")}
     gear, target = tmp_path / "gear.toml", tmp_path / "deep" / "sized.toml"
     target.parent.mkdir()
     text = changed_study(load_study(path), balanced).text
