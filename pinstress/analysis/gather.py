@@ -27,6 +27,7 @@ from pinstress.study.choices import select
 from pinstress.study.file import Study
 from pinstress.study.published_tables import Published, read_published
 from reports.data import results as plain
+from reports.data.changes import Change
 
 
 def results_of(plan: Plan, found: list[Solved]) -> plain.Results:
@@ -47,8 +48,15 @@ def results_of(plan: Plan, found: list[Solved]) -> plain.Results:
         pins=tuple(replace(p, second_opinion=opinions.get((p.pin, p.case))) for p in results.pins),
         landing=tuple(r for made in found for r in made.landing),
         surfaces=tuple(surface for made in found for surface in made.surfaces),
+        changes=_worst_changes(found),
     )
     return _in_study_units(results, study)
+
+
+def _worst_changes(found: list[Solved]) -> tuple[Change, ...]:
+    """One for each pin, for the worst of its cases; the pin with the worst first."""
+    rows = sorted((x.change for x in found if x.change), key=lambda change: change.load_factor)
+    return tuple({change.pin: change for change in reversed(rows)}.values())[::-1]
 
 
 def _in_study_units(results: plain.Results, study: Study) -> plain.Results:
@@ -88,7 +96,7 @@ def _results(
         shapes=tuple(_shape(tasks[name]) for name in table.pin if name in tasks),
         **mechanics(study, loads, published),
         beam_check=beam,
-        provenance=tuple(plain.Provenance(s.key, s.kind, s.note) for s in study.provenance),
+        provenance=tuple(plain.Provenance(**asdict(source)) for source in study.provenance),
         published_source=table.published.source if table.published else "",
         assumptions=(*table.assumptions, *(f"Hardly meant: {q}" for q in study.questions)),
         versions={name: version(name) for name in PACKAGES},

@@ -38,7 +38,8 @@ class Plan:
     """All that is known before anything is solved: every input is read and found usable.
 
     checked: the task whose pin the beam check compares, if any. also: which fields are wanted
-    in addition to those of the model at the governing instant.
+    in addition to those of the model at the governing instant. sensitive: whether to find what
+    dimensions do to the factors of pins that fail.
     """
 
     study: Study
@@ -48,6 +49,7 @@ class Plan:
     published: Published
     checked: Task | None
     also: Also = None
+    sensitive: bool = False
 
 
 def prepare(

@@ -14,6 +14,7 @@ from pinstress.analysis.solve import keep_none, solve_tasks
 from pinstress.processes.pool import processes
 from pinstress.study.file import Study
 from reports.data.results import Field, Results
+from reports.format.words import headline
 from reports.tables.all import load_tables, stress_tables
 from reports.tables.table import Table
 from reports.text.html import safety_factors_html
@@ -46,7 +47,7 @@ class Found(Results):
     plan: Plan | None = None
 
     def __repr__(self) -> str:
-        return f"<{self.title}: {summary(self)}>"
+        return f"<{self.title}: {headline(self)} {summary(self)}>"
 
     def _repr_html_(self) -> str:
         return safety_factors_html(self)

@@ -14,7 +14,7 @@ from fea.joint.foundation.solve_on_foundations import solve_joints
 from fea.joint.foundation.variations import prescribed_ranges
 from fea.joint.records import JointResult
 from fea.joint.solve_in_lugs import InLugs, LugSolution
-from fea.solve_pin import MOST_UNKNOWNS, solve_pin
+from fea.solve_pin import MOST_UNKNOWNS, Asked, Solution, solve_pin
 from geometry import Pin
 from pinstress.analysis import checks, gather, gather_fields
 from pinstress.analysis.gather_surface import surfaces_of
@@ -24,8 +24,13 @@ from pinstress.cache.store import Cache
 from pinstress.model.pins import lost_shape
 from pinstress.model.tasks import Task
 from pinstress.processes.pool import Died, Job, Progress, Tell, side_by_side
+from pinstress.remedies.changes import change
+from pinstress.study.file import Study
 from reports.data.in_units import Unit, in_units
 from reports.data.results import Field
+
+# Of a dimension, m, whose effect is found.
+STEPS = {"in-lbf-s": 0.1 * 0.0254, "mm-N-s": 1e-3, "m-N-s": 1e-3}
 
 Keep = Callable[[Field], None]
 Ask = Callable[[Plan, Task, Solved, Tell], tuple[Opinion, ...]]
@@ -130,12 +135,23 @@ def _failed(plan: Plan, task: Task, reason: str) -> Solved:
     )
 
 
+def solutions(
+    study: Study, task: Task, asked: Asked, tell: Tell
+) -> tuple[Solution | LugSolution, ...]:
+    """Of a task's cases, in contact with lugs if these hold the pin.
+
+    Raises: ArgumentError, MeshError, SolveError.
+    """
+    return _in_lugs(study, task, asked, tell) or solve_pin(
+        task.pin, task.material, task.clamps, task.loads, asked, tell, task.between
+    )
+
+
 def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
     study = plan.study
-    joined = _in_lugs(plan, task, tell)
-    found = tuple(j.solution for j in joined) or solve_pin(
-        task.pin, task.material, task.clamps, task.loads, plan.asked, tell, task.between
-    )
+    every = solutions(study, task, plan.asked, tell)
+    joined = tuple(s for s in every if isinstance(s, LugSolution))
+    found = tuple(s.solution if isinstance(s, LugSolution) else s for s in every)
     pressures = [j.pressure for j in joined] or [None] * len(found)
     for solution, pressure in zip(found, pressures, strict=True):
         case = plan.loads[solution.peak.case]
@@ -156,17 +172,19 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
         beam = checks.beam_check(study, task)
     joints = tuple(j.joint for j in joined) or _around(plan, task, peaks)
     surfaces = surfaces_of(plan.loads, task, found, pressures)
-    return Solved(peaks, landing, beam, surfaces, joints=joints)
+    tell(f"pin {task.pin.name}, what to change")
+    to_do = change(plan.asked, task, found, STEPS[study.table.units] if plan.sensitive else None)
+    return Solved(peaks, landing, beam, surfaces, joints=joints, change=to_do)
 
 
-def _in_lugs(plan: Plan, task: Task, tell: Tell) -> tuple[LugSolution, ...]:
+def _in_lugs(study: Study, task: Task, asked: Asked, tell: Tell) -> tuple[LugSolution, ...]:
     """Solutions of a pin that its lugs support; none of any other."""
     if not task.lugs:
         return ()
     assert isinstance(task.pin, Pin)
     given = InLugs(task.pin, task.material, task.lugs, task.loads, task.between, task.ranges)
-    joints = plan.study.table.analysis.joints
-    return solve_joints(given, plan.asked, "auto" if joints == "prescribed" else joints, tell)
+    joints = study.table.analysis.joints
+    return solve_joints(given, asked, "auto" if joints == "prescribed" else joints, tell)
 
 
 def _around(plan: Plan, task: Task, peaks: tuple[Peak, ...]) -> tuple[JointResult | None, ...]:

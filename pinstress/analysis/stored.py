@@ -16,6 +16,7 @@ from geometry import CutPin, Pin, PinLike
 from loads import read_regular
 from pinstress.analysis.plan import Plan
 from pinstress.model.tasks import Task
+from reports.data.changes import Change
 from reports.data.results import Field, LandingRange
 from reports.data.surface import Surface
 
@@ -23,7 +24,8 @@ from reports.data.surface import Surface
 @dataclass(frozen=True)
 class Solved:
     """A task's peaks in the order of its cases, and what else reports and CalculiX have to say.
-    joints: in the same order, empty where nothing is in contact. before: whether an earlier run
+    joints: in the same order, empty where nothing is in contact. change: what would make the pin
+    reach its factor, if it does not. before: whether an earlier run
     found it.
     """
 
@@ -33,6 +35,7 @@ class Solved:
     surfaces: tuple[Surface, ...] = ()
     opinions: tuple[Opinion, ...] = ()
     joints: tuple[JointResult | None, ...] = ()
+    change: Change | None = None
     before: bool = False
 
 
@@ -65,10 +68,12 @@ def question(plan: Plan, task: Task) -> object:
         task.loads,
         task.left_out,
         task.ranges,
+        task.impulses,
         [(case.reactions.times, case.range) for case in cases],
         task.material,
         replace(plan.asked, memory=None),
         plan.also,
+        plan.sensitive,
         study.system,
         None if check is None else check.model_dump(),
     )

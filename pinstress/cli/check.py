@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from functools import partial
 
+from fea.core.equilibrium import out_of_balance
 from geometry import PinLike
 from loads import Linkage
 from loads.closed_form.four_bar import four_bar
-from pinstress.model.cases import case_loads
+from pinstress.model.cases import CaseLoads, case_loads
 from pinstress.model.linkage import determined, linkage, span
 from pinstress.model.lugs import lugs
 from pinstress.model.pins import lost_shape, weight
 from pinstress.model.pins import pin as pin_of
+from pinstress.model.tasks import Task, tasks
 from pinstress.schema.cases import GivenCase, LegCase, MotionCase
 from pinstress.schema.pins import PinTable
 from pinstress.study.errors import Errors
@@ -19,8 +21,11 @@ from pinstress.study.file import Study
 from pinstress.study.published_tables import read_published
 
 
-def describe(study: Study) -> str:
-    """A summary of a valid study. Raises: InputError for errors that involve several tables."""
+def describe(study: Study) -> tuple[str, list[str]]:
+    """A summary of a valid study, and why unconstrained pins would not be solved.
+
+    Raises: InputError for errors that involve several tables.
+    """
     table = study.table
     lines = [f"{study.path}: {table.title}", f"units {study.system.name}"]
     wrong = Errors(study.path)
@@ -30,21 +35,40 @@ def describe(study: Study) -> str:
         described = wrong.attempt(partial(_mechanism, study, mechanism))
         lines += described or []
         mechanism = mechanism if described else None  # its cases would say the same again
+    loads: dict[str, CaseLoads] = {}
     for name, case in table.case.items():
         if mechanism is not None or isinstance(case, GivenCase | LegCase):
-            lines.append(wrong.attempt(partial(_case, study, name, mechanism)) or "")
-    lines += [wrong.attempt(partial(_pin, study, name)) or "" for name in table.pin]
+            # Without extremes: it is enough that the mechanism can follow.
+            found = wrong.attempt(partial(case_loads, study, name, mechanism, extremes=False))
+            loads |= {} if found is None else {name: found}
+    lines += [f"case {name}: {_words(study, name, case)}" for name, case in loads.items()]
+    pins = {name: wrong.attempt(partial(pin_of, study, name)) for name in table.pin}
+    made = [pin for pin in pins.values() if pin is not None]
+    lines += [wrong.attempt(partial(_pin, study, pin)) or "" for pin in made]
     wrong.tell()
+    todo = tasks(study, made, loads) if made else []
     a = table.analysis
     goal = (
         f", required safety factor {a.required_safety_factor:g}" if a.required_safety_factor else ""
     )
     lines.append(f"model {a.model}, tolerance {a.tolerance:g}{goal}")
-    return "\n".join(lines)
+    return "\n".join(lines), [line for task in todo for line in _unheld(task)]
 
 
-def _pin(study: Study, name: str) -> str:
-    pin, p, system = pin_of(study, name), study.table.pin[name], study.system
+def _unheld(task: Task) -> list[str]:
+    """Why a pin would not be solved, by case."""
+    if task.clamps or task.lugs:
+        return []
+    balances = {c.case: out_of_balance(task.pin, c, task.material.density) for c in task.loads}
+    return [
+        f"pin {task.pin.name} is unconstrained in case {case}: {balance.refusal}"
+        for case, balance in balances.items()
+        if balance.refusal
+    ]
+
+
+def _pin(study: Study, pin: PinLike) -> str:
+    name, p, system = pin.name, study.table.pin[pin.name], study.system
     ways = dict.fromkeys(study.clamps(name, case) for case in study.table.case)
     supports = dict.fromkeys(_support(study, pin, way) for way in ways)
     density = study.table.material[p.material].density
@@ -99,22 +123,16 @@ def _mechanism(study: Study, mechanism: Linkage) -> list[str]:
     ]
 
 
-def _case(study: Study, name: str, mechanism: Linkage | None) -> str:
-    return f"case {name}: {_words(study, name, mechanism)}"
-
-
-def _words(study: Study, name: str, mechanism: Linkage | None) -> str:
-    case, table = study.table.case[name], study.table.spatial_leg
-    reactions = case_loads(study, name, mechanism, extremes=False).reactions  # it can follow
+def _words(study: Study, name: str, loads: CaseLoads) -> str:
+    case, table, reactions = study.table.case[name], study.table.spatial_leg, loads.reactions
     if isinstance(case, GivenCase):
         many = f"{len(reactions)} instants" if reactions.times is not None else "one instant"
         return f"given, {many}, connections {', '.join(reactions.connections)}"
     if isinstance(case, LegCase):
         assert table is not None
         return f"spatial leg, {case.samples} instants over {table.fold.duration:g} s"
-    assert mechanism is not None
-    loads = ", ".join(f"{load.body}" for load in case.apply)
+    applied = ", ".join(f"{load.body}" for load in case.apply)
     if isinstance(case, MotionCase):
-        also = f", loads on {loads}" if loads else ""
+        also = f", loads on {applied}" if applied else ""
         return f"motion, {case.samples} instants over {span(study):g} s{also}"
-    return f"{case.kind}, {f'loads on {loads}' if loads else 'gravity only'}"
+    return f"{case.kind}, {f'loads on {applied}' if applied else 'gravity only'}"

@@ -11,8 +11,8 @@ import click
 
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import Solved
+from reports.data.decision import outcome
 from reports.data.results import PinResult, Results, SingularZone
-from reports.format.words import outcome
 
 Reason = TypeVar("Reason", bound=Hashable)
 DESCRIBED = {

@@ -128,6 +128,11 @@ def commands() -> None:
     help="Solve every row again with CalculiX and compare: on the solid model's mesh; a pin in its "
     "lugs by contact in three dimensions, which takes minutes.",
 )
+@click.option(
+    "--sensitivities",
+    is_flag=True,
+    help="Also find what a little more of each dimension does to the factors of pins that fail.",
+)
 @click.option("--no-cache", is_flag=True, help="Solve all pins again; do not reuse cached results.")
 @click.option("--json", "as_json", is_flag=True, help="Print results.json instead of the table.")
 @click.option("--quiet", is_flag=True, help="No progress bar, no notes; errors are still reported.")
@@ -144,6 +149,7 @@ def run(
     jobs: int | None,
     memory_limit: float | None,
     second_opinion: str | None,
+    sensitivities: bool,
     no_cache: bool,
     as_json: bool,
     quiet: bool,
@@ -156,7 +162,9 @@ def run(
     from pinstress.cli.run import Wanted, run_and_write
 
     second, cached = second_opinion is not None, not no_cache
-    wanted = Wanted(not no_pictures, second, vtk, as_json, quiet, opens, jobs, cached)
+    wanted = Wanted(
+        not no_pictures, second, vtk, as_json, quiet, opens, jobs, cached, sensitivities
+    )
     return run_and_write(
         loaded,
         directory,
@@ -281,13 +289,18 @@ def chart(
 @commands.command(
     short_help="Validate a study without solving it.",
     help=example("pinstress check studies/grenier2008.toml")
-    + "\nRead and validate a study and all its files without solving; print what would be run.",
+    + "\nRead and validate a study and all its files without solving; print what would be run.\n\n"
+    "Exit status: 0 done; 1 done, but a pin is not held; 2 bad input.",
 )
 @click.argument("study", type=click.Path(path_type=Path))
-def check(study: Path) -> None:
+def check(study: Path) -> int:
     from pinstress.cli.check import describe
 
-    click.echo(describe(read_study(study)))
+    text, unheld = describe(read_study(study))
+    click.echo(text)
+    for line in unheld:
+        click.echo(f"Not decided: {line}.", err=True)
+    return NOT_REACHED if unheld else REACHED
 
 
 for _command in (init, schema, size, view, completion):

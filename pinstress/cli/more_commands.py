@@ -144,6 +144,6 @@ def size(
         raise InputError(f"--step: {error}", code="not-a-length") from None
     if metres is not None and metres <= 0.0:
         raise InputError("--step: must be positive", code="not-positive")
-    from pinstress.cli.size import size_and_write
+    from pinstress.cli.size import require_wish, size_and_write
 
-    return size_and_write(loaded, fos, out, pins, metres, quiet, jobs)
+    return size_and_write(loaded, require_wish(loaded, fos, metres), out, pins, quiet, jobs)

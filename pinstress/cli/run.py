@@ -56,7 +56,7 @@ class Wanted:
     """The output of a run: pictures; CalculiX's second opinion; fields (vtk, as --vtk names them);
     results.json on stdout instead of the table; no progress and no notes; the report opened.
     jobs: number of parallel processes, default the number of cores. cached: whether results in the
-    user's cache may be reused.
+    user's cache may be reused. sensitive: whether to find what dimensions do to the factors.
     """
 
     pictures: bool = True
@@ -67,6 +67,7 @@ class Wanted:
     opens: bool = False
     jobs: int | None = None
     cached: bool = True
+    sensitive: bool = False
 
 
 def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpack[Chosen]) -> int:
@@ -76,7 +77,7 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
     """
     require_replaceable(directory)
     also: Any = wanted.vtk if wanted.vtk in ("motion", "solid") else None
-    plan = prepare(study, also=also, **chosen)
+    plan = replace(prepare(study, also=also, **chosen), sensitive=wanted.sensitive)
     problem = renderer_problem() if wanted.pictures else None
     most, paints = processes(wanted.jobs), wanted.pictures and problem is None
     cache = user_cache() if wanted.cached else None
@@ -104,7 +105,7 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
         click.echo((directory / "results.json").read_bytes(), nl=False)  # bytes: any locale
     else:
         with unneeded(directory):
-            print_safety_factors(results, console())
+            print_safety_factors(results, console(), str(study.path))
             if wanted.second:
                 print_second_opinion(results, console())
     if not wanted.quiet:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -13,13 +14,17 @@ from pinstress.analysis.results import run
 from pinstress.cli.new_file import require_new, write_new
 from pinstress.cli.run import SOLVERS, console, progress_bar
 from pinstress.cli.streams import unneeded
+from pinstress.model.pins import pin as pin_of
+from pinstress.model.pins import slenderness, weight
 from pinstress.processes.pool import Died, Job, Progress, preload, processes, side_by_side
-from pinstress.sizing.secant import CLOSE
-from pinstress.sizing.size_pin import Sized, new_text, size_pin
+from pinstress.remedies.secant import CLOSE
+from pinstress.sizing.scaled_study import moved, resized_study
+from pinstress.sizing.size_pin import Sized, Wish, size_pin
 from pinstress.study.choices import require_positive
 from pinstress.study.errors import InputError
-from pinstress.study.file import Study, parse_study
+from pinstress.study.file import Study
 from reports.data.results import PinResult, Results
+from reports.format.numbers import DASH, engineering, short
 from reports.format.ranges import factor_range
 from reports.text.sizes import SizeRow, print_sizes
 
@@ -29,19 +34,37 @@ ANOTHER = "choose another file with --out"
 
 def size_and_write(
     study: Study,
-    fos: float | None,
+    wish: Wish,
     out: Path | None,
     pins: list[str] | None,
-    step: float | None,
     quiet: bool = False,
     jobs: int | None = None,
 ) -> int:
-    """Size pins and write the new study; returns the exit status: 1 if any pin does not verifiably
-    reach the factor. fos: default the study's own. step: of diameters, m. jobs: number of pins
-    sized in parallel, default the number of cores.
+    """Size pins and write the new study, unless nothing in it is new; returns the exit status: 1 if
+    any pin does not verifiably reach the factor. jobs: number of pins sized in parallel, default
+    the number of cores.
 
     Raises: InputError.
     """
+    target = _target(study, out)
+    with progress_bar(alone=processes(jobs) == 1, quiet=quiet) as progress:
+        new, sized, results = _sized(study, wish, pins, processes(jobs), progress)
+    rows = [_row(study, new, s, results) for s in sized]
+    if changed := any(s.scale is not None for s in sized) and new.text != study.text:
+        text = moved(new.text, study.path.parent, target.parent)
+        write_new(target, text.encode(), ANOTHER)
+    with unneeded(target):
+        print_sizes(rows, wish.required, results.units, console())
+    if not quiet:
+        _close(study, new, target if changed else None)
+    missed = [row for row in rows if row.why]
+    for row in missed:
+        click.echo(f"Not decided: pin {row.pin}: {row.why}.", err=True)
+    return int(bool(missed))
+
+
+def require_wish(study: Study, fos: float | None, step: float | None) -> Wish:
+    """The factor to reach: fos or the study's own; step: of diameters, m. Raises: InputError."""
     required = require_positive("fos", fos) or study.table.analysis.required_safety_factor
     if required is None:
         raise study.error(
@@ -49,30 +72,28 @@ def size_and_write(
             "required_safety_factor in [analysis]",
             code="no-required-factor",
         )
-    target = _target(study, out)
+    return Wish(required, step)
+
+
+def _sized(
+    study: Study, wish: Wish, pins: list[str] | None, jobs: int, progress: Progress
+) -> tuple[Study, list[Sized], Results]:
+    """The new study with what was found of every pin, and its run. The weights of pins change the
+    loads of others, so all are sized again until the run confirms them.
+    """
     plan = prepare(study, pins=pins)
-    most = processes(jobs)
-    with progress_bar(alone=most == 1, quiet=quiet) as progress:
-        for _ in range(PASSES):
-            sized = _all(plan, required, step, most, progress)
-            text = new_text(study, sized, step, required)
-            progress("run of the new study", 0.9)
-            new = parse_study(target, text)
-            results = run(new, pins=[s.pin for s in sized], jobs=most)
-            if _agree(sized, results, required):
-                break
-            # The new weights change the loads of the linkage: size again under the new loads.
-            plan = replace(plan, loads=prepare(new, pins=pins).loads)
-    rows = [_row(study, new, s, results) for s in sized]
-    write_new(target, text.encode(), ANOTHER)
-    with unneeded(target):
-        print_sizes(rows, required, study.system.length, console())
-    if not quiet:
-        click.echo(f"Written: {target}", err=True)
-    missed = [row for row in rows if row.why]
-    for row in missed:
-        click.echo(f"Not decided: pin {row.pin}: {row.why}.", err=True)
-    return int(bool(missed))
+    scales: dict[str, float] = {}
+    before: dict[str, float | None] = {}
+    for _ in range(PASSES):
+        sized = _all(plan, wish, scales, jobs, progress)
+        scales = {s.pin: s.scale for s in sized if s.scale is not None}
+        before = {s.pin: s.before for s in sized} | before
+        progress("run of the new study", 0.9)
+        new = resized_study(study, scales, wish.step, wish.required)
+        results = run(new, pins=[s.pin for s in sized], jobs=jobs)
+        if _agree(sized, results, wish.required):
+            break
+    return new, [replace(s, before=before[s.pin]) for s in sized], results
 
 
 def _agree(sized: list[Sized], results: Results, required: float) -> bool:
@@ -91,12 +112,12 @@ def _factors(results: Results, pin: str) -> list[float]:
 
 
 def _all(
-    plan: Plan, required: float, step: float | None, jobs: int, progress: Progress
+    plan: Plan, wish: Wish, scales: Mapping[str, float], jobs: int, progress: Progress
 ) -> list[Sized]:
     names = list(dict.fromkeys(task.pin.name for task in plan.tasks))
     if jobs > 1:
         preload(*SOLVERS)
-    work = [Job(f"pin {name}", partial(size_pin, plan, name, required, step)) for name in names]
+    work = [Job(f"pin {name}", partial(size_pin, plan, name, wish, scales)) for name in names]
     found = side_by_side(work, jobs, lambda message, part: progress(message, 0.9 * part))
     return [
         Sized(name, None, None, None, None, made.reason) if isinstance(made, Died) else made
@@ -112,25 +133,58 @@ def _target(study: Study, out: Path | None) -> Path:
     return target
 
 
+def _close(study: Study, new: Study, target: Path | None) -> None:
+    """Report what else changed, and the file that was written."""
+    for name, table in new.table.pin.items():
+        for at, lug in table.lug.items():
+            old = study.table.pin[name].lug[at].outer_diameter
+            if lug.outer_diameter != old and old and lug.outer_diameter:
+                unit = study.system.factor("length")
+                click.echo(
+                    f"Pin {name}: the eye {at} would be too narrow; its outer diameter is now "
+                    f"{short(lug.outer_diameter / unit)} {study.system.length}, was "
+                    f"{short(old / unit)}.",
+                    err=True,
+                )
+    click.echo(f"Written: {target}" if target else "Nothing is new; no study is written.", err=True)
+
+
 def _row(study: Study, new: Study, sized: Sized, results: Results) -> SizeRow:
     """A pin's row, with the results of the run of the new study only."""
     mine = [p for p in results.pins if p.pin == sized.pin and p.safety_factor is not None]
     worst = min(mine, key=lambda p: p.safety_factor or 0.0) if mine else None
     unit = study.system.factor("length")
-    diameters = [
-        [s.diameter / unit for s in t.table.pin[sized.pin].profile or ()] for t in (study, new)
-    ]
+    before, after = (
+        tuple(s.diameter / unit for s in x.table.pin[sized.pin].profile or ()) for x in (study, new)
+    )
     return SizeRow(
         pin=sized.pin,
-        before=tuple(dict.fromkeys(diameters[0])),
-        after=tuple(dict.fromkeys(diameters[1])) if sized.scale is not None else None,
+        before=tuple(dict.fromkeys(before)),
+        after=tuple(dict.fromkeys(after)) if sized.scale is not None else None,
         factor_before=sized.before,
-        factor=None if worst is None else worst.safety_factor,
-        verdict=next((p.verdict for p in (worst, *results.pins) if p and p.pin == sized.pin), ""),
-        yields=None if worst is None else worst.yields,
+        factor=DASH if worst is None else factor_range(worst, "–"),
+        governs=DASH if worst is None else worst.case,
+        stricter="" if worst is None else _stricter(worst),
+        weights=(_weight(study, sized.pin), _weight(new, sized.pin)),
+        slenderness=slenderness(pin_of(new, sized.pin)),
         why=_why(sized, mine),
-        shown="" if worst is None else factor_range(worst, "–\n"),
     )
+
+
+def _weight(study: Study, name: str) -> float | None:
+    """In the study's units."""
+    density = study.table.material[study.table.pin[name].material].density
+    heavy = weight(pin_of(study, name), density) if density else None
+    return None if heavy is None else heavy / study.system.factor("force")
+
+
+def _stricter(worst: PinResult) -> str:
+    """A hand check with a smaller factor than that of the largest stress, if any."""
+    checks = [c for c in worst.hand_checks if c.factor is not None]
+    least = min(checks, key=lambda c: c.factor or 0.0, default=None)
+    if least is None or (least.factor or 0.0) >= (worst.safety_factor or 0.0):
+        return ""
+    return f"{least.name} at {least.at}: {engineering(least.factor)}"
 
 
 def _why(sized: Sized, found: list[PinResult]) -> str:

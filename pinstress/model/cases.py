@@ -64,11 +64,20 @@ class ImpulseLoads:
 
 
 @dataclass(frozen=True)
+class ImpulseShare:
+    """Reactions without an impulse and with it, two instants; time: of the impulse, s."""
+
+    time: float
+    reactions: Reactions
+
+
+@dataclass(frozen=True)
 class CaseLoads:
     """The reactions of one case, with the dynamics behind them where a mechanism made them.
 
     note: how the loads came about. at: reactions at other times (T,) s of the same motion. range:
-    over the ranges of an impulse. leg: of a spatial leg. solve: the dynamics at other times (T,) s.
+    over the ranges of an impulse. impulse: of the only one in the case. leg: of a spatial leg.
+    solve: the dynamics at other times (T,) s.
     peaks: the largest forces over the time. over: other results of the whole motion. moving:
     what acts on the pins at any time.
     """
@@ -78,6 +87,7 @@ class CaseLoads:
     note: str = ""
     at: Callable[[Floats], Reactions] | None = None
     range: ImpulseLoads | None = None
+    impulse: ImpulseShare | None = None
     leg: LegDynamics | None = None
     solve: Callable[[Floats], Dynamics] | None = None
     peaks: PeakForces | None = None
@@ -233,7 +243,13 @@ def _at_instant(
     drives = [StateDrive(*values) for values in state(study, name, case, mechanism)]
     motion = move(mechanism, drives, np.zeros(1))
     found = motion_reactions(name, motion, applied, timed=False)
-    return CaseLoads(found.reactions, found, note, range=_range(study, name, case, motion))
+    return CaseLoads(
+        found.reactions,
+        found,
+        note,
+        range=_range(study, name, case, motion),
+        impulse=_share(name, case, motion),
+    )
 
 
 def _applied(
@@ -302,22 +318,43 @@ def _range(
     times, velocities = (
         x.ravel() for x in np.meshgrid(impulse.range.impulse_time, impulse.range.velocity_change)
     )
-    mechanism = motion.linkage
-    others = [_load(x, mechanism, _force(x)) for x in case.apply if x is not ranged[0]]
     sizes = np.array([_size(impulse, v, t) for t, v in zip(times, velocities, strict=True)])
+    return ImpulseLoads(
+        times,
+        velocities,
+        sizes,
+        _of_sizes(name, case, motion, ranged[0], sizes),
+        (impulse.impulse_time, impulse.velocity_change),
+    )
+
+
+def _share(name: str, case: StaticCase | InstantCase, motion: Motion) -> ImpulseShare | None:
+    """The case without its impulse and with it, if it has one."""
+    loads = [load for load in case.apply if load.impulse]
+    if len(loads) != 1 or (impulse := loads[0].impulse) is None:
+        return None
+    sizes = np.array([0.0, _size(impulse, impulse.velocity_change, impulse.impulse_time)])
+    return ImpulseShare(impulse.impulse_time, _of_sizes(name, case, motion, loads[0], sizes))
+
+
+def _of_sizes(
+    name: str,
+    case: StaticCase | InstantCase,
+    motion: Motion,
+    load: ApplyTable,
+    sizes: Floats,
+) -> Reactions:
+    """Reactions with an impulse of these sizes (P,) N, an instant each."""
+    impulse, mechanism = load.impulse, motion.linkage
+    assert impulse is not None
+    others = [_load(x, mechanism, _force(x)) for x in case.apply if x is not load]
     found = [
         motion_reactions(
-            name, motion, [*others, _load(ranged[0], mechanism, _directed(impulse, size))], False
+            name, motion, [*others, _load(load, mechanism, _directed(impulse, size))], False
         ).reactions
         for size in sizes
     ]
     forces, moments, turn = (
         np.concatenate([getattr(r, key) for r in found]) for key in ("forces", "moments", "turn")
     )
-    return ImpulseLoads(
-        times,
-        velocities,
-        sizes,
-        replace(found[0], forces=forces, moments=moments, turn=turn),
-        (impulse.impulse_time, impulse.velocity_change),
-    )
+    return replace(found[0], forces=forces, moments=moments, turn=turn)

@@ -92,6 +92,11 @@ def weight(pin: PinLike, density: float, gravity: float = 9.80665) -> float:
     return density * gravity * pin.volume
 
 
+def slenderness(pin: PinLike) -> float:
+    """Length over the largest diameter on which a link bears."""
+    return pin.length / (2.0 * max(pin.band(name).radius for name in pin.connections))
+
+
 def outline(pin: PinLike) -> list[tuple[float, float, float, str, str]]:
     """Cylinders to draw a pin by: length, diameter, bore (m), name, and "band" or "plain"; of a
     shape from a file its bands, and as much as there is between them.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
@@ -22,13 +22,21 @@ from pinstress.study.file import Study
 
 
 @dataclass(frozen=True)
+class PinImpulse:
+    """Loads on a pin without an impulse and with it, two instants; time: of the impulse, s."""
+
+    time: float
+    loads: PinLoads
+
+
+@dataclass(frozen=True)
 class Task:
     """One pin of a material, clamped in one way, with its loads in all the cases where it is.
 
     left_out: by case, the connections whose force and moment are not applied because their band is
     clamped. ranges: by case, the loads over the ranges of its impulse. between: of the cases that
     are motions, the loads at any times. lugs: that support the pin, if any; surroundings: in which
-    it may sit where none do.
+    it may sit where none do. impulses: by case, of those that have one.
     """
 
     pin: PinLike
@@ -40,6 +48,7 @@ class Task:
     between: dict[str, Between]
     lugs: tuple[Lug, ...] = ()
     surroundings: Surroundings | None = None
+    impulses: dict[str, PinImpulse] = field(default_factory=dict)
 
 
 def tasks(study: Study, pins: list[PinLike], loads: dict[str, CaseLoads]) -> list[Task]:
@@ -75,6 +84,7 @@ def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, 
     left_out: dict[str, tuple[str, ...]] = {}
     ranges: dict[str, PinLoads] = {}
     between: dict[str, Between] = {}
+    impulses: dict[str, PinImpulse] = {}
     for case, given in loads.items():
         here = [c for c in pin.connections if c in given.reactions.connections]
         if not here or study.clamps(pin.name, case) != clamps:
@@ -97,9 +107,13 @@ def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, 
             cases.append(between[case](given.moving.instants))
         if given.range is not None:
             ranges[case] = made(given.range.reactions)
+        if given.impulse is not None:
+            impulses[case] = PinImpulse(given.impulse.time, made(given.impulse.reactions))
     in_lugs = lugs(study, pin, clamps) if cases else ()
     around = surroundings(study, pin, clamps) if cases and not in_lugs else None
-    return Task(pin, made_of, clamps, tuple(cases), left_out, ranges, between, in_lugs, around)
+    return Task(
+        pin, made_of, clamps, tuple(cases), left_out, ranges, between, in_lugs, around, impulses
+    )
 
 
 def _at(made: Callable[..., PinLoads], moving: MovingLoads, times: Floats) -> PinLoads:

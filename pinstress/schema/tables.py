@@ -65,7 +65,8 @@ class PublishedTable(StrictTable):
     source: str
     """Source of the values."""
     peaks: str | None = None
-    """CSV file with the columns pin,case,max_von_mises,safety_factor."""
+    """CSV file with the columns pin,case,max_von_mises,safety_factor. Only for a study with the
+    publication's geometry, since maxima of other shapes cannot be compared."""
     reactions: str | None = None
     """CSV file with the columns case,connection,force."""
     motion: str | None = None

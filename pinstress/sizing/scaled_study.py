@@ -3,16 +3,47 @@
 from __future__ import annotations
 
 import math
+import os
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 import tomlkit
 
+from pinstress.model.pins import pin, weight
+from pinstress.schema.pins import PinTable
 from pinstress.schema.units import UnitSystem, to_si
+from pinstress.study.file import Study, parse_study
 
 DIGITS = 4  # of a length that is not rounded to a step
+LEAST_EYE = 1.5  # outer diameter over the bore below which an eye that was wider grows with its pin
 NUMBER = re.compile(r"\s*[-+]?[0-9_.]+(?:[eE][-+]?[0-9]+)?")
+FILES = ("peaks", "reactions", "motion", "values")  # that [published] names
+
+
+def resized_study(
+    study: Study,
+    scales: Mapping[str, float],
+    step: float | None = None,
+    required: float | None = None,
+) -> Study:
+    """The study with pins as `resized` makes them, and with what depends on them: stated weights
+    of floating pins change by what their shapes' weights do, and eyes that became narrower than
+    LEAST_EYE of their bores grow.
+
+    Raises: InputError for a shape that cannot be.
+    """
+    text = resized(study.text, scales, study.system, step, required)
+    if text == study.text:
+        return study
+    new = parse_study(study.path, text)
+    document, before = tomlkit.parse(text), text
+    for name in scales:
+        _reweigh(document, study, new, name)
+        _widen_eyes(document, study, new, name)
+    text = tomlkit.dumps(document)
+    return new if text == before else parse_study(study.path, text)
 
 
 def resized(
@@ -33,18 +64,44 @@ def resized(
     for name, scale in scales.items():
         if scale == 1.0 and step is None:
             continue
-        pin: Any = study["pin"][name]
-        for table in (pin, *_plain(pin.get("profile", [])), *_plain(pin.get("flat", []))):
+        table_of_pin: Any = study["pin"][name]
+        parts = (*_plain(table_of_pin.get("profile", [])), *_plain(table_of_pin.get("flat", [])))
+        for table in (table_of_pin, *parts):
             for key, up in (("diameter", 1), ("distance", 1), ("bore", -1), ("fillet", -1)):
                 if key in table:
                     rounding = step if key == "diameter" else None
-                    table[key] = _scaled(table, key, scale, system, rounding, up)
+                    _scale(table, key, scale, system, rounding, up)
     if required is not None:
         analysis: Any = study.setdefault("analysis", tomlkit.table())
         old = analysis.get("required_safety_factor")
         if old is None or float(_value(old)) != required:
             analysis["required_safety_factor"] = required
     return tomlkit.dumps(study)
+
+
+def moved(text: str, old: Path, new: Path) -> str:
+    """A study's text for another folder, from which it names the same files."""
+    if old.resolve() == new.resolve():
+        return text
+    document = tomlkit.parse(text)
+    for table, key in _files(document):
+        path = os.path.join(old.resolve(), _value(table[key]))
+        try:
+            name = os.path.relpath(path, new.resolve())
+        except ValueError:  # on another drive
+            name = path
+        table[key] = Path(name).as_posix()
+    return tomlkit.dumps(document)
+
+
+def _files(document: Any) -> Iterator[tuple[Any, str]]:
+    """The tables that name a file, each with the key that does."""
+    drives = document.get("mechanism", {}).get("drive", [])
+    named = [(table, "geometry") for table in document.get("pin", {}).values()]
+    named += [(table, "table") for table in document.get("case", {}).values()]
+    named += [(table, "table") for table in (drives if isinstance(drives, list) else [drives])]
+    named += [(document.get("published", {}), key) for key in FILES]
+    return ((table, key) for table, key in named if key in table)
 
 
 def _plain(node: Any) -> list[Any]:
@@ -56,23 +113,70 @@ def _value(node: Any) -> Any:
     return node["value"] if isinstance(node, dict) and "value" in node else node
 
 
-def _scaled(
+def _reweigh(document: Any, old: Study, new: Study, name: str) -> None:
+    """Change the stated weight of a floating pin by what that of its shape has changed."""
+    mechanism, density = new.table.mechanism, _density(new, name)
+    joint = None if mechanism is None else mechanism.joint.get(name)
+    if not density or joint is None or joint.fixed_in or joint.weight is None:
+        return
+    more = weight(pin(new, name), density) - weight(pin(old, name), density)
+    _write(document["mechanism"]["joint"][name], "weight", joint.weight + more, "force", new.system)
+
+
+def _density(study: Study, name: str) -> float | None:
+    return study.table.material[study.table.pin[name].material].density
+
+
+def _widen_eyes(document: Any, old: Study, new: Study, name: str) -> None:
+    """Widen the eyes about a pin that are given and have become too narrow."""
+    for at, lug in new.table.pin[name].lug.items():
+        if lug.outer_diameter is None:
+            continue
+        ring = 2.0 * lug.bushing.thickness if lug.bushing else 0.0
+        before, after = (_diameter(x.table.pin[name], at) + ring for x in (old, new))
+        least = min(LEAST_EYE, lug.outer_diameter / before) * after
+        if lug.outer_diameter < least * (1.0 - 1e-9):
+            table = document["pin"][name]["lug"][at]
+            _write(table, "outer_diameter", least, "length", new.system)
+
+
+def _diameter(table: PinTable, at: str) -> float:
+    """Of the segment with this connection or name, m."""
+    return next(s.diameter for s in table.profile or () if at in (s.connection, s.name))
+
+
+def _scale(
     table: Any, key: str, scale: float, system: UnitSystem, step: float | None, up: int
-) -> Any:
+) -> None:
     old = _value(table[key])
-    unit = NUMBER.sub("", old, count=1) if isinstance(old, str) else ""
-    one = to_si(f"1{unit}", "length", system) if unit.strip() else system.factor("length")
-    size = to_si(old, "length", system) / one
-    number = _rounded(size * scale, None if step is None else step / one, up)
-    if math.isclose(number, size, rel_tol=1e-12):
-        return table[key]
+    size, one = to_si(old, "length", system), _unit(old, "length", system)[1]
+    number = _rounded(size / one * scale, None if step is None else step / one, up)
+    if not math.isclose(number * one, size, rel_tol=1e-12):
+        _replace(table, key, number, _unit(old, "length", system)[0])
+
+
+def _write(table: Any, key: str, si: float, dimension: str, system: UnitSystem) -> None:
+    unit, one = _unit(_value(table[key]), dimension, system)
+    _replace(table, key, _rounded(si / one, None, 1), unit)
+
+
+def _unit(old: Any, dimension: str, system: UnitSystem) -> tuple[str, float]:
+    """The unit in which a value is written, as text, and in SI."""
+    text = NUMBER.sub("", old, count=1) if isinstance(old, str) else ""
+    return text, to_si(f"1{text}", dimension, system) if text.strip() else system.factor(dimension)
+
+
+def _replace(table: Any, key: str, number: float, unit: str) -> None:
+    """Another number, in the same unit; where there is a source, the source is this."""
+    old = _value(table[key])
     new = f"{number:.12g}{unit}" if isinstance(old, str) else number
-    if "provenance" not in table and not isinstance(table[key], dict):
-        return new
-    note = f"by pinstress size, from {old}"
-    sourced = tomlkit.inline_table()
-    sourced.update({"value": new, "provenance": "derived", "note": note})
-    return sourced
+    if "provenance" in table or isinstance(table[key], dict):
+        note = f"by pinstress size, from {old}"
+        sourced = tomlkit.inline_table()
+        sourced.update({"value": new, "provenance": "derived", "note": note})
+        table[key] = sourced
+    else:
+        table[key] = new
 
 
 def _rounded(number: float, step: float | None, up: int) -> float:

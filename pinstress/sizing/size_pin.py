@@ -1,24 +1,27 @@
 """The smallest diameters of every pin that reach a factor of safety.
 
 A pin keeps its lengths, which the links set, and its proportions across the axis. Every trial is
-the text of a study, read and solved as any other, so what is found is what a run of it gives.
+a study of its own, with the loads that follow from its weights, and solved as any other, so what
+is found is what a run of it gives.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 from fea.core.peak import Peak, Verdict
-from fea.solve_pin import Asked, solve_pin
-from pinstress.analysis.plan import Plan
+from fea.joint.solve_in_lugs import LugSolution
+from geometry import ArgumentError
+from pinstress.analysis.plan import Plan, all_loads
+from pinstress.analysis.solve import solutions
 from pinstress.model.pins import material as material_of
 from pinstress.model.pins import pin as pin_of
 from pinstress.model.tasks import tasks
-from pinstress.sizing.scaled_study import resized
-from pinstress.sizing.secant import NoSizeError, smallest
+from pinstress.remedies.secant import NoSizeError, smallest
+from pinstress.sizing.scaled_study import resized_study
 from pinstress.study.errors import InputError
-from pinstress.study.file import Study, parse_study
+from pinstress.study.file import Study
 
 STEPS_UP = 8  # of diameters rounded to steps, until the factor is reached
 
@@ -28,7 +31,7 @@ Tell = Callable[[str], None]
 @dataclass(frozen=True)
 class Sized:
     """A pin: by which scale it reaches the factor (None where it does not, and `why`), its factor
-    before and then, in the case that governs, with that case's verdict.
+    in the first trial and then, in the case that governs, with that case's verdict.
     """
 
     pin: str
@@ -39,10 +42,23 @@ class Sized:
     why: str = ""
 
 
+@dataclass(frozen=True)
+class Wish:
+    """The factor to reach, and to which step (m) diameters are rounded up, if any."""
+
+    required: float
+    step: float | None = None
+
+
 def size_pin(
-    plan: Plan, pin: str, required: float, step: float | None = None, tell: Tell = lambda _: None
+    plan: Plan,
+    pin: str,
+    wish: Wish,
+    others: Mapping[str, float],
+    tell: Tell = lambda _: None,
 ) -> Sized:
-    """Size one pin for all cases of a plan. step: to which diameters are rounded up, m.
+    """Size one pin for all cases of a plan. others: by which scales pins are sized so far, this one
+    too, from which its search begins.
 
     Failures are reported in the answer.
     """
@@ -57,24 +73,25 @@ def size_pin(
         if rounding is None and scale in factors:
             return factors[scale]
         tell(f"pin {pin}, {scale:.3f} times its diameters")
-        text = resized(study.text, {pin: scale}, study.system, rounding)
-        found[scale] = governing(plan, parse_study(study.path, text), pin, tell)
+        trial = resized_study(study, {**others, pin: scale}, rounding)
+        found[scale] = governing(plan, trial, pin, tell)
         factors[scale] = _factor(study, found[scale])
         return factors[scale]
 
     before: float | None = None
+    start = others.get(pin, 1.0)
     try:
-        before = factor_at(1.0)
-        best = smallest(factor_at, required)
+        before = factor_at(start)
+        best = smallest(factor_at, wish.required, start)
         scale, factor = best.scale, best.factor
-        if step is not None:
+        if wish.step is not None:
             least = min(segment.diameter for segment in study.table.pin[pin].profile or ())
-            scale, factor = _stepped(factor_at, scale, step, least, required)
+            scale, factor = _stepped(factor_at, scale, wish.step, least, wish.required)
     except NoSizeError as error:
         return Sized(pin, None, before, None, None, str(error))
-    except (InputError, ArithmeticError) as error:
-        tried = ", ".join(f"{scale:.3g}" for scale in found) or "none"
-        why = f"a trial fails (those that went: {tried} times its diameters): {error}"
+    except (InputError, ArithmeticError, ArgumentError) as error:
+        tried = ", ".join(f"{factor:.4g} at {s:.3g}" for s, factor in factors.items()) or "none"
+        why = f"a trial fails (factors by times its diameters: {tried}): {error}"
         return Sized(pin, None, before, None, None, why)
     return Sized(pin, scale, before, factor, found[scale].verdict)
 
@@ -96,20 +113,21 @@ def _stepped(
 
 
 def governing(plan: Plan, study: Study, pin: str, tell: Tell = lambda _: None) -> Peak:
-    """The peak with the lowest factor of a pin of `study`, under the loads of the plan.
+    """The peak with the lowest factor of a pin of `study` in the cases of the plan.
 
     Raises: InputError for a shape that cannot be, NoSizeError when the pin is not solved.
     """
+    loads = all_loads(study, list(plan.loads))
+    asked = replace(plan.asked, goal="value")
     peaks: list[Peak] = []
-    asked: Asked = replace(plan.asked, goal="value")
-    for task in tasks(study, [pin_of(study, pin)], plan.loads):
-        found = solve_pin(
-            task.pin, task.material, task.clamps, task.loads, asked, tell, task.between
-        )
-        peaks += [solution.peak for solution in found]
+    for task in tasks(study, [pin_of(study, pin)], loads):
+        for found in solutions(study, task, asked, tell):
+            peaks.append(found.solution.peak if isinstance(found, LugSolution) else found.peak)
     for peak in peaks:
         if peak.verdict == "rigid":
             raise NoSizeError(f"it is unconstrained in case {peak.case}: {peak.note}")
+        if peak.verdict == "failed":
+            raise NoSizeError(f"the numerical solution failed in case {peak.case}: {peak.note}")
     acting = [peak for peak in peaks if peak.max_von_mises]
     if not acting:
         raise NoSizeError("no case loads it")
@@ -130,9 +148,3 @@ def _problem(study: Study, pin: str) -> str:
     if study.table.material[table.material].yield_strength is None:
         return f"its material {table.material} has no yield_strength"
     return ""
-
-
-def new_text(study: Study, sized: Iterable[Sized], step: float | None, required: float) -> str:
-    """The study's text with all the sizes that were found."""
-    scales = {s.pin: s.scale for s in sized if s.scale is not None}
-    return resized(study.text, scales, study.system, step, required)

@@ -6,13 +6,14 @@ import hashlib
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
 from loads import MB, FileError, read_regular
-from pinstress.schema.shown import shown
+from pinstress.schema.shown import LISTED, cut, in_toml, shown
 from pinstress.schema.tables import StudyTable
 from pinstress.schema.types import KINDS
 from pinstress.schema.units import SYSTEMS, UnitSystem
@@ -32,11 +33,14 @@ LONGEST_KEY = 200  # characters; no name is longer, and messages have it in full
 
 @dataclass(frozen=True)
 class Sourced:
-    """Where a number of the study comes from."""
+    """Where a number of the study comes from; value: as the study writes it, of a whole table its
+    numbers with their keys.
+    """
 
     key: str
     kind: str
     note: str
+    value: str = ""
 
 
 @dataclass(frozen=True)
@@ -165,6 +169,19 @@ def parse_study(path: Path, text: str, located: bool = True) -> Study:
     return Study(path, text, table, tuple(provenance), doubtful, located)
 
 
+def _written(value: Any) -> str:
+    """A value as the study writes it, shortened; of a table its values with their keys."""
+    if isinstance(value, dict):
+        own = ((k, v) for k, v in value.items() if not isinstance(v, dict))
+        return ", ".join(f"{cut(k)} {_written(v)}" for k, v in islice(own, LISTED))
+    if isinstance(value, list):
+        more = ", ..." * (len(value) > LISTED)
+        return f"[{', '.join(map(_written, value[:LISTED]))}{more}]"
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    return cut(value) if isinstance(value, str) else in_toml(value)
+
+
 def _unwrap(node: Any, key: str, found: list[Sourced], long: list[Wrong]) -> Any:
     """The same tree without provenance and notes, which go to `found`; of { value, provenance,
     note } the value remains. long: where keys go that are too long.
@@ -181,8 +198,9 @@ def _unwrap(node: Any, key: str, found: list[Sourced], long: list[Wrong]) -> Any
     if not isinstance(node, dict):
         return node
     if isinstance(node.get("provenance"), str):
-        found.append(Sourced(key, node["provenance"], str(node.get("note", ""))))
+        kind, note = node["provenance"], str(node.get("note", ""))
         node = {k: v for k, v in node.items() if k not in ("provenance", "note")}
+        found.append(Sourced(key, kind, note, _written(node.get("value", node))))
         if set(node) == {"value"}:
             return node["value"]
     long += [

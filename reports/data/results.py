@@ -26,6 +26,7 @@ from fea.core.dimensions import (
 )
 from fea.core.peak import Refinement, SingularZone
 from fea.joint.records import JointResult
+from reports.data.changes import Change
 from reports.data.fields import BandLoad, Field, Still, Volume
 from reports.data.in_units import Unit, in_units
 from reports.data.mechanics import (
@@ -47,8 +48,8 @@ from reports.data.mechanics import (
 from reports.data.surface import Surface
 
 __all__ = [
-    "BandLoad", "BeamCheck", "Dimensioned", "DriveEffort", "DriveTable", "Extremes", "Field",
-    "Floats", "GoverningLoad", "GuideForces", "HandCheck", "LandingRange", "LegTable",
+    "BandLoad", "BeamCheck", "Change", "Dimensioned", "DriveEffort", "DriveTable", "Extremes",
+    "Field", "Floats", "GoverningLoad", "GuideForces", "HandCheck", "LandingRange", "LegTable",
     "LinkageMotion", "MotionCheck", "PeakReaction", "PinResult", "PinShape", "PowerLedger",
     "Provenance", "PublishedValue", "ReactionTable", "Refinement", "Results", "SingularZone",
     "Still", "Surface", "Units", "Volume",
@@ -165,11 +166,14 @@ class PinShape:
 
 @dataclass(frozen=True)
 class Provenance:
-    """Where a number of the study comes from: given, derived, fitted or assumed."""
+    """Where a number of the study comes from: given, derived, fitted or assumed. value: as the
+    study writes it, in the study's units where it has none.
+    """
 
     key: str
     kind: str
     note: str
+    value: str = ""
 
 
 @dataclass(frozen=True)
@@ -193,6 +197,7 @@ class Results:
     legs: tuple[LegTable, ...] = ()
     landing: tuple[LandingRange, ...] = ()
     surfaces: tuple[Surface, ...] = ()
+    changes: tuple[Change, ...] = ()
     provenance: tuple[Provenance, ...] = ()
     published_source: str = ""
     assumptions: tuple[str, ...] = ()

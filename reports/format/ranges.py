@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
+from reports.data.decision import margin, utilisation
 from reports.data.results import PinResult
 from reports.format.numbers import DASH, engineering
 
@@ -32,6 +35,24 @@ def factor_range(pin: PinResult, to: str = " to ") -> str:
         return engineering(pin.safety_factor)
     low, high = interval
     return to.join([engineering(low, END), DASH if high is None else engineering(high, END)])
+
+
+def utilisation_range(pin: PinResult, required: float, to: str = " to ") -> str:
+    """Required over actual factor in per cent, or its interval."""
+    used = utilisation(pin, required)
+    return DASH if used is None else f"{_interval((100.0 * end for end in used), to)} %"
+
+
+def margin_range(pin: PinResult, required: float, to: str = " to ") -> str:
+    """The margin of safety with its sign, or its interval."""
+    spare = margin(pin, required)
+    return DASH if spare is None else _interval(spare, to, "+")
+
+
+def _interval(ends: Iterable[float], to: str, sign: str = "") -> str:
+    """Numbers as a range; one where they are equal."""
+    shown = [f"{sign if end > 0.0 else ''}{engineering(end, END)}" for end in ends]
+    return to.join(dict.fromkeys(shown))
 
 
 def joint_range(pin: PinResult, to: str = " to ") -> str:

@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
-from reports.data.results import PinResult
+from reports.data.decision import (
+    FAILS,
+    NOT_DECIDED,
+    SAFE,
+    YIELDS,
+    outcome,
+    worst_first,
+)
+from reports.data.results import PinResult, Results
+from reports.format.numbers import short
+from reports.format.ranges import factor_range
 
-SAFE, FAILS, NOT_DECIDED = "safe", "fails", "not decided"
-BELOW, YIELDS = "below yield", "yields"  # where no factor is required
 BEYOND = "beyond yield"
 
 READING = (
-    "One row per pin and case. The maximum is the largest von Mises stress anywhere in the pin, "
-    "except in excluded zones, at any instant; ± is its estimated error, from successive meshes; "
-    "the safety factor is the yield strength divided by the maximum. A solid model reports the "
+    "One row per pin and case, the worst first. The maximum is the largest von Mises stress "
+    "anywhere in the pin, except in excluded zones, at any instant; ± is its estimated error, from "
+    "successive meshes; the safety factor is the yield strength divided by the maximum. The "
+    "utilisation is the required factor (1 if none is required) divided by the safety factor, the "
+    "margin of safety its inverse less 1. A solid model reports the "
     "mean over several rotations of the loads about the axis; pictures and VTU files show one "
     "orientation, so their maximum may differ by up to the ±."
 )
@@ -50,27 +60,49 @@ def verdict_words(verdict: str, yields: bool | None) -> str:
     return f"{verdict}, {BEYOND}" if yields else verdict
 
 
-def outcome(pin: PinResult) -> str:
-    """Whether a pin meets its required factor: safe, fails or not decided; without a required
-    factor, whether it yields.
-
-    An unconverged row may have an error small enough to decide. A singular one can only fail or
-    yield, because the stress inside the excluded zones is unbounded.
-    """
-    if pin.verdict in ("rigid", "failed") or (
-        pin.verdict == "unconverged" and pin.meets_required is None
-    ):
-        return NOT_DECIDED
-    if pin.meets_required is not None:
-        found = SAFE if pin.meets_required else FAILS
-    elif pin.yields is not None:
-        found = YIELDS if pin.yields else BELOW
-    else:
-        return NOT_DECIDED
-    return NOT_DECIDED if pin.verdict == "singular" and found in (SAFE, BELOW) else found
-
-
 def undecided_because(pin: PinResult) -> str:
     """Why a row is not decided."""
-    reasons = {"unconverged": "not converged", "converged": "no yield strength"}
+    reasons = {
+        "unconverged": "not converged",
+        "converged": "no yield strength",
+        "rigid": "unconstrained",
+        "failed": "numerics failed",
+    }
     return reasons.get(pin.verdict, pin.verdict)
+
+
+def result_words(pin: PinResult) -> str:
+    """The outcome of a row, and what else is to be known of its factor: "not decided: singular",
+    "fails (yields)".
+    """
+    found = outcome(pin)
+    if found == NOT_DECIDED:
+        return f"{found}: {undecided_because(pin)}"
+    more = [undecided_because(pin)] * (pin.verdict != "converged")
+    more += [YIELDS] * bool(pin.yields and found != YIELDS)
+    return f"{found} ({', '.join(more)})" if more else found
+
+
+def headline(results: Results) -> str:
+    """The worst row in one sentence: whether its pin is safe, its factor, what is required, and in
+    which case; of safe pins, that all of them are. Empty when nothing was solved.
+    """
+    if not results.pins:
+        return ""
+    worst = worst_first(results)[0]
+    factor, required = f"FoS {factor_range(worst)}", results.required_safety_factor
+    needed = "1 at yield" if required is None else f"{short(required)} required"
+    found = outcome(worst)
+    if found == NOT_DECIDED:
+        known = f"; {factor}, {needed}" if worst.safety_factor is not None else ""
+        why = undecided_because(worst)
+        return f"Whether pin {worst.pin} is safe is not decided: {why} ({worst.case}){known}."
+    if found in (FAILS, YIELDS):
+        return f"Pin {worst.pin} {found}: {factor} < {needed} ({worst.case})."
+    names = {pin.pin for pin in results.pins}
+    if len(names) == 1:
+        state = "is safe" if found == SAFE else "stays below yield"
+        return f"Pin {worst.pin} {state}: {factor} ≥ {needed} ({worst.case})."
+    state = "are safe" if found == SAFE else "stay below yield"
+    lowest = f"lowest {factor} ≥ {needed}"
+    return f"All {len(names)} pins {state}: {lowest} (pin {worst.pin}, {worst.case})."

@@ -6,7 +6,6 @@ from base64 import b64encode
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from fea.core.dimensions import Point
 from reports.data.results import PinShape, Results
@@ -14,7 +13,8 @@ from reports.format.file_names import SVG, drive_names, plot_name
 from reports.format.numbers import DASH, components, engineering, like, ratio, short
 from reports.format.ranges import error_words, factor_range
 from reports.format.template import environment
-from reports.format.words import BEYOND, MEANING, RESULTS, outcome, verdict_words
+from reports.format.words import BEYOND, headline, verdict_words
+from reports.page.factors import factor_parts
 from reports.page.loads import timings
 from reports.page.motion import motion_parts
 from reports.page.pin_drawing import draw_pin
@@ -22,16 +22,7 @@ from reports.page.pins import pin_parts, reaction_tables
 from reports.tables.hand_checks import HAND_CHECKS
 from reports.tables.landing import NOTE, landing_blocks
 from reports.tables.published import published_reactions
-from reports.tables.safety_factors import (
-    TEXTS,
-    reading,
-    safety_factor_rows,
-    shown,
-    shown_columns,
-    shown_rows,
-)
 from reports.tables.singular_zones import circles, pin_zones
-from reports.text.headline import headline
 from reports.text.summary import summary
 
 TYPES = {".svg": "image/svg+xml", ".png": "image/png", ".jpg": "image/jpeg"}
@@ -92,8 +83,6 @@ def render(
         headline=headline(results),
         summary=summary(results),
         timings=timings(results),
-        meaning=MEANING,
-        explained=RESULTS,
         beyond=BEYOND,
         verdict_words=verdict_words,
         hand_checks=HAND_CHECKS,
@@ -110,38 +99,13 @@ def render(
         landed=list(dict.fromkeys(r.case for r in results.landing)),
         reactions=reaction_tables(results),
         cases=list(dict.fromkeys(pin.case for pin in results.pins)),
-        **_safety_factors(results),
+        **factor_parts(results),
     )
 
 
 def _drawing(shape: PinShape, results: Results) -> str:
     zones = pin_zones(results, shape.pin).values()
     return draw_pin(shape, results.units, circles(zone for case in zones for zone in case))
-
-
-def _safety_factors(results: Results) -> dict[str, Any]:
-    rows = shown_rows(results)
-    columns = shown_columns(rows, results.units)
-    columns.pop("meets_required")  # the outcome says it
-    return {
-        "columns": columns,
-        "reading": reading(columns),
-        "numeric": [name for name in columns if name not in TEXTS],
-        "rows": [
-            {
-                "pin": pin.pin,
-                "outcome": outcome(pin),
-                "cells": {name: shown(name, row) for name in columns},
-                "values": {name: _plain(exact[name]) for name in columns},
-            }
-            for pin, row, exact in zip(results.pins, rows, safety_factor_rows(results), strict=True)
-        ],
-    }
-
-
-def _plain(value: str | float | None) -> str:
-    """For sorting: all digits; empty for no value."""
-    return "" if value is None else str(value)
 
 
 def data_uri(path: Path) -> str:

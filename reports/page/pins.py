@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from reports.data.decision import outcome
 from reports.data.results import PinResult, PinShape, ReactionTable, Results, Units
 from reports.format.grid import Grid
 from reports.format.numbers import ratio
-from reports.format.words import outcome
 from reports.page.joint import JointPart, joint_part
 from reports.page.loads import loads_at
 from reports.page.second_opinion import OpinionPart, opinion_part

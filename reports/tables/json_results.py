@@ -7,6 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from reports.data.decision import outcome
 from reports.data.results import HandCheck, PinResult, ReactionTable, Results, SingularZone
 from reports.format.numbers import finite
 from reports.tables.calculix import opinion_json
@@ -27,6 +28,7 @@ def to_json(results: Results) -> dict[str, Any]:
         "tolerance": finite(results.tolerance),
         "versions": {name: results.versions[name] for name in sorted(results.versions)},
         "pins": [_pin(pin) for pin in results.pins],
+        "changes": [asdict(change) for change in results.changes],
         "loads": [_loads(results, table) for table in results.reactions],
         "provenance": [asdict(entry) for entry in results.provenance],
     }
@@ -84,6 +86,7 @@ def _pin(pin: PinResult) -> dict[str, Any]:
         "safety_factor_interval": _interval(pin.safety_factor_interval),
         "yields": _truth(pin.yields),
         "meets_required": _truth(pin.meets_required),
+        "outcome": outcome(pin),
         "dofs": int(pin.dofs),
         "seconds": finite(pin.seconds),
         "history": [

@@ -7,7 +7,9 @@ from pathlib import Path
 
 from reports.data.results import PublishedValue, ReactionTable, Results
 from reports.format import markdown
+from reports.format.grid import Grid
 from reports.format.numbers import engineering, ratio
+from reports.format.ranges import factor_range
 from reports.tables.table import Table
 
 REACTIONS = ("case", "connection", "ours", "published", "ratio")
@@ -102,4 +104,32 @@ def published_table(values: tuple[PublishedValue, ...]) -> str:
             for v in values
         ],
         (False, False, False, True, True, True, False),
+    )
+
+
+def published_maxima(results: Results) -> Grid | None:
+    """Published maxima and safety factors compared with ours, in the order of the study."""
+    rows = [pin for pin in results.pins if pin.published_max_von_mises is not None]
+    if not rows:
+        return None
+    stress = results.units.stress
+    return Grid(
+        [
+            *("pin", "case", f"published max [{stress}]", f"ours [{stress}]", "ours / published"),
+            *("published factor", "our factor", "our verdict"),
+        ],
+        [
+            [
+                pin.pin,
+                pin.case,
+                engineering(pin.published_max_von_mises),
+                engineering(pin.max_von_mises),
+                engineering(ratio(pin.max_von_mises, pin.published_max_von_mises), 3),
+                engineering(pin.published_safety_factor),
+                factor_range(pin),
+                pin.verdict,
+            ]
+            for pin in rows
+        ],
+        [False, False, True, True, True, True, True, False],
     )

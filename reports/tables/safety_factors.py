@@ -5,12 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from reports.data.results import PinResult, Results, Units
+from reports.data.decision import limit, outcome, worst_first
+from reports.data.results import PinResult, Results
 from reports.format import markdown
 from reports.format.numbers import DASH, engineering, finite, ratio, short
-from reports.format.ranges import error_range, factor_range, joint_range
-from reports.format.words import JOINT, MEANING, READING, verdict_words
+from reports.format.ranges import (
+    error_range,
+    factor_range,
+    joint_range,
+    margin_range,
+    utilisation_range,
+)
+from reports.format.words import JOINT, MEANING, READING, headline, result_words, verdict_words
 from reports.tables.joint import lugs_word
+from reports.tables.published import published_maxima
 from reports.tables.table import Table
 
 Row = dict[str, str | float | None]
@@ -36,32 +44,37 @@ LATER = (
     *("max_von_mises_low", "max_von_mises_high", "safety_factor_low", "safety_factor_high"),
     *("error_mesh", "error_time", "error_series", "error_model"),
     *("error_cells", "joint_low", "joint_high", "joint_model", "joint_lugs"),
+    *("outcome", "utilisation", "margin_of_safety"),
 )
-TEXTS = ("pin", "case", "meets_required", "verdict", "model")
-PUBLISHED = ("published_max_von_mises", "ratio", "published_safety_factor")
+TEXTS = ("pin", "case", "result", "verdict", "model")
 OVER_JOINT = "joint_high"  # in whose place the whole range is shown
 
 
 def safety_factor_rows(results: Results) -> list[Row]:
     """A row per pin and case; numbers in the study's units, None where there is none."""
     required = finite(results.required_safety_factor)
-    return [_row(pin, required) for pin in results.pins]
+    return [safety_factor_row(pin, required) for pin in results.pins]
 
 
 def shown_rows(results: Results) -> list[Row]:
-    """The same for display: text where a number is an interval."""
+    """The same for display, the worst first: text where a number may be an interval."""
+    required = limit(results)
     return [
         {
-            **row,
+            **safety_factor_row(pin, results.required_safety_factor),
+            "result": result_words(pin),
             "error_estimate": error_range(pin),
             "safety_factor": factor_range(pin),
+            "utilisation": utilisation_range(pin, required),
+            "margin_of_safety": margin_range(pin, required),
             OVER_JOINT: joint_range(pin),
         }
-        for pin, row in zip(results.pins, safety_factor_rows(results), strict=True)
+        for pin in worst_first(results)
     ]
 
 
-def _row(pin: PinResult, required: float | None) -> Row:
+def safety_factor_row(pin: PinResult, required: float | None) -> Row:
+    """A row; numbers in the results' units, None where there is none."""
     return {
         "pin": pin.pin,
         "case": pin.case,
@@ -82,6 +95,16 @@ def _row(pin: PinResult, required: float | None) -> Row:
         **_ends("safety_factor", pin.safety_factor_interval),
         **{f"error_{part}": finite(value) for part, value in pin.error_parts.items()},
         **_joint(pin),
+        "outcome": outcome(pin),
+        **_used(pin, required),
+    }
+
+
+def _used(pin: PinResult, required: float | None) -> Row:
+    factor, needed = finite(pin.safety_factor), required or 1.0
+    return {
+        "utilisation": finite(needed / factor) if factor else None,
+        "margin_of_safety": None if factor is None else factor / needed - 1.0,
     }
 
 
@@ -106,28 +129,25 @@ def _yes(value: bool) -> str:
     return "yes" if value else "no"
 
 
-def shown_columns(rows: list[Row], units: Units) -> dict[str, str]:
-    """Columns for display with their headings: no note, published values and the range over the
-    joint only if there are any.
-    """
+def shown_columns(rows: list[Row], results: Results) -> dict[str, str]:
+    """Columns for display with their headings; the range over the joint only if there is any."""
+    units, required = results.units, results.required_safety_factor
+    needed = "" if required is None else f" (≥ {short(required)})"
     headings = {
         "pin": "pin",
         "case": "case",
-        "time": f"time [{units.time}]",
+        "result": "result",
+        "safety_factor": f"safety factor{needed}",
+        "utilisation": "utilisation",
+        "margin_of_safety": "margin of safety",
         "max_von_mises": f"max von Mises [{units.stress}]",
         "error_estimate": f"± [{units.stress}]",
         OVER_JOINT: f"joint [{units.stress}]",
-        "safety_factor": "safety factor",
-        "required": "required",
-        "meets_required": "meets required",
+        "time": f"time [{units.time}]",
         "verdict": "verdict",
         "model": "model",
-        "published_max_von_mises": f"published max [{units.stress}]",
-        "ratio": "ours / published",
-        "published_safety_factor": "published factor",
     }
-    optional = (*PUBLISHED, OVER_JOINT)
-    empty = [name for name in optional if all(row[name] in (None, DASH) for row in rows)]
+    empty = [k for k in (OVER_JOINT, "time") if all(row[k] in (None, DASH) for row in rows)]
     return {name: text for name, text in headings.items() if name not in empty}
 
 
@@ -136,18 +156,11 @@ def shown(name: str, row: Row) -> str:
     value = row[name]
     if name == "verdict":
         return verdict_words(str(value), row["yields"] == "yes")
-    if value is None or (name == "meets_required" and not _decides(row)):
+    if value is None:
         return DASH
     if isinstance(value, str):
         return value
-    if name in ("required", "time"):
-        return short(value)
-    return engineering(value)
-
-
-def _decides(row: Row) -> bool:
-    """Whether a row decides if the required factor is met; a singular one can only fail."""
-    return row["verdict"] != "singular" or row["meets_required"] == "no"
+    return short(value) if name == "time" else engineering(value)
 
 
 def safety_factors_table(results: Results) -> Table:
@@ -170,9 +183,10 @@ def write_safety_factors(results: Results, directory: Path) -> None:
 
 
 def _markdown(results: Results, rows: list[Row]) -> str:
-    columns = shown_columns(rows, results.units)
+    columns = shown_columns(rows, results)
     parts = [
         f"# Safety factors: {markdown.escaped(results.title)}",
+        markdown.escaped(headline(results)),
         markdown.table(
             tuple(columns.values()),
             [[shown(name, row) for name in columns] for row in rows],
@@ -181,6 +195,8 @@ def _markdown(results: Results, rows: list[Row]) -> str:
         *reading(columns),
         "\n".join(f"- {name}: {sentence}" for name, sentence in MEANING.items()),
     ]
+    if grid := published_maxima(results):
+        parts += ["## Published maxima", markdown.table(grid.head, grid.body, grid.numeric)]
     if results.published_source:
         parts.append(f"Published values: {markdown.escaped(results.published_source)}")
     notes = [f"- {_note(pin)}" for pin in results.pins if pin.note or pin.why]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from html import escape
 
 from reports.data.results import Results
+from reports.format.words import headline
 from reports.tables.safety_factors import TEXTS, shown, shown_columns, shown_rows
 from reports.text.summary import summary
 
@@ -13,9 +14,9 @@ CELL = '<td style="text-align:{0}">{1}</td>'
 
 
 def safety_factors_html(results: Results) -> str:
-    """Title, safety factor table with verdicts, and summary."""
+    """Title, the worst row in a sentence, safety factor table with verdicts, and summary."""
     rows = shown_rows(results)
-    columns = shown_columns(rows, results.units)
+    columns = shown_columns(rows, results)
     sides = {name: "left" if name in TEXTS else "right" for name in columns}
     head = "".join(HEAD.format(sides[name], escape(text)) for name, text in columns.items())
     body = "".join(
@@ -26,6 +27,7 @@ def safety_factors_html(results: Results) -> str:
     )
     return (
         f"<p><b>{escape(results.title)}</b></p>"
+        f"<p>{escape(headline(results))}</p>"
         f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
         f"<p>{escape(summary(results))}</p>"
     )

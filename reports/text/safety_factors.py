@@ -2,83 +2,98 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from reports.data.changes import command
+from reports.data.decision import BELOW, FAILS, SAFE, YIELDS, limit, outcome, worst_first
 from reports.data.results import PinResult, Results
-from reports.format.numbers import DASH, engineering, ratio, short
-from reports.format.ranges import error_range, factor_range, joint_range
-from reports.format.words import BELOW, FAILS, SAFE, YIELDS, outcome
+from reports.format.grid import Grid
+from reports.format.numbers import DASH, engineering, short
+from reports.format.ranges import factor_range, joint_range, margin_range, utilisation_range
+from reports.format.words import headline, result_words
+from reports.tables.changes import change_notes, changes_grid, sensitivities_grid
+from reports.tables.published import published_maxima
+from reports.text.fitted_table import Column, fitted_table
 from reports.text.summary import summary
 
 if TYPE_CHECKING:
-    from rich.console import Console, RenderableType
-    from rich.table import Table
+    from rich.console import Console
 
-ALL = 90  # columns of a terminal on which a table with all of its own has room
 COLOURS = {SAFE: "green", BELOW: "green", FAILS: "red", YIELDS: "red"}
+TO = "–"  # of a range
 
 
-def print_safety_factors(results: Results, console: Console) -> None:
-    """Print the safety factors as a table, then a summary."""
+def print_safety_factors(results: Results, console: Console, study: str = "") -> None:
+    """Print the worst row in a sentence, the safety factors as a table, then a summary and what to
+    change. study: its path, by default its name.
+    """
     from rich.text import Text
 
-    console.print(_table(results, console.width))
-    # As Text: a name in square brackets is no markup.
+    if results.pins:
+        # As Text: a name in square brackets is no markup.
+        console.print(Text(headline(results), "bold"))
+        console.print(fitted_table(_columns(results), console.width))
     console.print(Text(summary(results)))
+    if results.changes:
+        _print_changes(results, console, study or results.study)
+    if grid := published_maxima(results):
+        console.print(Text("Published values", "bold"))
+        console.print(fitted_table(_of_grid(grid), console.width))
 
 
-def _table(results: Results, width: int) -> Table:
-    from rich.table import Table
+def _print_changes(results: Results, console: Console, study: str) -> None:
     from rich.text import Text
 
-    joint = any(joint_range(pin) != DASH for pin in results.pins)
-    published: tuple[str, ...] = ()
-    if any(pin.published_max_von_mises is not None for pin in results.pins):
-        published = ("ratio",) if joint and width < ALL else ("published", "ratio")
-    table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0), header_style="bold")
-    stress, time = results.units.stress, results.units.time
-    table.add_column("Pin", overflow="fold", min_width=3)
-    table.add_column("Case", overflow="fold", min_width=7)
-    ranges = any(pin.max_von_mises_interval for pin in results.pins)
-    error = "± or\nrange" if ranges else "±"
-    required = results.required_safety_factor
-    factor = "FoS" if required is None else f"FoS\n≥ {short(required)}"
-    over = [f"joint\n[{stress}]"] * joint
-    for heading in (f"t\n[{time}]", f"max von\nMises\n[{stress}]", error, *over, factor):
-        # As Text: a unit in square brackets is no markup.
-        table.add_column(Text(heading), justify="right", no_wrap=True)
-    table.add_column("verdict", no_wrap=True)
-    table.add_column("result", overflow="fold", min_width=len("decided"), max_width=11)
-    for heading in published:
-        table.add_column(heading, justify="right", no_wrap=True)
-    for pin in results.pins:
-        table.add_row(*_cells(pin, published, joint))
-    return table
+    console.print(Text("What to change, each alone", "bold"))
+    console.print(fitted_table(_of_grid(changes_grid(results)), console.width))
+    for note in change_notes(results):
+        console.print(Text(note))
+    if grid := sensitivities_grid(results):
+        console.print(Text("Sensitivities", "bold"))
+        console.print(fitted_table(_of_grid(grid), console.width))
+    if line := command(results.changes, study, results.required_safety_factor):
+        console.print(Text(line), soft_wrap=True)  # to be copied
 
 
-def _cells(pin: PinResult, published: tuple[str, ...], joint: bool) -> list[RenderableType]:
-    from rich.text import Text
+def _columns(results: Results) -> list[Column]:
+    rows, required, units = worst_first(results), limit(results), results.units
+    colours = [COLOURS.get(outcome(pin), "yellow") for pin in rows]
 
-    cells: list[RenderableType] = [
-        Text(pin.pin, "bold"),
-        Text(pin.case),
-        DASH if pin.time is None else short(pin.time),
-        engineering(pin.max_von_mises),
-        error_range(pin, "–\n"),
-        *[joint_range(pin, "–\n")] * joint,
-        factor_range(pin, "–\n"),
-        Text(pin.verdict, "" if pin.verdict == "converged" else "yellow"),
-        Text(_result(pin), COLOURS.get(outcome(pin), "yellow")),
+    def column(
+        heading: str, cell: Callable[[PinResult], str], rank: int, numeric: bool = True
+    ) -> Column:
+        return Column(heading, [cell(pin) for pin in rows], rank, numeric)
+
+    asked = results.required_safety_factor
+    factor = "FoS" if asked is None else f"FoS\n≥ {short(asked)}"
+    columns = [
+        column("Pin", lambda pin: pin.pin, 0, False),
+        column("Case", lambda pin: pin.case, 0, False),
+        Column("Result", [result_words(pin) for pin in rows], 0, False, colours),
+        column(factor, lambda pin: factor_range(pin, TO), 0),
+        column("Utilisation", lambda pin: utilisation_range(pin, required, TO), 2),
+        column("Margin", lambda pin: margin_range(pin, required, " to "), 5),
+        column(f"max von\nMises [{units.stress}]", lambda pin: engineering(pin.max_von_mises), 1),
+        column("±", _error, 3),
+        column(f"joint [{units.stress}]", lambda pin: joint_range(pin, TO), 4),
+        column(f"t [{units.time}]", lambda pin: DASH if pin.time is None else short(pin.time), 6),
+        column("verdict", lambda pin: pin.verdict, 7, False),
+        column("model", lambda pin: pin.model, 8, False),
     ]
-    theirs = pin.published_max_von_mises
-    shown = {
-        "published": engineering(theirs),
-        "ratio": engineering(ratio(pin.max_von_mises, theirs), 3),
-    }
-    return cells + [shown[name] for name in published]
+    return [c for c in columns if c.rank == 0 or {*c.cells} != {DASH}]
 
 
-def _result(pin: PinResult) -> str:
-    """Safe, fails or not decided; and that it yields, where it does."""
-    result = outcome(pin)
-    return f"{result}\n{YIELDS}" if pin.yields and result != YIELDS else result
+def _error(pin: PinResult) -> str:
+    """Relative; of a singular row, the range of the factor is larger."""
+    if pin.verdict == "singular" or not pin.max_von_mises or pin.error_estimate is None:
+        return DASH
+    return f"{engineering(100.0 * pin.error_estimate / pin.max_von_mises, 2)} %"
+
+
+def _of_grid(grid: Grid) -> list[Column]:
+    """The first columns always, the last ones where there is room."""
+    return [
+        Column(head, [row[k] for row in grid.body], max(0, k - 4), grid.numeric[k])
+        for k, head in enumerate(grid.head)
+    ]

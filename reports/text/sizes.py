@@ -2,61 +2,50 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from reports.data.results import Units
 from reports.format.numbers import DASH, engineering, short
-from reports.format.words import verdict_words
+from reports.text.fitted_table import Column, fitted_table
 
 if TYPE_CHECKING:
     from rich.console import Console
+
+WIDE = 1.0  # length over diameter below which a pin is wider than long
 
 
 @dataclass(frozen=True)
 class SizeRow:
     """A pin's distinct diameters before and after (None: not sized), its lowest factor before and
-    in the run of the new study with that row's verdict, and why the required factor is not reached,
-    if it is not. shown: the factor as text; a singular row has an interval.
+    in the run of the new study as text, and the case that governs it there; its weight before and
+    after (None without a density), its length over its largest diameter under a link, why the
+    required factor is not reached, if it is not, and a hand check with a smaller factor, if any.
     """
 
     pin: str
     before: tuple[float, ...]
     after: tuple[float, ...] | None
     factor_before: float | None
-    factor: float | None
-    verdict: str
-    yields: bool | None
-    why: str
-    shown: str = ""
+    factor: str
+    governs: str
+    weights: tuple[float | None, float | None]
+    slenderness: float
+    why: str = ""
+    stricter: str = ""
+
+    @property
+    def result(self) -> str:
+        """In words."""
+        return "not decided" if self.why else "safe"
 
 
-def print_sizes(rows: Sequence[SizeRow], required: float, length: str, console: Console) -> None:
+def print_sizes(rows: Sequence[SizeRow], required: float, units: Units, console: Console) -> None:
     """Print a row per pin and the number of pins that reach the factor."""
-    from rich.table import Table
     from rich.text import Text
 
-    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
-    table.add_column("Pin", overflow="fold", min_width=3)
-    table.add_column(Text(f"diameters\n[{length}]"), overflow="fold")
-    table.add_column(Text(f"new\n[{length}]"), overflow="fold")
-    for heading in ("FoS\nbefore", "FoS of\nnew study"):
-        table.add_column(heading, justify="right", no_wrap=True)
-    table.add_column("verdict", overflow="fold")
-    for row in rows:
-        reached = not row.why
-        table.add_row(
-            Text(row.pin, "bold"),
-            ", ".join(map(short, row.before)) or DASH,
-            ", ".join(map(short, row.after)) if row.after else "unchanged",
-            engineering(row.factor_before),
-            row.shown or engineering(row.factor),
-            Text(
-                verdict_words(row.verdict, row.yields) + (", safe" if reached else ""),
-                "green" if reached else "yellow",
-            ),
-        )
-    console.print(table)
+    console.print(fitted_table(_columns(rows, units), console.width))
     count = sum(not row.why for row in rows)
     console.print(
         Text(
@@ -65,3 +54,44 @@ def print_sizes(rows: Sequence[SizeRow], required: float, length: str, console: 
             "of the new study. Lengths are unchanged; check that the lugs take the new diameters."
         )
     )
+    for line in _remarks(rows):
+        console.print(Text(line))
+
+
+def _remarks(rows: Sequence[SizeRow]) -> Iterator[str]:
+    """What an engineer would object to in the sizes."""
+    if wide := [row.pin for row in rows if row.after and row.slenderness < WIDE]:
+        yield (
+            f"Wider than long: {', '.join(wide)}. No pin is made like this: use a stronger "
+            "material, smaller loads or another arrangement of the lugs."
+        )
+    if strict := [f"{row.pin} ({row.stricter})" for row in rows if row.after and row.stricter]:
+        yield f"A hand check gives a smaller factor: {', '.join(strict)}."
+
+
+def _columns(rows: Sequence[SizeRow], units: Units) -> list[Column]:
+    def column(
+        heading: str, cell: Callable[[SizeRow], str], rank: int, numeric: bool = True
+    ) -> Column:
+        return Column(heading, [cell(row) for row in rows], rank, numeric)
+
+    colours = ["yellow" if row.why else "green" for row in rows]
+    return [
+        column("Pin", lambda row: row.pin, 0, False),
+        Column("Result", [row.result for row in rows], 0, False, colours),
+        column("FoS", lambda row: row.factor, 0),
+        column(f"new [{units.length}]", lambda row: _joined(row.after) or "unchanged", 0, False),
+        column(f"before [{units.length}]", lambda row: _joined(row.before), 4, False),
+        column("FoS before", lambda row: engineering(row.factor_before), 5),
+        column(f"weight [{units.force}]", lambda row: " → ".join(map(_heavy, row.weights)), 2),
+        column("L/d", lambda row: engineering(row.slenderness, 2), 1),
+        column("governs", lambda row: row.governs, 3, False),
+    ]
+
+
+def _joined(diameters: tuple[float, ...] | None) -> str:
+    return ", ".join(map(short, diameters or ()))
+
+
+def _heavy(weight: float | None) -> str:
+    return DASH if weight is None else engineering(weight, 3)

@@ -2,26 +2,17 @@
 
 from __future__ import annotations
 
+from reports.data.decision import BELOW, FAILS, NOT_DECIDED, SAFE, YIELDS, outcome
 from reports.data.results import PinResult, Results
 from reports.format.numbers import short
-from reports.format.ranges import factor_range
-from reports.format.words import (
-    BELOW,
-    BEYOND,
-    FAILS,
-    NOT_DECIDED,
-    SAFE,
-    YIELDS,
-    outcome,
-    undecided_because,
-)
+from reports.format.words import BEYOND, undecided_because
 
 
 def summary(results: Results) -> str:
-    """How many pins are safe, the lowest factors, and the rows without a maximum."""
+    """How many pins are safe, which are not, and the rows without a maximum."""
     if not results.pins:
         return "No pin was solved."
-    ways = (_against_required, _lowest, _over_joints, _left_out, _yielding, _unknown)
+    ways = (_against_required, _over_joints, _left_out, _yielding, _unknown)
     return " ".join(part for part in (way(results) for way in ways) if part)
 
 
@@ -52,30 +43,6 @@ def _with_reasons(pins: list[str], results: Results) -> str:
         why = ", ".join(dict.fromkeys(undecided_because(p) for p in rows))
         together.setdefault(why, []).append(pin)
     return ", ".join(f"{', '.join(names)} ({why})" for why, names in together.items())
-
-
-def _lowest(results: Results) -> str:
-    """Of the converged rows; of the singular ones only where it is lower still."""
-    converged, singular = (_least(results, verdict) for verdict in ("converged", "singular"))
-    text = ""
-    if converged is not None:
-        text = f"Lowest converged factor: {_factor(converged)}."
-    if singular is not None and (converged is None or _size(singular) < _size(converged)):
-        text += f" Lowest factor outside the excluded zones: {_factor(singular)}."
-    return text.strip()
-
-
-def _least(results: Results, verdict: str) -> PinResult | None:
-    found = [p for p in results.pins if p.verdict == verdict and p.safety_factor is not None]
-    return min(found, key=_size) if found else None
-
-
-def _size(pin: PinResult) -> float:
-    return pin.safety_factor or 0.0
-
-
-def _factor(pin: PinResult) -> str:
-    return f"{factor_range(pin)}, pin {pin.pin}, case {pin.case}"
 
 
 def _over_joints(results: Results) -> str:
@@ -128,7 +95,7 @@ def _unknown(results: Results) -> str:
         text += f" {_of(loose, total)} did not converge."
     if unsolved:
         text += f" {_of(unsolved, total)} could not be solved."
-    return text.strip()
+    return text.strip() or f"All maxima have converged to {short(100.0 * results.tolerance)} %."
 
 
 def _count(number: int, noun: str) -> str:

@@ -15,7 +15,7 @@ pytestmark = pytest.mark.browser
 
 AXE = Path(__file__).parent / "axe" / "axe.min.js"
 LARGEST = 15e6  # bytes
-NUMBERS = ("time", "max_von_mises", "error_estimate", "safety_factor", "required")
+NUMBERS = ("time", "max_von_mises", "error_estimate", "safety_factor", "utilisation")
 ROWS = """
 return [...document.querySelectorAll("#factors tbody tr")].map(
   (row) => [...row.cells].map((cell) => cell.dataset.value ?? cell.textContent));
@@ -24,6 +24,12 @@ HEADS = 'return [...document.querySelectorAll("#factors thead th")].map((h) => h
 BROKEN = """
 return [...document.querySelectorAll('a[href^="#"]')].map((a) => a.getAttribute("href"))
   .filter((href) => !document.getElementById(decodeURIComponent(href.slice(1))));
+"""
+WIDER = """
+return ["#factors .wide", "#factors table", "html"].filter((name) => {
+  const box = document.querySelector(name);
+  return box.scrollWidth > box.clientWidth + 1;
+});
 """
 REQUESTS = "return performance.getEntriesByType('resource').map((r) => r.name);"
 FAULTS = """
@@ -81,12 +87,36 @@ def test_columns_sort_both_ways(page: Any) -> None:
     assert sort_by(page, "pin") == sorted("ABCDEFGHJ" * 2)
 
 
+@pytest.mark.parametrize("width", [1400, 390])
+def test_the_safety_factors_fit_the_screen(page: Any, width: int) -> None:
+    """All of the table on a desktop; cards on a phone."""
+    size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 500}
+    page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    try:
+        assert page.execute_script(WIDER) == []
+        bars = page.find_elements("css selector", "#factors .used")
+        assert len(bars) == 18
+        assert all(bar.is_displayed() for bar in bars)
+    finally:
+        page.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+def test_the_worst_row_is_the_first(page: Any) -> None:
+    result, used = column(page, "result"), column(page, "utilisation")
+    rows = page.execute_script(ROWS)
+    order = [["fails", "not decided", "safe"].index(row[result]) for row in rows]
+    assert order == sorted(order)
+    failing = [float(row[used]) for row in rows if row[result] == "fails"]
+    assert failing == sorted(failing, reverse=True)
+    assert f"Pin {rows[0][0]} fails: FoS " in page.find_element("css selector", "header").text
+
+
 def test_page_csv_and_json_have_the_same_numbers(page: Any, gear_run: Path) -> None:
     with (gear_run / "safety_factors.csv").open(encoding="utf-8", newline="") as file:
         table = {(r["pin"], r["case"]): r for r in csv.DictReader(file)}
     found = json.loads((gear_run / "results.json").read_text(encoding="utf-8"))["pins"]
     names = {"time": "time", "max_von_mises": "max von", "error_estimate": "±"}
-    names |= {"safety_factor": "safety", "required": "required"}
+    names |= {"safety_factor": "safety", "utilisation": "utilisation"}
     at = {key: column(page, name) for key, name in names.items()}
     pin, case = column(page, "pin"), column(page, "case")
     rows = page.execute_script(ROWS)

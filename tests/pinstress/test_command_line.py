@@ -118,6 +118,17 @@ def test_check_says_what_would_be_run_and_loads_no_heavy_library(tmp_path: Path)
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize(
+    ("study", "status", "unheld"),
+    [("one_pin", 0, False), ("clevis", 0, False), ("failures/free_pin", 1, True)],
+)
+def test_check_reports_a_pin_that_nothing_holds(study: str, status: int, unheld: bool) -> None:
+    """As `run` would: exit status 1 and not decided."""
+    done = pinstress("check", str(ROOT / "studies" / f"{study}.toml"), cwd=ROOT)
+    assert done.returncode == status
+    assert ("unconstrained in case" in done.stderr) is unheld
+
+
 def test_schema_is_json_and_knows_every_table() -> None:
     done = pinstress("schema", cwd=ROOT)
     made = json.loads(done.stdout)

@@ -60,7 +60,7 @@ def test_a_notebook_shows_the_factor_with_its_verdict(found: Found) -> None:
     factor = cells[len(cells) // 2 :]
     shown = engineering(found.pins[0].safety_factor)
     assert {"B", "landing", shown, "converged"} <= set(factor)
-    assert f"converged factor: {shown}" in repr(found)
+    assert f"FoS {shown} ≥ 10 required" in repr(found)
 
 
 def test_names_in_html_are_texts(found: Found) -> None:

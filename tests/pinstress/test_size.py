@@ -11,11 +11,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pinstress.analysis.results import run
+from pinstress.cli.check import describe
 from pinstress.cli.commands import run_command_line
+from pinstress.model.pins import pin, weight
+from pinstress.remedies.secant import CLOSE, TRIALS, NoSizeError, smallest
 from pinstress.schema.units import SYSTEMS
-from pinstress.sizing.scaled_study import resized
-from pinstress.sizing.secant import CLOSE, TRIALS, NoSizeError, smallest
-from pinstress.study.file import parse_study
+from pinstress.sizing.scaled_study import moved, resized, resized_study
+from pinstress.study.file import load_study, parse_study
+from pinstress.study.in_python import changed_study
 from tests.conftest import ROOT
 from tests.support.command_line import ONE_PIN, QUICK
 
@@ -54,7 +58,7 @@ def test_the_search_gets_along_with_noise() -> None:
 
 
 def test_a_factor_that_does_not_grow_is_told() -> None:
-    with pytest.raises(NoSizeError, match=r"factor is 2$"):
+    with pytest.raises(NoSizeError, match=r"factor is 2 and hardly grows"):
         smallest(lambda _: 2.0, 10.0)
 
 
@@ -116,6 +120,69 @@ def test_every_shipped_profile_can_be_resized() -> None:
         assert again.case.keys() == study.table.case.keys()
 
 
+FILES = [path for path in sorted((ROOT / "studies").glob("*.toml")) if ".csv" in path.read_text()]
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_a_study_written_elsewhere_names_the_same_files(path: Path, tmp_path: Path) -> None:
+    study = load_study(path)
+    target = tmp_path / "deep" / "new.toml"
+    target.parent.mkdir()
+    target.write_text(moved(study.text, path.parent, target.parent))
+    assert (
+        describe(load_study(target))[0].partition(":")[2] == (describe(study)[0].partition(":")[2])
+    )
+    assert moved(study.text, path.parent, path.parent) == study.text
+
+
+def test_a_stated_weight_changes_with_the_shape() -> None:
+    """By as much as the pin's own; not that of a pin fixed in a link, which is part of the link."""
+    study = load_study(ROOT / "studies" / "grenier2008.toml")
+    new = resized_study(study, {"J": 1.5, "B": 1.5})
+    before, after = study.table.mechanism, new.table.mechanism
+    assert before is not None
+    assert after is not None
+    density = study.table.material["AISI 4340"].density or 0.0
+    more = weight(pin(new, "J"), density) - weight(pin(study, "J"), density)
+    stated = [(x.joint["J"].weight or 0.0) for x in (before, after)]
+    assert stated[1] > 2.0 * stated[0]
+    assert stated[1] - stated[0] == pytest.approx(more, rel=1e-3)
+    assert after.body == before.body
+
+
+def test_an_eye_that_becomes_too_narrow_grows() -> None:
+    """To 1.5 times its bore, or as the study has it where that is less; others stay."""
+    study = load_study(ROOT / "studies" / "clevis.toml")
+    eye = study.table.pin["P"].lug["EYE"]
+    assert eye.outer_diameter == 0.05
+    for scale, outer in ((0.5, 0.05), (1.5, 0.05), (2.0, 0.06)):
+        new = resized_study(study, {"P": scale}).table.pin["P"].lug["EYE"]
+        assert new.outer_diameter == pytest.approx(outer)
+        assert new.clearance == eye.clearance
+
+
+@pytest.mark.slow
+def test_a_floating_pin_of_a_linkage_is_sized_and_a_run_confirms_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Its weight is in the loads of every trial; from another folder the study still runs."""
+    path = ROOT / "studies" / "grenier2008.toml"
+    balanced = {"pin.J.clamp": [], "pin.J.fillet": 0.15}
+    balanced |= {f"case.{case}.distribution": "cosine" for case in ("retract", "landing")}
+    gear, target = tmp_path / "gear.toml", tmp_path / "deep" / "sized.toml"
+    target.parent.mkdir()
+    text = changed_study(load_study(path), balanced).text
+    gear.write_text(moved(text, path.parent, tmp_path))
+    command = ["size", str(gear), "--pins", "J", "--out", str(target), "--jobs", "1"]
+    assert run_command_line(command) == 0
+    said = capsys.readouterr()
+    assert "Wider than long: J" in said.out
+    results = run(load_study(target), pins=["J"])
+    least = min(p.safety_factor or 0.0 for p in results.pins)
+    assert 10.0 <= least <= 10.0 * (1.0 + CLOSE)
+    assert f"{least:.2f}" in said.out
+
+
 def factor(study: str, name: str) -> tuple[float, str]:
     Path(f"{name}.toml").write_text(study)
     run_command_line(["run", f"{name}.toml", "--no-pictures", "--vtk", "none", "--quiet"])
@@ -130,7 +197,7 @@ def test_a_run_confirms_the_size_and_a_smaller_pin_misses(
     Path("study.toml").write_text(QUICK)
     assert run_command_line(["size", "study.toml", "--fos", "20"]) == 0
     said = capsys.readouterr()
-    assert "converged, safe" in said.out
+    assert "safe" in said.out.split("\n")[1]
     assert "study_sized.toml" in said.err
     sized = Path("study_sized.toml").read_text()
     assert "required_safety_factor = 20.0" in sized
@@ -206,4 +273,5 @@ def test_what_cannot_be_sized_is_told(
     said = capsys.readouterr()
     assert message in " ".join(said.err.split())
     assert "Traceback" not in said.err
-    assert Path("study_sized.toml").exists() == (status == 1)
+    assert not Path("study_sized.toml").exists()
+    assert "Written" not in said.err

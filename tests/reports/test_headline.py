@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from reports.data.decision import margin, outcome, utilisation, worst_first
 from reports.data.results import PinResult, Results
+from reports.format.words import headline
 from reports.page.loads import loads_at, timings
-from reports.text.headline import headline
+from reports.text.summary import summary
 
 
 def row(results: Results, pin: str, case: str) -> PinResult:
@@ -17,30 +20,30 @@ def row(results: Results, pin: str, case: str) -> PinResult:
     return found
 
 
-def test_says_what_governs_whether_it_is_enough_and_what_is_open(results: Results) -> None:
-    known = [p for p in results.pins if p.safety_factor is not None]
+def test_a_row_that_was_not_solved_is_no_worse_than_one_that_fails(results: Results) -> None:
+    known = [p for p in results.pins if p.meets_required is False]
     least = min(known, key=lambda p: p.safety_factor or 0.0)
-    text = headline(results)
-    assert text.startswith(f"Pin {least.pin}, case {least.case}, governs: safety factor ")
-    assert "(converged, beyond yield), required 1.5. The pin fails." in text
-    assert "Pin J (landing): not solved, because it is unconstrained." in text
-    assert "Pin D (retract), pin D (landing): not converged" in text
+    assert headline(results).startswith(f"Pin {least.pin} fails: FoS ")
+    assert f"< 1.5 required ({least.case})" in headline(results)
+    order = [outcome(pin) for pin in worst_first(results)]
+    assert order == sorted(order, key=["fails", "not decided", "safe"].index)
 
 
 @pytest.mark.parametrize(
     ("verdict", "factor", "meets", "required", "words"),
     [
-        ("converged", 3.0, True, 2.0, "3.000 (converged), required 2. The pin is safe."),
-        ("singular", 3.0, None, 2.0, "not decided (singular). Pin A (retract): no maximum"),
-        ("singular", 1.5, False, 2.0, "(singular), required 2. The pin fails."),
-        ("unconverged", 3.0, None, 2.0, "Whether the pin is safe is not decided (not converged)."),
-        ("converged", 3.0, None, None, "3.000 (converged). The pin stays below yield."),
+        ("converged", 3.0, True, 2.0, "Pin A is safe: FoS 3.000 ≥ 2 required (retract)."),
+        ("singular", 3.0, None, 2.0, "not decided: singular (retract); FoS 3.000, 2 required."),
+        ("singular", 1.5, False, 2.0, "Pin A fails: FoS 1.500 < 2 required (retract)."),
+        ("unconverged", 3.0, None, 2.0, "Whether pin A is safe is not decided: not converged"),
+        ("converged", 3.0, None, None, "Pin A stays below yield: FoS 3.000 ≥ 1 at yield"),
+        ("failed", None, None, 2.0, "pin A is safe is not decided: numerics failed (retract)."),
     ],
 )
-def test_no_factor_without_its_verdict(
+def test_the_worst_row_in_a_sentence(
     results: Results,
     verdict: str,
-    factor: float,
+    factor: float | None,
     meets: bool | None,
     required: float | None,
     words: str,
@@ -50,21 +53,37 @@ def test_no_factor_without_its_verdict(
         verdict=verdict,
         safety_factor=factor,
         meets_required=meets,
-        yields=False,
+        yields=None if factor is None else False,
     )
-    text = headline(replace(results, pins=(pin,), required_safety_factor=required))
-    assert words in text
-    known = "All maxima have converged to 2 %." in text
-    assert known is (verdict == "converged")
+    some = replace(results, pins=(pin,), required_safety_factor=required)
+    assert words in headline(some)
+    if verdict == "converged":
+        assert summary(some).endswith("All maxima have converged to 2 %.")
+        other = replace(pin, pin="B", safety_factor=5.0)
+        text = headline(replace(some, pins=(other, pin)))
+        assert text.startswith("All 2 pins ")
+        assert "(pin A, retract)" in text
+    assert headline(replace(some, pins=())) == ""
 
 
-def test_failed_rows_are_reported(results: Results) -> None:
-    failed = replace(
-        row(results, "J", "landing"), verdict="failed", note="the mesh of pin J is inside out"
-    )
-    text = headline(replace(results, pins=(row(results, "A", "retract"), failed)))
-    assert "Pin J (landing): the numerical solution failed." in text
-    assert headline(replace(results, pins=(failed,))) == ""
+@pytest.mark.parametrize(
+    ("interval", "used", "spare"),
+    [
+        (None, (0.5, 0.5), (1.0, 1.0)),
+        ((1.6, 8.0), (0.25, 1.25), (-0.2, 3.0)),
+        ((1.6, None), (0.0, 1.25), (-0.2, math.inf)),
+    ],
+)
+def test_utilisation_and_margin(
+    results: Results,
+    interval: tuple[float, float | None] | None,
+    used: tuple[float, float],
+    spare: tuple[float, float],
+) -> None:
+    pin = replace(row(results, "A", "retract"), safety_factor=4.0, safety_factor_interval=interval)
+    assert utilisation(pin, 2.0) == pytest.approx(used)
+    assert margin(pin, 2.0) == pytest.approx(spare)
+    assert utilisation(replace(pin, safety_factor=None), 2.0) is None
 
 
 def test_loads_are_those_at_the_governing_instant(results: Results) -> None:

@@ -13,13 +13,12 @@ from rich.console import Console
 from fea.core.mesh_result import Strength
 from reports.data.results import PinResult, Results, SingularZone
 from reports.format.ranges import error_range, error_words, factor_range
+from reports.format.words import headline
 from reports.tables.json_results import to_json
 from reports.tables.safety_factors import safety_factors_table, write_safety_factors
 from reports.tables.singular_zones import zones_table
-from reports.text.headline import headline
 from reports.text.html import safety_factors_html
 from reports.text.safety_factors import print_safety_factors
-from reports.text.summary import summary
 
 ZONE = SingularZone(
     (0.0, 0.5, 1.0), "the edge of a clamp", ("left", "A"), 0.5, 0.4555, 0.1, True, 9e5, "none",
@@ -62,7 +61,7 @@ def test_no_table_shows_a_factor_without_its_interval(found: Results, tmp_path: 
     assert all(len(line) <= 80 for line in screen.splitlines())
     write_safety_factors(found, tmp_path)
     text = (tmp_path / "safety_factors.md").read_text(encoding="utf-8")
-    for shown in (screen, text, safety_factors_html(found), summary(found), headline(found)):
+    for shown in (screen, text, safety_factors_html(found), headline(found)):
         assert "3.107" not in shown
         assert "2.35" in shown
         assert "4.37" in shown

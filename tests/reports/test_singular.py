@@ -11,9 +11,9 @@ import meshio
 import numpy as np
 import pytest
 
+from reports.data.decision import outcome
 from reports.data.results import Field, HandCheck, PinResult, Results, SingularZone, Units
 from reports.files import write_reports
-from reports.format.words import outcome
 from reports.tables.json_results import to_json
 from reports.text.summary import summary
 from reports.vtk.fields import render_pin, renderer_problem, write_vtu

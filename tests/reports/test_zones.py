@@ -117,9 +117,11 @@ def test_no_factor_without_its_verdict(written: Path) -> None:
     """Everywhere on the page: in a sentence in brackets behind it, in a table in its row."""
     text = " ".join(parse(written).text.split())
     assert re.findall(r"[Ss]afety factor [\d.,]++(?! \()", text) == []
-    head = re.search(r'id="factors".*?</thead>', written.read_text(encoding="utf-8"), re.S)
+    page = written.read_text(encoding="utf-8")
+    head = re.search(r'id="factors".*?</thead>', page, re.S)
     assert head is not None
-    assert head.group().index("safety factor") < head.group().index("verdict")
+    assert head.group().index(">result<") < head.group().index(">safety factor")
+    assert page.count("</span> (singular)") + page.count("</span>: singular") > 0
 
 
 def test_refinement_plot_of_the_pin(found: Results, tmp_path: Path) -> None:

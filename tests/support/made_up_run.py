@@ -51,7 +51,7 @@ def make_results() -> Results:
         beam_check=beam_check(),
         motion_check=motion_check(times),
         provenance=(
-            Provenance("pin.B.diameter", "given", "Table 2"),
+            Provenance("pin.B.diameter", "given", "Table 2", "50 mm"),
             Provenance("case.landing.force", "derived", "impulse over 0.1 s"),
             Provenance("material.steel.nu", "assumed", "not stated; 0.3 is usual"),
         ),

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 
 BENDING = 3.0  # the factor grows with the cube of the diameter in bending, its square in tension
 GENTLE, STEEP = 0.5, 6.0  # slopes that are believed
+APART = 1.2  # ratio of scales from which a slope says that larger pins hardly help
+LEAP = 3.0  # from one trial to the next at most
 CLOSE = 0.01  # how much more than the required factor is close enough
 NARROW = 0.001  # a bracket of scales that is not looked into
 LEAST, MOST = 0.02, 50.0
@@ -26,8 +28,11 @@ class Trial:
     factor: float
 
 
-def smallest(factor_at: Callable[[float], float], required: float) -> Trial:
-    """The smallest scale whose factor is at least `required`, and at most CLOSE more of it.
+def smallest(
+    factor_at: Callable[[float], float], required: float, start: float = 1.0, close: float = CLOSE
+) -> Trial:
+    """The smallest scale whose factor is at least `required`, and at most `close` more of it, from
+    `start` on.
 
     The factor grows with the scale; log factor against log scale is nearly a line, so secants find
     it; trials on both sides keep them in bounds. The scale that is returned was itself tried.
@@ -37,12 +42,12 @@ def smallest(factor_at: Callable[[float], float], required: float) -> Trial:
     below: Trial | None = None
     above: Trial | None = None
     before: Trial | None = None
-    scale, slope = 1.0, BENDING
+    scale, slope = start, BENDING
     for _ in range(TRIALS):
         now = Trial(scale, factor_at(scale))
         if now.factor >= required:
             above = now if above is None or now.scale < above.scale else above
-            if now.factor <= required * (1.0 + CLOSE):
+            if now.factor <= required * (1.0 + close):
                 return now
         else:
             below = now if below is None or now.scale > below.scale else below
@@ -50,11 +55,17 @@ def smallest(factor_at: Callable[[float], float], required: float) -> Trial:
             return above
         if before is not None and before.scale != now.scale:
             rise = math.log(now.factor / before.factor) / math.log(now.scale / before.scale)
+            if above is None and rise < GENTLE and now.scale > APART * before.scale:
+                raise NoSizeError(
+                    f"with {now.scale:.3g} times its diameters its factor is {now.factor:.4g} and "
+                    "hardly grows with them: its bands must be longer, its material stronger or "
+                    "its loads smaller"
+                )
             slope = min(max(rise, GENTLE), STEEP)
         before = now
         # Aimed a little high, for only what is not below will do.
-        aim = required * (1.0 + 0.4 * CLOSE)
-        scale = now.scale * (aim / now.factor) ** (1.0 / slope)
+        aim = required * (1.0 + 0.4 * close)
+        scale = min(now.scale * (aim / now.factor) ** (1.0 / slope), LEAP * now.scale)
         if above and below and not below.scale < scale < above.scale:
             scale = math.sqrt(above.scale * below.scale)
         if not LEAST < scale < MOST:

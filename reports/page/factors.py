@@ -1,0 +1,94 @@
+"""The safety factors on the page: the worst first, each with its utilisation as a bar."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from reports.data.changes import command
+from reports.data.decision import limit, outcome, utilisation, worst_first
+from reports.data.results import PinResult, Results
+from reports.format.words import MEANING, RESULTS
+from reports.tables.changes import (
+    DIMENSIONS,
+    INTRODUCTION,
+    change_notes,
+    changes_grid,
+    sensitivities_grid,
+)
+from reports.tables.published import published_maxima
+from reports.tables.safety_factors import (
+    TEXTS,
+    reading,
+    safety_factor_row,
+    shown,
+    shown_columns,
+    shown_rows,
+)
+
+FULL = 2.0  # utilisation at the end of a bar
+
+
+@dataclass(frozen=True)
+class Bar:
+    """How far a bar goes, in per cent of its length: certainly, and possibly."""
+
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class FactorRow:
+    """A row's texts by column, and what they are sorted by."""
+
+    pin: str
+    outcome: str
+    cells: dict[str, str]
+    keys: dict[str, str]
+    bar: Bar | None
+
+
+def factor_parts(results: Results) -> dict[str, Any]:
+    """What the template of the safety factors takes."""
+    rows = shown_rows(results)
+    columns = shown_columns(rows, results)
+    for name in ("verdict", "model"):  # the result says what matters, each pin's section the rest
+        columns.pop(name)
+    return {
+        "columns": columns,
+        "reading": reading(columns),
+        "numeric": [name for name in columns if name not in TEXTS],
+        "rows": [
+            FactorRow(
+                pin.pin,
+                outcome(pin),
+                {name: shown(name, row) for name in columns},
+                _keys(pin, results),
+                _bar(pin, limit(results)),
+            )
+            for pin, row in zip(worst_first(results), rows, strict=True)
+        ],
+        "explained": RESULTS,
+        "meaning": MEANING,
+        "maxima": published_maxima(results),
+        "changes": changes_grid(results),
+        "sensitivities": sensitivities_grid(results),
+        "sensitivities_introduction": DIMENSIONS,
+        "change_introduction": INTRODUCTION,
+        "change_notes": change_notes(results),
+        "size_command": command(results.changes, results.study, results.required_safety_factor),
+    }
+
+
+def _keys(pin: PinResult, results: Results) -> dict[str, str]:
+    """For sorting: all digits; empty for no value, and the outcome for the result."""
+    row = {**safety_factor_row(pin, results.required_safety_factor), "result": outcome(pin)}
+    return {name: "" if value is None else str(value) for name, value in row.items()}
+
+
+def _bar(pin: PinResult, required: float) -> Bar | None:
+    used = utilisation(pin, required)
+    if used is None:
+        return None
+    low, high = (100.0 * min(end, FULL) / FULL for end in used)
+    return Bar(low, high)

@@ -1,0 +1,100 @@
+"""What to change: for every pin that does not reach its factor, what would do, each alone."""
+
+from __future__ import annotations
+
+from reports.data.changes import Change, Sensitivity
+from reports.data.results import Results
+from reports.format.grid import Grid
+from reports.format.numbers import DASH, engineering, short
+
+INTRODUCTION = (
+    "Each of these alone brings the pin to the required factor in the worst of its cases, if "
+    "nothing else is changed. Larger diameters, with bores and fillets, are estimated to a few per "
+    "cent on one mesh, under the same loads."
+)
+DIMENSIONS = (
+    "What a little more of a single dimension does to the factor, by differences at the governing "
+    "instant; ± is by how much two meshes disagree. Dimensions that do less than this are left out."
+)
+CONTACT = (
+    "In contact with lugs stress is not quite proportional to loads: take the load as an estimate."
+)
+SINGULAR = (
+    "Of singular rows the factor is reached only outside the excluded zones: remove the sharp "
+    "corner or clamp edge first."
+)
+
+
+def changes_grid(results: Results) -> Grid:
+    """A row for each pin, the worst first."""
+    units = results.units
+    columns = {
+        "pin": [c.pin for c in results.changes],
+        "case": [c.case for c in results.changes],
+        "× diameters": [engineering(c.diameter_factor, 3) for c in results.changes],
+        f"yield strength [{units.stress}]": [
+            engineering(c.yield_strength) for c in results.changes
+        ],
+        "× loads": [_loads(c) for c in results.changes],
+        f"impulse time [{units.time}]": [_time(c) for c in results.changes],
+    }
+    shown = {head: cells for head, cells in columns.items() if {*cells} != {DASH}}
+    return Grid(
+        [*shown],
+        [list(row) for row in zip(*shown.values(), strict=True)],
+        [False, False, *[True] * (len(shown) - 2)],
+    )
+
+
+def sensitivities_grid(results: Results) -> Grid | None:
+    """A row for each dimension that matters, those with the largest effect of each pin first."""
+    length = results.units.length
+    rows = [
+        (change, each)
+        for change in results.changes
+        for each in sorted(change.sensitivities, key=lambda s: -abs(_effect(change, s)))
+    ]
+    if not rows:
+        return None
+    return Grid(
+        ["pin", "dimension", f"now [{length}]", f"more by [{length}]", "safety factor", "±"],
+        [
+            [
+                change.pin,
+                each.of,
+                short(each.value),
+                short(each.step),
+                f"{_effect(change, each):+.2%}".replace("-", "−").replace("%", " %"),
+                f"{each.error / _factor(change):.2%}".replace("%", " %"),
+            ]
+            for change, each in rows
+        ],
+        [False, False, True, True, True, True],
+    )
+
+
+def _factor(change: Change) -> float:
+    return change.load_factor * change.required
+
+
+def _effect(change: Change, of: Sensitivity) -> float:
+    """On the factor, relative."""
+    return of.factor / _factor(change) - 1.0
+
+
+def change_notes(results: Results) -> list[str]:
+    """What is to be known of the rows, a sentence or two each."""
+    notes = [f"Pin {c.pin}: {c.diameter_note}." for c in results.changes if c.diameter_note]
+    notes += [CONTACT] * any(not c.proportional for c in results.changes)
+    return notes + [SINGULAR] * any(c.singular for c in results.changes)
+
+
+def _loads(change: Change) -> str:
+    about = "" if change.proportional else "≈ "
+    return f"{about}{engineering(change.load_factor, 3)}"
+
+
+def _time(change: Change) -> str:
+    if change.given_time is None or change.impulse_time is None:
+        return DASH
+    return f"{short(change.given_time)} → {engineering(change.impulse_time, 3)}"
