@@ -18,8 +18,8 @@ PORTABLE = $(addprefix tests/pinstress/test_,portable.py workers.py output.py re
 	$(addprefix tests/fea/test_,linear.py memory.py) tests/loads/test_regular_file.py
 
 # Status 1 means: done, but a requested accuracy was not reached (printed last).
-demo: setup ## run studies/grenier2008.toml and print the path of its report
-	@status=0; PINSTRESS_CACHE=build/cache $(BIN)/pinstress run studies/grenier2008.toml || status=$$?; \
+demo: setup ## run studies/landing_gear.toml and print the path of its report
+	@status=0; PINSTRESS_CACHE=build/cache $(BIN)/pinstress run studies/landing_gear.toml || status=$$?; \
 	if [ $$status -gt 1 ]; then exit $$status; fi
 
 PYTEST = $(BIN)/python -m pytest -n auto

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import resource
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import astuple, dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -32,7 +32,7 @@ ONE = "E"
 def gear() -> str:
     """Seconds and meshes of the three ways; and of one pin on its first meshes."""
     published = load_study(STUDIES / "grenier2008.toml")
-    improved = prepare(load_study(STUDIES / "landing_gear.toml"))
+    improved = prepare(_in_balance(load_study(STUDIES / "landing_gear.toml")))
     ways = {
         "floating pins clamped, as published": prepare(published),
         "floating pins in balance": prepare(_floating(published)),
@@ -66,6 +66,19 @@ def _floating(study: Study) -> Study:
     }
     cases = {name: case.model_copy(update={"clamp": {}}) for name, case in table.case.items()}
     return replace(study, table=table.model_copy(update={"pin": pins, "case": cases}))
+
+
+def _in_balance(study: Study) -> Study:
+    """The same without lugs: what a structure supports is clamped there."""
+    pins = {
+        name: pin.model_copy(update={"lug": {}, "clamp": pin.clamp or _structure(pin.lug)})
+        for name, pin in study.table.pin.items()
+    }
+    return replace(study, table=study.table.model_copy(update={"pin": pins}))
+
+
+def _structure(lugs: Iterable[str]) -> tuple[str, ...]:
+    return tuple(name for name in lugs if name in ("left", "right"))
 
 
 def _material(plan: Plan, pin: str) -> Material:

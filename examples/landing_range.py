@@ -5,7 +5,7 @@ import numpy as np
 import pinstress
 
 study = pinstress.load_study(pinstress.shipped_studies()["landing_gear"])
-results = pinstress.run(study, pins=["F", "G", "J"], cases=["landing"])
+results = pinstress.run(study, pins=["A", "B", "H"], cases=["landing"])
 
 force = results.landing[0].force
 print(f"landing force {force.min():,.0f} to {force.max():,.0f} {results.units.force}")
