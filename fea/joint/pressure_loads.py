@@ -84,7 +84,8 @@ class Patterns:
                 parts = tuple(zip(self.rings, pattern, strict=True))
                 acting[UnitLoad("", "pressure", n, parts)] = amount
         area = np.array([self.pin.band(name).area for name in self.rings])
-        made.forces[:, :, :2] = -0.5 * waves[1] * area[:, None]
+        if len(waves) > 1:
+            made.forces[:, :, :2] = -0.5 * waves[1] * area[:, None]
         return PressureLoads(
             links.case,
             self.rings,

@@ -44,6 +44,27 @@ def test_rounded_edges_have_rings_where_rounding_begins(radius: float, count: in
     assert parts.max() <= LONGEST * 0.02 * 8 / count * 1.0001
 
 
+@pytest.mark.parametrize("radius", [2e-4, 5e-4, 1e-3, 4e-3, 0.01])
+@pytest.mark.parametrize("count", [4, 8, 16])
+def test_rings_of_rounded_edges(radius: float, count: int) -> None:
+    """As many as of sharp edges where the bore is straight, and a few short ones in the rounding,
+    the shortest next to where it begins.
+    """
+    ends = ring_ends(BAND, radius, count)
+    parts = np.diff(ends)
+    assert ends[[0, -1]] == pytest.approx([0.0, 0.02])
+    assert parts == pytest.approx(parts[::-1])
+    at = int(np.abs(ends - radius).argmin())
+    assert ends[at] == pytest.approx(radius)
+    assert at >= 2
+    assert parts[at - 1] <= radius / 4.0 * 1.0001
+    assert (np.diff(parts[:at]) < 0.0).all()
+    straight = ends[(ends > radius * 0.9999) & (ends < 0.02 - radius * 0.9999)] - radius
+    if radius < 0.01:
+        assert straight == pytest.approx(graded(0.02 - 2.0 * radius, count))
+    assert parts.max() <= LONGEST * 0.02 * 8 / count * 2.0
+
+
 def test_lugs_may_differ_in_rings() -> None:
     pin = Pin("P", (Segment(0.02, 0.02, connection="A"), Segment(0.01, 0.02, connection="B")))
     steel = Material("steel", 210e9, 0.3)
