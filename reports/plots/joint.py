@@ -21,6 +21,8 @@ from reports.plots.spec import (
     rows,
 )
 
+HEADROOM = 1.18  # above the largest value, for names and labels
+
 
 def joint_plot(pin: str, case: str, joint: JointResult, units: Units) -> Plot:
     """Of one pin in one case, at the governing instant; the lugs are shaded."""
@@ -36,7 +38,8 @@ def joint_plot(pin: str, case: str, joint: JointResult, units: Units) -> Plot:
               "scale": {"domain": [min(z), max(z)], "nice": False}}  # fmt: skip
     hidden = {**across, "title": None, "axis": {"labels": False}}
     lugs = [bands([_extent(band) for band in joint.bands]), level(0.0, style="zero")]
-    loads = [_load(band, force) for band in joint.bands]
+    top = HEADROOM * max(q for band in joint.bands for _, q in band.line_load)
+    loads = [_load(band, force, top) for band in joint.bands]
     loads[0]["params"] = [ZOOM]
     spec = {
         "title": headed(title),
@@ -56,7 +59,7 @@ def _moment_heading(units: Units) -> str:
     return f"bending moment [{units.force}·{units.length}]"
 
 
-def _load(band: BandContact, heading: str) -> Spec:
+def _load(band: BandContact, heading: str, top: float) -> Spec:
     """Even along each ring; where there are no rings, a curve."""
     load = [q for _, q in band.line_load]
     pairs = zip(band.ends, [*load, load[-1]], strict=True) if band.ends else band.line_load
@@ -64,17 +67,19 @@ def _load(band: BandContact, heading: str) -> Spec:
         "data": rows([{"x": z, "y": q} for z, q in pairs]),
         "mark": {"type": "area", "line": True, "fillOpacity": 0.15, "clip": True,
                  "interpolate": "step-after" if band.ends else "linear"},
-        "encoding": {"y": _y("y"), "tooltip": _tooltip(heading)},
+        "encoding": {"y": _y(top), "tooltip": _tooltip(heading)},
     }  # fmt: skip
 
 
-def _y(name: str) -> Spec:
-    return {"field": name, "type": "quantitative", "title": None}
+def _y(top: float = 0.0) -> Spec:
+    """top: of the scale, if positive."""
+    scale = {"scale": {"domainMax": top}} if top > 0.0 else {}
+    return {"field": "y", "type": "quantitative", "title": None, **scale}
 
 
 def _tooltip(heading: str) -> list[Spec]:
     return [{"field": "x", "title": "z", "format": FORMAT, "type": "quantitative"},
-            {**_y("y"), "title": heading, "format": FORMAT}]  # fmt: skip
+            {**_y(), "title": heading, "format": FORMAT}]  # fmt: skip
 
 
 def _extent(band: BandContact) -> tuple[float, float]:
@@ -86,9 +91,9 @@ def _name(band: BandContact) -> Spec:
     """Of a lug, above its load."""
     return {
         "data": rows([{"x": float(np.mean(_extent(band)))}]),
-        "mark": {"type": "text", "style": "note", "baseline": "top", "text": clipped(band.name, 12),
-                 "clip": True},
-        "encoding": {"x": {"field": "x", "type": "quantitative"}, "y": {"value": -10}},
+        "mark": {"type": "text", "style": "note", "baseline": "top",
+                 "text": clipped(band.name, 12)},
+        "encoding": {"x": {"field": "x", "type": "quantitative"}, "y": {"value": 3}},
     }  # fmt: skip
 
 
@@ -97,17 +102,17 @@ def _moment(joint: JointResult, units: Units) -> list[Spec]:
     largest = int(moment.argmax())
     at = {"x": float(z[largest]), "y": float(moment[largest]),
           "text": f"largest {engineering(joint.bending_moment)}"}  # fmt: skip
-    left = z[largest] < np.mean(z)
+    left, top = z[largest] < np.mean(z), HEADROOM * float(moment[largest])
     noted = {
         "data": rows([at]),
         "mark": {"type": "text", "style": "hot-note", "align": "left" if left else "right",
                  "dx": 8 if left else -8, "dy": -4},
-        "encoding": {"x": {"field": "x", "type": "quantitative"}, "y": _y("y"),
+        "encoding": {"x": {"field": "x", "type": "quantitative"}, "y": _y(),
                      "text": {"field": "text", "type": "nominal"}},
     }  # fmt: skip
     line = {
         "params": [ZOOM],
         "mark": {"type": "line", "clip": True, "point": {"size": 12}},
-        "encoding": {"y": _y("y"), "tooltip": _tooltip(_moment_heading(units))},
+        "encoding": {"y": _y(top), "tooltip": _tooltip(_moment_heading(units))},
     }
     return [line, points([at]), noted]

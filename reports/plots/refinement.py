@@ -8,7 +8,7 @@ from reports.data.results import PinResult, Units
 from reports.format.file_names import plot_name
 from reports.plots.spec import FORMAT, Plot, Spec, clipped, headed, level, rows
 
-HEADING = "deviation from the finest mesh [%]"
+HEADING = "deviation [%]"
 
 
 def refinement_plot(case: str, pins: Sequence[PinResult], units: Units) -> Plot:

@@ -115,7 +115,7 @@ def _mark(pin: PinResult, units: Units) -> list[Spec]:
     noted = {
         "data": rows([at]),
         "mark": {"type": "text", "style": "hot-note", "align": "right", "baseline": "bottom",
-                 "text": text, "x": "width", "y": -4},
+                 "text": text, "x": "width", "y": -4, "clip": False},
         "encoding": {"x": None},
     }  # fmt: skip
     return [error_bar, points([at]), noted]
