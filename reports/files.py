@@ -8,7 +8,7 @@ from pathlib import Path
 from reports.animation.page import write_animations
 from reports.data.results import Results
 from reports.page.page import write_page
-from reports.tables.all import CSV_ONLY, load_tables, stress_tables
+from reports.tables.all import load_tables, sheets, stress_tables
 from reports.tables.hand_checks import write_hand_checks
 from reports.tables.json_results import write_json
 from reports.tables.landing import write_landing
@@ -41,8 +41,7 @@ def _write_tables(results: Results, directory: Path, others: Sequence[Table]) ->
     tables = [*others, *load_tables(results)]
     for table in tables:
         table.write_csv(directory)
-    sheets = [table for table in tables if table.name not in CSV_ONLY]
-    write_workbook(results, sheets, directory / "tables.xlsx")
+    write_workbook(results, sheets(tables), directory / "tables.xlsx")
     write_published_reactions(results, directory)
     write_published_values(results, directory)
     if results.reactions:

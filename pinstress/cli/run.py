@@ -13,9 +13,8 @@ from typing import Any, Unpack
 import click
 from rich.console import Console
 
-from pinstress.analysis.calculix import ask_calculix, slow_rows
 from pinstress.analysis.gather import loads_only, results_of
-from pinstress.analysis.plan import prepare
+from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.solve import solve_tasks
 from pinstress.cache.store import user_cache
 from pinstress.cli.closing import (
@@ -77,16 +76,14 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
     also: Any = wanted.vtk if wanted.vtk in ("motion", "solid") else None
     plan = replace(prepare(study, also=also, **chosen), sensitive=wanted.sensitive)
     most = processes(wanted.jobs)
+    ask = _second_opinion(plan, wanted.quiet) if wanted.second else {}
     cache = user_cache() if wanted.cached else None
-    if wanted.second and not wanted.quiet:
-        report_slow_rows(slow_rows(plan))
     with replacing(directory) as staging:
         if wanted.vtk != "none":
             (staging / "vtk").mkdir()
         keep = partial(_keep, staging, _units(study), wanted.vtk)
         with progress_bar(alone=most == 1, quiet=wanted.quiet) as progress:
             preload(*SOLVERS)
-            ask = {"ask": ask_calculix} if wanted.second else {}
             found = solve_tasks(plan, keep, progress, jobs=most, cache=cache, **ask)
             results = results_of(plan, found)
             progress("report", 1.0)
@@ -110,6 +107,15 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
         open_page(directory / PAGE)
     status = report_missed(results, study.table.analysis.goal == "decide")
     return max(status, report_disagreements(results))
+
+
+def _second_opinion(plan: Plan, quiet: bool) -> dict[str, Any]:
+    # It imports the solid model, which takes time.
+    from pinstress.analysis.calculix import ask_calculix, slow_rows
+
+    if not quiet:
+        report_slow_rows(slow_rows(plan))
+    return {"ask": ask_calculix}
 
 
 def _units(study: Study) -> Units:

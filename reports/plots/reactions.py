@@ -77,11 +77,11 @@ def _name(table: ReactionTable, c: int) -> str:
 
 
 def _peaks(table: ReactionTable, members: list[int], units: Units) -> Spec:
-    along_time = table.position is None
+    along_time, largest = table.position is None, table.largest
     return points([
         {"x": (peak.time if along_time else peak.position) or 0.0, "y": peak.force,
          "text": f"{_name(table, c)}: {_peak(peak, units)}"}
-        for c in members for peak in [table.largest[c]]
+        for c in members for peak in [largest[c]]
     ])  # fmt: skip
 
 
