@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import textwrap
+from math import ceil, floor, log10
+
 from reports.data.chart import NAME, Chart, ChartPoint
 from reports.plots.spec import Plot, Spec, clipped, headed, level, rows
 from reports.text.chart_summary import curve_name, error, failures, percent, reference_line
 
+LINE = 110  # letters of a line under the title
 ROOM = 2.5  # factor beyond the outermost points
 ACROSS = {"seconds": "time, meshing included [s]", "memory": "peak memory above bare process [MB]"}
 
@@ -44,11 +48,12 @@ def _panel(across: str, heading: str, limits: list[float], chart: Chart, names: 
     floor = max(chart.reference.error, 1e-9)
     x = {"field": across, "type": "quantitative", "title": heading,
          "scale": {"type": "log", "nice": False, "padding": 20},
-         "axis": {"tickCount": 4}}  # fmt: skip
+         "axis": {"tickCount": 4, "grid": False}}  # fmt: skip
     y = {"field": "error", "type": "quantitative", "title": "error of the maximum von Mises stress",
          "scale": {"type": "log", "domain": limits, "nice": False},
-         "axis": {"format": "~%", "tickCount": 5}}  # fmt: skip
-    key = {"field": "of", "type": "nominal", "title": None, "scale": {"domain": names}}
+         "axis": {"format": "~%", "values": _decades(*limits)}}  # fmt: skip
+    key = {"field": "of", "type": "nominal", "title": None, "scale": {"domain": names},
+           "legend": {"symbolSize": 60}}  # fmt: skip
     unclear = {
         "data": rows([{}]),
         "mark": {"type": "rect", "style": "shade"},
@@ -69,20 +74,25 @@ def _panel(across: str, heading: str, limits: list[float], chart: Chart, names: 
     }
     auto = {
         "transform": [{"filter": "datum.auto"}],
-        "mark": {"type": "text", "style": "note", "dy": -14, "text": "auto"},
+        "mark": {"type": "text", "style": "note", "align": "left", "dx": 10, "text": "auto"},
         "encoding": {"x": x, "y": y},
     }
     tolerance = level(chart.tolerance, f"tolerance {percent(chart.tolerance)}")
     return {"width": 300, "height": 240, "layer": [unclear, tolerance, line, ring, auto]}
 
 
+def _decades(low: float, high: float) -> list[float]:
+    return [10.0**k for k in range(ceil(log10(low)), floor(log10(high)) + 1)]
+
+
 def _foot(chart: Chart) -> list[str]:
     """Lines under the title: reference, shaded range, failures."""
     of = f"median of {chart.runs} runs" if chart.runs > 1 else "one run"
-    return [
+    lines = [
         reference_line(chart),
         f"Shaded: errors that cannot be distinguished from zero. Times: {of}; bare process: "
         f"{chart.bare:.0f} MB.",
         *([chart.note] if chart.note else []),
         *failures(chart),
     ]
+    return [part for line in lines for part in textwrap.wrap(line, LINE)]

@@ -105,11 +105,11 @@ def test_a_range_in_assumed_lugs_is_marked(small: Results, tmp_path: Path) -> No
     assert (row["joint_model"], row["joint_lugs"]) == ("foundation", "assumed")
     last = joint_tables(odd)[2].rows[0][-4:]
     assert list(last) == ["foundation", "assumed", 1200.0, 1800.0]
-    assert not any(name.name.startswith("joint") for name in save_plots(odd, tmp_path))
+    assert not any(name.startswith("joint") for name in all_plots(odd))
 
 
 def test_the_page_shows_a_range_in_assumed_lugs(small: Results, tmp_path: Path) -> None:
-    path = write_reports(around(small), tmp_path, {}, False)
+    path = write_reports(around(small), tmp_path)
     text = parse(path).text
     assert "1,100 to 1,900 psi over what is not known of the joint" in text
     assert "in assumed lugs" in text
@@ -121,14 +121,12 @@ def test_the_page_shows_a_range_in_assumed_lugs(small: Results, tmp_path: Path) 
 
 def test_the_page_says_why_there_is_no_range(small: Results, tmp_path: Path) -> None:
     odd = around(small, range=None, remark="no lug surrounds its clamp (start)")
-    text = parse(write_reports(odd, tmp_path, {}, False)).text
+    text = parse(write_reports(odd, tmp_path)).text
     assert "no range over the joint: no lug surrounds its clamp (start)." in text
 
 
 def test_foundations_have_the_section_of_contact(small: Results, tmp_path: Path) -> None:
-    text = parse(
-        write_reports(in_lugs(small, replace(CONTACT, model="foundation")), tmp_path, {}, False)
-    ).text
+    text = parse(write_reports(in_lugs(small, replace(CONTACT, model="foundation")), tmp_path)).text
     assert "Load from the lugs" in text
     assert "beam on foundations" in text
     assert "half contact angle" in text
