@@ -95,8 +95,6 @@ def _drawing(shape: PinShape, results: Results) -> str:
     return draw_pin(shape, results.units, circles(zone for case in zones for zone in case))
 
 
-
-
 def _place(location: Point) -> str:
     return ", ".join(components(location, max(map(abs, location))))
 
