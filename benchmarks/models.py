@@ -15,6 +15,7 @@ from pinstress.chart.mesh_sequences import FIRST
 from reports.data.chart import Chart, ChartPoint
 from reports.format.numbers import engineering
 from reports.plots.chart import chart_plot
+from reports.plots.draw import draw
 from reports.text.chart_summary import cost, error, percent, seconds
 
 ROOT = Path(__file__).parent.parent
@@ -38,7 +39,7 @@ def models() -> str:
         jobs: dict[int, MeasureJob] = {}
         found = chart(plan, partial(_noted, jobs, k == DRAWN), MESHES, RUNS)
         if k == DRAWN:
-            chart_plot(found, ROOT / "docs" / "images")
+            draw([chart_plot(found)], ROOT / "docs" / "images")
         further = _further(plan, found)
         rows.append((f"`{study}`", *_row(_once_more(found, jobs), further)))
     head = ("study", "beam", "its error", "harmonic", "solid", "solid / harmonic", "memory")

@@ -168,7 +168,7 @@ def _integrate(
 def _chart(peaks: list[tuple[float, ...]], ways: list[tuple[object, ...]]) -> None:
     from matplotlib.ticker import NullFormatter
 
-    from reports.format.style import line_style, panels, save
+    from benchmarks.style import line_style, panels, save
 
     with panels(1, 2, height=3.4) as (figure, (left, right)):
         n = [row[0] for row in peaks]

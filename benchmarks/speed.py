@@ -88,8 +88,8 @@ def demo() -> str:
         run = ["run", str(STUDY), "--no-cache", "--out", f"{folder}/out"]
         for name, arguments in (
             ("check", ["check", str(STUDY)]),
-            ("run --no-pictures", [*run, "--no-pictures"]),
             ("run", run),
+            ("run --plots", [*run, "--plots"]),
         ):
             start = time.perf_counter()
             done = subprocess.run(

@@ -32,7 +32,9 @@ HEAD = """# Licences of dependencies
 
 pinstress is GPL-3.0-or-later. `make setup` installs the packages of `requirements.lock`, benchmarks
 those of `requirements-bench.lock`, each under its own licence, as stated in its metadata; none is
-part of pinstress. `tests/browser/axe/` has a copy of axe-core with its licence (MPL-2.0).
+part of pinstress. `reports/templates/vendor/` has copies of Vega, Vega-Lite and Vega's interpreter
+(BSD-3-Clause), which are part of every report, and `tests/browser/axe/` one of axe-core (MPL-2.0),
+each with its licence.
 `python -m docs.licences` writes this page.
 
 | package | version | licence | needed |

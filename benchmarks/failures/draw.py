@@ -1,13 +1,13 @@
-"""What the pictures of the gallery share, beside reports.format.style."""
+"""What the pictures of the gallery share, beside benchmarks.style."""
 
 from __future__ import annotations
 
 from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, NullFormatter, NullLocator
 
+from benchmarks.style import GREY, INK, line_style
 from fea.core.pin_loads import Floats
 from reports.format.numbers import short
-from reports.format.style import GREY, INK, line_style
 
 __all__ = ["GREY", "INK", "decades", "line_style", "note", "ratio_line", "ticks"]
 

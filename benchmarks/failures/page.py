@@ -7,7 +7,7 @@ from pathlib import Path
 
 from benchmarks.failures.asked import ROOT
 from benchmarks.failures.entry import Entry
-from reports.format.style import panels
+from benchmarks.style import panels
 
 PAGE = ROOT / "docs" / "failures.md"
 PICTURES = ROOT / "docs" / "images" / "failures"

@@ -30,9 +30,8 @@ VARIABLE = "PINSTRESS_CACHE"  # the folder; empty or OFF: none
 OFF = "off"
 LIMIT = 10**9  # bytes of all files; the longest unused go first
 ROOMS = ("fea", "geometry", "pinstress", "reports")  # that have a hand in an answer
-# On which answers depend; DRAWN_BY: pictures, too.
+# On which answers depend.
 PACKAGES = ("pinstress", "numpy", "scipy", "scikit-fem", "gmsh", "meshio", "cvxopt", "pymetis")
-DRAWN_BY = ("matplotlib", "pyvista", "vtk")
 MAGIC = b"pinstress\n"
 KEY, PARTIAL = re.compile(r"[0-9a-f]{64}"), ".partial"
 OURS = re.compile(rf"{KEY.pattern}(\w+{re.escape(PARTIAL)})?")
@@ -135,8 +134,7 @@ def program() -> str:
     """Hash of what results depend on in addition to the task: versions, and the source itself, so
     that whoever changes a formula does not meet the answers of the old one.
     """
-    versions = PACKAGES + DRAWN_BY
-    made_by = [(name, _version(name)) for name in versions], portable()
+    made_by = [(name, _version(name)) for name in PACKAGES], portable()
     found = hashlib.sha256(repr(made_by).encode())
     root = Path(__file__).parents[2]
     for room in ROOMS:

@@ -10,15 +10,16 @@ import click
 from pinstress.chart.chart import ChartPlan, chart, plan_chart
 from pinstress.chart.measured_process import MeasureLimits, measure
 from pinstress.cli.output_folder import replacing, require_replaceable
-from pinstress.cli.run import PLOTTERS, console, progress_bar
+from pinstress.cli.run import console, progress_bar
 from pinstress.cli.streams import unneeded
-from pinstress.processes.pool import preload
 from pinstress.processes.system import portable
 from pinstress.study.choices import require_positive
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study
 from reports.data.chart import NAME, Chart
 from reports.format.file_names import plot_name
+from reports.plots.chart import chart_plot
+from reports.plots.draw import draw
 from reports.tables.chart import write_chart_csv
 from reports.text.chart import print_chart
 from reports.text.chart_summary import percent
@@ -45,9 +46,6 @@ def chart_and_write(
         raise InputError(
             "chart measures the memory of processes, which works on Linux only", code="linux-only"
         )
-    preload(*PLOTTERS)
-    from reports.plots.chart import chart_plot
-
     directory = out or Path("out") / plot_name(f"{study.name}-{NAME}", pin, case)
     require_replaceable(directory, MARK)
     require_positive("time_limit", limits.seconds, endless=True)
@@ -59,7 +57,7 @@ def chart_and_write(
         with progress_bar() as progress:
             found = chart(plan, partial(measure, limits=limits), meshes, runs, progress, calculix)
         write_chart_csv(found, staging)
-        chart_plot(found, staging)
+        draw([chart_plot(found)], staging)
     with unneeded(directory):
         print_chart(found, console())
     click.echo(f"Chart: {directory / NAME}.svg", err=True)

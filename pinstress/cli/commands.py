@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from pinstress.cli.environment import settle_surroundings
-from pinstress.cli.more_commands import completion, init, schema, size, view
+from pinstress.cli.more_commands import completion, init, plots, schema, size, view
 from pinstress.cli.shared import example, names, read_study
 from pinstress.processes import interrupts
+from pinstress.processes.environment import settle_surroundings
 from pinstress.processes.interrupts import INTERRUPTED
 from pinstress.study.choices import ChoiceError
 from pinstress.study.errors import InputError, clipped
@@ -21,6 +21,7 @@ from pinstress.study.errors import InputError, clipped
 if TYPE_CHECKING:
     from fea.solve_pin import Model
 
+PLOTS = "Also draw plots and pictures as SVG and PNG, as `pinstress plots` does (slower)."
 REACHED, NOT_REACHED, BAD_INPUT, NUMERICS_FAILED = 0, 1, 2, 3
 
 
@@ -82,7 +83,7 @@ def commands() -> None:
     short_help="Compute forces, stresses and safety factors; write the report.",
     help=example("pinstress run studies/grenier2008.toml --pins B,E --out out/trial")
     + "\nCompute reactions, stresses and safety factors. Prints the safety factor table; writes "
-    "tables, plots, VTK files and report.html.\n\n"
+    "tables, VTK files and report.html with its plots.\n\n"
     "Exit status: 0 done; 1 done, but a requested accuracy was not reached or CalculiX disagrees; "
     "2 bad input; 3 the numerics failed; 130 interrupted.",
 )
@@ -100,7 +101,8 @@ def commands() -> None:
     type=click.FloatRange(0.0, 1.0, min_open=True, max_open=True),
     help="Override the study's tolerance on the maximum stress.",
 )
-@click.option("--no-pictures", is_flag=True, help="No plots and no pictures of the pins (faster).")
+@click.option("--plots", is_flag=True, help=PLOTS)
+@click.option("--no-pictures", is_flag=True, hidden=True)  # the default, which it was not
 @click.option(
     "--vtk",
     type=click.Choice(["model", "surface", "solid", "motion", "none"]),
@@ -144,6 +146,7 @@ def run(
     cases: list[str] | None,
     model: Model | None,
     tolerance: float | None,
+    plots: bool,
     no_pictures: bool,
     vtk: str,
     jobs: int | None,
@@ -162,9 +165,8 @@ def run(
     from pinstress.cli.run import Wanted, run_and_write
 
     second, cached = second_opinion is not None, not no_cache
-    wanted = Wanted(
-        not no_pictures, second, vtk, as_json, quiet, opens, jobs, cached, sensitivities
-    )
+    drawn = plots and not no_pictures
+    wanted = Wanted(drawn, second, vtk, as_json, quiet, opens, jobs, cached, sensitivities)
     return run_and_write(
         loaded,
         directory,
@@ -191,24 +193,32 @@ def _require_calculix() -> None:
 @commands.command(
     short_help="Compute the mechanism's forces only, without stresses.",
     help=example("pinstress loads studies/bowman2019.toml")
-    + "\nCompute the mechanism only: reactions, drives, motion, plots and an animation of every "
-    "case.",
+    + "\nCompute the mechanism only: reactions, drives and motion, with an animation of every case "
+    "and report.html.",
 )
 @click.argument("study", type=click.Path(path_type=Path))
 @click.option(
     "--out", type=click.Path(path_type=Path), help="Output folder [out/<study name>-loads]."
 )
 @click.option("--cases", callback=names, metavar="X,Y", help="Only these cases.")
-@click.option("--no-pictures", is_flag=True, help="No plots (faster).")
+@click.option("--plots", is_flag=True, help=PLOTS)
+@click.option("--no-pictures", is_flag=True, hidden=True)
 @click.option("--quiet", is_flag=True, help="No notes; errors are still reported.")
 def loads(
-    study: Path, out: Path | None, cases: list[str] | None, no_pictures: bool, quiet: bool
+    study: Path,
+    out: Path | None,
+    cases: list[str] | None,
+    plots: bool,
+    no_pictures: bool,
+    quiet: bool,
 ) -> int:
     loaded = read_study(study)
     from pinstress.cli.run import loads_and_write
 
     directory = out or Path("out") / f"{loaded.name}-loads"
-    return loads_and_write(loaded, directory, plots=not no_pictures, cases=cases, quiet=quiet)
+    return loads_and_write(
+        loaded, directory, plots=plots and not no_pictures, cases=cases, quiet=quiet
+    )
 
 
 @commands.command(
@@ -303,5 +313,5 @@ def check(study: Path) -> int:
     return NOT_REACHED if unheld else REACHED
 
 
-for _command in (init, schema, size, view, completion):
+for _command in (init, plots, schema, size, view, completion):
     commands.add_command(_command)

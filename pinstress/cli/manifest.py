@@ -27,6 +27,11 @@ def complete(folder: Path) -> None:
     _write(folder, sorted(entries(folder) - {NAME}))
 
 
+def add(folder: Path, names: list[str]) -> None:
+    """Add entries, before they are written, to the list of a folder that has one."""
+    _write(folder, sorted(((listed(folder) or set()) | set(names)) - {NAME}))
+
+
 def ours(folder: Path) -> set[str] | None:
     """What we may remove from a folder: the listed files, or everything if its writer was killed
     while writing. None if the folder is not empty and has no list of ours.

@@ -58,6 +58,19 @@ def schema() -> None:
 
 
 @click.command(
+    short_help="Draw the plots of an earlier run as SVG and PNG.",
+    help=example("pinstress plots out/grenier2008")
+    + "\nDraw the plots of a report as SVG and PNG, and pictures of the pins, into the folder "
+    "`plots` of an earlier run or of `pinstress loads`.",
+)
+@click.argument("results", type=click.Path(path_type=Path))
+def plots(results: Path) -> None:
+    from pinstress.cli.plots import plots as draw
+
+    draw(results)
+
+
+@click.command(
     short_help="Show a pin of an earlier run in a 3D window.",
     help=example("pinstress view out/grenier2008 --pin B --case landing")
     + "\nShow the von Mises stress of a pin of an earlier run at its governing instant, in a "

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
@@ -13,12 +13,10 @@ from typing import Any, Unpack
 import click
 from rich.console import Console
 
-from pinstress.analysis.calculix import ask_calculix, slow_rows
 from pinstress.analysis.gather import loads_only, results_of
-from pinstress.analysis.plan import prepare
+from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.solve import solve_tasks
-from pinstress.cache.plots import draw_once, plot_once
-from pinstress.cache.store import Cache, user_cache
+from pinstress.cache.store import user_cache
 from pinstress.cli.closing import (
     report_disagreements,
     report_left_out,
@@ -27,19 +25,19 @@ from pinstress.cli.closing import (
     report_slow_rows,
 )
 from pinstress.cli.output_folder import replacing, require_replaceable
+from pinstress.cli.plots import FOLDER, PAGE, draw_folder
 from pinstress.cli.shared import open_page
 from pinstress.cli.streams import unneeded
-from pinstress.processes.pool import Died, Job, Progress, Tell, preload, processes, side_by_side
+from pinstress.processes.pool import Progress, preload, processes
 from pinstress.study.choices import Chosen
 from pinstress.study.file import Study
 from pinstress.study.file_names import field_name
 from reports.data.results import Field, Units
 from reports.files import write_loads, write_reports
-from reports.plots.jobs import Plot
 from reports.text.loads import print_loads
 from reports.text.safety_factors import print_safety_factors
 from reports.text.second_opinion import print_second_opinion
-from reports.vtk.fields import render_pin, renderer_problem, surface, write_pin
+from reports.vtk.fields import surface, write_pin
 
 SOLVERS = (
     "gmsh",
@@ -47,19 +45,18 @@ SOLVERS = (
     "cvxopt.cholmod",
     "vtkmodules.vtkIOXML",
 )  # what fea and reports import on demand
-PLOTTERS = ("matplotlib.pyplot", "matplotlib.backends.backend_agg")
-PAINTERS = ("pyvista.plotting", *PLOTTERS)
 
 
 @dataclass(frozen=True)
 class Wanted:
-    """The output of a run: pictures; CalculiX's second opinion; fields (vtk, as --vtk names them);
-    results.json on stdout instead of the table; no progress and no notes; the report opened.
+    """The output of a run: plots and pictures as files; CalculiX's second opinion; fields (vtk, as
+    --vtk names them); results.json on stdout instead of the table; no progress and no notes; the
+    report opened.
     jobs: number of parallel processes, default the number of cores. cached: whether results in the
     user's cache may be reused. sensitive: whether to find what dimensions do to the factors.
     """
 
-    pictures: bool = True
+    plots: bool = False
     second: bool = False
     vtk: str = "model"
     as_json: bool = False
@@ -78,27 +75,21 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
     require_replaceable(directory)
     also: Any = wanted.vtk if wanted.vtk in ("motion", "solid") else None
     plan = replace(prepare(study, also=also, **chosen), sensitive=wanted.sensitive)
-    problem = renderer_problem() if wanted.pictures else None
-    most, paints = processes(wanted.jobs), wanted.pictures and problem is None
+    most = processes(wanted.jobs)
+    ask = _second_opinion(plan, wanted.quiet) if wanted.second else {}
     cache = user_cache() if wanted.cached else None
-    if wanted.second and not wanted.quiet:
-        report_slow_rows(slow_rows(plan))
     with replacing(directory) as staging:
         if wanted.vtk != "none":
             (staging / "vtk").mkdir()
-        keep = partial(_keep, staging, _units(study), wanted.vtk, paints, cache)
+        keep = partial(_keep, staging, _units(study), wanted.vtk)
         with progress_bar(alone=most == 1, quiet=wanted.quiet) as progress:
-            preload(*SOLVERS, *(PAINTERS if paints else PLOTTERS if wanted.pictures else ()))
-            ask = {"ask": ask_calculix} if wanted.second else {}
+            preload(*SOLVERS)
             found = solve_tasks(plan, keep, progress, jobs=most, cache=cache, **ask)
             results = results_of(plan, found)
-            drawn = {
-                (p.pin, p.case): path
-                for p in results.pins
-                if (path := _picture(staging, p.pin, p.case)).is_file()
-            }
             progress("report", 1.0)
-            write_reports(results, staging, drawn, wanted.pictures, partial(_draw, most, cache))
+            write_reports(results, staging)
+            if wanted.plots:
+                draw_folder(staging, staging / FOLDER, wanted.quiet)
     if cache:
         cache.trim()
     if wanted.as_json:
@@ -111,13 +102,20 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
     if not wanted.quiet:
         report_left_out(results)
         report_reused(plan, found)
-        if problem is not None:
-            click.echo(f"No pictures of the pins: {problem}", err=True)
-        click.echo(f"Report: {directory / 'report.html'}", err=True)
+        click.echo(f"Report: {directory / PAGE}", err=True)
     if wanted.opens:
-        open_page(directory / "report.html")
+        open_page(directory / PAGE)
     status = report_missed(results, study.table.analysis.goal == "decide")
     return max(status, report_disagreements(results))
+
+
+def _second_opinion(plan: Plan, quiet: bool) -> dict[str, Any]:
+    # It imports the solid model, which takes time.
+    from pinstress.analysis.calculix import ask_calculix, slow_rows
+
+    if not quiet:
+        report_slow_rows(slow_rows(plan))
+    return {"ask": ask_calculix}
 
 
 def _units(study: Study) -> Units:
@@ -125,42 +123,11 @@ def _units(study: Study) -> Units:
     return Units(s.length, s.force, s.stress, s.time)
 
 
-def _picture(staging: Path, pin: str, case: str) -> Path:
-    return staging / "plots" / f"pin_{field_name(pin, case)}.png"
-
-
-def _keep(
-    staging: Path, units: Units, vtk: str, paints: bool, cache: Cache | None, field: Field
-) -> None:
+def _keep(staging: Path, units: Units, vtk: str, field: Field) -> None:
     """Write the requested output of a field."""
     if vtk != "none":
         shown = surface(field) if vtk == "surface" else field
         write_pin(shown, field_name(field.pin, field.case), staging / "vtk", units)
-    if paints:
-        picture = _picture(staging, field.pin, field.case)
-        picture.parent.mkdir(exist_ok=True)
-        skin, title = replace(field, stills=(), volume=None), f"pin {field.pin}, {field.case}"
-
-        def render() -> list[Path]:
-            render_pin(skin, picture, units, title)
-            return [picture]
-
-        draw_once(render, ("render_pin", skin, units, title), picture.parent, cache)
-
-
-def _files(plot: Plot, cache: Cache | None, _: Tell) -> list[Path]:
-    return plot_once(plot, cache)
-
-
-def _draw(jobs: int, cache: Cache | None, plots: Sequence[Plot]) -> list[Path]:
-    """Draw plots in parallel; their files."""
-    work = [Job("plots", partial(_files, plot, cache)) for plot in plots]
-    found = []
-    for files in side_by_side(work, jobs):
-        if isinstance(files, Died):
-            raise RuntimeError(f"a plot could not be drawn: {files.reason}")
-        found += files
-    return found
 
 
 def loads_and_write(
@@ -169,16 +136,15 @@ def loads_and_write(
     *,
     plots: bool,
     cases: list[str] | None,
-    jobs: int | None = None,
     quiet: bool = False,
 ) -> int:
     """Compute a study's mechanism into a folder; returns the exit status. Raises: InputError."""
     require_replaceable(directory)
     results = loads_only(study, cases)
-    if plots:
-        preload(*PLOTTERS)
     with replacing(directory) as staging:
-        write_loads(results, staging, plots, partial(_draw, processes(jobs), None))
+        write_loads(results, staging)
+        if plots:
+            draw_folder(staging, staging / FOLDER, quiet)
     with unneeded(directory):
         print_loads(results, console())
     if not quiet:

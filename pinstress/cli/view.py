@@ -8,7 +8,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from pinstress.cli.new_file import require_new, write_new
-from pinstress.cli.run import PAINTERS
+from pinstress.cli.plots import PAINTERS
 from pinstress.processes.pool import preload
 from pinstress.study.errors import InputError
 from reports.vtk.read_back import Opened, open_results

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Annotated
 
 import numpy as np
@@ -76,7 +77,7 @@ class ReactionTable:
     def instead(self) -> dict[str, str]:
         return shown_position(self.position_unit)
 
-    @property
+    @cached_property
     def magnitudes(self) -> Floats:
         """(T, C)."""
         return np.asarray(np.linalg.norm(self.forces, axis=2))

@@ -1,31 +1,8 @@
-"""Positions along a line for labels that would overlap."""
+"""Rows for labels that would overlap."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-
-
-def spread(wanted: Sequence[float], sizes: Sequence[float]) -> list[float]:
-    """Centres for labels of `sizes`, in the order of `wanted`, near them and without overlap.
-
-    Labels that would overlap form a block, centred on the mean of what its labels want.
-    """
-    order = sorted(range(len(wanted)), key=lambda i: wanted[i])
-    blocks: list[list[int]] = []
-    for i in order:
-        blocks.append([i])
-        while len(blocks) > 1 and _top(blocks[-2], wanted, sizes) > _foot(
-            blocks[-1], wanted, sizes
-        ):
-            last = blocks.pop()
-            blocks[-1] += last
-    places = [0.0] * len(wanted)
-    for block in blocks:
-        foot = _foot(block, wanted, sizes)
-        for i in block:
-            places[i] = foot + 0.5 * sizes[i]
-            foot += sizes[i]
-    return places
 
 
 def rows(places: Sequence[float], sizes: Sequence[float]) -> list[int]:
@@ -40,15 +17,3 @@ def rows(places: Sequence[float], sizes: Sequence[float]) -> list[int]:
         ends[row] = place + 0.5 * size
         found.append(row)
     return found
-
-
-def _middle(block: list[int], wanted: Sequence[float]) -> float:
-    return sum(wanted[i] for i in block) / len(block)
-
-
-def _foot(block: list[int], wanted: Sequence[float], sizes: Sequence[float]) -> float:
-    return _middle(block, wanted) - 0.5 * sum(sizes[i] for i in block)
-
-
-def _top(block: list[int], wanted: Sequence[float], sizes: Sequence[float]) -> float:
-    return _middle(block, wanted) + 0.5 * sum(sizes[i] for i in block)

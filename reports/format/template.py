@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from jinja2 import Environment
 
 TEMPLATES = Path(__file__).parents[1] / "templates"
+VENDOR = TEMPLATES / "vendor"  # scripts of others
 
 
 def environment() -> Environment:

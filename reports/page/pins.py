@@ -20,14 +20,12 @@ ZONE_NUMBERS = ("zone", "exponent")
 
 @dataclass(frozen=True)
 class PinCase:
-    """A pin in one case: result, outcome, picture address, unit of the drive position, singular
-    zones, hand checks, loads, contact with lugs, CalculiX's opinion, and our maximum over the
-    published one.
+    """A pin in one case: result, outcome, unit of the drive position, singular zones, hand checks,
+    loads, contact with lugs, CalculiX's opinion, and our maximum over the published one.
     """
 
     result: PinResult
     outcome: str
-    picture: str | None
     position_unit: str
     zones: Grid | None
     checks: Grid | None
@@ -55,9 +53,7 @@ class PinPart:
         return any(case.zones for case in self.cases)
 
 
-def pin_parts(
-    results: Results, drawings: dict[str, str], pictures: dict[tuple[str, str], str]
-) -> list[PinPart]:
+def pin_parts(results: Results, drawings: dict[str, str]) -> list[PinPart]:
     """The pins in the order of the results, then those that were not solved."""
     positions = {t.case: t.position_unit for t in results.reactions}
     shapes = {shape.pin: shape for shape in results.shapes}
@@ -73,7 +69,6 @@ def pin_parts(
                 PinCase(
                     p,
                     outcome(p),
-                    pictures.get((p.pin, p.case)),
                     positions.get(p.case) or results.units.length,
                     _zones(zones[name][p.case], results.units),
                     Grid(*hand_check_table(p, results.units)) if p.hand_checks else None,

@@ -2,55 +2,84 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
-from matplotlib.axes import Axes
 
 from fea.joint.records import BandContact, JointResult
 from reports.data.results import Units
 from reports.format.file_names import plot_name
 from reports.format.numbers import engineering
-from reports.format.style import COLOURS, GREY, clipped, line_style, panels, plain_numbers, save
+from reports.plots.spec import (
+    FORMAT,
+    ZOOM,
+    Plot,
+    Spec,
+    bands,
+    clipped,
+    headed,
+    level,
+    points,
+    rows,
+)
 
-LUG = "#dbe7f4"
 HEADROOM = 1.18  # above the largest value, for names and labels
 
 
-def joint_plot(
-    pin: str, case: str, joint: JointResult, units: Units, directory: Path
-) -> list[Path]:
+def joint_plot(pin: str, case: str, joint: JointResult, units: Units) -> Plot:
     """Of one pin in one case, at the governing instant; the lugs are shaded."""
-    with panels(2, height=2.2, sharex=True) as (figure, axes):
-        load, moment = axes
-        for band in joint.bands:
-            _load(load, band)
-            for panel in axes:
-                panel.axvspan(*_extent(band), color=LUG, zorder=0.1)
-        _moment(moment, joint)
-        _names(load, joint.bands)
-        load.set_ylabel(f"load per length\n[{units.force}/{units.length}]")
-        moment.set_ylabel(f"bending moment\n[{units.force} {units.length}]")
-        moment.set_xlabel(f"z [{units.length}]")
-        z = [z for z, _ in joint.bending_moments]
-        moment.set_xlim(min(z), max(z))
-        for panel in axes:
-            panel.axhline(0.0, color=GREY, linewidth=0.8)
-            plain_numbers(panel)
-        figure.align_ylabels()
-        load.set_title(f"pin {clipped(pin)}, {clipped(case)}: load from the lugs (shaded)")
-        return save(figure, directory, plot_name("joint", case, pin))
+    force = f"load per length [{units.force}/{units.length}]"
+    z = [z for z, _ in joint.bending_moments]
+    title = f"Pin {clipped(pin)}, {clipped(case)}: load from the lugs"
+    caption = (
+        f"Pin {pin}, {case}: load per length from the lugs (shaded), in the direction of each "
+        "link's force (negative: the opposite side of the bore carries), and size of the bending "
+        "moment"
+    )
+    across = {"field": "x", "type": "quantitative", "title": f"z [{units.length}]",
+              "scale": {"domain": [min(z), max(z)], "nice": False}}  # fmt: skip
+    hidden = {**across, "title": None, "axis": {"labels": False}}
+    lugs = [bands([_extent(band) for band in joint.bands]), level(0.0, style="zero")]
+    top = HEADROOM * max(q for band in joint.bands for _, q in band.line_load)
+    loads = [_load(band, force, top) for band in joint.bands]
+    loads[0]["params"] = [ZOOM]
+    spec = {
+        "title": headed(title),
+        "usermeta": {"columns": [f"z [{units.length}]", _moment_heading(units)]},
+        "data": rows([{"x": x, "y": y} for x, y in joint.bending_moments]),
+        "vconcat": [
+            {"title": force, "height": 150, "encoding": {"x": hidden},
+             "layer": [*lugs, *loads, *(_name(band) for band in joint.bands)]},
+            {"title": _moment_heading(units), "height": 110, "encoding": {"x": across},
+             "layer": [*lugs, *_moment(joint, units)]},
+        ],
+    }  # fmt: skip
+    return Plot(plot_name("joint", case, pin), caption, spec)
 
 
-def _load(axes: Axes, band: BandContact) -> None:
+def _moment_heading(units: Units) -> str:
+    return f"bending moment [{units.force}·{units.length}]"
+
+
+def _load(band: BandContact, heading: str, top: float) -> Spec:
     """Even along each ring; where there are no rings, a curve."""
-    style = line_style(0)
     load = [q for _, q in band.line_load]
-    if band.ends:
-        axes.stairs(load, band.ends, color=style["color"], linewidth=1.5)
-        axes.stairs(load, band.ends, color=style["color"], fill=True, alpha=0.15)
-    else:
-        axes.plot([z for z, _ in band.line_load], load, **style)
+    pairs = zip(band.ends, [*load, load[-1]], strict=True) if band.ends else band.line_load
+    return {
+        "data": rows([{"x": z, "y": q} for z, q in pairs]),
+        "mark": {"type": "area", "line": True, "fillOpacity": 0.15, "clip": True,
+                 "interpolate": "step-after" if band.ends else "linear"},
+        "encoding": {"y": _y(top), "tooltip": _tooltip(heading)},
+    }  # fmt: skip
+
+
+def _y(top: float = 0.0) -> Spec:
+    """top: of the scale, if positive."""
+    scale = {"scale": {"domainMax": top}} if top > 0.0 else {}
+    return {"field": "y", "type": "quantitative", "title": None, **scale}
+
+
+def _tooltip(heading: str) -> list[Spec]:
+    return [{"field": "x", "title": "z", "format": FORMAT, "type": "quantitative"},
+            {**_y(), "title": heading, "format": FORMAT}]  # fmt: skip
 
 
 def _extent(band: BandContact) -> tuple[float, float]:
@@ -58,29 +87,32 @@ def _extent(band: BandContact) -> tuple[float, float]:
     return z[0], z[-1]
 
 
-def _names(axes: Axes, bands: tuple[BandContact, ...]) -> None:
-    """Of the lugs, above their loads."""
-    loads = [q for band in bands for _, q in band.line_load]
-    low, high = min(0.0, *loads), max(loads)
-    room = (HEADROOM - 1.0) * (high - low) or 1.0
-    axes.set_ylim(low - (0.3 * room if low < 0.0 else 0.0), high + room)
-    for band in bands:
-        axes.annotate(
-            clipped(band.name, 12), (float(np.mean(_extent(band))), 1.0),
-            xycoords=("data", "axes fraction"), xytext=(0, -3), textcoords="offset points",
-            ha="center", va="top", fontsize=8.5,
-        )  # fmt: skip
+def _name(band: BandContact) -> Spec:
+    """Of a lug, above its load."""
+    return {
+        "data": rows([{"x": float(np.mean(_extent(band)))}]),
+        "mark": {"type": "text", "style": "note", "baseline": "top",
+                 "text": clipped(band.name, 12)},
+        "encoding": {"x": {"field": "x", "type": "quantitative"}, "y": {"value": 3}},
+    }  # fmt: skip
 
 
-def _moment(axes: Axes, joint: JointResult) -> None:
+def _moment(joint: JointResult, units: Units) -> list[Spec]:
     z, moment = (np.array(x) for x in zip(*joint.bending_moments, strict=True))
-    axes.plot(z, moment, **line_style(0))
     largest = int(moment.argmax())
-    axes.set_ylim(0.0, HEADROOM * float(moment[largest]) or 1.0)
-    left = z[largest] < np.mean(z)
-    axes.plot(z[largest], moment[largest], "o", color=COLOURS[1], ms=5)
-    axes.annotate(
-        f"max {engineering(joint.bending_moment)}", (z[largest], moment[largest]),
-        xytext=(8 if left else -8, 4), textcoords="offset points",
-        ha="left" if left else "right", va="bottom", color=COLOURS[1], fontsize=8.5,
-    )  # fmt: skip
+    at = {"x": float(z[largest]), "y": float(moment[largest]),
+          "text": f"largest {engineering(joint.bending_moment)}"}  # fmt: skip
+    left, top = z[largest] < np.mean(z), HEADROOM * float(moment[largest])
+    noted = {
+        "data": rows([at]),
+        "mark": {"type": "text", "style": "hot-note", "align": "left" if left else "right",
+                 "dx": 8 if left else -8, "dy": -4},
+        "encoding": {"x": {"field": "x", "type": "quantitative"}, "y": _y(),
+                     "text": {"field": "text", "type": "nominal"}},
+    }  # fmt: skip
+    line = {
+        "params": [ZOOM],
+        "mark": {"type": "line", "clip": True, "point": {"size": 12}},
+        "encoding": {"y": _y(top), "tooltip": _tooltip(_moment_heading(units))},
+    }
+    return [line, points([at]), noted]

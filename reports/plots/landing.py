@@ -2,59 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from pathlib import Path
-
 import numpy as np
 
-from reports.data.results import LandingRange, Units
+from reports.data.results import Floats, LandingRange, Units
 from reports.format.file_names import plot_name
 from reports.format.numbers import short
-from reports.format.style import GREY, clipped, label_ends, line_style, panels, plain_numbers, save
+from reports.plots.spec import Abscissa, Panel, Plot, clipped, curves, level
 
 
 def landing_plot(
-    case: str, members: list[LandingRange], required: float | None, units: Units, directory: Path
-) -> list[Path]:
-    """Factor against impulse time: a panel per velocity change, a line per pin, logarithmic."""
-    members = [m for m in members if m.safety_factor is not None]
-    if not members:
-        return []
-    speeds = sorted({float(v) for v in members[0].velocity_change})
-    shown = speeds if len(speeds) <= 2 else [speeds[0], speeds[-1]]
-    with panels(len(shown), height=2.9) as (figure, axes):
-        for panel, speed in zip(axes, shown, strict=True):
-            lines = []
-            for order, m in enumerate(members):
-                assert m.safety_factor is not None
-                here = np.isclose(m.velocity_change, speed)
-                rank = np.argsort(m.impulse_time[here])
-                lines += panel.semilogy(
-                    m.impulse_time[here][rank], m.safety_factor[here][rank], **line_style(order)
-                )
-            for level, text in ((1.0, "yield"), (required, "required")):
-                if level is not None:
-                    panel.axhline(level, color=GREY, linewidth=0.9)
-                    panel.annotate(
-                        text,
-                        (0.0, level),
-                        xycoords=("axes fraction", "data"),
-                        xytext=(3, 2),
-                        textcoords="offset points",
-                        fontsize=8,
-                        color=GREY,
-                    )
-            panel.margins(x=0.0)
-            panel.set(
-                title=f"velocity change {short(speed)} {units.length}/{units.time}",
-                xlabel=f"impulse time [{units.time}]",
-                ylabel="factor of safety",
-            )
-            plain_numbers(panel)
-            label_ends(figure, panel, lines, [_label(m) for m in members])
-        note = "".join(_notes(members))
-        figure.suptitle(f"{case}: safety factor against impulse time{note}", x=0.01, ha="left")
-        return save(figure, directory, plot_name("landing-range", case))
+    case: str, members: list[LandingRange], required: float | None, units: Units
+) -> Plot | None:
+    """Factor against impulse time: a panel per velocity change, a curve per pin, logarithmic.
+    None where no pin has a factor.
+    """
+    known = {_label(m): (m, m.safety_factor) for m in members if m.safety_factor is not None}
+    if not known:
+        return None
+    first, _ = next(iter(known.values()))
+    speeds = sorted({float(v) for v in first.velocity_change})
+    levels = [level(1.0, "yield"), *([] if required is None else [level(required, "required")])]
+    panels, x = [], np.empty(0)
+    for speed in speeds if len(speeds) <= 2 else [speeds[0], speeds[-1]]:
+        shown: dict[str, Floats] = {}
+        for name, (m, factor) in known.items():
+            here = np.flatnonzero(np.isclose(m.velocity_change, speed))
+            rank = here[np.argsort(m.impulse_time[here])]
+            x, shown[name] = m.impulse_time[rank], factor[rank]
+        heading = f"factor of safety, velocity change {short(speed)} {units.length}/{units.time}"
+        scale = {"type": "log"}
+        panels.append(
+            Panel(heading, shown, tuple(levels), scale=scale, height=190.0, zero=False)
+        )  # fmt: skip
+    title = f"{case}: safety factor against impulse time"
+    caption = "; ".join([title, *_notes(members)])
+    spec = curves(title, Abscissa(f"impulse time [{units.time}]", x), panels, common=True)
+    return Plot(plot_name("landing-range", case), caption, spec)
 
 
 def _label(m: LandingRange) -> str:
@@ -63,8 +46,9 @@ def _label(m: LandingRange) -> str:
     return f"pin {name}" if m.verdict == "converged" else f"pin {name}, {m.verdict}"
 
 
-def _notes(members: list[LandingRange]) -> Iterator[str]:
-    if any(m.verdict == "unconverged" for m in members):
-        yield "\nunconverged: the error exceeds the tolerance"
-    if any(m.verdict == "singular" for m in members):
-        yield "\nsingular: no maximum exists; factors are those outside the excluded zones"
+def _notes(members: list[LandingRange]) -> list[str]:
+    notes = {
+        "unconverged": "unconverged: the error exceeds the tolerance",
+        "singular": "singular: no maximum exists; factors are those outside the excluded zones",
+    }
+    return [text for verdict, text in notes.items() if any(m.verdict == verdict for m in members)]

@@ -2,138 +2,188 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Any
+from itertools import chain
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from reports.data.results import Floats, LinkageMotion, Units
 from reports.format.file_names import plot_name
 from reports.format.numbers import short
-from reports.format.plot_labels import Label, place_texts
-from reports.format.style import INK, clipped, line_style, panels, plain_numbers, save
+from reports.format.svg_labels import label_offsets
+from reports.plots.spec import Plot, Spec, clipped, headed, rows
 
 BETWEEN = 5  # positions between the first and the last
-LOWEST, HIGHEST = 3.0, 7.0  # inches, of the axes
+WIDTH, LOWEST, HIGHEST = 560.0, 160.0, 560.0
+MARGIN = 0.06  # of the size, around the linkage
+LETTER, LINE, GAP = 7.0, 13.0, 7.0
 SAME = 1e-6  # of the linkage's size: positions nearer than this are drawn once
 
 
-def linkage_plot(motion: LinkageMotion, units: Units, directory: Path) -> list[Path]:
+def linkage_plot(motion: LinkageMotion, units: Units) -> Plot:
     """Positions from the start (solid) to the end (dashed) with the paths of the joints."""
-    with panels(1, height=_height(motion)) as (figure, (axes,)):
-        axes.set_aspect("equal", adjustable="datalim")
-        axes.set(xlabel=f"x [{units.length}]", ylabel=f"y [{units.length}]")
-        plain_numbers(axes)
-        last = len(motion.condition) - 1
-        if motion.time is not None:
-            between = "intermediate"
-            _paths(axes, motion)
-            for k in np.linspace(0, last, BETWEEN + 2)[1:-1]:
-                shade = f"{0.80 - 0.28 * k / last:.3f}"
-                style: Any = {"color": shade, "linewidth": 1.1, "zorder": 2.0}
-                _position(axes, motion, round(k), between, **style)
-                between = ""
-        texts = _emphasised(axes, motion, units)
-        axes.set_title(_title(motion), pad=8)
-        handles, labels = axes.get_legend_handles_labels()
-        if handles:
-            ncols = min(3, len(handles))
-            figure.legend(handles, labels, loc="outside lower left", ncols=ncols, handlelength=3.5)
-        _name(figure, axes, motion, texts)
-        return save(figure, directory, plot_name("linkage", motion.case))
-
-
-def _title(motion: LinkageMotion) -> str:
-    if motion.time is None:
-        return f"{motion.case}: the linkage's position"
-    return f"{motion.case}: the linkage from start to end, and the paths of its joints"
-
-
-def _height(motion: LinkageMotion) -> float:
-    wide, high = np.ptp(_all_points(motion), axis=0) + 1e-12
-    return float(
-        np.clip(6.2 * high / wide + (0.6 if motion.time is None else 1.1), LOWEST, HIGHEST)
+    frame = _Frame(motion)
+    moving = motion.time is not None
+    instants = _instants(motion, frame.size)
+    title = f"{motion.case}: the linkage " + (
+        "from start to end, with the paths of its joints" if moving else "in its position"
     )
+    key = dict(zip(instants, _keys(motion, instants, units), strict=True))
+    links = [row for k in instants for row in _links(motion, k, key[k])]
+    between = [row for k in _intermediate(motion) for row in _links(motion, k, "intermediate")]
+    spec = {
+        "title": headed(title),
+        "usermeta": {"columns": [f"x [{units.length}]", f"y [{units.length}]"]},
+        "data": rows([]),
+        "width": WIDTH,
+        "height": frame.height,
+        "encoding": {name: frame.axis(k, units) for k, name in enumerate("xy")},
+        "layer": [
+            *_lines(between, "faint", None),
+            *_lines(_paths(motion) if moving else [], "level", None),
+            *_lines(links, "", list(key.values())),
+            *_joints(motion, instants),
+            *_names(motion, instants, frame),
+        ],
+    }
+    return Plot(plot_name("linkage", motion.case), title, spec)
 
 
-def _all_points(motion: LinkageMotion) -> Floats:
-    parts = [motion.joint_position, *motion.slides.values()]
-    return np.concatenate([np.asarray(p).reshape(-1, 2) for p in parts])
+class _Frame:
+    """What the picture shows, at one scale in both directions."""
+
+    def __init__(self, motion: LinkageMotion) -> None:
+        parts = [motion.joint_position, *motion.slides.values()]
+        every = np.concatenate([np.asarray(p).reshape(-1, 2) for p in parts])
+        low, high = every.min(axis=0), every.max(axis=0)
+        self.size = float((high - low).max()) or 1.0
+        span = high - low + 2.0 * MARGIN * self.size
+        scale = min(WIDTH / span[0], HIGHEST / span[1])
+        self.height = max(scale * float(span[1]), LOWEST)
+        half = 0.5 * np.array([WIDTH, self.height]) / scale
+        middle = 0.5 * (low + high)
+        self.scale, self.low, self.high = scale, middle - half, middle + half
+
+    def axis(self, k: int, units: Units) -> Spec:
+        return {
+            "field": "xy"[k], "type": "quantitative", "title": f"{'xy'[k]} [{units.length}]",
+            "scale": {"domain": [float(self.low[k]), float(self.high[k])], "nice": False},
+        }  # fmt: skip
+
+    def pixels(self, points: Floats) -> Floats:
+        """(.., 2) of points (.., 2), y downwards."""
+        x, y = points[..., 0] - self.low[0], self.high[1] - points[..., 1]
+        return np.asarray(self.scale * np.stack([x, y], axis=-1))
 
 
-def _emphasised(axes: Axes, motion: LinkageMotion, units: Units) -> list[int]:
-    """Draw the first and the last position; returns the instants drawn."""
-    if motion.time is None:
-        _position(axes, motion, 0, **line_style(0), linewidth=2.2, zorder=4.0, fill=True)
-        return [0]
-    start, end = (f"t = {short(float(motion.time[k]))} {units.time}" for k in (0, -1))
+def _instants(motion: LinkageMotion, size: float) -> list[int]:
+    """The first and, where it differs, the last."""
     points = motion.joint_position
     moved = float(np.abs(points[-1] - points[0]).max())
-    same = moved < SAME * float(np.ptp(_all_points(motion), axis=0).max())
-    first = f"start, {start}, and end, {end}" if same else f"start, {start}"
-    _position(axes, motion, 0, first, **line_style(0), linewidth=2.2, zorder=4.0, fill=True)
-    if not same:
-        dashed = {"color": "#c8501e", "linestyle": (0, (4, 1.6))}
-        _position(axes, motion, -1, f"end, {end}", **dashed, linewidth=2.2, zorder=5.0, fill=True)
-    return [0] if same else [0, -1]
+    return [0] if motion.time is None or moved < SAME * size else [0, len(points) - 1]
 
 
-def _position(
-    axes: Axes, motion: LinkageMotion, k: int, label: str = "", fill: bool = False, **style: Any
-) -> None:
+def _intermediate(motion: LinkageMotion) -> list[int]:
+    if motion.time is None:
+        return []
+    inner = np.linspace(0, len(motion.condition) - 1, BETWEEN + 2)[1:-1]
+    return [round(float(k)) for k in inner]
+
+
+def _keys(motion: LinkageMotion, instants: list[int], units: Units) -> list[str]:
+    if motion.time is None:
+        return ["the linkage"]
+    start, end = (f"t = {short(float(motion.time[k]))} {units.time}" for k in (0, -1))
+    if len(instants) == 1:
+        return [f"start, {start}, and end, {end}"]
+    return [f"start, {start}", f"end, {end}"]
+
+
+def _links(motion: LinkageMotion, k: int, key: str) -> list[Spec]:
+    """Outlines of bodies and lines of sliders at an instant, point by point."""
     at = dict(zip(motion.joints, motion.joint_position[k], strict=True))
-    for joints in motion.links:
-        if len(joints) < 2:
-            continue
-        ring = [at[j] for j in (*joints, joints[0])] if len(joints) > 2 else [at[j] for j in joints]
-        axes.plot(*np.transpose(ring), solid_capstyle="round", label=label or None, **style)
-        label = ""
-        if fill and len(joints) > 2:
-            axes.fill(*np.transpose(ring), color=style["color"], alpha=0.10, linewidth=0.0)
-    slider = "slider" if k == 0 else ""
-    thin = style | {"linewidth": 0.6 * style["linewidth"]}
-    for ends in motion.slides.values():
-        dashed = thin | {"linestyle": (0, (8, 2, 1.5, 2))}
-        axes.plot(*ends[k].T, **dashed, label=slider or None)
-        slider = ""
-        if fill:
-            axes.plot(*ends[k, 1], "s", ms=9, mfc="none", mec=style["color"], zorder=5.5)
-    if fill:
-        moving = np.array([p for j, p in at.items() if j not in motion.ground]).reshape(-1, 2)
-        axes.plot(*moving.T, "o", ms=5, mfc="white", mec=style["color"], mew=1.3, zorder=6.0)
-        _ground(axes, motion, at, "ground joint" if k == 0 else None)
+    shapes = [
+        [at[j] for j in ((*joints, joints[0]) if len(joints) > 2 else joints)]
+        for joints in motion.links if len(joints) > 1
+    ]  # fmt: skip
+    sliders = [list(ends[k]) for ends in motion.slides.values()]
+    return [
+        {"x": float(x), "y": float(y), "of": f"{k}.{number}", "key": key}
+        for number, shape in enumerate(chain(shapes, sliders)) for x, y in shape
+    ]  # fmt: skip
 
 
-def _ground(axes: Axes, motion: LinkageMotion, at: dict[str, Floats], label: str | None) -> None:
-    still = np.array([at[j] for j in motion.ground]).reshape(-1, 2)
-    axes.plot(*still.T, "^", ms=13, mfc="#bbbbbb", mec=INK, mew=0.9, zorder=5.8, label=label)
-    axes.plot(*still.T, "o", ms=5, mfc="white", mec=INK, mew=1.3, zorder=6.1)
+def _paths(motion: LinkageMotion) -> list[Spec]:
+    return [
+        {"x": float(x), "y": float(y), "of": name, "key": "path"}
+        for j, name in enumerate(motion.joints) if name not in motion.ground
+        for x, y in motion.joint_position[:, j]
+    ]  # fmt: skip
 
 
-def _paths(axes: Axes, motion: LinkageMotion) -> None:
-    dots: Any = {"color": INK, "linestyle": (0, (1, 1.6)), "linewidth": 0.9, "zorder": 3.0}
-    label: str | None = "path of a joint"
-    for j, name in enumerate(motion.joints):
-        if name not in motion.ground:
-            axes.plot(*motion.joint_position[:, j].T, label=label, **dots)
-            label = None
+def _lines(data: list[Spec], style: str, key: list[str] | None) -> list[Spec]:
+    if not data:
+        return []
+    scale = {"domain": key}
+    coloured: Spec = {
+        "color": {"field": "key", "type": "nominal", "title": None, "scale": scale},
+        "strokeDash": {"field": "key", "type": "nominal", "title": None, "scale": scale},
+    }
+    if key and len(key) == 1 and key[0] == "the linkage":
+        coloured = {"color": {**coloured["color"], "legend": None}}
+    return [{
+        "data": rows(data),
+        "mark": {"type": "line", **({"style": style} if style else {"strokeWidth": 2.2})},
+        "encoding": {"detail": {"field": "of", "type": "nominal"}, "order": {"value": None},
+                     **({} if key is None else coloured)},
+    }]  # fmt: skip
 
 
-def _name(figure: Figure, axes: Axes, motion: LinkageMotion, instants: list[int]) -> None:
-    """Names of joints at the first position drawn, of moved ones at the last, then of bodies."""
-    labels = []
-    least = SAME * float(np.ptp(_all_points(motion), axis=0).max())
-    bold, italic = {"color": INK, "weight": "bold"}, {"color": "#555555", "style": "italic"}
-    for j, name in enumerate(motion.joints):
-        first, *others = motion.joint_position[instants, j]
-        moved = [point for point in others if np.abs(point - first).max() > least]
-        for x, y in (first, *moved):
-            labels.append(Label(clipped(name), float(x), float(y), bold))
+def _joints(motion: LinkageMotion, instants: list[int]) -> list[Spec]:
+    """Rings at joints, with triangles at those that stand still."""
+    layers = []
+    for still, shape, size in ((True, "triangle-up", 170), (False, "circle", 34)):
+        shown = [
+            {"x": float(x), "y": float(y), "name": name}
+            for j, name in enumerate(motion.joints) if (name in motion.ground) or not still
+            for x, y in motion.joint_position[instants, j]
+        ]  # fmt: skip
+        tooltip = {"field": "name", "type": "nominal"}
+        mark = {"type": "point", "shape": shape, "size": size, "filled": True, "opacity": 1,
+                "style": "hollow"}  # fmt: skip
+        layers.append({"data": rows(shown), "mark": mark, "encoding": {"tooltip": tooltip}})
+    return layers
+
+
+def _names(motion: LinkageMotion, instants: list[int], frame: _Frame) -> list[Spec]:
+    """Names of joints at the first position drawn and of bodies, where they hide least."""
     at = dict(zip(motion.joints, motion.joint_position[0], strict=True))
-    for body, joints in zip(motion.bodies, motion.links, strict=True):
-        if len(joints) > 1 and sorted(body) != sorted("".join(joints)):  # EF is named after E and F
-            x, y = np.mean([at[j] for j in joints], axis=0)
-            labels.append(Label(clipped(body), float(x), float(y), italic))
-    place_texts(figure, axes, labels)
+    bodies = [
+        (clipped(body), np.mean([at[j] for j in joints], axis=0))
+        for body, joints in zip(motion.bodies, motion.links, strict=True)
+        # EF is named after E and F.
+        if len(joints) > 1 and sorted(body) != sorted("".join(joints))
+    ]
+    named = [(clipped(name), point) for name, point in at.items()] + bodies
+    points = np.array([point for _, point in named]).reshape(-1, 2)
+    sizes = np.array([[LETTER * len(name), LINE] for name, _ in named])
+    segments = [
+        [motion.joint_position[k][motion.joints.index(j)] for j in pair]
+        for k in instants for joints in motion.links
+        for pair in zip(joints, (*joints[1:], joints[0]), strict=True) if len(joints) > 1
+    ]  # fmt: skip
+    ends = frame.pixels(np.array(segments).reshape(1, -1, 2, 2))
+    at_pixels = frame.pixels(points)
+    placed = at_pixels + label_offsets(at_pixels[None], sizes, ends, GAP, (WIDTH, frame.height))
+    shown = [
+        {"px": float(x), "py": float(y), "name": name}
+        for (name, _), (x, y) in zip(named, placed, strict=True)
+    ]
+    parts = ((shown[: len(at)], "bold", "note"), (shown[len(at) :], "normal", "quiet-note"))
+    return [
+        {"data": rows(part),
+         "mark": {"type": "text", "style": style, "fontWeight": weight},
+         "encoding": {"x": {"field": "px", "type": "quantitative", "scale": None, "axis": None},
+                      "y": {"field": "py", "type": "quantitative", "scale": None, "axis": None},
+                      "text": {"field": "name", "type": "nominal"}}}
+        for part, weight, style in parts if part
+    ]  # fmt: skip

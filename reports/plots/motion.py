@@ -2,64 +2,53 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.ticker import LogLocator, NullFormatter
 
-from reports.data.results import Floats, LinkageMotion, Units
+from reports.data.results import LinkageMotion, Units
 from reports.format.file_names import plot_name
 from reports.format.numbers import ten_to
-from reports.format.style import COLOURS, GREY, INK, clipped, line_style, panels, save
-from reports.plots.curves import curves, finish
+from reports.plots.spec import Abscissa, Panel, Plot, Spec, clipped, curves, level, rows
+from reports.plots.theme import SERIES
 
 GUIDANCE = 40.0  # degrees; designers keep transmission angles above
 NEGLIGIBLE = 1e-9
-MOST = len(COLOURS)  # bodies in one figure
+MOST = len(SERIES)  # bodies in one plot
 
 
-def motion_plots(motion: LinkageMotion, units: Units, directory: Path) -> list[Path]:
+def motion_plots(motion: LinkageMotion, units: Units) -> Iterator[Plot]:
     """All plots against time; none for a static linkage."""
     if motion.time is None:
-        return []
-    return [
-        path
-        for draw in (_bodies, _transmission, _shaking, _ledger)
-        for path in draw(motion, motion.time, units, directory)
-    ]
+        return
+    time = Abscissa(f"time [{units.time}]", motion.time)
+    yield from _bodies(motion, time, units)
+    yield _transmission(motion, time)
+    yield _shaking(motion, time, units)
+    yield _ledger(motion, time, units)
 
 
-def _bodies(motion: LinkageMotion, time: Floats, units: Units, directory: Path) -> list[Path]:
+def _bodies(motion: LinkageMotion, time: Abscissa, units: Units) -> Iterator[Plot]:
     turning = _turning(motion)
     still = [clipped(b) for k, b in enumerate(motion.bodies) if k not in turning]
-    paths = []
-    for part, first in enumerate(range(0, len(turning), MOST)):
+    names = ", ".join(still)
+    note = f"; not rotating: {names if len(names) < 70 else f'{len(still)} bodies'}"
+    for part, first in enumerate(range(0, len(turning), MOST), start=1):
         shown = turning[first : first + MOST]
-        with panels(3, height=max(1.9, 0.3 * len(shown)), sharex=True) as (figure, axes):
-            for panel, values, heading in (
-                (axes[0], motion.angle, "angle [deg]"),
-                (axes[1], motion.angular_velocity, f"angular velocity\n[rad/{units.time}]"),
-                (
-                    axes[2],
-                    motion.angular_acceleration,
-                    f"angular acceleration\n[rad/{units.time}²]",
-                ),
-            ):
-                panel.set_ylabel(heading)
-                curves(panel, time, {motion.bodies[b]: values[:, b] for b in shown})
-            title = f"{motion.case}: rotating bodies"
-            if len(turning) > MOST:
-                title += f", {part + 1} of {-(-len(turning) // MOST)}"
-            if still:
-                names = ", ".join(still)
-                names = names if len(names) < 70 else f"{len(still)} bodies"
-                title += f"\n(not rotating: {names})"
-            finish(figure, axes, units, title)
-            name = "bodies" if part == 0 else f"bodies-{part + 1}"
-            paths += save(figure, directory, plot_name(name, motion.case))
-    return paths
+        panels = [
+            Panel(heading, {motion.bodies[b]: values[:, b] for b in shown})
+            for values, heading in (
+                (motion.angle, "angle [deg]"),
+                (motion.angular_velocity, f"angular velocity [rad/{units.time}]"),
+                (motion.angular_acceleration, f"angular acceleration [rad/{units.time}²]"),
+            )
+        ]
+        title = f"{motion.case}: rotating bodies"
+        if len(turning) > MOST:
+            title += f", {part} of {-(-len(turning) // MOST)}"
+        name = "bodies" if part == 1 else f"bodies-{part}"
+        spec = curves(title, time, panels, common=True)
+        yield Plot(plot_name(name, motion.case), title + (note if still else ""), spec)
 
 
 def _turning(motion: LinkageMotion) -> list[int]:
@@ -72,57 +61,56 @@ def _turning(motion: LinkageMotion) -> list[int]:
     ]
 
 
-def _transmission(motion: LinkageMotion, time: Floats, units: Units, directory: Path) -> list[Path]:
+def _transmission(motion: LinkageMotion, time: Abscissa) -> Plot:
     angles = {n: v for n, v in motion.transmission.items() if np.isfinite(v).any()}
-    rows = 2 if angles else 1
-    with panels(rows, height=max(2.2, 0.22 * len(angles)), sharex=True) as (figure, axes):
-        if angles:
-            axes[0].set(
-                ylim=(0.0, 92.0), yticks=range(0, 91, 15), ylabel="transmission angle [deg]"
-            )
-            axes[0].plot(
-                time[[0, -1]], [GUIDANCE] * 2, color=INK, linewidth=0.9, linestyle=(0, (1, 1))
-            )
-            axes[0].fill_between(time[[0, -1]], 0.0, GUIDANCE, color="#f0f0f0", linewidth=0.0)
-            curves(axes[0], time, angles, zero=False)
-        known = np.isfinite(motion.condition) & (motion.condition > 0.0)
-        condition = np.where(known, motion.condition, np.nan)
-        axes[-1].plot(time, condition, **line_style(0))
-        axes[-1].set_ylabel("condition number [1]\nlogarithmic")
-        _logarithmic(axes[-1], condition)
-        title = f"{motion.case}: transmission angles and conditioning"
-        if angles:
-            title += f"\n(shaded: below {GUIDANCE:.0f} deg, where forces increase rapidly)"
-        finish(figure, axes, units, title)
-        return save(figure, directory, plot_name("transmission", motion.case))
-
-
-def _logarithmic(axes: Axes, values: Floats) -> None:
-    known = values[np.isfinite(values)]
-    top = 1.3 * float(known.max(initial=1.0))
-    axes.set_yscale("log")
-    axes.set_ylim(1.0, max(top, 10.0))
-    subs = (1.0, 2.0, 5.0) if top < 2e3 else (1.0,)
-    axes.yaxis.set_major_locator(LogLocator(subs=subs, numticks=12))
-    axes.yaxis.set_minor_formatter(NullFormatter())
-
-
-def _shaking(motion: LinkageMotion, time: Floats, units: Units, directory: Path) -> list[Path]:
-    with panels(2, height=2.2, sharex=True) as (figure, axes):
-        axes[0].set_ylabel(f"force [{units.force}]")
-        force = motion.shaking_force
-        curves(axes[0], time, {"Fx": force[:, 0], "Fy": force[:, 1]})
-        axes[1].set_ylabel(
-            f"moment about {clipped(motion.shaking_about)}\n[{units.force}·{units.length}]"
+    known = np.isfinite(motion.condition) & (motion.condition > 0.0)
+    condition = np.where(known, motion.condition, np.nan)
+    top = max(1.3 * float(np.nanmax(condition, initial=1.0)), 10.0)
+    panels = [
+        Panel(
+            "condition number of the loop equations [1], logarithmic",
+            {"": condition},
+            scale={"type": "log", "domain": [1.0, top], "clamp": True},
+            zero=False,
         )
-        axes[1].plot(time, motion.shaking_moment, **line_style(0))
-        finish(figure, axes, units, f"{motion.case}: force and moment of the linkage on its ground")
-        return save(figure, directory, plot_name("shaking", motion.case))
+    ]
+    title = f"{motion.case}: transmission angles and conditioning"
+    caption = title
+    if angles:
+        limits = {"domain": [0.0, 92.0]}
+        under = _poor(), level(GUIDANCE)
+        heading = "transmission angle [deg]"
+        panels.insert(0, Panel(heading, angles, under, scale=limits, height=150.0, zero=False))
+        caption += f"; shaded: below {GUIDANCE:.0f} deg, where forces increase rapidly"
+    spec = curves(title, time, panels)
+    return Plot(plot_name("transmission", motion.case), caption, spec)
 
 
-def _ledger(motion: LinkageMotion, time: Floats, units: Units, directory: Path) -> list[Path]:
+def _poor() -> Spec:
+    return {
+        "data": rows([{}]),
+        "mark": {"type": "rect", "style": "shade"},
+        "encoding": {
+            "x": {"value": 0}, "x2": {"value": "width"},
+            "y": {"datum": 0.0, "type": "quantitative"}, "y2": {"datum": GUIDANCE},
+        },
+    }  # fmt: skip
+
+
+def _shaking(motion: LinkageMotion, time: Abscissa, units: Units) -> Plot:
+    force = motion.shaking_force
+    about = f"moment about {clipped(motion.shaking_about)} [{units.force}·{units.length}]"
+    panels = [
+        Panel(f"force [{units.force}]", {"Fx": force[:, 0], "Fy": force[:, 1]}),
+        Panel(about, {"": motion.shaking_moment}),
+    ]
+    title = f"{motion.case}: force and moment of the linkage on its ground"
+    return Plot(plot_name("shaking", motion.case), title, curves(title, time, panels))
+
+
+def _ledger(motion: LinkageMotion, time: Abscissa, units: Units) -> Plot:
     p = motion.ledger
-    power = f"[{units.force}·{units.length}/{units.time}]"
+    unit = f"[{units.force}·{units.length}/{units.time}]"
     given = {
         "drives": p.drives,
         "gravity": p.gravity,
@@ -131,22 +119,14 @@ def _ledger(motion: LinkageMotion, time: Floats, units: Units, directory: Path) 
     }
     largest = max(float(np.abs(v).max()) for v in (*given.values(), p.kinetic_rate))
     acting = {n: v for n, v in given.items() if np.abs(v).max() > NEGLIGIBLE * largest}
-    with panels(2, height=2.2, sharex=True) as (figure, axes):
-        axes[0].set_ylabel(f"power {power}")
-        curves(axes[0], time, acting)
-        axes[1].set_ylabel(f"sum and rate {power}")
-        both: Any = {"gid": "curve"}
-        pale: Any = {"color": "#7d9cbf", "linewidth": 4.5, "label": "rate of\nkinetic energy"}
-        axes[1].plot(time, p.kinetic_rate, **both, **pale)
-        dashed: Any = {"color": INK, "linestyle": (0, (5, 3)), "label": "sum of powers"}
-        axes[1].plot(time, sum(given.values()), **both, **dashed)
-        axes[1].axhline(0.0, color=GREY, linewidth=0.8, zorder=1.0)
-        finish(
-            figure, axes, units,
-            f"{motion.case}: powers in, and the rate of kinetic energy they leave\n"
-            f"(largest violation {_tiny(p.violation)} of the largest term)",
-        )  # fmt: skip
-        return save(figure, directory, plot_name("ledger", motion.case))
+    rate = {"rate of kinetic energy, and sum of powers": p.kinetic_rate}
+    panels = [
+        Panel(f"power {unit}", acting or {"drives": p.drives}),
+        Panel(f"rate of kinetic energy {unit}", rate),
+    ]
+    title = f"{motion.case}: powers, and the rate of kinetic energy that they leave"
+    caption = f"{title} (largest difference {_tiny(p.violation)} of the largest term)"
+    return Plot(plot_name("ledger", motion.case), caption, curves(title, time, panels))
 
 
 def _tiny(value: float) -> str:

@@ -2,58 +2,79 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
-from matplotlib.axes import Axes
 
 from reports.data.results import Floats, PinResult, PinShape, Units
 from reports.data.surface import Mask, Surface, SurfaceCase
 from reports.format.file_names import plot_name
 from reports.format.numbers import engineering
 from reports.format.ranges import error_range
-from reports.format.style import BAND, GREY, clipped, line_style, panels, plain_numbers, save
+from reports.plots.spec import (
+    FORMAT,
+    ZOOM,
+    Plot,
+    Spec,
+    bands,
+    clipped,
+    headed,
+    level,
+    points,
+    rows,
+    table,
+)
 
-RED = "#a8211b"
-STRIP = 0.07  # height of the strip that shows the bands, of the panel
-HEADROOM = 1.25  # above the maximum, for its label
+FILLS = {"band": "band", "held": "governs"}
 
 
 def surface_plot(
-    surface: Surface,
-    case: SurfaceCase,
-    pin: PinResult,
-    shape: PinShape | None,
-    units: Units,
-    directory: Path,
-) -> list[Path]:
+    surface: Surface, case: SurfaceCase, pin: PinResult, shape: PinShape | None, units: Units
+) -> Plot:
     """Of a pin with a meridian in one case: outer surface and bore along z, at the governing
     instant, without the excluded zones. shape: for the strip with the bands.
     """
     z = surface.points[:, 2]
     read = np.where(case.excluded, np.nan, case.largest)
-    with panels(1, height=2.7) as (figure, (axes,)):
-        for order, (name, rows) in enumerate(_sides(z).items()):
-            axes.plot(z[rows], read[rows], label=name, **line_style(order))
-        for low, high in _spans(z, case.excluded):
-            axes.axvspan(low, high, color=BAND, zorder=0.1)
-        if pin.location is not None and pin.max_von_mises is not None:
-            _mark(axes, pin.location[2], pin.max_von_mises, pin)
-        top = (pin.max_von_mises_interval or (0.0, pin.max_von_mises or 0.0))[1]
-        largest = max(float(np.nanmax(read)), top)
-        axes.set_ylim(-1.5 * STRIP * largest, HEADROOM * largest or 1.0)
-        axes.set_xlim(float(z.min()), float(z.max()))
-        if shape is not None:
-            _bands(axes, shape, -1.5 * STRIP * largest, -0.3 * STRIP * largest)
-        axes.axhline(0.0, color=GREY, linewidth=0.8)
-        axes.set(xlabel=f"z [{units.length}]", ylabel=f"von Mises [{units.stress}]")
-        note = "; grey: excluded" if case.excluded.any() else ""
-        name = f"pin {clipped(pin.pin)}, {clipped(pin.case)}"
-        axes.set_title(f"{name}: maximum over the circumference{note}")
-        plain_numbers(axes)
-        if len(axes.get_lines()) and len(_sides(z)) > 1:
-            figure.legend(loc="outside lower left", ncols=2, handlelength=3.5)
-        return save(figure, directory, plot_name("surface", pin.case, pin.pin))
+    name = f"Pin {clipped(pin.pin)}, {clipped(pin.case)}"
+    across = {"field": "x", "type": "quantitative", "title": f"z [{units.length}]", "sort": None,
+              "scale": {"domain": [float(z.min()), float(z.max())], "nice": False}}  # fmt: skip
+    sides = _sides(z)
+    spec = {
+        "title": headed(f"{name}: maximum over the circumference"),
+        "usermeta": {"columns": [f"z [{units.length}]", f"von Mises [{units.stress}]"]},
+        "data": table({"x": z, "y": read}),
+        "vconcat": [
+            {"title": f"von Mises [{units.stress}]", "height": 190, "encoding": {"x": across},
+             "layer": [bands(_spans(z, case.excluded)), level(0.0, style="zero"),
+                       *(_side(*side, list(sides), z, read) for side in sides.items()),
+                       *_mark(pin, units)]},
+            *_strip(shape, across),
+        ],
+    }  # fmt: skip
+    note = "; shaded: excluded zones" if case.excluded.any() else ""
+    when = ", at the governing instant" if pin.time is not None else ""
+    caption = (
+        f"Pin {pin.pin}, {pin.case}: von Mises stress along the pin, maximum over the "
+        f"circumference{when}; a dot above the curve marks a maximum inside the pin or on the "
+        f"boundary of an excluded zone{note}"
+    )
+    return Plot(plot_name("surface", pin.case, pin.pin), caption, spec)
+
+
+def _side(name: str, part: slice, names: list[str], z: Floats, read: Floats) -> Spec:
+    """One curve, in the order of the meridian."""
+    heading = {"x": "z", "y": f"von Mises, {name}"}
+    key: Spec = {"datum": name, "scale": {"domain": names}}
+    return {
+        **({"params": [ZOOM]} if name == names[0] else {}),
+        "data": table({"x": z[part], "y": read[part]}),
+        "mark": {"type": "line", "clip": True, "point": {"size": 8, "opacity": 0.01}},
+        "encoding": {
+            "y": {"field": "y", "type": "quantitative", "title": None, "scale": {"zero": True}},
+            "color": key if len(names) > 1 else {**key, "legend": None},
+            "tooltip": [{"field": k, "type": "quantitative", "title": text, "format": FORMAT}
+                        for k, text in heading.items()],
+        },
+    }  # fmt: skip
 
 
 def _sides(z: Floats) -> dict[str, slice]:
@@ -75,42 +96,50 @@ def _spans(z: Floats, excluded: Mask) -> list[tuple[float, float]]:
     return [(float(z[a:b].min()), float(z[a:b].max())) for a, b in edges.tolist()]
 
 
-def _mark(axes: Axes, z: float, value: float, pin: PinResult) -> None:
+def _mark(pin: PinResult, units: Units) -> list[Spec]:
     """The maximum with its error, or the interval of a singular row."""
-    error, interval = pin.error_estimate or 0.0, pin.max_von_mises_interval
+    if pin.location is None or pin.max_von_mises is None:
+        return []
+    value, error = pin.max_von_mises, pin.error_estimate or 0.0
+    interval = pin.max_von_mises_interval
     low, high = interval or (value - error, value + error)
     error_text = f"({error_range(pin)})" if interval else f"± {error_range(pin)}"
-    axes.errorbar(
-        [z], [value], [[value - low], [high - value]], fmt="o", color=RED, ms=5, capsize=3
-    )
-    left = z < np.mean(axes.get_xlim())
-    axes.annotate(
-        f"max {engineering(value)} {error_text}",
-        (z, value),
-        xytext=(8, 3) if left else (-8, 3),
-        textcoords="offset points",
-        ha="left" if left else "right",
-        va="bottom",
-        color=RED,
-        fontsize=8.5,
-    )  # fmt: skip
+    text = f"max {engineering(value)} {error_text} {units.stress}"
+    at = {"x": pin.location[2], "y": value, "low": low, "high": high, "text": text}
+    x, y = ({"field": k, "type": "quantitative"} for k in ("x", "y"))
+    error_bar = {
+        "data": rows([at]),
+        "mark": {"type": "rule", "style": "hot", "clip": True},
+        "encoding": {"x": x, "y": {**y, "field": "low"}, "y2": {"field": "high"}},
+    }
+    noted = {
+        "data": rows([at]),
+        "mark": {"type": "text", "style": "hot-note", "align": "right", "baseline": "bottom",
+                 "text": text, "x": "width", "y": -4, "clip": False},
+        "encoding": {"x": None},
+    }  # fmt: skip
+    return [error_bar, points([at]), noted]
 
 
-def _bands(axes: Axes, shape: PinShape, low: float, high: float) -> None:
-    """A strip under the curves: bearing bands, and clamped segments (hatched)."""
-    at = 0.0
+def _strip(shape: PinShape | None, across: Spec) -> list[Spec]:
+    """Under the curves: bearing bands, and clamped segments with a frame."""
+    if shape is None:
+        return []
+    at, shown = 0.0, []
     for length, _, _, label, kind in shape.segments:
-        if kind in ("band", "held"):
-            axes.fill_between(
-                [at, at + length], low, high, facecolor="#9dbbe0" if kind == "band" else "white",
-                edgecolor=GREY, hatch="////" if kind == "held" else None, linewidth=0.6,
-            )  # fmt: skip
-            text = clipped(label, 12)
-            box = (
-                {"facecolor": "white", "edgecolor": "none", "pad": 0.8} if kind == "held" else None
-            )
-            axes.text(
-                at + 0.5 * length, 0.5 * (low + high), text, ha="center", va="center_baseline",
-                fontsize=7.5, bbox=box if kind == "held" else None,
-            )  # fmt: skip
+        if kind in FILLS:
+            shown.append({"x": at, "x2": at + length, "middle": at + 0.5 * length, "kind": kind,
+                          "label": clipped(label, 12)})  # fmt: skip
         at += length
+    x: Spec = {"x": {**across, "title": None, "axis": None}}
+    parts: list[Spec] = [
+        {"transform": [{"filter": f"datum.kind === '{kind}'"}],
+         "mark": {"type": "rect", "style": style, "clip": True, "filled": kind == "band"},
+         "encoding": {**x, "x2": {"field": "x2"}}}
+        for kind, style in FILLS.items()
+    ]  # fmt: skip
+    middle: Spec = {"x": {**x["x"], "field": "middle"}}
+    named: Spec = {"text": {"field": "label", "type": "nominal"}}
+    parts.append({"mark": {"type": "text", "style": "note", "clip": True},
+                  "encoding": {**middle, **named}})  # fmt: skip
+    return [{"data": rows(shown), "height": 16, "layer": parts}]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from reports.data.results import Results
 from reports.tables.calculix import opinion_tables
 from reports.tables.hand_checks import hand_check_rows
@@ -32,6 +34,12 @@ CSV_ONLY = (
     "linkage",
     "sliders",
 )
+LONGEST = 2000  # rows of a sheet; longer tables are written as CSV only, which is much faster
+
+
+def sheets(tables: Sequence[Table]) -> list[Table]:
+    """Those that the workbook has."""
+    return [t for t in tables if t.name not in CSV_ONLY and len(t.rows) <= LONGEST]
 
 
 def stress_tables(results: Results) -> list[Table]:

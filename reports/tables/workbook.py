@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from datetime import datetime
 from io import BytesIO
@@ -89,20 +90,23 @@ def _heading(table: Table, column: str, results: Results) -> str:
 
 
 def _write(sheet: Any, row: int, column: int, value: Cell, shape: Any, quoted: Any) -> None:
-    if value is None:
+    if isinstance(value, float):  # most are: first, and without numpy
+        if math.isfinite(value):
+            sheet.write_number(row, column, value, shape)
+    elif value is None:
         return
-    if isinstance(value, (bool, np.bool_)):
+    elif isinstance(value, (bool, np.bool_)):
         sheet.write_string(row, column, "yes" if value else "no")
     elif isinstance(value, str):
         sheet.write_string(row, column, value, None if harmless(value) == value else quoted)
-    elif np.isfinite(value):
-        sheet.write_number(row, column, float(value), shape)
+    else:
+        sheet.write_number(row, column, int(value), shape)
 
 
 def _numbers(column: Sequence[Cell]) -> list[float]:
-    kinds = (int, float, np.integer, np.floating)
+    kinds = (float, int, np.integer)
     found = [float(v) for v in column if isinstance(v, kinds) and not isinstance(v, bool)]
-    return [v for v in found if np.isfinite(v)]
+    return [v for v in found if math.isfinite(v)]
 
 
 def _format(column: Sequence[Cell]) -> str:

@@ -1,4 +1,4 @@
-// Table sorting, light and dark colours, animation frames. The page is complete without scripts.
+// Table sorting, folded parts, light and dark colours, animation frames.
 
 const sortable = (table) => {
   const heads = [...table.tHead.rows[0].cells];
@@ -27,6 +27,28 @@ const sortable = (table) => {
 
 document.querySelectorAll("table.sortable").forEach(sortable);
 
+// Folded parts open for links that lead into them, and all at once.
+const folds = [...document.querySelectorAll("details.fold")];
+const unfold = document.getElementById("unfold");
+const folded = () => folds.some((part) => !part.open);
+const named = () => { unfold.textContent = folded() ? "Open all parts" : "Close all parts"; };
+const reveal = () => {
+  const target = location.hash && document.getElementById(decodeURIComponent(location.hash.slice(1)));
+  if (!target) return;
+  for (let part = target.closest("details"); part; part = part.parentElement.closest("details")) part.open = true;
+  target.scrollIntoView();
+};
+unfold.addEventListener("click", () => {
+  const open = folded();
+  for (const part of folds) part.open = open;
+  named();
+});
+folds.forEach((part) => part.addEventListener("toggle", named));
+addEventListener("hashchange", reveal);
+document.querySelector(".tools").hidden = false;
+named();
+reveal();
+
 const shade = document.getElementById("shade");
 const frames = [...document.querySelectorAll("iframe")];
 const dark = () => (document.documentElement.style.colorScheme || (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light")) === "dark";
@@ -37,7 +59,6 @@ const shaded = () => {
     if (inner) inner.style.colorScheme = document.documentElement.style.colorScheme;
   }
 };
-shade.hidden = false;
 shade.addEventListener("click", () => { document.documentElement.style.colorScheme = dark() ? "light" : "dark"; shaded(); });
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", shaded);
 shaded();

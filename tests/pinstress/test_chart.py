@@ -25,6 +25,7 @@ from pinstress.cli.chart import _report_missed
 from pinstress.cli.commands import run_command_line
 from reports.data.chart import Chart, ChartPoint
 from reports.plots.chart import chart_plot
+from reports.plots.draw import draw
 from reports.tables.chart import write_chart_csv
 from reports.text.chart_summary import cost, failures, reference_line, staying, summary
 from tests.support.command_line import ONE_PIN, pinstress
@@ -185,7 +186,7 @@ def test_what_failed_is_shown_with_its_reason(
     (row,) = [r for r in rows if r["element"] == LINEAR]
     assert row["failed"] == "exceeded the limit of 9 s"
     assert [row[c] for c in CONTRACT[2:]] == [""] * 5
-    svg = chart_plot(found, tmp_path)[0].read_text()
+    svg = draw([chart_plot(found)], tmp_path)[0].read_text()
     assert "<svg" in svg
 
 
@@ -203,8 +204,7 @@ def test_without_any_point_inside_the_status_is_1(
 def test_the_chart_is_the_same_bytes_every_time(made_up: Chart, tmp_path: Path) -> None:
     one, two = tmp_path / "one", tmp_path / "two"
     for folder in (one, two):
-        folder.mkdir()
-        chart_plot(made_up, folder)
+        draw([chart_plot(made_up)], folder)
     for name in ("chart.svg", "chart.png"):
         assert (one / name).read_bytes() == (two / name).read_bytes()
 

@@ -22,6 +22,7 @@ from pinstress.cli.commands import run_command_line
 from pinstress.study.errors import InputError
 from reports.data.chart import Chart
 from reports.plots.chart import chart_plot
+from reports.plots.draw import draw
 from reports.text.chart_summary import curve_name, reference_line, summary
 from tests.conftest import ROOT
 from tests.support.command_line import ONE_PIN
@@ -120,7 +121,7 @@ def test_every_curve_has_a_name(made_up: Chart, tmp_path: Path) -> None:
         *("contact, 4 × 18 cells a lug", "contact, 8 × 36 cells a lug"),
         *("contact, 12 × 48 cells a lug", "CalculiX"),
     ]
-    assert all(path.stat().st_size for path in chart_plot(made_up, tmp_path))
+    assert all(path.stat().st_size for path in draw([chart_plot(made_up)], tmp_path))
 
 
 def test_calculix_ends_at_a_limit_and_is_run_once(plan: ChartPlan) -> None:

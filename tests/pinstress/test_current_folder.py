@@ -60,7 +60,7 @@ def as_script(folder: Path) -> tuple[str, ...]:
 
 
 def test_a_run_imports_nothing_from_the_current_folder(folder: Path) -> None:
-    done = run(folder, ("-m", "pinstress"), "run", "study.toml", "--out", "out")
+    done = run(folder, ("-m", "pinstress"), "run", "study.toml", "--out", "out", "--plots")
     assert (done.returncode, "No pictures" in done.stderr) == (0, False), done.stderr
     assert list((folder / "out" / "plots").glob("*.svg"))
 
@@ -68,7 +68,7 @@ def test_a_run_imports_nothing_from_the_current_folder(folder: Path) -> None:
 @pytest.mark.slow
 def test_nor_does_the_installed_program_or_any_process_that_it_starts(folder: Path) -> None:
     script = as_script(folder)
-    done = run(folder, script, "run", "study.toml", "--out", "out")
+    done = run(folder, script, "run", "study.toml", "--out", "out", "--plots")
     assert (done.returncode, "No pictures" in done.stderr) == (0, False), done.stderr
 
 

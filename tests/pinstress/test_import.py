@@ -52,7 +52,7 @@ def loaded_by(*arguments: str) -> set[str]:
 
 
 SOLVE = {"scipy", "skfem", "gmsh", "meshio", "cvxopt", "pymetis"}
-DRAW = {"matplotlib", "pyvista", "vtk", "rich", "reports"}
+DRAW = {"matplotlib", "vl_convert", "pyvista", "vtk", "rich", "reports"}
 
 
 def test_help_loads_no_numeric_library() -> None:

@@ -24,7 +24,6 @@ from pinstress.analysis import solve as solving
 from pinstress.analysis.plan import prepare
 from pinstress.analysis.stored import Entry, lasting, question
 from pinstress.cache import store as cache_module
-from pinstress.cache.plots import Files
 from pinstress.cache.store import Cache, user_cache
 from pinstress.cli.commands import run_command_line
 from tests.conftest import ROOT
@@ -169,7 +168,7 @@ def test_sound_entries_of_something_else_are_not_trusted(solve: Solve, folder: P
     assert {a, b} == set(contents(folder))
     (folder / a).write_bytes((folder / b).read_bytes())  # under another name
     assert solve() == ["A"]
-    cache.write(a, Files(()))  # another type
+    cache.write(a, Refinement(1, 1.0, 1.0))  # another type
     assert solve() == ["A"]
     of_b = cache.read(b, Entry)
     assert of_b is not None
@@ -305,33 +304,3 @@ def test_what_more_memory_would_have_changed_is_not_kept(tmp_path: Path) -> None
     assert not lasting(plan, plan.tasks[0], (peak(0.3, 20_000),))  # the next takes some 450 MB
     assert lasting(plan, plan.tasks[0], (peak(0.3, 10_000),))  # something else stopped it
     assert lasting(plan, plan.tasks[0], (peak(0.3, 200_000),))  # as large as they get
-
-
-@pytest.mark.slow
-def test_plots_and_pictures_are_drawn_once(solve: Solve, monkeypatch: pytest.MonkeyPatch) -> None:
-    from reports.format import style
-
-    saved: list[str] = []
-    own = style.save
-
-    def save(figure: Any, directory: Path, name: str) -> list[Path]:
-        saved.append(name)
-        return own(figure, directory, name)
-
-    for module in ("refinement", "surface", "reactions"):
-        monkeypatch.setattr(f"reports.plots.{module}.save", save)
-    RUN.remove("--no-pictures")
-    try:
-        solve()
-        first = contents(Path("out"))
-        assert {"study/plots/surface.press.A.svg", "study/plots/pin_A_press.png"} <= set(first)
-        assert len(saved) > 4
-        saved.clear()
-        assert solve() == []
-        assert saved == []
-        assert contents(Path("out")) == first
-        solve(STUDY.replace("fillet = 3", "fillet = 2.9"))
-        assert "surface.press.B" in saved
-        assert "surface.press.A" not in saved
-    finally:
-        RUN.insert(2, "--no-pictures")

@@ -242,7 +242,7 @@ def test_completion_completes(tmp_path: Path) -> None:
     environment = {
         **os.environ,
         "_PINSTRESS_COMPLETE": "bash_complete",
-        "COMP_WORDS": "pinstress run --no-p",
+        "COMP_WORDS": "pinstress run --pl",
         "COMP_CWORD": "2",
     }
     done = subprocess.run(
@@ -252,7 +252,7 @@ def test_completion_completes(tmp_path: Path) -> None:
         capture_output=True,
         text=True,
     )
-    assert done.stdout.split() == ["plain,--no-pictures"]
+    assert done.stdout.split() == ["plain,--plots"]
 
 
 def test_the_report_is_opened_only_when_asked(

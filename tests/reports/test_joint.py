@@ -23,7 +23,8 @@ from reports.files import write_reports
 from reports.format.ranges import joint_range, part_words
 from reports.format.words import JOINT
 from reports.page.viewer import pin_views
-from reports.plots.all import save_plots
+from reports.plots.all import all_plots
+from reports.plots.draw import draw
 from reports.plots.joint import joint_plot
 from reports.tables.joint import joint_json, joint_tables
 from reports.tables.safety_factors import shown_columns, shown_rows, write_safety_factors
@@ -46,7 +47,7 @@ def small(results: Results) -> Results:
 
 @pytest.fixture(scope="module")
 def written(small: Results, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return write_reports(small, tmp_path_factory.mktemp("joint"), {})
+    return write_reports(small, tmp_path_factory.mktemp("joint"))
 
 
 def test_lengths_of_a_joint_are_converted() -> None:
@@ -104,11 +105,11 @@ def test_a_range_in_assumed_lugs_is_marked(small: Results, tmp_path: Path) -> No
     assert (row["joint_model"], row["joint_lugs"]) == ("foundation", "assumed")
     last = joint_tables(odd)[2].rows[0][-4:]
     assert list(last) == ["foundation", "assumed", 1200.0, 1800.0]
-    assert not any(name.name.startswith("joint") for name in save_plots(odd, tmp_path))
+    assert not any(name.startswith("joint") for name in all_plots(odd))
 
 
 def test_the_page_shows_a_range_in_assumed_lugs(small: Results, tmp_path: Path) -> None:
-    path = write_reports(around(small), tmp_path, {}, False)
+    path = write_reports(around(small), tmp_path)
     text = parse(path).text
     assert "1,100 to 1,900 psi over what is not known of the joint" in text
     assert "in assumed lugs" in text
@@ -120,14 +121,12 @@ def test_the_page_shows_a_range_in_assumed_lugs(small: Results, tmp_path: Path) 
 
 def test_the_page_says_why_there_is_no_range(small: Results, tmp_path: Path) -> None:
     odd = around(small, range=None, remark="no lug surrounds its clamp (start)")
-    text = parse(write_reports(odd, tmp_path, {}, False)).text
+    text = parse(write_reports(odd, tmp_path)).text
     assert "no range over the joint: no lug surrounds its clamp (start)." in text
 
 
 def test_foundations_have_the_section_of_contact(small: Results, tmp_path: Path) -> None:
-    text = parse(
-        write_reports(in_lugs(small, replace(CONTACT, model="foundation")), tmp_path, {}, False)
-    ).text
+    text = parse(write_reports(in_lugs(small, replace(CONTACT, model="foundation")), tmp_path)).text
     assert "Load from the lugs" in text
     assert "beam on foundations" in text
     assert "half contact angle" in text
@@ -203,30 +202,35 @@ def test_the_page_has_a_section(small: Results, written: Path) -> None:
     assert "0.003 in (twice the given)" in text
     assert "half contact angle [°]" in text
     page = written.read_text(encoding="utf-8")
-    assert f'alt="Pin A, {small.pins[0].case}: load per length from the lugs' in page
+    assert f'aria-label="Pin A, {small.pins[0].case}: load per length from the lugs' in page
     assert "<dt>Supported by</dt>" in page
     assert "<dt>Clamped</dt>" in page  # of the other row
 
 
 def test_the_page_without_a_range(small: Results, tmp_path: Path) -> None:
-    text = parse(write_reports(in_lugs(small, make_joint(over=False)), tmp_path, {}, False)).text
+    text = parse(write_reports(in_lugs(small, make_joint(over=False)), tmp_path)).text
     assert "cells of contact)." in text
     assert "what is not known" not in text
 
 
 def test_names_of_lugs_are_shown_and_not_run(small: Results, tmp_path: Path) -> None:
     odd = replace(CONTACT, bands=(replace(CONTACT.bands[0], name=EVIL), *CONTACT.bands[1:]))
-    page = parse(write_reports(in_lugs(small, odd), tmp_path, {}, False))
+    page = parse(write_reports(in_lugs(small, odd), tmp_path))
     assert EVIL in page.text
 
 
-def test_a_plot_for_every_pin_in_contact(small: Results, tmp_path: Path) -> None:
-    names = {path.name for path in save_plots(small, tmp_path)}
-    case = small.pins[0].case
-    assert {name for name in names if name.startswith("joint")} == {
-        f"joint.{case}.A.svg",
-        f"joint.{case}.A.png",
-    }
+def test_a_plot_for_every_pin_in_contact(small: Results) -> None:
+    plots = all_plots(small)
+    (name,) = (name for name in plots if name.startswith("joint"))
+    assert name == f"joint.{small.pins[0].case}.A"
+    load, _ = plots[name].spec["vconcat"]
+    areas = [part for part in load["layer"] if part.get("mark", {}).get("type") == "area"]
+    drawn = [part["data"]["values"] for part in areas]
+    assert [row["x"] for row in drawn[0]] == pytest.approx(CONTACT.bands[0].ends)
+    assert [row["y"] for row in drawn[0]][:-1] == [q for _, q in CONTACT.bands[0].line_load]
+    assert plots[name].spec["data"]["values"] == [
+        {"x": z, "y": m} for z, m in CONTACT.bending_moments
+    ]
 
 
 def test_plots_of_odd_contacts(small: Results, tmp_path: Path) -> None:
@@ -240,8 +244,9 @@ def test_plots_of_odd_contacts(small: Results, tmp_path: Path) -> None:
         bending_moment=0.0,
         bending_moments=((0.0, 0.0), (4.5, 0.0)),
     )
-    svg, _ = joint_plot("$a/b", "x" * 60, nothing, small.units, tmp_path)
+    svg, png = draw([joint_plot("$a/b", "x" * 60, nothing, small.units)], tmp_path)
     assert ElementTree.parse(svg).getroot().tag.endswith("svg")
+    assert png.read_bytes().startswith(b"\x89PNG")
 
 
 def test_the_pressure_is_a_field_of_the_surface(solid: Field, small: Results) -> None:

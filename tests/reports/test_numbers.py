@@ -1,13 +1,12 @@
 from __future__ import annotations
 
-import itertools
 import math
 
 import pytest
 
 from reports.format.file_names import plot_name
 from reports.format.numbers import engineering, like, ratio, short
-from reports.format.spread import rows, spread
+from reports.format.spread import rows
 
 
 @pytest.mark.parametrize(
@@ -42,15 +41,6 @@ def test_like_takes_the_published_decimals() -> None:
 
 def test_ratio_needs_both() -> None:
     assert (ratio(3.0, 2.0), ratio(None, 2.0), ratio(3.0, 0.0)) == (1.5, None, None)
-
-
-def test_spread_keeps_labels_apart_and_in_order() -> None:
-    wanted, sizes = [0.5, 0.5, 0.52, 0.0], [0.1, 0.2, 0.1, 0.1]
-    found = spread(wanted, sizes)
-    spans = sorted((c - s / 2, c + s / 2) for c, s in zip(found, sizes, strict=True))
-    assert all(b[0] >= a[1] - 1e-12 for a, b in itertools.pairwise(spans))
-    assert found[3] == pytest.approx(0.0)
-    assert found[0] < found[1] < found[2]
 
 
 def test_rows_part_what_overlaps() -> None:

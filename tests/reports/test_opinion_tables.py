@@ -98,6 +98,6 @@ def test_on_the_page(opined: Results) -> None:
         ["left", "last quarter", "5.000", "5.000"],
     ]
     assert opinion_part(None, opined.units) is None
-    page = render(opined, {}, {}, Path())
+    page = render(opined, Path())
     assert page.count("Second opinion: CalculiX") == 3
     assert "CalculiX has no [bold] lugs" in page

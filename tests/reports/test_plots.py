@@ -1,97 +1,209 @@
+"""Plots as Vega-Lite specifications: what they show is what was found; drawn into files."""
+
 from __future__ import annotations
 
+import csv
+import json
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 
-from reports.data.results import Results
-from reports.plots.all import save_plots
+from reports.data.results import Floats, Results
+from reports.plots import spec as parts
+from reports.plots.all import all_plots
+from reports.plots.draw import draw
+from reports.plots.reactions import along, bars, reaction_plot
+from reports.plots.refinement import pin_refinement_plot
+from reports.plots.spec import Abscissa, Panel, Plot, Spec, clipped, curves, still
+from reports.plots.theme import COLOURS, DASHES, SERIES, dashes, on_page, on_paper
+from tests.support.made_up_run import leg, ranged
 
-PINS = "AB"
-
-
-@pytest.fixture(scope="module")
-def small(results: Results) -> Results:
-    """Two pins, a motion of one with two connections, and everything else."""
-    table = results.reactions[0]
-    few = replace(
-        table,
-        connections=table.connections[:2],
-        bodies=table.bodies[:2],
-        pins=table.pins[:2],
-        forces=table.forces[:, :2],
-        moments=table.moments[:, :2],
-    )
-    pins = tuple(p for p in results.pins if p.pin in PINS)
-    return replace(results, pins=pins, reactions=(few, results.reactions[1]))
+DIGITS = 1e-5  # relative: six are written
 
 
 @pytest.fixture(scope="module")
-def drawn(small: Results, tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
-    return save_plots(small, tmp_path_factory.mktemp("plots"))
+def plots(results: Results) -> dict[str, Plot]:
+    legs, landing = (leg(results.drive[0].time),), (ranged("A"), ranged("B", "singular", 2.0))
+    return all_plots(replace(results, legs=legs, landing=landing))
 
 
-def test_plots_are_the_same_bytes_on_every_run(
-    small: Results, drawn: list[Path], tmp_path: Path
-) -> None:
-    again = save_plots(small, tmp_path)
-    assert [p.name for p in drawn] == [p.name for p in again]
-    assert [p.read_bytes() for p in drawn] == [p.read_bytes() for p in again]
+def columns(plot: Spec) -> dict[str, Floats]:
+    """The data of a plot by heading."""
+    rows = list(csv.reader(plot["data"]["values"].split("\n")))[1:]
+    values = np.array([[float(cell) if cell else np.nan for cell in row] for row in rows])
+    return dict(zip(plot["usermeta"]["columns"], values.T, strict=True))
 
 
-def test_every_plot_is_there_as_svg_and_png(drawn: list[Path]) -> None:
-    kinds = {
-        "reactions.retract.A",
-        "magnitudes.retract.A",
-        "reactions.landing",
-        "drive.retract",
-        "linkage.retract",
-        "bodies.retract",
-        "transmission.retract",
-        "shaking.retract",
-        "ledger.retract",
-        "linkage.landing",
-        "beam-diagrams",
-        "beam-stress",
-        "motion-check",
-        "refinement.retract",
-        "refinement.landing",
-        *(f"refinement-pin.{pin}" for pin in PINS),
+def inside(plot: Any) -> Iterator[Spec]:
+    """All objects within a specification."""
+    if isinstance(plot, dict):
+        yield plot
+    for part in plot.values() if isinstance(plot, dict) else plot if isinstance(plot, list) else ():
+        yield from inside(part)
+
+
+def _kind(part: Spec) -> object:
+    mark = part.get("mark")
+    return mark.get("type") if isinstance(mark, dict) else None
+
+
+def test_there_is_a_plot_of_everything(plots: dict[str, Plot]) -> None:
+    pins = "ABCDEFGHJ"
+    assert set(plots) == {
+        *(f"reactions.retract.{pin}" for pin in pins),
+        *("reactions.landing", "drive.retract", "linkage.retract", "linkage.landing"),
+        *("bodies.retract", "transmission.retract", "shaking.retract", "ledger.retract"),
+        *("leg-motion.fold", "leg-momenta.fold", "leg-hinge.fold", "landing-range.landing"),
+        *("beam-diagrams", "beam-stress", "motion-check", "refinement.retract"),
+        *("refinement.landing", *(f"refinement-pin.{pin}" for pin in pins)),
     }
-    assert {p.name for p in drawn} == {k + end for k in kinds for end in (".svg", ".png")}
-    for path in drawn:
+    assert all(name == plot.name and plot.caption for name, plot in plots.items())
+
+
+def test_specifications_are_plain_and_ask_for_nothing(plots: dict[str, Plot]) -> None:
+    for plot in plots.values():
+        json.dumps(plot.spec, allow_nan=False)
+        assert not any("url" in part for part in inside(plot.spec))
+        assert {"data", "usermeta", "title"} <= set(plot.spec)
+
+
+def test_reactions_are_those_of_the_table(results: Results, plots: dict[str, Plot]) -> None:
+    table = results.reactions[0]
+    found = columns(plots["reactions.retract.B"].spec)
+    members = [c for c, pin in enumerate(table.pins) if pin == "B"]
+    assert found["drive position [in]"] == pytest.approx(table.position, rel=DIGITS)
+    for k, name in enumerate(("drag brace B", "strut B (shared)")):
+        size, fx, mz = (found[f"{name}, {q}"] for q in ("force [lbf]", "Fx [lbf]", "Mz [lbf·in]"))
+        assert size == pytest.approx(table.magnitudes[:, members[k]], rel=DIGITS)
+        assert fx == pytest.approx(table.forces[:, members[k], 0], rel=DIGITS, abs=1e-9)
+        assert mz == pytest.approx(table.moments[:, members[k], 2], rel=DIGITS, abs=1e-9)
+    assert not any("Fz" in heading for heading in found)  # zero
+
+
+def test_largest_forces_and_the_governing_instant_are_marked(results: Results) -> None:
+    table = results.reactions[0]
+    plot = reaction_plot(table, "A", results.units, governs=2.5)
+    marks = [part for part in inside(plot.spec) if _kind(part) == "point"]
+    peaks = marks[0]["data"]["values"]
+    expected = [peak.force for peak in table.largest[:2]]
+    assert [row["y"] for row in peaks] == pytest.approx(expected, rel=DIGITS)
+    lines = [p for p in inside(plot.spec) if p.get("data", {}).get("values") == [{"x": 2.5}]]
+    assert len(lines) == len(plot.spec["vconcat"])
+
+
+def test_bars_have_their_published_values(results: Results, plots: dict[str, Plot]) -> None:
+    table = results.reactions[1]
+    rows = plots["reactions.landing"].spec["data"]["values"]
+    sizes = [peak.force for peak in table.largest]
+    assert [row["force"] for row in rows] == pytest.approx(sizes, rel=DIGITS)
+    assert {r["name"]: r["published"] for r in rows if r["published"]} == table.published
+    zero = replace(table, forces=np.zeros_like(table.forces), published={}, peaks=())
+    assert "type" not in bars(zero, results.units).spec["encoding"]["x"]["scale"]
+
+
+def test_refinement_is_the_deviation_from_the_finest_mesh(results: Results) -> None:
+    pin = results.pins[3]
+    plot = pin_refinement_plot("D", [pin], results.units)
+    rows = plot.spec["data"]["values"]
+    last = pin.history[-1].max_von_mises
+    expected = [100.0 * (step.max_von_mises / last - 1.0) for step in pin.history]
+    assert [row["y"] for row in rows] == pytest.approx(expected, rel=DIGITS, abs=1e-12)
+    assert rows[-1]["y"] == 0.0
+    assert {row["row"] for row in rows} == {"retract, unconverged"}
+
+
+def test_the_beam_check_has_its_curves(results: Results, plots: dict[str, Plot]) -> None:
+    check = results.beam_check
+    assert check is not None
+    found = columns(plots["beam-stress"].spec)
+    stress = "axial stress, tension side [psi]"
+    assert found[f"beam theory, {stress}"] == pytest.approx(check.beam_axial_stress, rel=DIGITS)
+    assert "is cut off" in plots["beam-stress"].caption
+    shear = columns(plots["beam-diagrams"].spec)["shear [lbf]"]
+    assert shear == pytest.approx(check.shear, rel=DIGITS, abs=1e-9)
+
+
+def test_curves_that_coincide_share_a_name() -> None:
+    x = np.linspace(0.0, 1.0, 5)
+    panel = Panel("y", {"a": x, "b": x + 1e-9, "c": 2.0 * x, "none": np.full(5, np.nan)})
+    found = curves("t", Abscissa("x", x), [panel])
+    assert found["usermeta"]["columns"] == ["x", "a, b, y", "c, y"]
+    other = Panel("z", {"a": x, "b": -x, "c": x, "none": x})
+    several = curves("t", Abscissa("x", x), [panel, other], common=True)
+    assert several["usermeta"]["columns"][1:5] == ["a, y", "b, y", "c, y", "none, y"]
+    assert columns(several)["none, y"].tolist() != columns(several)["none, z"].tolist()
+
+
+def test_gaps_are_empty_cells() -> None:
+    made = parts.table({"x": np.array([1.0, 2.0]), "y": np.array([np.nan, 1 / 3])})
+    assert made["values"] == "x,y\n1,\n2,0.333333"
+
+
+def test_reactions_are_drawn_against_what_the_drive_has(results: Results) -> None:
+    table = results.reactions[0]
+    assert along(table, results.units).heading == "drive position [in]"
+    assert along(replace(table, position_unit="deg"), results.units).heading == (
+        "drive position [deg]"
+    )
+    assert along(replace(table, position=None), results.units).heading == "time [s]"
+
+
+def test_no_two_curves_look_alike() -> None:
+    looks = [(SERIES[k % len(SERIES)], str(dash)) for k, dash in enumerate(dashes(49))]
+    assert len(set(looks)) == 49
+    assert len(DASHES) == len(SERIES)
+
+
+def test_paper_and_page_differ_in_colours_alone() -> None:
+    light = {name: colour for name, (colour, _) in COLOURS.items()}
+    page = json.dumps(on_page()["style"])
+    for name, colour in light.items():
+        page = page.replace(f'"var(--{name})"', f'"{colour}"')
+    assert json.loads(page) == on_paper()["style"]
+
+
+def test_stills_have_nothing_for_a_pointer(plots: dict[str, Plot]) -> None:
+    moving = plots["drive.retract"].spec
+    assert any("params" in part for part in inside(moving))
+    assert not any("params" in part for part in inside(still(moving)))
+
+
+def test_long_names_are_clipped() -> None:
+    assert clipped("crank") == "crank"
+    assert clipped(30 * "x") == 23 * "x" + "…"
+
+
+def test_files_are_the_same_bytes_on_every_run(plots: dict[str, Plot], tmp_path: Path) -> None:
+    some = [plots[name] for name in ("motion-check", "linkage.landing")]
+    first, again = draw(some, tmp_path / "a"), draw(some, tmp_path / "b")
+    assert [p.name for p in first] == [f"{p.name}{e}" for p in some for e in (".svg", ".png")]
+    assert [p.read_bytes() for p in first] == [p.read_bytes() for p in again]
+    for path in first:
         if path.suffix == ".svg":
             assert ElementTree.parse(path).getroot().tag.endswith("svg")
         else:
             assert path.read_bytes().startswith(b"\x89PNG")
 
 
-def test_zero_forces_and_odd_names(results: Results, tmp_path: Path) -> None:
+def test_odd_names_and_zero_forces_are_drawn(results: Results, tmp_path: Path) -> None:
     moving, static = results.reactions
     odd = replace(
-        results,
-        reactions=(
-            replace(
-                moving,
-                case="$x_1",
-                position=None,
-                connections=("a/b $", *moving.connections[1:2]),
-                bodies=moving.bodies[:2],
-                pins=("../P", "../P"),
-                forces=np.zeros((201, 2, 3)),
-                moments=np.zeros((201, 2, 3)),
-            ),
-            replace(static, case="zero", forces=np.zeros_like(static.forces), published={}),
-        ),
-        drive=(),
-        motion=(),
-        beam_check=None,
-        motion_check=None,
-        pins=(),
+        moving,
+        case="$x_1",
+        position=None,
+        connections=('a/b "$ \\', "<b>.[0]"),
+        bodies=moving.bodies[:2],
+        pins=("../P", "../P"),
+        forces=np.zeros((201, 2, 3)),
+        moments=np.zeros((201, 2, 3)),
     )
-    paths = save_plots(odd, tmp_path)
-    assert len(paths) == 6
+    zero = replace(static, case="zero", forces=np.zeros_like(static.forces), published={})
+    found = all_plots(Results("t", "s", "0", results.units, None, 0.1, (), reactions=(odd, zero)))
+    paths = draw(found.values(), tmp_path)
+    assert len(paths) == 4
     assert all(path.parent == tmp_path and path.exists() for path in paths)

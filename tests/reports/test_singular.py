@@ -44,7 +44,7 @@ def singular(results: Results) -> Results:
 
 
 def test_files_and_json_say_the_same(singular: Results, tmp_path: Path) -> None:
-    page = write_reports(singular, tmp_path, {}, plots=False).read_text()
+    page = write_reports(singular, tmp_path).read_text()
     pin = json.loads((tmp_path / "results.json").read_text())["pins"][0]
     assert pin == to_json(singular)["pins"][0]
     assert pin["verdict"] == "singular"

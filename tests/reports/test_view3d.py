@@ -125,7 +125,7 @@ def test_names_do_not_end_the_script(results: Results, surface: Surface, tmp_pat
     )
     made = replace(results, pins=rows, surfaces=(evil,))
     assert json.loads(str(pin_views(made, "B")[0].data))["cases"][0]["name"] == EVIL
-    assert EVIL not in write_page(made, tmp_path, {}, []).read_text(encoding="utf-8")
+    assert EVIL not in write_page(made, tmp_path).read_text(encoding="utf-8")
 
 
 def test_loads_and_section_come_through(results: Results, surface: Surface) -> None:

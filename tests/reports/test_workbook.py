@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 import pytest
 
 from reports.data.results import Results
-from reports.tables.all import load_tables, stress_tables
+from reports.tables.all import LONGEST, load_tables, sheets, stress_tables
 from reports.tables.table import Table
 from reports.tables.workbook import write_workbook
 
@@ -78,6 +78,14 @@ def test_every_table_is_a_sheet_with_its_numbers(
         pane = raw[table.name].find("sheetViews/sheetView/pane", NAMES)
         assert pane is not None
         assert (pane.get("ySplit"), pane.get("state")) == ("1", "frozen")
+
+
+def test_long_tables_are_csv_alone(tables: list[Table]) -> None:
+    first = tables[0]
+    row = first.rows[0]
+    full, longer = (replace(first, rows=(row,) * n) for n in (LONGEST, LONGEST + 1))
+    motion = replace(first, name="motion")
+    assert sheets([full, longer, motion]) == [full]
 
 
 def test_headings_have_units(results: Results, tables: list[Table], tmp_path: Path) -> None:

@@ -21,6 +21,12 @@ def opened(browser: Any, folder: Path) -> None:
     wait(browser, lambda: browser.find_element("css selector", "h1").text)
 
 
+def unfold(browser: Any) -> None:
+    """Open all that folds."""
+    script = "for (const part of document.querySelectorAll('details.fold')) part.open = true;"
+    browser.execute_script(script)
+
+
 def wait(browser: Any, ready: Callable[[], Any]) -> Any:
     """What `ready` gives once it is true."""
     from selenium.webdriver.support.ui import WebDriverWait
@@ -30,6 +36,7 @@ def wait(browser: Any, ready: Callable[[], Any]) -> Any:
 
 def views(browser: Any, pin: str) -> list[Any]:
     """A pin's views, by its heading as written: rendering waits for the layout of a long page."""
+    unfold(browser)
 
     def headed() -> list[Any]:
         headings = browser.find_elements("css selector", "section.viewed > h2")

@@ -1,24 +1,21 @@
-"""The house style of the plots: readable in grey, the same bytes on every run."""
+"""The style of the plots in the documentation: readable in grey, the same bytes on every run."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import matplotlib
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter
 
 from reports.format.file_names import PNG, SVG
 from reports.format.numbers import short
-from reports.format.spread import spread
 
-INK, GREY, BAND = "#222222", "#8a8a8a", "#e9e9e9"
+INK, GREY = "#222222", "#8a8a8a"
 WIDTH = 7.2  # inches
 COLOURS = ("#0b3c6f", "#c8501e", "#1a8a6e", "#8f4a9c", "#7a6a00", "#4f9bd9", "#000000")
 DASHES: tuple[Any, ...] = (
@@ -89,60 +86,6 @@ def plain_numbers(axes: Axes, which: str = "both") -> None:
     for name, axis in (("x", axes.xaxis), ("y", axes.yaxis)):
         if which in (name, "both"):
             axis.set_major_formatter(FuncFormatter(formatter))
-
-
-def clipped(name: str, most: int = 24) -> str:
-    """A name short enough for a label."""
-    return name if len(name) <= most else name[: most - 1] + "…"
-
-
-def label_ends(
-    figure: Figure,
-    axes: Axes,
-    lines: Sequence[Line2D],
-    texts: Sequence[str],
-    settled: bool = False,
-) -> None:
-    """Write each line's text right of its end, spread so that none overlap.
-
-    settled: the figure has been laid out since its curves were drawn, which takes time.
-    """
-    if not settled:
-        figure.draw_without_rendering()
-    height = axes.get_window_extent().height
-    gap = 1.35 * 8.5 * figure.dpi / 72.0 / height
-    ends = [_end(axes, line) for line in lines]
-    rows = [(text.count("\n") + 1) * gap for text in texts]
-    places = spread([y for _, y in ends], rows)
-    for line, text, end, place in zip(lines, texts, ends, places, strict=True):
-        axes.annotate(
-            text,
-            xy=end,
-            xytext=(1.035, place),
-            xycoords="axes fraction",
-            textcoords="axes fraction",
-            color=line.get_color(),
-            fontsize=8.5,
-            va="center",
-            linespacing=1.15,
-            arrowprops={
-                "arrowstyle": "-",
-                "color": line.get_color(),
-                "linewidth": 0.7,
-                # From the text's left edge: a leader from its middle crosses its neighbours.
-                "relpos": (0.0, 0.5),
-                "shrinkA": 1.0,
-                "shrinkB": 0.0,
-            },
-        )
-
-
-def _end(axes: Axes, line: Line2D) -> tuple[float, float]:
-    """The line's rightmost point as fractions of the axes."""
-    points = np.asarray(line.get_xydata())
-    last = points[int(np.argmax(points[:, 0]))]
-    x, y = axes.transAxes.inverted().transform(axes.transData.transform(last))
-    return float(x), float(y)
 
 
 def save(figure: Figure, directory: Path, name: str) -> list[Path]:

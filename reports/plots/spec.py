@@ -1,0 +1,260 @@
+"""Specifications of plots in Vega-Lite, as plain dicts with their data.
+
+The same specification is drawn by the report in the browser and into files by
+reports.plots.draw.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from reports.data.results import Floats
+from reports.plots.theme import dashes
+
+Spec = dict[str, Any]
+SAME = 1e-6  # of the largest value: curves nearer than this are one
+FORMAT = ",.5~r"
+ZOOM: Spec = {
+    "name": "zoom",
+    "select": {"type": "interval", "encodings": ["x"], "zoom": "wheel![event.shiftKey]"},
+    "bind": "scales",
+}
+POINTED: Spec = {
+    "name": "pointed",
+    "select": {"type": "point", "on": "pointerover", "clear": "pointerout", "fields": ["x"]},
+}
+
+
+@dataclass(frozen=True)
+class Plot:
+    """A plot: its file's name without extension, what it shows in a sentence, and how."""
+
+    name: str
+    caption: str
+    spec: Spec
+
+
+@dataclass(frozen=True)
+class Abscissa:
+    """What the curves of a plot are drawn against, (N,), with its heading; logarithmic or not."""
+
+    heading: str
+    values: Floats
+    logarithmic: bool = False
+
+
+@dataclass(frozen=True)
+class Panel:
+    """Curves (N,) by name above a common abscissa, NaN where there is none. under, over: layers
+    behind and before them. scale: of the ordinate. zero: whether a line is drawn there.
+    """
+
+    heading: str
+    curves: dict[str, Floats]
+    under: tuple[Spec, ...] = ()
+    over: tuple[Spec, ...] = ()
+    scale: Spec = field(default_factory=dict)
+    height: float = 110.0
+    zero: bool = True
+
+
+def curves(title: str, x: Abscissa, panels: Sequence[Panel], common: bool = False) -> Spec:
+    """Panels with curves over one abscissa, which zoom together; the values under the pointer.
+
+    common: whether the panels' curves have the same names, and one key.
+    """
+    together = [panels] if common else [[panel] for panel in panels]
+    merged = [shown for part in together for shown in _merged([p.curves for p in part])]
+    columns: list[tuple[str, str, Floats]] = [("x", x.heading, x.values)]
+    views: list[Spec] = []
+    for panel, shown in zip(panels, merged, strict=True):
+        ids = [f"c{len(columns) - 1 + k}" for k in range(len(shown))]
+        heads = [f"{name}, {panel.heading}" if name else panel.heading for name in shown]
+        columns += list(zip(ids, heads, shown.values(), strict=True))
+        views.append(_view(panel, dict(zip(ids, shown, strict=True)), x, panel is panels[-1]))
+    scales = "shared" if common else "independent"
+    return {
+        "title": headed(title),
+        "usermeta": {"columns": [head for _, head, _ in columns]},
+        "data": table({name: values for name, _, values in columns}),
+        "vconcat": views,
+        "resolve": {"scale": {"color": scales, "strokeDash": scales}},
+    }
+
+
+def headed(title: str, *notes: str) -> Spec:
+    """The title of a plot that stands alone, with lines under it."""
+    return {"text": title, "subtitle": list(notes), "fontSize": 13, "fontWeight": 600, "offset": 12}
+
+
+def table(columns: dict[str, Floats]) -> Spec:
+    """Data (N,) by column, as CSV, which is the shortest form that Vega-Lite reads."""
+    rows = zip(*(_written(values) for values in columns.values()), strict=True)
+    text = "\n".join([",".join(columns), *map(",".join, rows)])
+    return {"values": text, "format": {"type": "csv", "parse": dict.fromkeys(columns, "number")}}
+
+
+def _written(values: Floats) -> list[str]:
+    return [f"{v:.6g}" if np.isfinite(v) else "" for v in np.asarray(values, float).tolist()]
+
+
+def _view(panel: Panel, names: dict[str, str], x: Abscissa, last: bool) -> Spec:
+    """names: of the curves by column."""
+    scale = {"nice": False, "zero": False}
+    across: Spec = {"field": "x", "type": "quantitative", "title": x.heading if last else None,
+              "scale": {"type": "log", **scale} if x.logarithmic else scale}  # fmt: skip
+    if not last:
+        across["axis"] = {"labels": False, "title": None}
+    lines = [_line(column, names, panel.scale) for column in names]
+    lines[0]["params"] = [ZOOM]
+    zero = [level(0.0, style="zero")] if panel.zero else []
+    return {
+        "title": panel.heading,
+        "height": panel.height,
+        "encoding": {"x": across},
+        "layer": [*panel.under, *zero, *lines, _pointed(panel, names), *panel.over],
+    }
+
+
+def _line(column: str, names: dict[str, str], scale: Spec) -> Spec:
+    """One curve; those with names have a key."""
+    domain = {"domain": list(names.values())}
+    colour: Spec = {"datum": names[column], "scale": domain}
+    more: Spec = {"strokeDash": {**colour, "scale": {**domain, "range": dashes(len(names))}}}
+    if not any(names.values()):
+        colour, more = {**colour, "legend": None}, {}
+    return {
+        "mark": {"type": "line", "clip": True},
+        "encoding": {
+            "y": {"field": column, "type": "quantitative", "title": None, "scale": scale},
+            "color": colour,
+            **more,
+        },
+    }
+
+
+def _pointed(panel: Panel, names: dict[str, str]) -> Spec:
+    """A rule at each instant, seen under the pointer only, with the values there."""
+    values = [
+        {"field": column, "title": name or panel.heading, "format": FORMAT}
+        for column, name in names.items()
+    ]
+    seen: Spec = {"condition": {"param": "pointed", "empty": False, "value": 0.4}, "value": 0.0}
+    return {
+        "params": [POINTED],
+        "mark": {"type": "rule", "style": "pointed", "clip": True},
+        "encoding": {
+            "opacity": seen,
+            "tooltip": [{"field": "x", "title": "at", "format": FORMAT}, *values],
+            "y": {"value": 0},
+            "y2": {"value": panel.height},
+        },
+    }
+
+
+def _merged(panels: Sequence[dict[str, Floats]]) -> list[dict[str, Floats]]:
+    """Curves that coincide in all panels under one name; those without any value are left out, as
+    long as others have some.
+    """
+    groups: list[list[str]] = []
+    for name in panels[0]:
+        if not any(np.isfinite(panel[name]).any() for panel in panels):
+            continue
+        same = (g for g in groups if all(_coincide(panel, g[0], name) for panel in panels))
+        if (group := next(same, None)) is not None:
+            group.append(name)
+        else:
+            groups.append([name])
+    groups = groups or [[next(iter(panels[0]))]]
+    return [{clipped(", ".join(g), 48): panel[g[0]] for g in groups} for panel in panels]
+
+
+def _coincide(panel: dict[str, Floats], one: str, other: str) -> bool:
+    known = (np.abs(v[np.isfinite(v)]).max(initial=0.0) for v in panel.values())
+    close = SAME * float(max(known))
+    return np.allclose(panel[one], panel[other], rtol=0.0, atol=close, equal_nan=True)
+
+
+def clipped(name: str, most: int = 24) -> str:
+    """A name short enough for a label."""
+    return name if len(name) <= most else name[: most - 1] + "…"
+
+
+def still(spec: Spec) -> Spec:
+    """The specification without what only a pointer needs."""
+    if "params" in spec:
+        spec = {key: value for key, value in spec.items() if key != "params"}
+    kept: Spec = {
+        key: [still(part) for part in spec[key] if POINTED not in part.get("params", [])]
+        for key in ("layer", "vconcat")
+        if key in spec
+    }
+    return {**spec, **kept}
+
+
+# Layers with data of their own.
+
+
+def rows(values: Sequence[Spec]) -> Spec:
+    """Data given row by row."""
+    return {"values": [{k: _rounded(v) for k, v in row.items()} for row in values]}
+
+
+def _rounded(value: object) -> object:
+    return float(f"{value:.6g}") if isinstance(value, float) else value
+
+
+def level(y: float, text: str = "", style: str = "level") -> Spec:
+    """A horizontal line, with a text at its left end."""
+    rule: Spec = {"mark": {"type": "rule", "style": style}, "encoding": {"x": None}}
+    noted: Spec = {
+        "mark": {"type": "text", "style": "quiet-note", "align": "left", "dx": 3, "dy": -6,
+                 "text": text},
+        "encoding": {"x": {"value": 0}},
+    }  # fmt: skip
+    return {
+        "data": rows([{}]),
+        "encoding": {"y": {"datum": y, "type": "quantitative"}},
+        "layer": [rule, noted] if text else [rule],
+    }
+
+
+def instant(x: float, text: str = "", left: bool = False) -> Spec:
+    """A vertical line, with a text at its head, perhaps to the left."""
+    rule: Spec = {"mark": {"type": "rule", "style": "governs", "clip": True}}
+    noted: Spec = {
+        "mark": {"type": "text", "style": "note", "align": "right" if left else "left",
+                 "baseline": "top", "dx": -4 if left else 4, "text": text, "clip": True},
+        "encoding": {"y": {"value": 3}},
+    }  # fmt: skip
+    return {
+        "data": rows([{"x": x}]),
+        "layer": [rule, noted] if text else [rule],
+    }
+
+
+def bands(extents: Sequence[tuple[float, float]], style: str = "shade") -> Spec:
+    """Shaded extents of the abscissa."""
+    return {
+        "data": rows([{"x": low, "x2": high} for low, high in extents]),
+        "mark": {"type": "rect", "style": style, "clip": True},
+        "encoding": {"x": {"field": "x", "type": "quantitative"}, "x2": {"field": "x2"}},
+    }
+
+
+def points(values: Sequence[Spec], style: str = "hot", shape: str = "circle") -> Spec:
+    """Marks at rows with x, y and perhaps a text, which is shown under the pointer."""
+    mark = {"type": "point", "style": style, "shape": shape, "size": 36, "filled": True,
+            "opacity": 1, "clip": True}  # fmt: skip
+    if style == "published":
+        mark |= {"size": 60}
+    encoding: Spec = {
+        "x": {"field": "x", "type": "quantitative"}, "y": {"field": "y", "type": "quantitative"},
+    }  # fmt: skip
+    if any("text" in row for row in values):
+        encoding["tooltip"] = {"field": "text", "type": "nominal"}
+    return {"data": rows(values), "mark": mark, "encoding": encoding}
