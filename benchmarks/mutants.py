@@ -59,8 +59,6 @@ SAME = {
         "equal stresses at two places: either is the largest",
     ("return (tuple(Traction(b.name, 0.0, ABOUT_Z * b.radius, _NONE) for b in bands),)",
      "0.0 → 1.0"): "the middle from which a slope of zero is counted",
-    ("inertia = np.array([item.inertia or 0.0 for item in items])", "0.0 → 1.0"):
-        "pins and particles, which have no inertia, do not turn (`loads.loop_equations._frames`)",
     ("return root if root.real < 1.0 else 1.0 + 0.0j", "root.real < 1.0 → root.real <= 1.0"):
         "an eigenvalue of exactly 1 is what the other branch returns",
     ("return _root(lambda x: math.sin(x) - q * x, math.pi / 2.0, math.pi + 1e-9)", "2.0 → 2.2"):
