@@ -74,27 +74,31 @@ class LugSolution:
 def solve_in_lugs(
     given: InLugs, asked: Asked, progress: Progress = lambda _: None
 ) -> tuple[LugSolution, ...]:
-    """All cases of a pin, on cells as fine as necessary.
+    """All cases of a pin, each on cells as fine as necessary.
 
     Raises: ArgumentError for lugs that do not fit; MeshError, SolveError.
     """
     near: Mapping[str, Near] = {}
+    done: dict[str, LugSolution] = {}
+    left = given.cases
     for cells, finer in zip(SETS, (*SETS[1:], None), strict=True):
         progress(f"pin {given.pin.name}, flexibility of {cells.rings} rings of each lug")
         model = JointModel(given.pin, given.material, given.lugs, cells)
         progress(f"pin {given.pin.name}, contact")
-        contact = _Contact(model, given)
+        contact = _Contact(model, replace(given, cases=left))
         near = near or contact.near(asked)
         contact.follow(near)
         compared = contact.compared(near, asked)
         last = finer is None or _count(model, finer) > MOST_CELLS
-        if not last and not all(x.fine(given.material, asked) for x in compared.values()):
-            continue
-        found = contact.solved(compared, asked, progress)
-        if last or all(_enough(x.solution.peak, given.material, asked) for x in found.values()):
+        fine = {c: x for c, x in compared.items() if last or x.fine(given.material, asked)}
+        for case, found in contact.solved(fine, asked, progress).items():
+            if last or _enough(found.solution.peak, given.material, asked):
+                done[case] = found
+        done |= {case: _failed(given, case, why) for case, why in contact.failed.items()}
+        left = tuple(case for case in left if case.case not in done)
+        if not left:
             break
-    failed = {case: _failed(given, case, why) for case, why in contact.failed.items()}
-    return tuple((found | failed)[case.case] for case in given.cases)
+    return tuple(done[case.case] for case in given.cases)
 
 
 def _enough(peak: Peak, material: Material, asked: Asked) -> bool:
@@ -202,8 +206,8 @@ class _Contact:
     def solved(
         self, compared: dict[str, Comparison], asked: Asked, progress: Progress
     ) -> dict[str, LugSolution]:
-        """Stress of all cases on the same meshes."""
-        live = [case for case in self.given.cases if case.case in self.instants]
+        """Stress of the cases that were compared, on the same meshes."""
+        live = [case for case in self.given.cases if case.case in compared]
         if not live:
             return {}
 

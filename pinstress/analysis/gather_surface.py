@@ -17,7 +17,7 @@ from fea.solve_pin import Solution
 from fea.surface_fields import amounts, excluded, largest_there, unit_surface
 from pinstress.analysis.gather_fields import shown_at
 from pinstress.analysis.gather_section import half_section
-from pinstress.analysis.thinning import meridian_points
+from pinstress.analysis.thinning import fewer_loads, meridian_points
 from pinstress.model.cases import CaseLoads
 from pinstress.model.tasks import Task
 from reports.data.surface import LoadCourse, Mask, Surface, SurfaceCase
@@ -29,8 +29,7 @@ def surfaces_of(
     solutions: Sequence[Solution],
     pressures: Sequence[CellPressure | None],
 ) -> tuple[Surface, ...]:
-    """A pin's surfaces with all the cases that some model with fields solved, one for each mesh:
-    cases in contact have their own.
+    """A pin's surfaces with all the cases that some model with fields solved, one for each mesh.
 
     pressures: of contact with its lugs, by solution.
     """
@@ -72,6 +71,7 @@ def _surface(
             [_own(c, s, surface.points) for c, (s, _, _) in zip(cases, with_fields, strict=True)],
             axis=0,
         )
+        surface, cases = fewer_loads(surface, cases)
         keep = meridian_points(surface, cases, kept)
     return Surface(
         pin=task.pin.name,

@@ -1,8 +1,9 @@
-"""Which points of a curve, or of a pin's meridian, are needed to draw what is known on it."""
+"""Which points of a pin's meridian, and how many unit loads, are needed to draw what is known."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -18,6 +19,8 @@ STRESSES, MOTIONS = slice(0, 5), slice(5, 8)  # of the eight numbers of a surfac
 INSTANTS = 8  # of a motion, about, besides the governing one
 MOVED = 5e-3  # of the largest displacement
 PLACE = 2e-4  # of the length
+FIELD = 1e-2  # of the largest stress of a case: what a unit load must add at some instant
+GOVERNING = 5.0
 SHARP = 0.94  # cosine of the turn at a corner, at most
 CLOSE = 1e-9  # of the length: points that are one
 
@@ -70,6 +73,63 @@ def meridian_points(surface: UnitSurface, cases: Sequence[SurfaceCase], kept: Ma
     # What never acts allows nothing, and misses nothing.
     within = np.concatenate(allowed, axis=1) + np.finfo(float).tiny
     return needed(along, np.concatenate(values, axis=1), within, keep)
+
+
+def fewer_loads(
+    surface: UnitSurface, cases: Sequence[SurfaceCase]
+) -> tuple[UnitSurface, list[SurfaceCase]]:
+    """The same with as few unit loads as make the fields of all cases, where many act, as under
+    contact: of every harmonic the singular vectors that matter.
+    """
+    fields = np.concatenate([surface.stress, surface.displacement * _scale(surface, cases)], axis=1)
+    acting = [_weighed(c) for c in cases]
+    n: list[int] = []
+    made: list[Floats] = []  # of the old unit loads, (K, K')
+    now: list[list[Floats]] = [[] for _ in cases]
+    for harmonic in np.unique(surface.n).tolist():
+        own = np.flatnonzero(surface.n == harmonic)
+        root = np.linalg.qr(fields[:, :, own].reshape(-1, len(own)), mode="r")
+        together = np.concatenate(
+            [a[:, own].transpose(1, 0, 2).reshape(len(own), -1) for a in acting], 1
+        )
+        vectors, size, times = np.linalg.svd(root @ together, full_matrices=False)
+        most = np.abs(size[:, None] * times).max(axis=1, initial=0.0)
+        vectors = vectors[:, most > FIELD]
+        mix = np.zeros((len(surface.n), vectors.shape[1]))
+        mix[own] = np.linalg.lstsq(root, vectors)[0]
+        made.append(mix)
+        n += [harmonic] * vectors.shape[1]
+        for case, out in zip(cases, now, strict=True):
+            out.append(np.einsum("jk,tkp->tjp", vectors.T @ root, case.amounts[:, own]))
+    mix = np.concatenate(made, axis=1)
+    fewer = replace(
+        surface,
+        n=np.array(n, dtype=np.int64),
+        stress=surface.stress @ mix,
+        displacement=surface.displacement @ mix,
+    )
+    return fewer, [
+        replace(c, amounts=np.concatenate(out, axis=1)) for c, out in zip(cases, now, strict=True)
+    ]
+
+
+def _weighed(case: SurfaceCase) -> Floats:
+    """Amounts for a largest stress of one, the governing instant's so many times as large."""
+    weight = np.ones(len(case.amounts))
+    weight[case.instant] = GOVERNING
+    return np.asarray(case.amounts * weight[:, None, None] / (case.maxima.max() or 1.0))
+
+
+def _scale(surface: UnitSurface, cases: Sequence[SurfaceCase]) -> float:
+    """Stress over displacement, Pa/m, of the first case that moves the pin."""
+    for case in cases:
+        stress, moved = (
+            float(np.abs(_around(surface, case.amounts[case.instant], x)).max())
+            for x in (STRESSES, MOTIONS)
+        )
+        if moved:
+            return stress / moved
+    return 0.0
 
 
 def _step(case: SurfaceCase) -> int:

@@ -34,12 +34,14 @@ def plots(directory: Path, quiet: bool = False) -> None:
     if known is None:
         raise InputError(
             f"{directory}: no results of pinstress; name the folder that `pinstress run` or "
-            "`pinstress loads` wrote"
+            "`pinstress loads` wrote",
+            code="no-results",
         )
     own = f"{FOLDER}/"
     strange = {n for n in manifest.entries(directory) - known - {own} if n.startswith(own)}
     if strange:
-        raise InputError(f"{directory}: pinstress did not write {min(strange)}; move it elsewhere")
+        text = f"{directory}: pinstress did not write {min(strange)}; move it elsewhere"
+        raise InputError(text, code="strange-file")
     with TemporaryDirectory(prefix="pinstress-") as made:
         paths = draw_folder(directory, Path(made), quiet)
         try:
@@ -48,7 +50,8 @@ def plots(directory: Path, quiet: bool = False) -> None:
             for path in paths:
                 shutil.copyfile(path, directory / FOLDER / path.name)
         except OSError as error:
-            raise InputError(f"{directory}: cannot be written ({error.strerror})") from None
+            text = f"{directory}: cannot be written ({error.strerror})"
+            raise InputError(text, code="cannot-write") from None
     click.echo(f"Written: {directory / FOLDER}", err=True)
 
 
@@ -61,7 +64,8 @@ def draw_folder(directory: Path, into: Path, quiet: bool = False) -> list[Path]:
         page = read_regular(directory / PAGE, LARGEST).decode("utf-8")
         opened = open_results(directory)
     except (OSError, ValueError, FileError):
-        raise InputError(f"{directory}: no report.html and results.json to draw from") from None
+        text = f"{directory}: no report.html and results.json to draw from"
+        raise InputError(text, code="no-results") from None
     found = (Plot(name, "", json.loads(spec)) for name, spec in FIGURE.findall(page))
     paths = draw(found, into)
     rows = [row for row in opened.content["pins"] if (directory / "vtk").is_dir()]

@@ -27,7 +27,7 @@ from reports.data.changes import Change
 FIRST = Rung("harmonic")
 ENOUGH = 0.04  # of the factor: what the first mesh is worth
 SHARES, ROUNDS = 17, 3  # of an impulse tried at a time, each time between the last two
-SIZED_BY_COMMAND = "pinstress size finds it"
+SIZED_BY_COMMAND = "diameters are found by pinstress size"
 
 
 @dataclass(frozen=True)

@@ -84,7 +84,11 @@ def _effect(change: Change, of: Sensitivity) -> float:
 
 def change_notes(results: Results) -> list[str]:
     """What is to be known of the rows, a sentence or two each."""
-    notes = [f"Pin {c.pin}: {c.diameter_note}." for c in results.changes if c.diameter_note]
+    pins: dict[str, list[str]] = {}
+    for change in results.changes:
+        if change.diameter_note:
+            pins.setdefault(change.diameter_note, []).append(change.pin)
+    notes = [f"{'Pins' if pin[1:] else 'Pin'} {', '.join(pin)}: {n}." for n, pin in pins.items()]
     notes += [CONTACT] * any(not c.proportional for c in results.changes)
     return notes + [SINGULAR] * any(c.singular for c in results.changes)
 
