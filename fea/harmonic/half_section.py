@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import LinearNDInterpolator
-from scipy.spatial import Delaunay
+from scipy.spatial import Delaunay, cKDTree
 
 from fea.core.pin_loads import AnyLoads, Floats
 from fea.core.voigt import von_mises
@@ -58,5 +58,8 @@ class MeridianPlane:
         rows = np.arange(len(self.fields.displacement))
         angles = np.array([angle, angle + np.pi])
         sides = von_mises(Circumference(self.fields, loads).stress(rows, instant, angles))
-        found = LinearNDInterpolator(self._between, sides)(points)
+        found = np.asarray(LinearNDInterpolator(self._between, sides)(points))
+        lost = np.isnan(found).any(axis=-1)  # outside of the triangles by round-off
+        if lost.any():
+            found[lost] = sides[cKDTree(self._between.points).query(points[lost])[1]]
         return np.asarray(np.moveaxis(found, -1, 0))

@@ -52,3 +52,20 @@ def test_stress_at_nodes_is_that_of_the_fields(plane: MeridianPlane) -> None:
 def test_zones_are_marked(plane: MeridianPlane) -> None:
     corner = np.array([[[0.01, 0.02], [0.008, 0.03]]])
     assert plane.outside(corner).tolist() == [[False, True]]
+
+
+def test_every_point_of_the_section_has_a_stress(plane: MeridianPlane) -> None:
+    """Also where round-off puts it outside of the section, at ends of the axis and of the walls."""
+    points = np.array([[0.0, 0.06], [-1e-12, 0.06 + 1e-12], [0.015 + 1e-12, 0.0], [0.005, -1e-12]])
+    found = plane.von_mises(LOADS, 0, ANGLE, points)
+    assert np.isfinite(found).all()
+    fields = plane.fields
+    nodes = fields.points[: len(fields.displacement)]
+    everywhere = np.arange(len(nodes))
+    angles = np.array([ANGLE, ANGLE + np.pi])
+    known = von_mises(Circumference(fields, LOADS).stress(everywhere, 0, angles))
+    for point, both in zip(points, found.T, strict=True):
+        apart = np.linalg.norm(nodes - point, axis=1)
+        near = known[apart <= apart.min() + 1e-9]  # a corner has a stress on either side
+        assert (both >= near.min(axis=0) * (1.0 - 1e-6)).all()
+        assert (both <= near.max(axis=0) * (1.0 + 1e-6)).all()
