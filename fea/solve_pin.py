@@ -29,6 +29,7 @@ from fea.core.peak import NOTHING, Note, Peak
 from fea.core.pin_loads import PinLoads
 from fea.core.solution import Answer
 from fea.harmonic.evaluate import (
+    FirstMesh,
     HarmonicAnswer,
     harmonic_result,
     harmonic_solution,
@@ -77,9 +78,11 @@ def solve_pin(
     asked: Asked = AS_USUAL,
     progress: Progress = lambda _: None,
     between: Mapping[str, Between] = NO_MOTION,
+    first: FirstMesh | None = None,
 ) -> tuple[Solution, ...]:
     """Solutions of a pin's cases, one each. clamps: names of the clamped surfaces. between: for the
-    cases that are motions, the loads at any time; in others only the given instants count.
+    cases that are motions, the loads at any time; in others only the given instants count. first:
+    what was solved on the first mesh before, of a body of revolution.
 
     Raises: ArgumentError for a model that does not apply to this pin; MeshError, SolveError.
     """
@@ -90,7 +93,7 @@ def solve_pin(
             "not-axisymmetric",
         )
     constrained = tuple(pin.surface(name) for name in clamps)
-    job = _Job(pin, material, constrained, asked, progress, between)
+    job = _Job(pin, material, constrained, asked, progress, between, first or FirstMesh())
     balances = {} if clamps else {c.case: out_of_balance(pin, c, material.density) for c in cases}
     shares = {case: imbalance(pin, balance) for case, balance in balances.items()}
     notes = {case: _reacted(share) for case, share in shares.items() if share}
@@ -126,6 +129,7 @@ class _Job:
     asked: Asked
     progress: Progress
     between: Mapping[str, Between]
+    first: FirstMesh
 
 
 def ratio_of(pin: PinLike) -> float:
@@ -293,7 +297,15 @@ def _mesh(
     if model == "harmonic":
         assert isinstance(pin, Pin)
         section = harmonic_solution(
-            pin, job.material, job.constrained, cases, singularities, level, ratio, before.values()
+            pin,
+            job.material,
+            job.constrained,
+            cases,
+            singularities,
+            level,
+            ratio,
+            before.values(),
+            job.first,
         )
         answers: dict[str, Answer] = {c: HarmonicAnswer(section, mine) for c, mine in own.items()}
 

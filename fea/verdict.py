@@ -95,7 +95,7 @@ class Seen:
         if not last.governed:
             return last.maximum - self.error, last.maximum + self.error
         low, high = last.interval or (last.maximum, last.maximum)
-        return low * (1.0 - self.relative), high * (1.0 + self.relative)
+        return low * max(0.0, 1.0 - self.relative), high * (1.0 + self.relative)
 
     def known(self, tolerance: float) -> bool:
         """Whether the error is within `tolerance`."""

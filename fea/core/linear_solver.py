@@ -73,7 +73,7 @@ def _require_right(K: sp.csr_matrix, x: Floats, b: Floats, solve: Solve) -> None
     x, b = (v.reshape(len(v), -1) for v in (x, b))
     left = b - K @ x
     size, residual = (np.linalg.norm(v, axis=0) for v in (x, left))
-    stiffness = float(abs(K).sum(axis=0).max())
+    stiffness = float(np.add.reduceat(np.abs(K.data), K.indptr[:-1]).max())
     most = stiffness * size + np.linalg.norm(b, axis=0)
     backward = float(np.max(residual / np.where(most > 0.0, most, 1.0), initial=0.0))
     if not backward < LARGEST_BACKWARD_ERROR:

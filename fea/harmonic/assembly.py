@@ -44,7 +44,7 @@ class Section:
         X, W = get_quadrature(RefTri, 4)
         points = np.hstack([X, self._samples]), np.append(W, np.zeros(self._samples.shape[1]))
         self.basis = Basis(section.mesh, ElementTriP2(), quadrature=points)
-        self._quadrature, self._sampled = slice(0, len(W)), slice(len(W), None)
+        self._quadrature, self._sampled_points = slice(0, len(W)), slice(len(W), None)
 
     @property
     def unknowns(self) -> int:
@@ -119,18 +119,32 @@ class Section:
         """Strains (M, 3, 6, K), shears doubled, of displacements (N, 3, K) of harmonics n, one or
         (K,), at three points of each element, where they are most exact.
         """
-        U, V, W = (u[self.elements, a] for a in range(3))
-        unknowns = np.stack([(U + V) / 2.0, (U - V) / 2.0, W], axis=2)  # (M, 6, 3, K)
-        m, _, _, k = unknowns.shape
-        there = self._gradients[:, self._sampled].reshape(m, -1, 6) @ unknowns.reshape(m, 6, -1)
-        at_0, at_1 = (strain_map(n).transpose(0, 2, 1).reshape(6, 9) for n in (0, 1))
-        parts = there.reshape(m, -1, 9, k)
-        return np.asarray(at_0 @ parts + n * ((at_1 - at_0) @ parts))  # linear in n
+        return self._sampled(np.eye(6), n, u)
+
+    def sampled_stress(self, material: Material, n: Ints | int, u: Floats) -> Floats:
+        """The stress of these strains, Pa."""
+        return self._sampled(elasticity(material), n, u)
+
+    def _sampled(self, linear: Floats, n: Ints | int, u: Floats) -> Floats:
+        """Linear (6, 6) in these strains."""
+        m, k = len(self.elements), u.shape[2]
+        out = np.empty((m, 18, k))
+        harmonics = np.broadcast_to(n, k)
+        to_polar = np.array([[0.5, 0.5, 0.0], [0.5, -0.5, 0.0], [0.0, 0.0, 1.0]])
+        for one in np.unique(harmonics):
+            here = np.flatnonzero(harmonics == one)
+            by = np.einsum("ts,spa,pc->tca", linear, strain_map(int(one)), to_polar)
+            of_nodes = by.reshape(18, 3) @ self._gradients[:, self._sampled_points]
+            rows = of_nodes.reshape(m, 3, 6, 3, 6).swapaxes(3, 4).reshape(m, 18, 18)
+            out[:, :, here] = rows @ u[:, :, here][self.elements].reshape(m, 18, -1)
+        return out.reshape(m, 3, 6, k)
 
     @cached_property
     def samples(self) -> Floats:
         """Where those are, (3 M, 2): r, z in m, element by element."""
-        return np.ascontiguousarray(self._singularities[:, :, self._sampled].reshape(2, -1).T)
+        return np.ascontiguousarray(
+            self._singularities[:, :, self._sampled_points].reshape(2, -1).T
+        )
 
 
 def around(n: int) -> float:

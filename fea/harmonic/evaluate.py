@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -48,6 +48,21 @@ class HarmonicSolution:
     quiet: tuple[int, ...] = ()
 
 
+class FirstMesh:
+    """What is solved on the first mesh of a pin, so that loads that come later are solved on it
+    alone.
+    """
+
+    def __init__(self) -> None:
+        self._models: dict[tuple[object, ...], HarmonicModel] = {}
+
+    def model(self, make: Callable[[], HarmonicModel], *key: object) -> HarmonicModel:
+        """The one that was made before of the same, otherwise a new one."""
+        if key not in self._models:
+            self._models[key] = make()
+        return self._models[key]
+
+
 def harmonic_solution(
     pin: Pin,
     material: Material,
@@ -57,10 +72,12 @@ def harmonic_solution(
     level: int,
     ratio: float,
     before: Collection[MeshResult] = (),
+    first: FirstMesh | None = None,
 ) -> HarmonicSolution:
     """All unit loads of the cases on mesh number `level`, each `ratio` times finer than the one
     before, from which the mesh results `before` are: where these have high stresses, that is, and
-    elsewhere by the root of that; all over, without mesh results before.
+    elsewhere by the root of that; all over, without mesh results before. first: where the first
+    mesh is kept for other loads.
 
     Raises: MeshError, SolveError.
     """
@@ -72,14 +89,24 @@ def harmonic_solution(
     high = dict.fromkeys(singularity for result in before for singularity in result.high)
     finer = []
     for singularity in high:
-        first = size_at(pin, SIZE, spots(1.0), singularity)
+        coarse = size_at(pin, SIZE, spots(1.0), singularity)
         now = size_at(pin, SIZE.finer(ratio**level), spots(ratio**level), singularity)
-        finer.append(Grade((singularity,), now, PATCH * first, SIZE.growth))
+        finer.append(Grade((singularity,), now, PATCH * coarse, SIZE.growth))
     factor = ratio ** (level * ELSEWHERE if high else level)
 
     def solved(size: SectionSize, grades: list[Grade], quiet: tuple[int, ...]) -> MeridianFields:
-        section = meridian_mesh(pin, size, spots(factor), grades, quiet)
-        return _solved(HarmonicModel(pin, section, material, clamps), cases, singularities)
+        places, read = spots(factor), _rims(pin, singularities)
+        loads = _unit_loads(cases)
+        ends = _ends(pin, clamps, loads)
+
+        def model() -> HarmonicModel:
+            section = meridian_mesh(pin, size, places, grades, quiet)
+            return HarmonicModel(pin, section, material, clamps)
+
+        if level or first is None:
+            return model().solve(loads, read, ends)
+        key = (size, tuple(places), quiet, read.tobytes(), ends)
+        return first.model(model, *key).solve_more(loads, read, ends)
 
     quiet = crowd(pin)
     if quiet:
@@ -91,14 +118,15 @@ def harmonic_solution(
     return HarmonicSolution(fields, close, material.poisson_ratio, quiet)
 
 
-def _solved(
-    model: HarmonicModel, cases: tuple[PinLoads, ...], singularities: tuple[Singularity, ...]
-) -> MeridianFields:
+def _unit_loads(cases: tuple[PinLoads, ...]) -> tuple[UnitLoad, ...]:
     loads = tuple(dict.fromkeys(load for case in cases for load in case.coefficients()))
-    loads = loads or (UnitLoad(cases[0].surfaces[0], "force", 1),)  # whose coefficient is zero
-    read = [rim(model.pin, p, d) for p in singularities for d in _distances(p)]
-    rims = np.concatenate([NOWHERE, *read])
-    return model.solve(loads, rims, _ends(model.pin, model.clamps, loads))
+    return loads or (UnitLoad(cases[0].surfaces[0], "force", 1),)  # whose coefficient is zero
+
+
+def _rims(pin: Pin, singularities: tuple[Singularity, ...]) -> Floats:
+    """Points (P, 2) about singularities at which stress is read."""
+    read = [rim(pin, p, d) for p in singularities for d in _distances(p)]
+    return np.concatenate([NOWHERE, *read])
 
 
 def _distances(singularity: Singularity) -> tuple[float, ...]:

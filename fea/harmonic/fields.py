@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -32,6 +32,15 @@ class MeridianFields:
     unknowns: int
     triangles: Ints = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int64))
     unread: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+
+    def joined(self, other: MeridianFields) -> MeridianFields:
+        """With other loads' fields on the same points."""
+        stress, displacement = (
+            np.concatenate([getattr(x, name) for x in (self, other)], axis=2)
+            for name in ("stress", "displacement")
+        )
+        loads = self.loads + other.loads
+        return replace(self, loads=loads, stress=stress, displacement=displacement)
 
     def outside(self, singularities: Iterable[Singularity]) -> Mask:
         """Which of the points may have the maximum: read, and in none of the singularities."""

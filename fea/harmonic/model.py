@@ -118,6 +118,24 @@ class HarmonicModel(HarmonicBody):
     ) -> None:
         super().__init__(pin, Section(section), material, clamps, pivot)
         self.material = material
+        self._found: MeridianFields | None = None
+
+    def solve_more(
+        self,
+        loads: tuple[UnitLoad, ...],
+        extra: Floats = NOWHERE,
+        ends: Iterable[tuple[float, float]] = (),
+    ) -> MeridianFields:
+        """The same as `solve`, of at least these loads: with those of former calls for the same
+        points, which are not solved again.
+        """
+        known = self._found
+        new = loads if known is None else tuple(x for x in loads if x not in known.loads)
+        if new:
+            fields = self.solve(new, extra, ends)
+            self._found = fields if known is None else known.joined(fields)
+        assert self._found is not None
+        return self._found
 
     def solve(
         self,

@@ -10,7 +10,7 @@ import scipy.sparse as sp
 
 from fea.core.local_fit import continuation
 from fea.core.material import Material
-from fea.harmonic.assembly import Section, elasticity
+from fea.harmonic.assembly import Section
 from fea.harmonic.boundary import Outline, shapes
 from fea.harmonic.pressure_edge import DIRECTIONS, Jump, jumps
 from fea.harmonic.surface_stress import AT, skin
@@ -49,8 +49,7 @@ class Reading:
         outline's edges.
         """
         K = u.shape[2]
-        stress = elasticity(self.material) @ self.space.sampled_strains(n, u)  # (M, 3, 6, K)
-        sampled = stress.reshape(-1, 6, K)
+        sampled = self.space.sampled_stress(self.material, n, u).reshape(-1, 6, K)
         fitted = np.asarray(self.continued @ sampled.reshape(len(sampled), -1)).reshape(-1, 6, K)
         inner, rough, inside = np.split(fitted, np.cumsum([len(self.inner), len(self.rough)]))
         at_nodes = np.zeros((len(self.space.nodes), 6, K))

@@ -215,11 +215,16 @@ class Circumference:
 
     def _in_order(self, rows: Ints) -> tuple[Ints, Floats]:
         """Points, those first that can reach most, and how much, Pa."""
-        reach = np.zeros(len(rows))
-        for k in range(0, len(rows), CHUNK):
-            reach[k : k + CHUNK] = self.reach(rows[k : k + CHUNK]).max(axis=1, initial=0.0)
+        reach = self._reach[rows]
         order = np.argsort(-reach, kind="stable")
         return rows[order], reach[order]
+
+    @cached_property
+    def _reach(self) -> Floats:
+        """The largest of these at any instant, (S,) Pa."""
+        rows = np.arange(self.points)
+        parts = [rows[k : k + CHUNK] for k in range(0, self.points, CHUNK)]
+        return np.concatenate([self.reach(part).max(axis=1, initial=0.0) for part in parts])
 
     def reach(self, points: Ints, instants: Instants = EVERY) -> Floats:
         """A bound that is sooner found: the sum over unit loads of what each can do by itself."""
@@ -284,11 +289,11 @@ class Circumference:
         (J, 5, W) each.
         """
         back, forth = (np.empty((len(points), 5, len(waves))) for _ in range(2))
+        one, i = np.unique(points, return_inverse=True)
+        now, t = np.unique(instants, return_inverse=True)
         for w, wave in enumerate(waves):
-            five = self._five[:, :, wave][points]
-            a, b = (
-                (five @ x[instants, wave][:, :, None])[:, :, 0] for x in (self._first, self._second)
-            )
+            five = np.ascontiguousarray(self._five[one, :, wave])
+            a, b = ((five @ x[now, wave].T)[i, :, t] for x in (self._first, self._second))
             back[:, :EVEN, w], back[:, EVEN:, w] = a[:, :EVEN], -b[:, EVEN:]
             forth[:, :EVEN, w], forth[:, EVEN:, w] = b[:, :EVEN], a[:, EVEN:]
         return back, forth

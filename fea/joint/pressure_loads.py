@@ -108,18 +108,26 @@ class Patterns:
 
 
 def patterns_of(
-    pin: Pin, rings: tuple[str, ...], parts: Sequence[tuple[Floats, float]]
+    pin: Pin,
+    rings: tuple[str, ...],
+    parts: Sequence[tuple[Floats, float]],
+    known: Patterns | None = None,
 ) -> Patterns:
     """Those of which harmonics of pressures (N + 1, T, R, 2) Pa are made, in some parts, as cases:
-    each with what is negligible, of the largest amplitude of the part.
+    each with what is negligible, of the largest amplitude of the part. known: patterns that are
+    there already; they come first.
     """
     scaled = [x / (negligible * (np.abs(x).max(initial=0.0) or 1.0)) for x, negligible in parts]
+    waves = np.concatenate(scaled, axis=1)
+    before = [np.zeros((0, len(rings)))] * len(waves) if known is None else known.by_harmonic
     found = []
-    for wave in np.concatenate(scaled, axis=1):
+    for wave, old in zip(waves, before, strict=True):
         amplitude = wave.transpose(0, 2, 1).reshape(-1, len(rings))
+        for _ in range(2):  # once more for round-off
+            amplitude = amplitude - amplitude @ old.T @ old
         instants, size, patterns = np.linalg.svd(amplitude, full_matrices=False)
         most = np.abs(instants * size).max(axis=0)
-        found.append(np.asarray(patterns[most > 1.0]))
+        found.append(np.concatenate([old, patterns[most > 1.0]]))
     return Patterns(pin, rings, tuple(found))
 
 

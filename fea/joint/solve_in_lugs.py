@@ -28,7 +28,7 @@ from fea.joint.cell_pressure import CellPressure
 from fea.joint.contact import Pressed
 from fea.joint.lugs.lug import Lug
 from fea.joint.lugs.rings import whole_names
-from fea.joint.pressure_loads import NEGLIGIBLE, ROUGH, PressureLoads
+from fea.joint.pressure_loads import NEGLIGIBLE, ROUGH, Patterns, PressureLoads
 from fea.joint.records import JointResult
 from fea.joint.solve_joint import Cells, JointContact, JointModel
 from fea.joint.variations import Comparison, compare
@@ -142,6 +142,7 @@ class _Contact:
         self.instants: dict[str, PinLoads] = {}
         self._known: dict[tuple[str, float], Pressed] = {}
         self._besides: dict[str, Floats] = {}
+        self._patterns: Patterns | None = None
         for case in given.cases:
             instants = _instants(case, given.between.get(case.case))
             try:
@@ -163,7 +164,9 @@ class _Contact:
         model, out = self.model, {}
         own = [singularities_of(model.pin, model.material, (), (x,), asked.distance) for x in loads]
         both = tuple(dict.fromkeys(zone for zones in own for zone in zones))
-        section = harmonic_solution(model.pin, model.material, (), tuple(loads), both, 0, 1.0)
+        section = harmonic_solution(
+            model.pin, model.material, (), tuple(loads), both, 0, 1.0, (), model.first
+        )
         for x, zones in zip(loads, own, strict=True):
             answer = HarmonicAnswer(section, zones)
             largest, instant = answer.largest(x)
@@ -177,7 +180,7 @@ class _Contact:
             waves, may = self.model.waves(self._at(links)), near[case].may
             parts += [(waves[:, may], NEGLIGIBLE), (waves[:, ~may], ROUGH)]
         if parts:
-            self._patterns = self.model.patterns(parts)
+            self._patterns = self.model.patterns(parts, self._patterns)
 
     def _at(self, links: PinLoads) -> list[Pressed]:
         """Contact at the loads' instants."""
@@ -192,6 +195,7 @@ class _Contact:
 
     def press(self, links: PinLoads) -> PressureLoads:
         """What presses on the pin under loads of its links."""
+        assert self._patterns is not None
         return self._patterns.loads(self.model.waves(self._at(links)), links)
 
     def _joined(self, links: PinLoads, instant: int) -> JointContact:
@@ -201,7 +205,7 @@ class _Contact:
     def compared(self, near: Mapping[str, Near], asked: Asked) -> dict[str, Comparison]:
         """By case, at the instant that governs on the first mesh."""
         at = [self._joined(links, near[case].instant) for case, links in self.instants.items()]
-        return dict(zip(self.instants, compare(self.model, at, asked), strict=True))
+        return dict(zip(self.instants, compare(self.model, at, asked, self._patterns), strict=True))
 
     def solved(
         self, compared: dict[str, Comparison], asked: Asked, progress: Progress
@@ -222,6 +226,7 @@ class _Contact:
             replace(asked, model="harmonic", because=CONTACT),
             progress,
             {case: between(links) for case, links in self.given.between.items()},
+            self.model.first,
         )
         return {
             case.case: self._solution(case, solution, compared[case.case], asked)
@@ -236,7 +241,8 @@ class _Contact:
         contact = self._joined(solution.loads.links, solution.instant)
         links = contact.loads.links
         if not known.is_at(links, case):
-            (known,) = compare(self.model, [contact], asked)
+            (known,) = compare(self.model, [contact], asked, self._patterns)
+        assert self._patterns is not None
         missed = self._patterns.left_out(self.model.waves(contact.contact))
         peak = with_cells(_named(self.model, solution.peak), known.cells + missed, asked)
         peak = replace(peak, governing=links, imbalance=_imbalance(self.model, case))

@@ -16,6 +16,7 @@ import numpy as np
 
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, LugEdge, PinLoads
+from fea.harmonic.evaluate import FirstMesh
 from fea.joint.bending import bending_moment, mass_per_length
 from fea.joint.contact import Bands, ContactProblem, Pressed, rotation
 from fea.joint.flexibility import (
@@ -24,6 +25,7 @@ from fea.joint.flexibility import (
     pin_flexibility,
     wavy_flexibility,
 )
+from fea.joint.lugs.changes import softer
 from fea.joint.lugs.fit import fitted, on_structure
 from fea.joint.lugs.links import link_forces, link_numbers
 from fea.joint.lugs.lug import Lug
@@ -101,7 +103,8 @@ class JointContact:
 
 
 class JointModel:
-    """A pin in its lugs, with the flexibilities that serve all cases and clearances.
+    """A pin in its lugs, with the flexibilities that serve all cases and clearances. first: its
+    first mesh for stress.
 
     Raises: ArgumentError for lugs that do not fit the pin; MeshError, SolveError.
     """
@@ -109,7 +112,7 @@ class JointModel:
     def __init__(
         self, pin: Pin, material: Material, lugs: Sequence[Lug], cells: Cells = Cells()
     ) -> None:
-        self.given, self.material, self.cells = pin, material, cells
+        self.given, self.material, self.cells, self.first = pin, material, cells, FirstMesh()
         self.whole = pin = on_structure(pin, lugs)
         self.lugs = fitted(pin, material, lugs)
         self.ends = {
@@ -146,19 +149,25 @@ class JointModel:
             high[:, own, own] = wavy_flexibility(lug, self.material, radius, ends, waves)
         return np.concatenate([low, high])
 
-    def varied(self, lugs: tuple[Lug, ...], softness: float = 1.0) -> JointModel:
-        """The same pin in lugs of other clearance, edge radius and tilt, and so many times softer:
+    def varied(self, lugs: tuple[Lug, ...], softness: Sequence[float] = ()) -> JointModel:
+        """The same pin in lugs of other clearance, edge radius and tilt, each so many times softer:
         with the flexibilities at hand.
         """
+        softness = softness or (1.0,) * len(lugs)
         other = copy.copy(self)
         for known in ("contact", "flexibility", "edges"):
             other.__dict__.pop(known, None)
-        other.lugs = tuple(_softer(lug, softness) for lug in lugs)
-        other.of_lugs = softness * self.of_lugs
-        if softness == 1.0:
+        other.lugs = tuple(softer(*both) for both in zip(lugs, softness, strict=True))
+        other.of_lugs = self.of_lugs * np.repeat(softness, self._rings_of_each)
+        if set(softness) == {1.0}:
             tilts = [lug.tilt for lug in lugs]
             other.__dict__["contact"] = self.contact.changed(other.gap, tilts)
         return other
+
+    @property
+    def _rings_of_each(self) -> list[int]:
+        """How many rings each lug has."""
+        return [len(ends) - 1 for ends in self.ends.values()]
 
     @cached_property
     def contact(self) -> ContactProblem:
@@ -166,7 +175,7 @@ class JointModel:
         bands = [self.pin.band(name) for name in self.rings]
         z, length = (np.array(x) for x in zip(*((b.middle, b.length) for b in bands), strict=True))
         radius = np.array([b.radius for b in bands])
-        number = np.repeat(np.arange(len(self.lugs)), [len(e) - 1 for e in self.ends.values()])
+        number = np.repeat(np.arange(len(self.lugs)), self._rings_of_each)
         tilt = [lug.tilt for lug in self.lugs]
         links = link_numbers(self.whole.connections, self.given.connections)
         cut = Bands(z, length, radius, number, self.gap, links)
@@ -200,11 +209,14 @@ class JointModel:
         """The harmonics of contact at some instants, (N + 1, T, R, 2) Pa, of cos and sin."""
         return np.stack([amplitudes(x.pressure, self.cells.highest, x.angle) for x in found], 1)
 
-    def patterns(self, parts: Sequence[tuple[Floats, float]]) -> Patterns:
+    def patterns(
+        self, parts: Sequence[tuple[Floats, float]], known: Patterns | None = None
+    ) -> Patterns:
         """Those of which harmonics of pressures (N + 1, T, R, 2) Pa are made, in some parts, each
-        with what is negligible.
+        with what is negligible; the known ones first.
         """
-        return replace(patterns_of(self.pin, self.rings, parts), edges=self.edges)
+        found = patterns_of(self.pin, self.rings, parts, known)
+        return replace(found, edges=self.edges)
 
     @cached_property
     def edges(self) -> tuple[LugEdge, ...]:
@@ -289,16 +301,6 @@ def edges_of(pin: Pin, material: Material, lugs: Sequence[Lug]) -> tuple[LugEdge
             at, rounded = (band.radius, z), lug.edge_radius > 0.0
             found.append(LugEdge(lug.connection, *at, exponent, feature, rounded))
     return tuple(found)
-
-
-def _softer(lug: Lug, times: float) -> Lug:
-    """Also its bushing."""
-
-    def softer(material: Material) -> Material:
-        return replace(material, youngs_modulus=material.youngs_modulus / times)
-
-    bushing = lug.bushing and replace(lug.bushing, material=softer(lug.bushing.material))
-    return replace(lug, material=softer(lug.material), bushing=bushing)
 
 
 def _centre(pin: Pin) -> float:

@@ -7,8 +7,7 @@ act on one mesh, the first: its error is in all maxima alike, so that their rati
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,8 +18,8 @@ from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.harmonic.evaluate import HarmonicAnswer, harmonic_result, harmonic_solution
 from fea.joint.coarser_cells import on_coarser_cells
-from fea.joint.lugs.lug import Lug
-from fea.joint.pressure_loads import NEGLIGIBLE, stacked
+from fea.joint.lugs.changes import changes
+from fea.joint.pressure_loads import NEGLIGIBLE, Patterns, stacked
 from fea.joint.records import JointRange, Variation
 from fea.joint.solve_joint import JointContact, JointModel
 from fea.solve_pin import singularities_of
@@ -28,8 +27,6 @@ from fea.solve_pin import singularities_of
 CELLS = 0.5  # of the tolerance: what the cells may take
 APART = 0.25  # of half the interval of a maximum that depends on the excluded distance: the same
 FIRST = 1.2  # by which factor the first mesh may be wrong
-FIT = 0.002  # of the diameter: a free running fit, where no clearance is given
-SOFTER = 2.0
 
 
 @dataclass(frozen=True)
@@ -70,8 +67,10 @@ class Comparison:
         return apart <= float(np.diff(case.times).max(initial=0.0))
 
 
-def compare(model: JointModel, at: Sequence[JointContact], asked: Asked) -> tuple[Comparison, ...]:
-    """Joints in contact, each at one instant."""
+def compare(
+    model: JointModel, at: Sequence[JointContact], asked: Asked, known: Patterns | None = None
+) -> tuple[Comparison, ...]:
+    """Joints in contact, each at one instant. known: patterns of the pressures on them."""
     found: list[Floats] = []
     links: list[PinLoads] = []
     names: list[list[Variation]] = []
@@ -79,22 +78,25 @@ def compare(model: JointModel, at: Sequence[JointContact], asked: Asked) -> tupl
         here = contact.loads.links
         waves = [model.waves(contact.contact), _on_coarser_cells(model, contact)]
         over = []
-        for changed, other in _joints(model):
+        for change in changes(model.whole, model.lugs):
             try:
+                other = model.varied(change.lugs, change.softness)
                 waves.append(model.waves(other.pressed(here)))
             except SolveError:
                 continue  # a lug that is free to tilt may leave a couple on the pin
-            over.append(changed)
+            over.append(Variation(change.what, change.value, 1.0, change.length))
         found += waves
         links += [here] * len(waves)
         names.append(over)
     if not found:
         return ()
-    patterns = model.patterns([(waves, NEGLIGIBLE) for waves in found])
+    patterns = model.patterns([(waves, NEGLIGIBLE) for waves in found], known)
     each = [patterns.loads(waves, here) for waves, here in zip(found, links, strict=True)]
     loads = stacked(each)
     singular = singularities_of(model.pin, model.material, (), (loads,), asked.distance)
-    section = harmonic_solution(model.pin, model.material, (), (loads,), singular, 0, 1.0)
+    section = harmonic_solution(
+        model.pin, model.material, (), (loads,), singular, 0, 1.0, (), model.first
+    )
     maxima, out = HarmonicAnswer(section, singular).maxima(loads), []
     for contact, over in zip(at, names, strict=True):
         first = float(maxima[0]) or 1.0  # nothing loads the pin
@@ -113,29 +115,3 @@ def _on_coarser_cells(model: JointModel, contact: JointContact) -> Floats:
     problem, belongs = on_coarser_cells(model)
     found = model.pressed(contact.loads.links, problem)
     return model.waves([replace(x, pressure=belongs @ x.pressure) for x in found])
-
-
-def _joints(model: JointModel) -> Iterator[tuple[Variation, JointModel]]:
-    """What is changed, and the joint with it."""
-    lugs = model.lugs
-    for times in (0.0, 2.0):
-        changed = tuple(replace(lug, clearance=times * _clearance(model, lug)) for lug in lugs)
-        size = max(lug.clearance for lug in changed)
-        yield Variation("clearance", _in_words(lugs, times), 1.0, size), model.varied(changed)
-    for softness in (1.0 / SOFTER, SOFTER):
-        stiffer = Variation("stiffness of the lugs", f"times {1.0 / softness:g}", 1.0)
-        yield stiffer, model.varied(lugs, softness)
-    for tilt, name in ((0.0, "free"), (math.inf, "guided")):
-        other = model.varied(tuple(replace(lug, tilt=tilt) for lug in lugs))
-        yield Variation("tilt", name, 1.0), other
-
-
-def _in_words(lugs: Sequence[Lug], times: float) -> str:
-    """A clearance of so many times `_clearance`."""
-    ways = {"twice the given" if lug.clearance else f"{FIT:g} of the diameter" for lug in lugs}
-    return " or ".join(sorted(ways, reverse=True)) if times else "none"
-
-
-def _clearance(model: JointModel, lug: Lug) -> float:
-    """Half of the largest that is tried, m."""
-    return lug.clearance or FIT * model.whole.band(lug.connection).radius

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 from fea.core.material import Material
 from fea.joint.lugs.fit import beyond_foundations, fitted, on_structure
-from fea.joint.lugs.lug import Bushing, Lug
+from fea.joint.lugs.lug import Bushing, Lug, LugRange
 from geometry import ArgumentError, Pin, PinLike
 from pinstress.model.pins import material
-from pinstress.schema.pins import LugTable
+from pinstress.schema.pins import LugRangeTable, LugTable
 from pinstress.study.file import Study
 
 EYE = 2.5  # outer diameter over the band's
@@ -54,7 +54,8 @@ def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]
         except ArgumentError as error:
             raise study.error(str(error), f"{at}.{connection}", error.code) from None
     try:
-        fitted(on_structure(pin, out), made_of, out)
+        for tried in (out, *_ends_of_clearance(out)):
+            fitted(on_structure(pin, tried), made_of, tried)
     except ArgumentError as error:
         raise study.error(str(error), at, error.code) from None
     if joints == "foundation" and (reason := beyond_foundations(out)):
@@ -64,6 +65,14 @@ def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]
             "beyond-foundations",
         )
     return tuple(out)
+
+
+def _ends_of_clearance(lugs: list[Lug]) -> list[list[Lug]]:
+    """The lugs at either end of the ranges of their clearances that the study gives."""
+    return [
+        [replace(x, clearance=(x.range.clearance or (x.clearance,) * 2)[end]) for x in lugs]
+        for end in (0, 1)
+    ]
 
 
 @dataclass(frozen=True)
@@ -119,14 +128,29 @@ def _lug(study: Study, pin: Pin, connection: str, given: LugTable, of_pin: Mater
     band = pin.band(connection)
     outer = given.outer_diameter or EYE * 2.0 * band.radius
     made_of = of_pin if given.material is None else material(study, given.material)
-    tilt = {"guided": math.inf, "free": 0.0}.get(str(given.tilt))
-    if tilt is None:
-        tilt = (
-            given.tilt if isinstance(given.tilt, float) else _bending(made_of, outer, band.length)
-        )
+    tilt = _bending(made_of, outer, band.length) if given.tilt is None else _stiffness(given.tilt)
     ring = given.bushing
     bushing = None if ring is None else Bushing(ring.thickness, material(study, ring.material))
-    return Lug(connection, outer, made_of, given.clearance, given.edge_radius, tilt, bushing)
+    return Lug(
+        connection,
+        outer,
+        made_of,
+        given.clearance,
+        given.edge_radius,
+        tilt,
+        bushing,
+        _range(given.range),
+    )
+
+
+def _range(given: LugRangeTable) -> LugRange:
+    tilt = None if given.tilt is None else (_stiffness(given.tilt[0]), _stiffness(given.tilt[1]))
+    return LugRange(given.clearance, given.stiffness, tilt)
+
+
+def _stiffness(tilt: str | float) -> float:
+    """N m/rad, of a tilt in words or as a stiffness."""
+    return {"guided": math.inf, "free": 0.0}[tilt] if isinstance(tilt, str) else tilt
 
 
 def _bending(material: Material, outer: float, thickness: float) -> float:

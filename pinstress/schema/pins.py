@@ -98,6 +98,20 @@ class BushingTable(StrictTable):
     """Name of a `[material]`."""
 
 
+Times = Annotated[Number, Field(gt=0.0)]
+
+
+class LugRangeTable(StrictTable):
+    """Between what values something of a lug may lie: [lower, upper]."""
+
+    clearance: tuple[Length, Length] | None = None
+    """Default: none, and twice the given (0.002 of the diameter where none is given)."""
+    stiffness: tuple[Times, Times] | None = None
+    """Times that of the lug as described. Default: [0.5, 2]."""
+    tilt: tuple[Tilt, Tilt] | None = None
+    """Default: ["free", "guided"]."""
+
+
 class LugTable(StrictTable):
     """The eye in which a band of the pin sits: of the link at the connection of this name, or of
     the surrounding structure, which does not move, at the segment of this name.
@@ -116,6 +130,8 @@ class LugTable(StrictTable):
     Default: the bending stiffness of an eye clamped at a distance of 0.8 outer diameters."""
     bushing: BushingTable | None = None
     """A bushing bonded in the eye."""
+    range: LugRangeTable = LugRangeTable()
+    """What is not known of the lug, for the range of the maximum over the joint (`joint.range`)."""
 
 
 class PinTable(StrictTable):

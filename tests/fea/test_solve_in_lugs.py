@@ -211,7 +211,7 @@ def test_a_softer_joint_is_that_of_softer_lugs() -> None:
     model = JointModel(PIN, STEEL, LUGS)
     soft = Material("soft", 105e9, 0.3)
     own = JointModel(PIN, STEEL, tuple(replace(lug, material=soft) for lug in LUGS))
-    varied = model.varied(model.lugs, 2.0)
+    varied = model.varied(model.lugs, (2.0,) * len(model.lugs))
     z = np.array([0.023])
     ours, theirs = (m.solve(STEADY).bending_moment(z)[0, 0, 0] for m in (varied, own))
     assert ours == pytest.approx(theirs, rel=1e-9)

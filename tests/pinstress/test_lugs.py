@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fea.joint.lugs.lug import Bushing, Lug
+from fea.joint.lugs.lug import Bushing, Lug, LugRange
 from pinstress import InputError, load_study, prepare, run
 from pinstress.model.lugs import Surroundings
 from tests.support.errors import raises
@@ -73,8 +73,12 @@ tilt = "guided"
 [pin.P.lug.R]
 tilt = "2e5 N m/rad"
 clearance = -0.01
+range = { clearance = [-0.02, 0], stiffness = [0.8, 1.2], tilt = ["1e5 N m/rad", "guided"] }
 """
     left, middle, right = lugs(tmp_path, given)
+    assert right.range.clearance == pytest.approx((-2e-5, 0.0))
+    assert (right.range.stiffness, right.range.tilt) == ((0.8, 1.2), (1e5, math.inf))
+    assert left.range == LugRange()
     steel = middle.material
     assert (left.connection, left.outer_diameter, left.material.name) == ("L", 0.06, "bronze")
     assert (left.clearance, left.edge_radius, left.tilt) == pytest.approx((2e-5, 5e-4, 0.0))
@@ -126,6 +130,10 @@ def test_a_lug_of_the_structure_by_the_name_of_a_segment(tmp_path: Path) -> None
         ("lug.M = { clearance = 5 }", "clearance-too-large", "lug M"),
         ("lug.M = { clearance = -2 }", "interference-too-large", "lug M"),
         ("lug.M = { edge_radius = 15 }", "edge-radius-too-large", "lug M"),
+        ("lug.M = { range = { clearance = [0.1, 5] } }", "clearance-too-large", "lug M"),
+        ("lug.M = { range = { clearance = [0.1, 0] } }", "range-order", "smaller value first"),
+        ("lug.M = { range = { stiffness = [0, 2] } }", None, "pin.P.lug.M.range.stiffness"),
+        ("lug.M = { range = { clearance = 0.1 } }", None, "pin.P.lug.M.range.clearance"),
         ('lug.M = { tilt = "loose" }', None, "pin.P.lug.M.tilt"),
         ("lug.M = { tilt = -1 }", None, "pin.P.lug.M.tilt"),
         ('clamp = ["start"]\nlug.M = {}', "clamped-in-lugs", "clamped at start"),

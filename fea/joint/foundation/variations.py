@@ -8,9 +8,8 @@ no more than these.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -20,10 +19,10 @@ from fea.core.pin_loads import PinLoads
 from fea.joint.foundation.bounds import Bounded, bounded
 from fea.joint.foundation.foundation_model import FoundationModel
 from fea.joint.foundation.stress import FoundationStress
+from fea.joint.lugs.changes import changes, softer
 from fea.joint.lugs.fit import beyond_foundations
 from fea.joint.lugs.lug import Lug
 from fea.joint.records import JointRange, JointResult, Variation
-from fea.joint.variations import FIT, SOFTER
 from geometry import ArgumentError, Pin
 
 
@@ -115,30 +114,11 @@ def _tried(stress: FoundationStress, loads: PinLoads) -> Bounded | None:
 
 
 def _varied(own: FoundationStress) -> Iterator[Varied]:
-    lugs, model = own.model.lugs, own.model
-
-    def other(changed: Sequence[Lug]) -> FoundationStress:
-        return own.in_lugs(FoundationModel(model.given, model.material, changed))
-
-    for times in (0.0, 2.0):
-        loose = [replace(lug, clearance=times * _clearance(model, lug)) for lug in lugs]
-        if loose == list(lugs):
-            continue
-        ways = {"twice the given" if lug.clearance else f"{FIT:g} of the diameter" for lug in lugs}
-        words = " or ".join(sorted(ways, reverse=True)) if times else "none"
-        size = max(lug.clearance for lug in loose)
-        yield Varied("clearance", words, size, own.in_lugs(model.with_clearances(loose)))
-    for times in (1.0 / SOFTER, SOFTER):
-        stiff = [replace(lug, material=_stiffer(lug.material, times)) for lug in lugs]
-        yield Varied("stiffness of the lugs", f"times {times:g}", None, other(stiff))
-    for tilt, name in ((0.0, "free"), (math.inf, "guided")):
-        yield Varied("tilt", name, None, other([replace(lug, tilt=tilt) for lug in lugs]))
-
-
-def _stiffer(material: Material, times: float) -> Material:
-    return replace(material, youngs_modulus=times * material.youngs_modulus)
-
-
-def _clearance(model: FoundationModel, lug: Lug) -> float:
-    """Half of the largest that is tried, m."""
-    return lug.clearance or FIT * model.whole.band(lug.connection).radius
+    model = own.model
+    for change in changes(model.whole, model.lugs):
+        if change.length is not None:
+            other = model.with_clearances(list(change.lugs))
+        else:
+            both = zip(change.lugs, change.softness, strict=True)
+            other = FoundationModel(model.given, model.material, [softer(*x) for x in both])
+        yield Varied(change.what, change.value, change.length, own.in_lugs(other))

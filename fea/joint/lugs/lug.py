@@ -28,12 +28,36 @@ class Bushing:
 
 
 @dataclass(frozen=True)
+class LugRange:
+    """Between what values something of a lug may lie, None where the usual ones are tried
+    (fea.joint.lugs.changes): clearance, m; stiffness, times that of the lug; tilt, N m/rad.
+
+    Raises: ArgumentError for an upper end below the lower one, or a stiffness that is not positive.
+    """
+
+    clearance: tuple[float, float] | None = None
+    stiffness: tuple[float, float] | None = None
+    tilt: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("clearance", "stiffness", "tilt"):
+            ends = getattr(self, name)
+            if ends is not None and not ends[0] <= ends[1]:
+                raise ArgumentError(
+                    f"range of the {name}: give the smaller value first, then the larger one",
+                    "range-order",
+                )
+        if self.stiffness is not None and not self.stiffness[0] > 0.0:
+            raise ArgumentError("range of the stiffness: it must be positive", "not-positive")
+
+
+@dataclass(frozen=True)
 class Lug:
     """The eye of the link at a connection, as an annulus; m.
 
     clearance: of the diameters, negative for interference. edge_radius: of the bore's edges. tilt:
     N m/rad, of the link against the others about any axis across the pin; inf: guided, 0: free.
-    The pin bears on the bushing, if there is one.
+    The pin bears on the bushing, if there is one. range: of what is not known of it.
 
     Raises: ArgumentError for what cannot be; fea.joint.lugs.fit has what depends on the pin.
     """
@@ -45,6 +69,7 @@ class Lug:
     edge_radius: float = 0.0
     tilt: float = math.inf
     bushing: Bushing | None = None
+    range: LugRange = LugRange()
 
     def __post_init__(self) -> None:
         what = f"lug {self.connection}"
