@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from fea.core.pin_loads import Floats, LugEdge, PinLoads, UnitLoad
 from geometry import Pin
 
-NEGLIGIBLE = 5e-4  # of the largest amplitude: what a pattern must add to any instant's
-ROUGH = 1e-2  # the same for instants that cannot govern
+NEGLIGIBLE = 2e-3  # of the largest amplitude: what a pattern must add to any instant's
+ROUGH = 3e-2  # the same for instants that cannot govern
 
 
 @dataclass(frozen=True)
