@@ -13,11 +13,10 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fea.core.pin_loads import Amounts, PinLoads, off_chord
 from fea.core.solution import Answer
-from geometry.arrays import Floats
+from geometry.arrays import Floats, Ints
 
 Between = Callable[[Floats], PinLoads]  # a motion's loads at any times (T,) s
 
@@ -39,12 +38,10 @@ def rise_between(answer: Answer, loads: PinLoads, between: Between) -> float:
     return max(0.0, float(reached.max(initial=0.0)) - largest)
 
 
-def _reached(
-    answer: Answer, loads: PinLoads, off: Amounts, largest: float
-) -> tuple[NDArray[np.int64], Floats]:
+def _reached(answer: Answer, loads: PinLoads, off: Amounts, largest: float) -> tuple[Ints, Floats]:
     """Intervals in which the largest at instants, Pa, may be exceeded, and what they may reach."""
     rise = FACTOR * answer.largest(off)[0]
-    at = answer.maxima(loads, largest - rise)
+    at = answer.maxima(loads, max(0.0, largest - rise))
     ends = np.maximum(at[1:], at[:-1])
     near = np.flatnonzero(ends + rise > largest)
     return near, ends[near] + FACTOR * answer.maxima(off.at(near))

@@ -6,15 +6,15 @@ from collections.abc import Iterable
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import LinearNDInterpolator
 from scipy.spatial import Delaunay, cKDTree
 
-from fea.core.pin_loads import AnyLoads, Floats
+from fea.core.pin_loads import AnyLoads
 from fea.core.voigt import von_mises
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.superposition import Circumference
 from fea.singular.singularities import Singularity, outside
+from geometry.arrays import Floats, Mask
 
 LEVEL = 1e-9  # of the length: a smaller rise of the outline is round-off
 
@@ -46,7 +46,7 @@ class MeridianPlane:
             inner[k] = r[down].max(initial=0.0)
         return inner, outer
 
-    def outside(self, points: Floats) -> NDArray[np.bool_]:
+    def outside(self, points: Floats) -> Mask:
         """Which of the points (.., 2) are in no excluded zone."""
         r, z = points.reshape(-1, 2).T
         return outside(self.zones, r, z).reshape(points.shape[:-1])

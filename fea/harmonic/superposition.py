@@ -144,13 +144,10 @@ class Circumference:
             self._kept[wave.start] = aa, bb, ab
         return self._kept[wave.start]
 
-    def largest(self, among: Mask) -> tuple[Floats, Ints, Floats]:
-        """Over the points of a mask (S,), at every instant: maximum (T,) Pa, point, angle."""
-        value, point = self._search(among, together=False)
-        return value, point, self.round(point, np.arange(self.count))[1]
-
     def maxima(self, among: Mask, least: float = 0.0) -> Floats:
-        """The same values (T,) Pa alone; `least` where they do not exceed that."""
+        """Over the points of a mask (S,), at every instant (T,), Pa; `least` where they do not
+        exceed that.
+        """
         return self._search(among, together=False, least=least)[0]
 
     def top(self, among: Mask) -> Top:

@@ -114,8 +114,9 @@ def test_zero_loads() -> None:
     loads = PinLoads("case", ("B",), np.zeros((3, 1, 3)))
     fields = MeridianFields(np.zeros((4, 2)), (), np.zeros((4, 6, 0)), np.zeros((4, 3, 0)), 4, 0)
     around = Circumference(fields, loads)
-    maximum, point, _ = around.largest(np.array([False, True, True, False]))
-    assert maximum.tolist() == [0.0, 0.0, 0.0]
+    among = np.array([False, True, True, False])
+    point = np.array([around.top(among).point])
+    assert around.maxima(among).tolist() == [0.0, 0.0, 0.0]
     assert set(point.tolist()) <= {1, 2}
     assert not around.bound(np.arange(4)).any()
     assert not around.stress(point, 1, np.zeros(3)).any()
@@ -128,11 +129,12 @@ def test_an_instant_without_load_among_others() -> None:
         loads = PinLoads("case", ("B",), force, distribution=how)
         fields = unit_fields(loads, 30, seed=2)
         among = np.arange(30) > 24
-        maximum, point, angle = Circumference(fields, loads).largest(among)
-        assert maximum[0] > 0.0
-        assert maximum[1] == 0.0
-        assert np.all(among[point])
-        assert np.all(np.isfinite(angle))
+        around = Circumference(fields, loads)
+        maximum, top = around.maxima(among), around.top(among)
+        assert maximum[0] == pytest.approx(top.value)
+        assert (maximum[1], top.instant) == (0.0, 0)
+        assert among[top.point]
+        assert np.isfinite(top.angle)
 
 
 def test_a_missing_field_is_refused() -> None:
@@ -166,14 +168,16 @@ def test_the_largest_of_a_mask(seed: int, kept: int, several: bool) -> None:
     fields = unit_fields(loads, 40, seed)
     among = np.zeros(40, dtype=bool)
     among[chance.permutation(40)[:kept]] = True
-    maximum, point, angle = Circumference(fields, loads).largest(among)
+    maximum = Circumference(fields, loads).maxima(among)
     rows = np.flatnonzero(among)
     for t in range(4):
+        top = Circumference(fields, loads.at(np.array([t]))).top(among)
+        assert top.value == pytest.approx(maximum[t], rel=1e-10)
         brute = von_mises(superposed(fields, loads, t, EVERY))[rows].max(axis=1)
-        assert among[point[t]]
+        assert among[top.point]
         assert maximum[t] == pytest.approx(brute.max(), rel=2e-5)
         assert maximum[t] >= brute.max() * (1.0 - 1e-8)
-        there = von_mises(superposed(fields, loads, t, angle[[t]]))[point[t], 0]
+        there = von_mises(superposed(fields, loads, t, np.array([top.angle])))[top.point, 0]
         assert there == pytest.approx(maximum[t], rel=1e-10)
 
 
@@ -188,9 +192,9 @@ def test_a_point_that_the_bound_does_not_favour() -> None:
         stress[:12, 3 if unit.n else 2, k] = 0.7 if unit.n else 1.2
         stress[12, 2, k] = 1.0
     fields = MeridianFields(np.zeros((13, 2)), units, stress, np.zeros((13, 3, 2)), 13, 0)
-    maximum, point, _ = Circumference(fields, loads).largest(np.ones(13, dtype=bool))
-    assert point.tolist() == [12]
-    assert maximum == pytest.approx([2.0], rel=1e-12)
+    top = Circumference(fields, loads).top(np.ones(13, dtype=bool))
+    assert top.point == 12
+    assert top.value == pytest.approx(2.0, rel=1e-12)
 
 
 def test_stress_is_the_superposition() -> None:
