@@ -30,6 +30,12 @@ class MaterialTable(StrictTable):
     """Density, for the weight and inertia of the pin. Default: no weight."""
     yield_strength: Stress | None = None
     """Yield strength. Without it no safety factors are computed."""
+    ultimate_strength: Stress | None = None
+    """Ultimate tensile strength, for checks at ultimate load."""
+    shear_strength: Stress | None = None
+    """Ultimate shear strength."""
+    bearing_strength: Stress | None = None
+    """Ultimate bearing strength, on the projected area."""
 
 
 class SegmentTable(StrictTable):

@@ -31,6 +31,14 @@ class AnalysisTable(StrictTable):
     local diameter."""
     required_safety_factor: Annotated[Number, Field(gt=0.0)] | None = None
     """Safety factor that every pin must reach. Default: no comparison."""
+    limit_factor: Annotated[Number, Field(gt=0.0)] = 1.0
+    """Factor on the loads of the study for checks at limit load, against yield."""
+    ultimate_factor: Annotated[Number, Field(gt=0.0)] = 1.5
+    """Factor on the loads of the study for checks at ultimate load, against rupture and collapse.
+    The default is that of 14 CFR 25.303."""
+    fitting_factor: Annotated[Number, Field(ge=1.0)] = 1.0
+    """Additional factor of all checks of margins, for fittings whose strength no test proves; 14
+    CFR 25.625 demands 1.15."""
 
 
 class BeamCheckTable(StrictTable):

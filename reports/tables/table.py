@@ -42,6 +42,25 @@ DIMENSIONS = {
 }
 
 
+def unit_name(dimension: str, units: Units) -> str:
+    """Name of the unit of a dimension; empty where there is none."""
+    names = {
+        "time": units.time,
+        "force": units.force,
+        "length": units.length,
+        "stress": units.stress,
+        "moment": f"{units.force} {units.length}",
+        "velocity": f"{units.length}/{units.time}",
+        "acceleration": f"{units.length}/{units.time}²",
+        "power": f"{units.force} {units.length}/{units.time}",
+        "force per length": f"{units.force}/{units.length}",
+        "degrees": "°",
+        "rate of turn": f"rad/{units.time}",
+        "rate of rate of turn": f"rad/{units.time}²",
+    }
+    return names.get(dimension, "")
+
+
 @dataclass(frozen=True)
 class Table:
     """name: of its CSV file, without the ending; columns: with as many cells in every row.
@@ -65,21 +84,7 @@ class Table:
         """Of a column's numbers; empty for texts, ratios, and what differs from row to row."""
         if column in self.mixed:
             return ""
-        names = {
-            "time": units.time,
-            "force": units.force,
-            "length": units.length,
-            "stress": units.stress,
-            "moment": f"{units.force} {units.length}",
-            "velocity": f"{units.length}/{units.time}",
-            "acceleration": f"{units.length}/{units.time}²",
-            "power": f"{units.force} {units.length}/{units.time}",
-            "force per length": f"{units.force}/{units.length}",
-            "degrees": "°",
-            "rate of turn": f"rad/{units.time}",
-            "rate of rate of turn": f"rad/{units.time}²",
-        }
-        return names.get(DIMENSIONS.get(column, ""), "")
+        return unit_name(DIMENSIONS.get(column, ""), units)
 
     def write_csv(self, directory: Path) -> None:
         """Write it into a folder."""
