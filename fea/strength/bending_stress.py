@@ -21,9 +21,7 @@ from fea.strength.section_forces import SectionForces
 from fea.strength.situation import Situation
 from fea.strength.worst import Check, strength_key
 
-CONCENTRATED = Check(
-    "bending, forces at the middles of the bands", "Shigley, problem 3-40", "limit", "stress"
-)
+CONCENTRATED = Check("bending, concentrated forces", "Shigley, problem 3-40", "limit", "stress")
 
 
 def bending_margin(s: Situation, concentrated: SectionForces) -> Margin:
@@ -33,6 +31,6 @@ def bending_margin(s: Situation, concentrated: SectionForces) -> Margin:
         return CONCENTRATED.lacks(s, strength_key(s.material.name, "yield"))
     modulus = concentrated.of_sections("inertia") / concentrated.of_sections("outer")
     stress = concentrated.moment / modulus
-    return CONCENTRATED.worst(
-        s, stress, np.full(stress.shape[1], fy), concentrated.labels, "concentrated forces"
-    )
+    allowable = np.full(stress.shape[1], fy)
+    basis = "forces at the middles of bands"
+    return CONCENTRATED.worst(s, stress, allowable, concentrated.labels, basis)

@@ -34,13 +34,13 @@ M0, M2, M6_SER = 1.0, 1.25, 1.0  # recommended partial factors; 2.2 of the same
 
 _CLAUSE = "EN 1993-1-8, 3.13"
 _TABLE = f"{_CLAUSE}.2, table 3.10"
-SHEAR = Check("shear of the pin", _TABLE, "ultimate", "force")
-BEARING = Check("bearing of lug and pin", _TABLE, "ultimate", "force")
-BENDING = Check("bending of the pin", _TABLE, "ultimate", "moment")
-INTERACTION = Check("shear and bending of the pin", _TABLE, "ultimate", RATIO)
-BEARING_SER = Check("bearing, replaceable pin", _TABLE, "limit", "force")
-BENDING_SER = Check("bending, replaceable pin", _TABLE, "limit", "moment")
-CONTACT_SER = Check("contact stress, replaceable pin", f"{_CLAUSE}.2(3)", "limit", "stress")
+SHEAR = Check("EN 1993 shear", _TABLE, "ultimate", "force")
+BEARING = Check("EN 1993 bearing", _TABLE, "ultimate", "force")
+BENDING = Check("EN 1993 bending", _TABLE, "ultimate", "moment")
+INTERACTION = Check("EN 1993 shear and bending", _TABLE, "ultimate", RATIO)
+BEARING_SER = Check("EN 1993 bearing, replaceable", _TABLE, "limit", "force")
+BENDING_SER = Check("EN 1993 bending, replaceable", _TABLE, "limit", "moment")
+CONTACT_SER = Check("EN 1993 contact, replaceable", f"{_CLAUSE}.2(3)", "limit", "stress")
 
 
 def shear_resistance(area: Floats | float, ultimate: float) -> Floats | float:

@@ -19,8 +19,8 @@ from fea.strength.worst import strength_key
 
 CLAUSE = "14 CFR 25.305"
 METHODS: tuple[tuple[str, Level, str], ...] = (
-    ("von Mises stress of the model, yield", "limit", "yield"),
-    ("von Mises stress of the model, rupture", "ultimate", "ultimate"),
+    ("von Mises stress, yield", "limit", "yield"),
+    ("von Mises stress, rupture", "ultimate", "ultimate"),
 )
 
 

@@ -1,10 +1,11 @@
 """The fully plastic section of a round pin, solid or hollow, in bending with shear.
 
     M_pl = k W_el f_y       k = 16 / (3 pi) (1 - q^3) / (1 - q^4),  q = bore / diameter
-    V_pl = 2 A / pi  f_y / sqrt(3)
+    V_pl = A_v f_y / sqrt(3)
 
-k is exact for a perfectly plastic section. 2 A / pi is the shear area of a circular hollow section;
-a solid one has more. Both together: (M / M_pl)^2 + (V / V_pl)^2 <= 1 in every section, whose root
+k is exact for a perfectly plastic section. A_v is the shear area 2 A / pi of a circular hollow
+section, or that at which V Q / (I t) reaches yield, which is safe, too, and larger for thick ones:
+3 A / 4 if solid. Both together: (M / M_pl)^2 + (V / V_pl)^2 <= 1 in every section, whose root
 is the utilisation, at ultimate load with the yield strength: a hinge is no permissible state at
 limit load.
 
@@ -43,7 +44,8 @@ def plastic_moment(section: Circle, strength: float) -> float:
 
 def plastic_shear(section: Circle, strength: float) -> float:
     """V_pl, N, of a yield strength in Pa."""
-    return 2.0 * section.area / math.pi * strength / math.sqrt(3.0)
+    area = section.area * max(2.0 / math.pi, 1.0 / section.vq_it)
+    return area * strength / math.sqrt(3.0)
 
 
 def plastic_margin(s: Situation, even: SectionForces) -> Margin:

@@ -26,6 +26,7 @@ from fea.core.dimensions import (
 )
 from fea.core.peak import Refinement, SingularZone
 from fea.joint.records import JointResult
+from fea.strength.bending_arms import BendingArms
 from fea.strength.margin import PinMargin
 from reports.data.changes import Change
 from reports.data.fields import BandLoad, Field, Still, Volume
@@ -200,6 +201,7 @@ class Results:
     surfaces: tuple[Surface, ...] = ()
     changes: tuple[Change, ...] = ()
     margins: tuple[PinMargin, ...] = ()
+    arms: tuple[BendingArms, ...] = ()
     provenance: tuple[Provenance, ...] = ()
     published_source: str = ""
     assumptions: tuple[str, ...] = ()

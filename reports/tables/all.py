@@ -10,7 +10,7 @@ from reports.tables.hand_checks import hand_check_rows
 from reports.tables.joint import joint_tables
 from reports.tables.landing import landing_table
 from reports.tables.linkage import linkage_tables
-from reports.tables.margins import margins_table
+from reports.tables.margins import arms_table, margins_table
 from reports.tables.motion import (
     beam_check_table,
     drive_table,
@@ -48,6 +48,7 @@ def stress_tables(results: Results) -> list[Table]:
     check = results.beam_check
     rest = [
         margins_table(results),
+        arms_table(results),
         hand_check_rows(results),
         zones_table(results),
         landing_table(results),

@@ -28,6 +28,7 @@ DIMENSIONS = {
     ),
     **dict.fromkeys(("joint_low", "joint_high", "largest_pressure"), "stress"),
     **dict.fromkeys(("max_von_mises_same_mesh", "max_von_mises_calculix"), "stress"),
+    **dict.fromkeys(("moment_even", "moment_concentrated", "moment_joint"), "moment"),
     **dict.fromkeys(("bending_moment", "bending_moment_calculix"), "moment"),
     **dict.fromkeys(("clearance", "outer_diameter", "length", "z_start", "z_end"), "length"),
     "contact_angle": "degrees",
