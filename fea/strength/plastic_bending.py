@@ -25,9 +25,7 @@ from fea.strength.section_forces import SectionForces
 from fea.strength.situation import Situation
 from fea.strength.worst import Check, strength_key
 
-PLASTIC = Check(
-    "plastic bending and shear", "EN 1993-1-1, 6.2.6 and exact section factor", "ultimate", RATIO
-)
+PLASTIC = Check("plastic bending and shear", "EN 1993-1-1, 6.2.6", "ultimate", RATIO)
 
 
 def section_factor(bore_over_diameter: float) -> float:

@@ -108,14 +108,16 @@ def _lugs_checked(study: Study, task: Task, pin: Pin, loads: PinLoads) -> tuple[
     return lug_checks(pin, sized, loads, bores)
 
 
-def _arms(s: Situation, task: Task, peak: Peak, joint: JointResult | None) -> BendingArms | None:
-    """At the governing instant; None without one."""
-    if peak.time is None:
-        now = s.loads.at(np.array([0]))
-    else:
-        now = task.between[peak.case](np.array([peak.time]))
-        whole = with_supports(s.pin, now, [n for n in s.loads.surfaces if n not in now.surfaces])
+def _arms(s: Situation, task: Task, peak: Peak, joint: JointResult | None) -> BendingArms:
+    """At the governing instant."""
+    now = s.loads.at(np.array([0]))
+    if peak.time is not None and peak.case in task.between:
+        links = task.between[peak.case](np.array([peak.time]))
+        structure = [name for name in s.loads.surfaces if name not in links.surfaces]
+        whole = with_supports(s.pin, links, structure)
         assert whole is not None  # as for the instants of the case
         now = whole
+    elif peak.time is not None and s.loads.times is not None:
+        now = s.loads.at(np.array([np.abs(s.loads.times - peak.time).argmin()]))
     moment, model = (joint.bending_moment, joint.model) if joint else (None, "")
     return bending_arms(replace(s, loads=now), moment, model)

@@ -14,8 +14,8 @@ from reports.tables.table import Table, unit_name
 COLUMNS = ("pin", "case", "method", "clause", "at", "level", "demand", "allowable", "factor",
            "utilisation", "margin", "unit", "time", "basis", "not_made")  # fmt: skip
 
-SHOWN = {name: name for name in ("pin", "case", "check", "at", "time", "loads", "demand",
-         "allowable", "utilisation", "margin", "clause")}  # fmt: skip
+SHOWN = {name: name for name in ("pin", "case", "check", "margin", "utilisation", "loads", "at",
+         "time", "demand", "allowable", "clause")}  # fmt: skip
 NUMERIC = ("time", "demand", "allowable", "utilisation", "margin")
 READING_MARGINS = (
     "Margin of safety = allowable / (factor × demand) − 1, of the check that governs each pin in "
@@ -65,7 +65,7 @@ def _row(found: PinMargin, results: Results) -> dict[str, Any]:
 
 def governing_grid(results: Results) -> Grid | None:
     """The governing check of every pin and case, the worst first; None where no check was made."""
-    return _grid(governing(results), results)
+    return _grid(governing(results), results, without=("clause",))
 
 
 def worst_grid(results: Results) -> Grid | None:
@@ -153,7 +153,7 @@ def _cells(found: PinMargin, results: Results) -> dict[str, str]:
         "check": m.method,
         "at": m.at or DASH,
         "time": DASH if m.time is None else short(m.time),
-        "loads": f"{m.level} × {short(m.factor)}",
+        "loads": f"{m.level}\u00a0×\u00a0{short(m.factor)}",
         "demand": f"{engineering(m.demand)}{unit}",
         "allowable": f"{engineering(m.allowable)}{unit}",
         "utilisation": f"{engineering(used, 3)} %",
