@@ -69,7 +69,7 @@ def double_shear_moment(force: float, outer: float, middle: float, gap: float) -
 
 
 @dataclass(frozen=True)
-class Hole:
+class PinInHole:
     """A pin of `diameter` in a hole of a plate of `thickness`, m; modulus: E, Pa."""
 
     diameter: Floats | float
@@ -78,7 +78,7 @@ class Hole:
     modulus: Floats | float
 
 
-def contact_stress(force: Floats | float, at: Hole) -> Floats:
+def contact_stress(force: Floats | float, at: PinInHole) -> Floats:
     """sigma_h,Ed in Pa of a force in N."""
     play = np.asarray(at.hole) - at.diameter
     area = np.asarray(at.diameter) ** 2 * at.thickness
@@ -164,7 +164,7 @@ def _contact(s: Situation) -> Margin:
     if not loose:
         return CONTACT_SER.lacks(s, f"a clearance in pin.{s.pin.name}.lug")
     holes = [_hole(s, s.loads.surfaces[k]) for k in loose]
-    at = Hole(*(np.array(sizes) for sizes in zip(*holes, strict=True)))
+    at = PinInHole(*(np.array(sizes) for sizes in zip(*holes, strict=True)))
     stress = contact_stress(s.across[:, loose], at)
     allowed = 2.5 / M6_SER * np.array(strengths)[loose]
     names = tuple(s.loads.surfaces[k] for k in loose)

@@ -30,7 +30,7 @@ class LoadFactors:
     fitting: float = 1.0
 
     def at(self, level: Level) -> float:
-        """By which a demand is multiplied."""
+        """The factor on demands at a level."""
         return (self.limit if level == "limit" else self.ultimate) * self.fitting
 
 
@@ -64,8 +64,8 @@ class Situation:
 
 def with_supports(pin: Pin, loads: PinLoads, structure: Sequence[str]) -> PinLoads | None:
     """The loads with the forces of the lugs of a structure, by equilibrium of forces and moments
-    across the pin; None unless there are two. The pin's own weight is left to what closes the
-    balance.
+    across the pin; None unless there are two. Without the weight of the pin, which the closing
+    tractions of a balance carry.
     """
     if not structure:
         return loads

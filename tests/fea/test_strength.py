@@ -20,7 +20,7 @@ from fea.core.pin_loads import PinLoads
 from fea.joint.lugs.lug import Lug
 from fea.strength.bending_arms import bending_arms, layout
 from fea.strength.eurocode_pins import (
-    Hole,
+    PinInHole,
     bearing_resistance,
     bending_resistance,
     contact_stress,
@@ -133,7 +133,7 @@ def test_eurocode_margins_on_paper() -> None:
     assert contact.at == "B"
     assert contact.demand == pytest.approx(sigma, rel=1e-6)
     assert contact.allowable == pytest.approx(2.5 * 200e6)
-    assert contact_stress(F, Hole(0.016, 0.0165, 0.015, 210e9)) == pytest.approx(sigma)
+    assert contact_stress(F, PinInHole(0.016, 0.0165, 0.015, 210e9)) == pytest.approx(sigma)
     thick = bearing_resistance(np.array([0.015]), np.array([0.016]), np.array([200e6]))
     assert thick == pytest.approx([72e3])
 
