@@ -12,7 +12,8 @@ from geometry.arrays import Floats
 
 @dataclass(frozen=True)
 class Material:
-    """youngs_modulus and yield_strength in Pa, density in kg/m^3.
+    """youngs_modulus and strengths in Pa, density in kg/m^3; shear_strength and bearing_strength
+    are ultimate ones.
 
     Raises: ArgumentError outside -1 < poisson_ratio < 0.5 or for a modulus that is not positive and
     finite.
@@ -23,6 +24,9 @@ class Material:
     poisson_ratio: float
     density: float | None = None
     yield_strength: float | None = None
+    ultimate_strength: float | None = None
+    shear_strength: float | None = None
+    bearing_strength: float | None = None
 
     def __post_init__(self) -> None:
         if not 0.0 < self.youngs_modulus < np.inf:

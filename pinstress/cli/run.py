@@ -18,11 +18,13 @@ from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.solve import solve_tasks
 from pinstress.cache.store import user_cache
 from pinstress.cli.closing import (
+    NUMERICS_FAILED,
     report_disagreements,
     report_left_out,
     report_missed,
     report_reused,
     report_slow_rows,
+    report_violations,
 )
 from pinstress.cli.output_folder import replacing, require_replaceable
 from pinstress.cli.plots import FOLDER, PAGE, draw_folder
@@ -54,6 +56,7 @@ class Wanted:
     report opened.
     jobs: number of parallel processes, default the number of cores. cached: whether results in the
     user's cache may be reused. sensitive: whether to find what dimensions do to the factors.
+    strict: whether a pin that misses its requirements changes the exit status.
     """
 
     plots: bool = False
@@ -65,6 +68,7 @@ class Wanted:
     jobs: int | None = None
     cached: bool = True
     sensitive: bool = False
+    strict: bool = False
 
 
 def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpack[Chosen]) -> int:
@@ -106,7 +110,9 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
     if wanted.opens:
         open_page(directory / PAGE)
     status = report_missed(results, study.table.analysis.goal == "decide")
-    return max(status, report_disagreements(results))
+    status = max(status, report_disagreements(results))
+    violated = report_violations(results) if wanted.strict else 0
+    return status if status == NUMERICS_FAILED else max(status, violated)
 
 
 def _second_opinion(plan: Plan, quiet: bool) -> dict[str, Any]:

@@ -2,8 +2,9 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
+from loads.coded import LoadsArgumentError
 from pinstress.schema.cases import GivenCase, InstantCase, LegCase, MotionCase, StaticCase
 from pinstress.schema.leg import SpatialLegTable
 from pinstress.schema.mechanism import MechanismTable
@@ -31,6 +32,24 @@ class AnalysisTable(StrictTable):
     local diameter."""
     required_safety_factor: Annotated[Number, Field(gt=0.0)] | None = None
     """Safety factor that every pin must reach. Default: no comparison."""
+    limit_factor: Annotated[Number, Field(gt=0.0)] = 1.0
+    """Factor on the loads of the study for checks at limit load, against yield."""
+    ultimate_factor: Annotated[Number, Field(gt=0.0)] = 1.5
+    """Factor on the loads of the study for checks at ultimate load, against rupture and collapse.
+    The default is that of 14 CFR 25.303."""
+    fitting_factor: Annotated[Number, Field(ge=1.0)] = 1.0
+    """Additional factor of all checks of margins, for fittings whose strength no test proves; 14
+    CFR 25.625 demands 1.15."""
+
+    @model_validator(mode="after")
+    def _ultimate_is_more(self) -> "AnalysisTable":
+        if self.ultimate_factor < self.limit_factor:
+            raise LoadsArgumentError(
+                f"ultimate_factor {self.ultimate_factor:g} is less than limit_factor "
+                f"{self.limit_factor:g}; ultimate loads are limit loads or more",
+                "factors-out-of-order",
+            )
+        return self
 
 
 class BeamCheckTable(StrictTable):

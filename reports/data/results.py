@@ -26,6 +26,8 @@ from fea.core.dimensions import (
 )
 from fea.core.peak import Refinement, SingularZone
 from fea.joint.records import JointResult
+from fea.strength.bending_arms import BendingArms
+from fea.strength.margin import PinMargin
 from reports.data.changes import Change
 from reports.data.fields import BandLoad, Field, Still, Volume
 from reports.data.in_units import Unit, in_units
@@ -198,6 +200,8 @@ class Results:
     landing: tuple[LandingRange, ...] = ()
     surfaces: tuple[Surface, ...] = ()
     changes: tuple[Change, ...] = ()
+    margins: tuple[PinMargin, ...] = ()
+    arms: tuple[BendingArms, ...] = ()
     provenance: tuple[Provenance, ...] = ()
     published_source: str = ""
     assumptions: tuple[str, ...] = ()

@@ -23,6 +23,13 @@ from reports.plots.spec import Plot
 from reports.plots.theme import on_page, style_sheet
 from reports.tables.hand_checks import HAND_CHECKS
 from reports.tables.landing import NOTE, landing_blocks
+from reports.tables.margins import (
+    READING_ARMS,
+    READING_MARGINS,
+    arms_grid,
+    governing_grid,
+    not_made_words,
+)
 from reports.tables.published import published_reactions
 from reports.tables.singular_zones import circles, pin_zones
 from reports.text.summary import summary
@@ -86,6 +93,11 @@ def render(results: Results, directory: Path) -> str:
         landed=list(dict.fromkeys(r.case for r in results.landing)),
         reactions=reaction_tables(results),
         cases=list(dict.fromkeys(pin.case for pin in results.pins)),
+        margins=governing_grid(results),
+        margins_not_made=not_made_words(results),
+        margins_reading=READING_MARGINS,
+        arms=arms_grid(results),
+        arms_reading=READING_ARMS,
         **factor_parts(results),
     )
 

@@ -13,6 +13,7 @@ from reports.page.loads import loads_at
 from reports.page.second_opinion import OpinionPart, opinion_part
 from reports.page.viewer import PinView, pin_views
 from reports.tables.hand_checks import hand_check_table
+from reports.tables.margins import margins_grid
 from reports.tables.singular_zones import Zone, pin_zones, zone_table
 
 ZONE_NUMBERS = ("zone", "exponent")
@@ -21,7 +22,7 @@ ZONE_NUMBERS = ("zone", "exponent")
 @dataclass(frozen=True)
 class PinCase:
     """A pin in one case: result, outcome, unit of the drive position, singular zones, hand checks,
-    loads, contact with lugs, CalculiX's opinion, and our maximum over the published one.
+    margins of safety, loads, contact with lugs, CalculiX's opinion, our maximum over the published.
     """
 
     result: PinResult
@@ -29,6 +30,7 @@ class PinCase:
     position_unit: str
     zones: Grid | None
     checks: Grid | None
+    margins: Grid | None
     loads: Grid | None
     joint: JointPart | None
     opinion: OpinionPart | None
@@ -72,6 +74,7 @@ def pin_parts(results: Results, drawings: dict[str, str]) -> list[PinPart]:
                     positions.get(p.case) or results.units.length,
                     _zones(zones[name][p.case], results.units),
                     Grid(*hand_check_table(p, results.units)) if p.hand_checks else None,
+                    margins_grid(results, p.pin, p.case),
                     loads_at(p, results.units),
                     joint_part(p, results.units),
                     opinion_part(p.second_opinion, results.units),

@@ -10,6 +10,7 @@ from reports.tables.hand_checks import hand_check_rows
 from reports.tables.joint import joint_tables
 from reports.tables.landing import landing_table
 from reports.tables.linkage import linkage_tables
+from reports.tables.margins import arms_table, margins_table
 from reports.tables.motion import (
     beam_check_table,
     drive_table,
@@ -45,7 +46,13 @@ def sheets(tables: Sequence[Table]) -> list[Table]:
 def stress_tables(results: Results) -> list[Table]:
     """Tables that need stresses, without empty ones; safety factors first."""
     check = results.beam_check
-    rest = [hand_check_rows(results), zones_table(results), landing_table(results)]
+    rest = [
+        margins_table(results),
+        arms_table(results),
+        hand_check_rows(results),
+        zones_table(results),
+        landing_table(results),
+    ]
     rest += [*joint_tables(results), *opinion_tables(results)]
     rest += [] if check is None else [beam_check_table(check)]
     return [safety_factors_table(results), *(table for table in rest if table.rows)]

@@ -12,6 +12,7 @@ from reports.data.results import HandCheck, PinResult, ReactionTable, Results, S
 from reports.format.numbers import finite
 from reports.tables.calculix import opinion_json
 from reports.tables.joint import joint_json
+from reports.tables.margins import margins_json
 
 SCHEMA = "pinstress-results/1"
 
@@ -28,6 +29,7 @@ def to_json(results: Results) -> dict[str, Any]:
         "tolerance": finite(results.tolerance),
         "versions": {name: results.versions[name] for name in sorted(results.versions)},
         "pins": [_pin(pin) for pin in results.pins],
+        "margins": margins_json(results),
         "changes": [asdict(change) for change in results.changes],
         "loads": [_loads(results, table) for table in results.reactions],
         "provenance": [asdict(entry) for entry in results.provenance],

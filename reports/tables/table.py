@@ -28,6 +28,7 @@ DIMENSIONS = {
     ),
     **dict.fromkeys(("joint_low", "joint_high", "largest_pressure"), "stress"),
     **dict.fromkeys(("max_von_mises_same_mesh", "max_von_mises_calculix"), "stress"),
+    **dict.fromkeys(("moment_even", "moment_concentrated", "moment_joint"), "moment"),
     **dict.fromkeys(("bending_moment", "bending_moment_calculix"), "moment"),
     **dict.fromkeys(("clearance", "outer_diameter", "length", "z_start", "z_end"), "length"),
     "contact_angle": "degrees",
@@ -40,6 +41,25 @@ DIMENSIONS = {
     "omega": "rate of turn",
     "alpha": "rate of rate of turn",
 }
+
+
+def unit_name(dimension: str, units: Units) -> str:
+    """Name of the unit of a dimension; empty where there is none."""
+    names = {
+        "time": units.time,
+        "force": units.force,
+        "length": units.length,
+        "stress": units.stress,
+        "moment": f"{units.force} {units.length}",
+        "velocity": f"{units.length}/{units.time}",
+        "acceleration": f"{units.length}/{units.time}²",
+        "power": f"{units.force} {units.length}/{units.time}",
+        "force per length": f"{units.force}/{units.length}",
+        "degrees": "°",
+        "rate of turn": f"rad/{units.time}",
+        "rate of rate of turn": f"rad/{units.time}²",
+    }
+    return names.get(dimension, "")
 
 
 @dataclass(frozen=True)
@@ -65,21 +85,7 @@ class Table:
         """Of a column's numbers; empty for texts, ratios, and what differs from row to row."""
         if column in self.mixed:
             return ""
-        names = {
-            "time": units.time,
-            "force": units.force,
-            "length": units.length,
-            "stress": units.stress,
-            "moment": f"{units.force} {units.length}",
-            "velocity": f"{units.length}/{units.time}",
-            "acceleration": f"{units.length}/{units.time}²",
-            "power": f"{units.force} {units.length}/{units.time}",
-            "force per length": f"{units.force}/{units.length}",
-            "degrees": "°",
-            "rate of turn": f"rad/{units.time}",
-            "rate of rate of turn": f"rad/{units.time}²",
-        }
-        return names.get(DIMENSIONS.get(column, ""), "")
+        return unit_name(DIMENSIONS.get(column, ""), units)
 
     def write_csv(self, directory: Path) -> None:
         """Write it into a folder."""
