@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from loads.coded import LoadsArgumentError
+from pinstress.schema.fatigue import FkmTable, SnTable
 from pinstress.schema.types import (
     Angle,
     Density,
@@ -30,6 +31,12 @@ class MaterialTable(StrictTable):
     """Density, for the weight and inertia of the pin. Default: no weight."""
     yield_strength: Stress | None = None
     """Yield strength. Without it no safety factors are computed."""
+    ultimate_strength: Stress | None = None
+    """Ultimate tensile strength."""
+    fatigue: SnTable | None = None
+    """Stress-life curve, for `fatigue.method` "signed-von-mises" and "critical-plane"."""
+    fkm: FkmTable | None = None
+    """Data for `fatigue.method` "fkm-p-ram"."""
 
 
 class SegmentTable(StrictTable):
