@@ -132,14 +132,17 @@ def _by_fkm(
     sequence = order.sequence([case_by_case(course)[0] for course in courses])
     cycles = rainflow(sequence)
 
-    def damage(probability: float) -> float:
-        if not sequence.any():
-            return 0.0
-        life = p_ram_life(np.append(sequence, 0.0), data, probability)
-        return 0.0 if life.infinite else 1.0 / (life.repetitions * order.units)
-
-    found: dict[float | None, float] = {p: damage(p) for p in SHOWN}
-    found[None] = damage(0.5 if spectrum.probability is None else spectrum.probability)
+    found: dict[float | None, float] = dict.fromkeys((None, *SHOWN), 0.0)
+    if sequence.any():
+        whole = np.append(sequence, 0.0)
+        middle = p_ram_life(whole, data)
+        asked = middle
+        if spectrum.probability not in (None, 0.5):
+            asked = p_ram_life(whole, data, spectrum.probability)
+        if not asked.infinite:
+            found[None] = 1.0 / (asked.repetitions * order.units)
+        if not middle.infinite and middle.at is not None:
+            found |= {p: 1.0 / (middle.at(p) * order.units) for p in SHOWN}
     return _Found(found, *_largest(cycles, cycles.amplitude), cycles.amplitude, order.units)
 
 

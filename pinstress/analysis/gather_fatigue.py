@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from importlib.util import find_spec
+from math import inf
 
+from fea.core.peak import decides
 from fea.fatigue.assess import FatigueMaterial, Spectrum, assess
 from fea.fatigue.records import PointFatigue
 from pinstress.analysis.plan import Plan
@@ -66,10 +68,17 @@ def _left_out(plan: Plan, found: list[Solved], table: FatigueTable) -> tuple[str
     missing = [case for case in table.occurrences if case not in plan.loads]
     apart = [p for p in pins if sum(task.pin.name == p for task in plan.tasks) > 1]
     singular = dict.fromkeys(p.pin for made in found for p in made.peaks if p.verdict == "singular")
+    yields = [
+        task.pin.name
+        for task, made in zip(plan.tasks, found, strict=True)
+        if not needs_fkm
+        and any(decides(p, task.material.yield_strength or inf) is False for p in made.peaks)
+    ]
     sentences = [
         ("No fatigue data of the material: pin", without),
         ("Not run, so that damage is too low: case", missing),
         ("Solved with different clamps, whose damage does not add up here: pin", apart),
+        ("Beyond yield, where elastic stress understates the damage: pin", dict.fromkeys(yields)),
         ("Cracks may start in singular zones, where stress is not evaluated: pin", singular),
     ]
     said = [f"{text} {', '.join(names)}." for text, names in sentences if names]

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from functools import partial
 
+from fea.fatigue.flight import flight
+from geometry.coded import ArgumentError
 from pinstress.schema.cases import GivenCase, LegCase, MotionCase
 from pinstress.schema.fatigue import FatigueTable
 from pinstress.schema.mechanism import MechanismTable, RotaryDrive, SliderDrive
@@ -83,6 +85,13 @@ def _of_fatigue(table: StudyTable, fatigue: FatigueTable) -> Iterator[Wrong]:
     """A spectrum of cases that exist, and data for its method in some material of a pin."""
     for case in fatigue.occurrences:
         yield from _known(f"fatigue.occurrences.{case}", "case", case, table.case)
+    try:
+        flight([*fatigue.occurrences.values()])
+    except ArgumentError as error:
+        yield Wrong(f"fatigue.occurrences: {error}", code=error.code)
+    if fatigue.method == "fkm-p-ram" and (fatigue.failure_probability or 0.0) > 0.5:
+        text = 'fatigue.failure_probability: must be at most 0.5 for method "fkm-p-ram"'
+        yield Wrong(text, code="out-of-range")
     needs, used = METHODS[fatigue.method], {pin.material for pin in table.pin.values()}
     given = [name for name in used & table.material.keys() if getattr(table.material[name], needs)]
     if not given:

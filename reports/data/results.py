@@ -51,9 +51,9 @@ from reports.data.surface import Surface
 __all__ = [
     "BandLoad", "BeamCheck", "Change", "Dimensioned", "DriveEffort", "DriveTable", "Extremes",
     "Fatigue", "Field", "Floats", "GoverningLoad", "GuideForces", "HandCheck", "LandingRange",
-    "LegTable", "LinkageMotion", "MotionCheck", "PeakReaction", "PinResult", "PinShape", "PowerLedger",
-    "Provenance", "PublishedValue", "ReactionTable", "Refinement", "Results", "SingularZone",
-    "Still", "Surface", "Units", "Volume",
+    "LegTable", "LinkageMotion", "MotionCheck", "PeakReaction", "PinResult", "PinShape",
+    "PowerLedger", "Provenance", "PublishedValue", "ReactionTable", "Refinement", "Results",
+    "SingularZone", "Still", "Surface", "Units", "Volume",
 ]  # fmt: skip
 
 
