@@ -3,8 +3,8 @@
 Every case begins and ends at zero load: the ground-air-ground cycle. So a static case is a pulse
 0, peak, 0, and a motion begins and ends with a step. Cases of a unit follow each other in the order
 of the spectrum, and rainflow counting closes cycles across them; one that occurs less than once in
-a unit does so in every so many of them. The sequence is repeated for ever: cycles are counted once
-it has come to repeat itself.
+a unit does so in every so many of them. The sequence is repeated, and cycles are counted in the
+last of several passes.
 
 Source of the counting: four-point rainflow, ASTM E1049-85 (2017), by pyLife.
 """

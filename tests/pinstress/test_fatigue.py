@@ -11,6 +11,7 @@ import pytest
 
 import pinstress
 from fea.core.voigt import von_mises
+from fea.solve_pin import Model
 from pinstress.study.errors import InputError
 from tests.pinstress.test_import import loaded_by
 
@@ -64,15 +65,22 @@ def write(tmp_path: Path) -> Write:
     return written
 
 
-def test_the_history_at_a_governing_point_has_the_maximum(write: Write) -> None:
-    results = pinstress.run(pinstress.load_study(write(PIN)))
+@pytest.mark.parametrize(
+    ("model", "agrees"),
+    # The maximum of a solid is a mean over directions of the load about the axis.
+    [("beam", 1e-6), ("harmonic", 1e-6), pytest.param("solid", 2e-3, marks=pytest.mark.slow)],
+)
+def test_the_history_at_a_governing_point_has_the_maximum(
+    write: Write, model: Model, agrees: float
+) -> None:
+    results = pinstress.run(pinstress.load_study(write(PIN)), model=model)
     for case in ("up", "down"):
         row = results["P", case]
         assert row.location is not None
         at = np.array(row.location)
         (here,) = (h for h in results.histories if np.allclose(h.location, at))
         (course,) = (c for c in here.cases if c.case == case)
-        assert course.von_mises.max() == pytest.approx(row.max_von_mises, rel=1e-6)
+        assert course.von_mises.max() == pytest.approx(row.max_von_mises, rel=agrees)
         assert von_mises(course.stress) == pytest.approx(course.von_mises, rel=1e-12)
         assert abs(course.signed) == pytest.approx(course.von_mises)
     assert results.fatigue is None
