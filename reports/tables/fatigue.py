@@ -69,7 +69,7 @@ def fatigue_grid(results: Results) -> Grid | None:
     if fatigue is None or not fatigue.points:
         return None
     unit, stress = fatigue.unit, results.units.stress
-    head = ["Pin", "point", f"z [{results.units.length}]", f"damage per {unit}", f"{unit}s"]
+    head = ["Pin", "point", f"z [{results.units.length}]", f"damage per {unit}", f"life [{unit}s]"]
     scattered = any(p.lives for p in fatigue.points)
     head += [f"at {p}" for p in PROBABILITIES] if scattered else []
     head += ["utilisation"] if fatigue.life is not None else []
@@ -82,7 +82,7 @@ def fatigue_grid(results: Results) -> Grid | None:
                 *(p.pin, str(p.point), engineering(p.location[2], 3)),
                 *(engineering(p.damage, 3) if p.damage else "none", life_words(p.life)),
                 *(lives if scattered else []),
-                *([engineering(p.utilisation, 3)] if fatigue.life is not None else []),
+                *([_per_cent(p.utilisation)] if fatigue.life is not None else []),
                 *(engineering(p.amplitude, 3), engineering(p.mean, 3)),
             ]
         )
@@ -92,6 +92,10 @@ def fatigue_grid(results: Results) -> Grid | None:
 def life_words(life: float | None) -> str:
     """Units until damage 1."""
     return "no limit" if life is None else engineering(life, 3)
+
+
+def _per_cent(part: float | None) -> str:
+    return DASH if part is None else f"{engineering(100.0 * part, 3)} %"
 
 
 def fatigue_sentence(fatigue: Fatigue) -> str:
@@ -105,7 +109,7 @@ def fatigue_sentence(fatigue: Fatigue) -> str:
     if worst.lives:
         text += f" ({life_words(worst.lives[0])} at 10 %, {life_words(worst.lives[2])} at 90 %)"
     if worst.utilisation is not None:
-        text += f", utilisation {engineering(worst.utilisation, 3)} of the design life"
+        text += f"; the design life uses {_per_cent(worst.utilisation)} of it"
     return f"{text} ({METHODS[fatigue.method]})."
 
 
