@@ -156,3 +156,27 @@ def test_what_is_not_assessed_is_listed(write: Write) -> None:
     results = pinstress.run(pinstress.load_study(write(PIN + FATIGUE)), cases=["up"])
     assert results.fatigue is not None
     assert any("case down" in sentence for sentence in results.fatigue.left_out)
+
+
+def test_the_first_point_has_the_largest_range_not_the_largest_stress(write: Write) -> None:
+    side = '[case.side]\nkind = "given"\nforces = { L = [0, 6500] }\n'
+    results = pinstress.run(pinstress.load_study(write(PIN + side)))
+    first = results.histories[0]
+    assert first.chosen == "largest range of stress"
+    # Up and down: from 6000 to -4000 N along x; sideways only from 0 to 6500 N, along y.
+    assert abs(first.location[0]) == pytest.approx(10.0)
+    top = max(results.pins, key=lambda row: row.max_von_mises or 0.0)
+    assert top.case == "side"
+    assert top.location is not None
+    assert abs(top.location[1]) == pytest.approx(10.0)
+
+
+def test_without_pylife_histories_are_all_there_is(
+    write: Write, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("pinstress.analysis.gather_fatigue.find_spec", lambda _: None)
+    results = pinstress.run(pinstress.load_study(write(PIN + FATIGUE)))
+    assert results.histories
+    assert results.fatigue is not None
+    assert results.fatigue.points == ()
+    assert "pylife is not installed" in results.fatigue.left_out[0]
