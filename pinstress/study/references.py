@@ -112,11 +112,15 @@ def _parameters(material: MaterialTable, fatigue: FatigueTable) -> dict[str, flo
     sn = material.fatigue
     if fatigue.method == "fkm-p-ram" or sn is None:
         return ultimate
+    asked = fatigue.failure_probability
+    scattered = asked is not None and asked != sn.failure_probability
+    scatter = {"fatigue.scatter": sn.scatter} if scattered else {}
     sensitivity = {"fatigue.mean_stress_sensitivity": sn.mean_stress_sensitivity}
     if fatigue.method == "critical-plane":
-        return sensitivity
+        return sensitivity | scatter
     walker = {"fatigue.walker_exponent": sn.walker_exponent}
-    return {"fkm": sensitivity, "goodman": ultimate, "walker": walker}.get(sn.mean_stress, {})
+    rules = {"fkm": sensitivity, "goodman": ultimate, "walker": walker}
+    return rules.get(sn.mean_stress, {}) | scatter
 
 
 def _of_pins(
