@@ -13,6 +13,7 @@ from fea.core.peak import Peak, decides
 from fea.core.pin_loads import PinLoads
 from fea.joint.records import JointResult
 from fea.solve_pin import Solution
+from pinstress.analysis.gather_fatigue import fatigue_of
 from pinstress.analysis.gather_loads import drive_position, mechanics, position_unit
 from pinstress.analysis.plan import Plan, all_loads
 from pinstress.analysis.stored import Solved
@@ -47,6 +48,8 @@ def results_of(plan: Plan, found: list[Solved]) -> plain.Results:
         landing=tuple(r for made in found for r in made.landing),
         surfaces=tuple(surface for made in found for surface in made.surfaces),
         changes=_worst_changes(found),
+        histories=tuple(history for made in found for history in made.histories),
+        fatigue=fatigue_of(plan, found),
     )
     return _in_study_units(results, study)
 

@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from loads.coded import LoadsArgumentError
+from pinstress.schema.fatigue import FkmTable, SnTable
 from pinstress.schema.types import (
     Angle,
     Density,
@@ -36,6 +37,10 @@ class MaterialTable(StrictTable):
     """Ultimate shear strength."""
     bearing_strength: Stress | None = None
     """Ultimate bearing strength, on the projected area."""
+    fatigue: SnTable | None = None
+    """Stress-life curve, for `fatigue.method` "signed-von-mises" and "critical-plane"."""
+    fkm: FkmTable | None = None
+    """Data for `fatigue.method` "fkm-p-ram"."""
 
     @model_validator(mode="after")
     def _in_order(self) -> "MaterialTable":

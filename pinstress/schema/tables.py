@@ -6,6 +6,7 @@ from pydantic import Field, model_validator
 
 from loads.coded import LoadsArgumentError
 from pinstress.schema.cases import GivenCase, InstantCase, LegCase, MotionCase, StaticCase
+from pinstress.schema.fatigue import FatigueTable
 from pinstress.schema.leg import SpatialLegTable
 from pinstress.schema.mechanism import MechanismTable
 from pinstress.schema.pins import MaterialTable, PinTable
@@ -122,6 +123,8 @@ class StudyTable(StrictTable):
     """The leg, for cases of kind "spatial_leg"."""
     analysis: AnalysisTable = AnalysisTable()
     """Requirements on the analysis."""
+    fatigue: FatigueTable | None = None
+    """How often cases occur, for damage and life. Default: fatigue is not assessed."""
     beam_check: BeamCheckTable | None = None
     """A comparison with beam theory."""
     motion_check: MotionCheckTable | None = None

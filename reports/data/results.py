@@ -25,6 +25,7 @@ from fea.core.dimensions import (
     Velocity,
 )
 from fea.core.peak import Refinement, SingularZone
+from fea.fatigue.records import PointFatigue, PointHistory
 from fea.joint.records import JointResult
 from fea.strength.bending_arms import BendingArms
 from fea.strength.margin import PinMargin
@@ -51,10 +52,10 @@ from reports.data.surface import Surface
 
 __all__ = [
     "BandLoad", "BeamCheck", "Change", "Dimensioned", "DriveEffort", "DriveTable", "Extremes",
-    "Field", "Floats", "GoverningLoad", "GuideForces", "HandCheck", "LandingRange", "LegTable",
-    "LinkageMotion", "MotionCheck", "PeakReaction", "PinResult", "PinShape", "PowerLedger",
-    "Provenance", "PublishedValue", "ReactionTable", "Refinement", "Results", "SingularZone",
-    "Still", "Surface", "Units", "Volume",
+    "Fatigue", "Field", "Floats", "GoverningLoad", "GuideForces", "HandCheck", "LandingRange",
+    "LegTable", "LinkageMotion", "MotionCheck", "PeakReaction", "PinResult", "PinShape",
+    "PowerLedger", "Provenance", "PublishedValue", "ReactionTable", "Refinement", "Results",
+    "SingularZone", "Still", "Surface", "Units", "Volume",
 ]  # fmt: skip
 
 
@@ -179,6 +180,22 @@ class Provenance:
 
 
 @dataclass(frozen=True)
+class Fatigue:
+    """Fatigue under a spectrum, by how often each case occurs per `unit`. points: the worst first.
+    probability: of failure, None for that of the S-N data. life: for which pins are designed.
+    left_out: what was not assessed, in sentences.
+    """
+
+    unit: str
+    occurrences: dict[str, float]
+    method: str
+    probability: float | None
+    life: float | None
+    points: tuple[PointFatigue, ...]
+    left_out: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class Results:
     """All results of a run, without the fields inside pins (those are written pin by pin)."""
 
@@ -202,6 +219,8 @@ class Results:
     changes: tuple[Change, ...] = ()
     margins: tuple[PinMargin, ...] = ()
     arms: tuple[BendingArms, ...] = ()
+    histories: tuple[PointHistory, ...] = ()
+    fatigue: Fatigue | None = None
     provenance: tuple[Provenance, ...] = ()
     published_source: str = ""
     assumptions: tuple[str, ...] = ()

@@ -21,6 +21,7 @@ from reports.plots.all import all_plots
 from reports.plots.reactions import WITHOUT
 from reports.plots.spec import Plot
 from reports.plots.theme import on_page, style_sheet
+from reports.tables.fatigue import fatigue_grid, fatigue_sentence, worst_points
 from reports.tables.hand_checks import HAND_CHECKS
 from reports.tables.landing import NOTE, landing_blocks
 from reports.tables.margins import (
@@ -92,6 +93,9 @@ def render(results: Results, directory: Path) -> str:
         landing=landing_blocks(results),
         landed=list(dict.fromkeys(r.case for r in results.landing)),
         reactions=reaction_tables(results),
+        fatigue=fatigue_grid(results),
+        fatigue_points=worst_points(results.fatigue) if results.fatigue else [],
+        fatigue_sentence=fatigue_sentence(results.fatigue) if results.fatigue else "",
         cases=list(dict.fromkeys(pin.case for pin in results.pins)),
         margins=governing_grid(results),
         margins_not_made=not_made_words(results),

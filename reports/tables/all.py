@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from reports.data.results import Results
 from reports.tables.calculix import opinion_tables
+from reports.tables.fatigue import fatigue_tables
 from reports.tables.hand_checks import hand_check_rows
 from reports.tables.joint import joint_tables
 from reports.tables.landing import landing_table
@@ -27,6 +28,7 @@ from reports.tables.table import Table
 # Long tables of the motion, seldom read in a spreadsheet, are left out of the workbook.
 CSV_ONLY = (
     "line_loads",
+    "stress_history",
     "second_opinion_loads",
     "reactions_pin_axes",
     "motion",
@@ -53,7 +55,7 @@ def stress_tables(results: Results) -> list[Table]:
         zones_table(results),
         landing_table(results),
     ]
-    rest += [*joint_tables(results), *opinion_tables(results)]
+    rest += [*joint_tables(results), *opinion_tables(results), *fatigue_tables(results)]
     rest += [] if check is None else [beam_check_table(check)]
     return [safety_factors_table(results), *(table for table in rest if table.rows)]
 

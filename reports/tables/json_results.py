@@ -11,6 +11,7 @@ from reports.data.decision import outcome
 from reports.data.results import HandCheck, PinResult, ReactionTable, Results, SingularZone
 from reports.format.numbers import finite
 from reports.tables.calculix import opinion_json
+from reports.tables.fatigue import fatigue_json
 from reports.tables.joint import joint_json
 from reports.tables.margins import margins_json
 
@@ -31,6 +32,7 @@ def to_json(results: Results) -> dict[str, Any]:
         "pins": [_pin(pin) for pin in results.pins],
         "margins": margins_json(results),
         "changes": [asdict(change) for change in results.changes],
+        "fatigue": fatigue_json(results.fatigue),
         "loads": [_loads(results, table) for table in results.reactions],
         "provenance": [asdict(entry) for entry in results.provenance],
     }

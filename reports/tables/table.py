@@ -34,6 +34,7 @@ DIMENSIONS = {
     "contact_angle": "degrees",
     **dict.fromkeys(("line_load", "line_load_calculix"), "force per length"),
     **dict.fromkeys(("stress", "strength", "beam_axial_stress"), "stress"),
+    **dict.fromkeys(("von_mises", "signed", "amplitude", "mean_stress"), "stress"),
     **dict.fromkeys(("fea_axial_stress", "fea_axial_stress_axis_load"), "stress"),
     **dict.fromkeys(("power", "power_drives", "power_gravity", "power_applied"), "power"),
     **dict.fromkeys(("power_friction", "kinetic_rate"), "power"),

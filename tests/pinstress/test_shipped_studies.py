@@ -24,6 +24,7 @@ MECHANISMS = ["grenier2008", "bowman2019", "matrix_four_bar", "slider_crank", "e
         ("matrix_four_bar", "C", "converged"),
         ("slider_crank", "A", "converged"),
         ("clevis", "P", "converged"),
+        ("fatigue", "P", "converged"),
         ("kuleuven2014", "trunnion", "singular"),
     ],
 )

@@ -69,6 +69,12 @@ def test_every_array_has_a_dimension_or_is_known_to_need_none() -> None:
         "LinkageMotion.transmission",
         "LinkageMotion.condition",
         "LandingRange.safety_factor",
+        "PointFatigue.damage",  # per unit of the spectrum, in which lives are counted
+        "PointFatigue.life",
+        "PointFatigue.utilisation",
+        "PointFatigue.counts",
+        "Fatigue.probability",
+        "Fatigue.life",
         "Change.required",
         "Change.load_factor",
         "Change.diameter_factor",
