@@ -13,7 +13,7 @@ from fea.core.peak import Peak, decides
 from fea.core.pin_loads import PinLoads
 from fea.joint.records import JointResult
 from fea.solve_pin import Solution
-from pinstress.analysis.gather_fatigue import fatigue_of
+from pinstress.analysis.gather_fatigue import fatigue_margins, fatigue_of
 from pinstress.analysis.gather_loads import drive_position, mechanics, position_unit
 from pinstress.analysis.plan import Plan, all_loads
 from pinstress.analysis.stored import Solved
@@ -42,6 +42,7 @@ def results_of(plan: Plan, found: list[Solved]) -> plain.Results:
     rows.sort(key=lambda row: (pins.index(row[1].pin), cases.index(row[1].case)))
     beam = next((made.beam for made in found if made.beam is not None), None)
     results = _results(study, plan.loads, rows, beam, plan.published, plan.asked.tolerance)
+    fatigue = fatigue_of(plan, found)
     results = replace(
         results,
         pins=tuple(replace(p, second_opinion=opinions.get((p.pin, p.case))) for p in results.pins),
@@ -49,7 +50,8 @@ def results_of(plan: Plan, found: list[Solved]) -> plain.Results:
         surfaces=tuple(surface for made in found for surface in made.surfaces),
         changes=_worst_changes(found),
         histories=tuple(history for made in found for history in made.histories),
-        fatigue=fatigue_of(plan, found),
+        fatigue=fatigue,
+        margins=(*results.margins, *fatigue_margins(fatigue)),
     )
     return _in_study_units(results, study)
 

@@ -9,6 +9,7 @@ from math import inf
 from fea.core.peak import decides
 from fea.fatigue.assess import FatigueMaterial, Spectrum, assess
 from fea.fatigue.records import PointFatigue
+from fea.strength.margin import RATIO, Margin, PinMargin
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import Solved
 from pinstress.model.fatigue import fatigue_material, spectrum
@@ -45,6 +46,29 @@ def fatigue_of(plan: Plan, found: list[Solved]) -> Fatigue | None:
         points=tuple(points),
         left_out=left_out,
     )
+
+
+def fatigue_margins(found: Fatigue | None) -> Iterator[PinMargin]:
+    """Of each pin's worst point: damage per unit against what the design life allows."""
+    if found is None or not found.life:
+        return
+    worst: dict[str, PointFatigue] = {}
+    for point in found.points:
+        worst.setdefault(point.pin, point)
+    for pin, point in worst.items():
+        allowed = 1.0 / found.life
+        margin = Margin(
+            "fatigue life",
+            point.method,
+            "limit",
+            point.damage,
+            allowed,
+            1.0,
+            RATIO,
+            at=f"point {point.point}",
+            basis=f"damage per {found.unit}",
+        )
+        yield PinMargin(pin, "", margin)
 
 
 def _material(plan: Plan, pin: str) -> FatigueMaterial:

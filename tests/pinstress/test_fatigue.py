@@ -106,6 +106,9 @@ def test_damage_of_bending_by_hand(write: Write) -> None:
     damage = ((worst.amplitudes / knee) ** 5 / 1e6)[worst.amplitudes > knee].sum()
     assert worst.damage == pytest.approx(damage, rel=1e-4)
     assert worst.utilisation == pytest.approx(1000.0 * worst.damage)
+    (margin,) = (m for m in results.margins if m.margin.method == "fatigue life")
+    assert (margin.pin, margin.case) == ("P", "")
+    assert margin.used == pytest.approx(worst.utilisation)
 
 
 @pytest.mark.slow
