@@ -9,6 +9,7 @@ from reports.animation.player_data import script_json
 from reports.data.results import PinShape, Results
 from reports.format.file_names import drive_names, plot_name
 from reports.format.numbers import DASH, components, engineering, like, ratio, short
+from reports.format.packed import deflated
 from reports.format.ranges import error_words, factor_range
 from reports.format.template import VENDOR, environment
 from reports.format.words import BEYOND, headline, verdict_words
@@ -79,7 +80,7 @@ def render(results: Results, directory: Path) -> str:
         plot=plot,
         without=WITHOUT,
         embedded=lambda shown: script_json(shown.spec),
-        libraries=[Markup((VENDOR / name).read_text("utf-8")) for name in LIBRARIES],
+        libraries=deflated(b"\n".join((VENDOR / name).read_bytes() for name in LIBRARIES)),
         theme=script_json(on_page()),
         shades=style_sheet(),
         drive_names=drive_names,

@@ -19,7 +19,7 @@ from reports.plots.all import all_plots
 from tests.support.html_page import EVIL, parse
 from tests.support.made_up_run import leg
 
-LIBRARY = re.compile(r'<script type="text/plain" class="library">.*?</script>', re.S)
+LIBRARY = re.compile(r'<script type="text/plain" id="libraries">.*?</script>', re.S)
 ANIMATION = '<!DOCTYPE html><p title="&lt;">moves & "turns"</p>'
 
 
