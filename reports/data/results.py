@@ -54,7 +54,7 @@ __all__ = [
     "Field", "Floats", "GoverningLoad", "GuideForces", "HandCheck", "LandingRange", "LegTable",
     "LinkageMotion", "MotionCheck", "PeakReaction", "PinResult", "PinShape", "PowerLedger",
     "Provenance", "PublishedValue", "ReactionTable", "Refinement", "Results", "SingularZone",
-    "Still", "Surface", "Units", "Volume",
+    "Still", "Surface", "TitleBlock", "Units", "Volume",
 ]  # fmt: skip
 
 
@@ -179,6 +179,17 @@ class Provenance:
 
 
 @dataclass(frozen=True)
+class TitleBlock:
+    """What the study says of its report; empty texts are filled in by hand. date: ISO 8601."""
+
+    revision: str = ""
+    date: str = ""
+    prepared: str = ""
+    checked: str = ""
+    approved: str = ""
+
+
+@dataclass(frozen=True)
 class Results:
     """All results of a run, without the fields inside pins (those are written pin by pin)."""
 
@@ -207,6 +218,7 @@ class Results:
     assumptions: tuple[str, ...] = ()
     versions: dict[str, str] = field(default_factory=dict)
     study_text: str = ""
+    title_block: TitleBlock = field(default_factory=TitleBlock)
 
     def __getitem__(self, row: tuple[str, str]) -> PinResult:
         """A pin in a case: results["E", "landing"]. Raises: KeyError."""
