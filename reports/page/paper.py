@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
+from reports.data.changes import command
 from reports.data.decision import outcome, worst_first
 from reports.data.results import PinResult, Provenance, Results
 from reports.format.file_names import plot_name
@@ -69,7 +70,8 @@ def _changes(results: Results) -> Content | None:
     if not results.changes:
         return None
     notes = [INTRODUCTION, *change_notes(results)]
-    return {"grid": asdict(changes_grid(results)), "notes": notes}
+    size = command(results.changes, results.study, results.required_safety_factor)
+    return {"grid": asdict(changes_grid(results)), "notes": notes, "command": size or None}
 
 
 def _pin(results: Results, name: str, drawings: dict[str, str]) -> Content:

@@ -39,7 +39,8 @@ def typeset(content: Content, plots: Mapping[str, Plot]) -> bytes:
     files["data.json"] = json.dumps(data, ensure_ascii=False).encode()
     day = content["block"]["date"]
     made = datetime.fromisoformat(day).replace(tzinfo=UTC) if day else UNDATED
-    compiler = typst.Compiler(files, font_paths=typst.Fonts(include_system_fonts=False))
+    fonts = typst.Fonts(include_system_fonts=False)
+    compiler = typst.Compiler(files, font_paths=fonts)  # type: ignore[type-var]  # says its stub
     found = compiler.compile(format="pdf", pdf_standards="ua-1", timestamp=made)
     assert isinstance(found, bytes)
     return found
