@@ -21,6 +21,7 @@ from pinstress.cache.store import PACKAGES
 from pinstress.model.cases import CaseLoads, at_time
 from pinstress.model.pins import outline, weight
 from pinstress.model.tasks import Task
+from pinstress.schema.tables import ReportTable
 from pinstress.strength.checked import Checked, checked, factor_assumption
 from pinstress.study.choices import select
 from pinstress.study.file import Study
@@ -112,7 +113,13 @@ def _results(
         ),
         versions={name: version(name) for name in PACKAGES},
         study_text=study.text,
+        title_block=_title_block(table.report),
     )
+
+
+def _title_block(given: ReportTable) -> plain.TitleBlock:
+    date = "" if given.date is None else given.date.isoformat()
+    return plain.TitleBlock(given.revision, date, given.prepared, given.checked, given.approved)
 
 
 def _pin_result(

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from pinstress.cli.more_commands import completion, init, plots, schema, size, view
+from pinstress.cli.more_commands import completion, init, pdf_of, plots, schema, size, view
 from pinstress.cli.shared import example, names, read_study
 from pinstress.processes import interrupts
 from pinstress.processes.environment import settle_surroundings
@@ -103,6 +103,7 @@ def commands() -> None:
     help="Override the study's tolerance on the maximum stress.",
 )
 @click.option("--plots", is_flag=True, help=PLOTS)
+@click.option("--pdf", is_flag=True, help="Also write report.pdf, as `pinstress pdf` does.")
 @click.option("--no-pictures", is_flag=True, hidden=True)  # the default, which it was not
 @click.option(
     "--vtk",
@@ -153,6 +154,7 @@ def run(
     model: Model | None,
     tolerance: float | None,
     plots: bool,
+    pdf: bool,
     no_pictures: bool,
     vtk: str,
     jobs: int | None,
@@ -174,7 +176,7 @@ def run(
     second, cached = second_opinion is not None, not no_cache
     drawn = plots and not no_pictures
     wanted = Wanted(
-        drawn, second, vtk, as_json, quiet, opens, jobs, cached, sensitivities, fail_on_miss
+        drawn, pdf, second, vtk, as_json, quiet, opens, jobs, cached, sensitivities, fail_on_miss
     )
     return run_and_write(
         loaded,
@@ -322,5 +324,5 @@ def check(study: Path) -> int:
     return NOT_REACHED if unheld else REACHED
 
 
-for _command in (init, plots, schema, size, view, completion):
+for _command in (init, pdf_of, plots, schema, size, view, completion):
     commands.add_command(_command)

@@ -27,7 +27,7 @@ from pinstress.cli.closing import (
     report_violations,
 )
 from pinstress.cli.output_folder import replacing, require_replaceable
-from pinstress.cli.plots import FOLDER, PAGE, draw_folder
+from pinstress.cli.plots import FOLDER, PAGE, draw_folder, print_folder
 from pinstress.cli.shared import open_page
 from pinstress.cli.streams import unneeded
 from pinstress.processes.pool import Progress, preload, processes
@@ -51,15 +51,16 @@ SOLVERS = (
 
 @dataclass(frozen=True)
 class Wanted:
-    """The output of a run: plots and pictures as files; CalculiX's second opinion; fields (vtk, as
-    --vtk names them); results.json on stdout instead of the table; no progress and no notes; the
-    report opened.
+    """The output of a run: plots and pictures as files; report.pdf; CalculiX's second
+    opinion; fields (vtk, as --vtk names them); results.json on stdout instead of the table; no
+    progress and no notes; the report opened.
     jobs: number of parallel processes, default the number of cores. cached: whether results in the
     user's cache may be reused. sensitive: whether to find what dimensions do to the factors.
     strict: whether a pin that misses its requirements changes the exit status.
     """
 
     plots: bool = False
+    pdf: bool = False
     second: bool = False
     vtk: str = "model"
     as_json: bool = False
@@ -94,6 +95,8 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
             write_reports(results, staging)
             if wanted.plots:
                 draw_folder(staging, staging / FOLDER, wanted.quiet)
+            if wanted.pdf:
+                print_folder(staging)
     if cache:
         cache.trim()
     if wanted.as_json:

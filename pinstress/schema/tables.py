@@ -1,5 +1,6 @@
 """The study file's form: every table and key, with its unit, domain and description."""
 
+import datetime
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
@@ -95,6 +96,21 @@ class PublishedTable(StrictTable):
     """CSV file with the columns case,time,quantity,name,published,reason."""
 
 
+class ReportTable(StrictTable):
+    """The title block of the report; what is not given is left blank."""
+
+    revision: Annotated[str, Field(max_length=100)] = ""
+    """Revision, as "B"."""
+    date: datetime.date | None = None
+    """Date of the revision, as 2026-03-31 without quotes; also the PDF's date of creation."""
+    prepared: Annotated[str, Field(max_length=100)] = ""
+    """Name of who prepared it."""
+    checked: Annotated[str, Field(max_length=100)] = ""
+    """Name of who checked it."""
+    approved: Annotated[str, Field(max_length=100)] = ""
+    """Name of who approved it."""
+
+
 class StudyTable(StrictTable):
     """A study: pins, their materials, their loads and the requirements on the analysis."""
 
@@ -131,5 +147,7 @@ class StudyTable(StrictTable):
     """A comparison with the closed form of a lever."""
     published: PublishedTable | None = None
     """Published values for comparison."""
+    report: ReportTable = ReportTable()
+    """The title block of the report."""
     assumptions: list[str] = []
     """Assumptions, as sentences for the report."""

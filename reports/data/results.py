@@ -55,7 +55,7 @@ __all__ = [
     "Fatigue", "Field", "Floats", "GoverningLoad", "GuideForces", "HandCheck", "LandingRange",
     "LegTable", "LinkageMotion", "MotionCheck", "PeakReaction", "PinResult", "PinShape",
     "PowerLedger", "Provenance", "PublishedValue", "ReactionTable", "Refinement", "Results",
-    "SingularZone", "Still", "Surface", "Units", "Volume",
+    "SingularZone", "Still", "Surface", "TitleBlock", "Units", "Volume",
 ]  # fmt: skip
 
 
@@ -196,6 +196,17 @@ class Fatigue:
 
 
 @dataclass(frozen=True)
+class TitleBlock:
+    """What the study says of its report; empty texts are filled in by hand. date: ISO 8601."""
+
+    revision: str = ""
+    date: str = ""
+    prepared: str = ""
+    checked: str = ""
+    approved: str = ""
+
+
+@dataclass(frozen=True)
 class Results:
     """All results of a run, without the fields inside pins (those are written pin by pin)."""
 
@@ -226,6 +237,7 @@ class Results:
     assumptions: tuple[str, ...] = ()
     versions: dict[str, str] = field(default_factory=dict)
     study_text: str = ""
+    title_block: TitleBlock = field(default_factory=TitleBlock)
 
     def __getitem__(self, row: tuple[str, str]) -> PinResult:
         """A pin in a case: results["E", "landing"]. Raises: KeyError."""

@@ -88,6 +88,16 @@ def test_long_tables_are_csv_alone(tables: list[Table]) -> None:
     assert sheets([full, longer, motion]) == [full]
 
 
+def test_the_first_sheet_lists_what_is_not_there(
+    results: Results, tables: list[Table], tmp_path: Path
+) -> None:
+    for left_out in (["motion", "joints"], []):
+        write_workbook(results, tables, tmp_path / "t.xlsx", left_out)
+        sheets, _ = read(tmp_path / "t.xlsx")
+        about = " ".join(str(cell) for row in sheets["about"] for cell in row.values())
+        assert ("motion.csv, joints.csv" in about) == bool(left_out)
+
+
 def test_headings_have_units(results: Results, tables: list[Table], tmp_path: Path) -> None:
     write_workbook(results, tables, tmp_path / "t.xlsx")
     sheets, _ = read(tmp_path / "t.xlsx")
