@@ -25,6 +25,7 @@ from loads.linkage import Floats
 
 RTOL = 1e-11
 ATOL = 1e-13  # of the scale of each variable
+FIRST_STEP = 1e-7  # of the time left: what begins at zero must leave it before it is watched
 STEPS = 200  # at least, so that no event is missed within one
 MOST_SPANS = 500
 Method = Literal["DOP853", "Radau"]
@@ -197,8 +198,12 @@ def _after(d: Drop, event: str, y: Floats, mode: Mode) -> tuple[Floats, Mode]:
     y[W] = 0.0
     low, high = _limits(d, y)
     hold = float(forces(d, y, replace(mode, strut=0)).at_wheel)
-    return y, replace(mode, strut=(hold > high) - (hold < low) if event != "moves" else
-                      (1 if abs(hold - high) <= abs(hold - low) else -1))  # fmt: skip
+    if event == "moves":
+        way = 1 if abs(hold - high) <= abs(hold - low) else -1
+    else:
+        way = (hold > high) - (hold < low)
+    # What turned does not go on as before: it did so for less than the first step.
+    return y, replace(mode, strut=-way if event == "turns" and way == mode.strut else way)
 
 
 def _slides(d: Drop, y: Floats) -> int:
@@ -272,6 +277,7 @@ def _span(d: Drop, time: float, y: Floats, mode: Mode, method: Method) -> tuple[
         rtol=RTOL,
         atol=ATOL * _scales(d),
         max_step=d.duration / STEPS,
+        first_step=FIRST_STEP * (d.duration - time),
     )
     if found.status < 0:
         raise LandingError(f"the drop cannot be integrated: {found.message}", "not-integrated")

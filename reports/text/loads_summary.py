@@ -7,6 +7,7 @@ from pathlib import Path
 from reports.data.results import DriveTable, LinkageMotion, ReactionTable, Results
 from reports.format import markdown
 from reports.format.numbers import engineering, short
+from reports.tables.drop import drop_markdown
 from reports.text.loads import unresolved
 
 POOR = 40.0  # transmission angle in degrees below which forces increase rapidly
@@ -23,6 +24,7 @@ def write_loads_summary(results: Results, path: Path) -> None:
         parts.append(_forces(table, drives, results))
         if drives:
             parts.append(_drives(drives, results))
+        parts += [drop_markdown(d, results) for d in results.drops if d.case == table.case]
         for motion in results.motion:
             if motion.case == table.case:
                 parts.append("\n".join(f"- {line}" for line in _checks(motion, results)))

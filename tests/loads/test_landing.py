@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -94,11 +95,12 @@ def test_without_oil_two_masses_on_linear_springs_move_as_the_matrix_exponential
     np.testing.assert_allclose(seen.deflection, exact[:, 1], atol=1e-9)
 
 
-def test_a_stiff_strut_is_the_tyre_alone() -> None:
-    alone = land(Drop(450.0, 50.0, 3.0, PowerTyre(2e5), duration=0.2)).peaks["vertical"].value
-    for spring, within in ((LinearSpring(1e3, 1e9), 1e-9), (LinearSpring(1e8), 5e-3)):
-        stiff = Drop(450.0, 50.0, 3.0, PowerTyre(2e5), Strut(spring, 0.1), duration=0.15)
-        assert land(stiff).peaks["vertical"].value == pytest.approx(alone, rel=within)
+def test_a_strut_of_high_preload_is_the_tyre_alone() -> None:
+    alone = Drop(450.0, 50.0, 3.0, PowerTyre(2e5), duration=0.2)
+    stiff = replace(alone, strut=Strut(LinearSpring(1e3, 1e6), 0.1))
+    one, other = (land(drop).at(np.linspace(0.0, 0.2, 50)) for drop in (alone, stiff))
+    np.testing.assert_allclose(one.forces.vertical, other.forces.vertical, atol=1e-6)
+    assert not other.rise.any()
 
 
 def rk4(steps: int, end: float) -> np.ndarray:

@@ -7,7 +7,7 @@ tyre is a cubic through deflection over force, ours through force over deflectio
 | quantity | tolerance | because |
 | --- | --- | --- |
 | strut, tyre by the energy method | last digit | of forces 2e-4, for the interpolation |
-| the drop with 1 % of the mass in the axle | 2 % | its axle still moves at the lowest point |
+| the drop, 1 % and 0.1 % of the mass in the axle | 2 %, 1.3 % | the axle swings by V / omega |
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def test_the_energy_method_gives_the_published_numbers() -> None:
     assert TYRE.energy(np.array([tyre]))[0] / LBF / FOOT == pytest.approx(107.6, rel=2e-3)
 
 
-@pytest.mark.parametrize(("part", "within"), [(1e-2, 0.02), (1e-4, 2e-3)])
+@pytest.mark.parametrize(("part", "within"), [(1e-2, 0.02), (1e-3, 0.013)])
 def test_the_drop_approaches_it_as_the_axle_gets_lighter(part: float, within: float) -> None:
     strut, _ = lowest_point()
     leg = Strut(LEAF, 1.0)
