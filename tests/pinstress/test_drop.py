@@ -73,7 +73,7 @@ def test_inverse_dynamics_in_falling_axes_give_the_force_of_the_strut() -> None:
     assert 1.0 - length.min() == pytest.approx(loads.landing.peaks["stroke"].value, rel=1e-3)
 
 
-def test_levers_carry_the_energy_of_the_strut(tmp_path: Path) -> None:
+def test_levers_carry_the_energy_of_the_strut() -> None:
     """Virtual work: the strut of the arm does at the wheel what it does along itself."""
     loads = all_loads(load_study(SHIPPED), ["landing"])["landing"]
     assert loads.landing is not None
@@ -83,8 +83,8 @@ def test_levers_carry_the_energy_of_the_strut(tmp_path: Path) -> None:
     np.testing.assert_allclose(
         power[moving], (h.forces.along * h.forces.speed)[moving], atol=1e-6 * power.max()
     )
-    stroke = np.gradient(h.forces.stroke, h.times)
-    assert np.abs(stroke - h.forces.speed).max() < 0.02 * h.forces.speed.max()
+    way = np.trapezoid(np.maximum(h.forces.speed, 0.0), h.times)
+    assert way == pytest.approx(loads.landing.peaks["stroke"].value, rel=1e-4)
 
 
 @pytest.fixture(scope="module")
@@ -107,10 +107,11 @@ def test_the_record_states_clause_and_impulse(shipped: Study) -> None:
     assert np.linalg.norm(w) > peak
 
 
+@pytest.mark.slow
 def test_files_of_a_drop(tmp_path: Path) -> None:
     out = tmp_path / "out"
     assert run_command_line(["loads", str(SHIPPED), "--out", str(out)]) == 0
-    rows = list(csv.DictReader((out / "landing.csv").open(encoding="utf-8")))
+    rows = list(csv.DictReader((out / "landing.csv").read_text(encoding="utf-8").splitlines()))
     assert len(rows) == 301
     assert float(rows[0]["sprung_velocity"]) == pytest.approx(2654.6, abs=0.1)
     found = json.loads((out / "results.json").read_text(encoding="utf-8"))["drops"][0]
