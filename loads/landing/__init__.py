@@ -10,7 +10,15 @@ from loads.landing.requirements import (
     spin_up_drag,
 )
 from loads.landing.strut import GasSpring, LinearSpring, Oil, Strut
-from loads.landing.through import AppliedOverTime, Place, StrokeDrive, axes, laws, pushes, travel
+from loads.landing.through import (
+    AppliedOverTime,
+    StrokeDrive,
+    Touchdown,
+    axes,
+    laws,
+    pushes,
+    travel,
+)
 from loads.landing.travel import Levered, Telescopic
 from loads.landing.tyre import PowerTyre, TableTyre
 from loads.landing.wheel import Wheel
@@ -27,12 +35,12 @@ __all__ = [
     "Levered",
     "LinearSpring",
     "Oil",
-    "Place",
     "PowerTyre",
     "StrokeDrive",
     "Strut",
     "TableTyre",
     "Telescopic",
+    "Touchdown",
     "Wheel",
     "axes",
     "descent_velocity",

@@ -219,7 +219,7 @@ def _wheel(d: Drop, y: Floats, mode: Mode, event: str) -> int:
 
 
 @dataclass(frozen=True)
-class Span:
+class DropPhase:
     """Between two changes of mode: times s, state at times (T,) in it, mode; event: its end."""
 
     first: float
@@ -229,11 +229,11 @@ class Span:
     event: str
 
 
-def fall(d: Drop, method: Method = "DOP853") -> tuple[Span, ...]:
+def fall(d: Drop, method: Method = "DOP853") -> tuple[DropPhase, ...]:
     """Integrate from the touch of the tyre. Raises: LandingError where the strut bottoms or the
     tyre goes beyond its table.
     """
-    y, mode, time, spans = _start(d), Mode(), 0.0, list[Span]()
+    y, mode, time, spans = _start(d), Mode(), 0.0, list[DropPhase]()
     for _ in range(MOST_SPANS):
         span, y, mode = _span(d, time, y, mode, method)
         if span.last > span.first:
@@ -263,7 +263,9 @@ def _scales(d: Drop) -> Floats:
     return out
 
 
-def _span(d: Drop, time: float, y: Floats, mode: Mode, method: Method) -> tuple[Span, Floats, Mode]:
+def _span(
+    d: Drop, time: float, y: Floats, mode: Mode, method: Method
+) -> tuple[DropPhase, Floats, Mode]:
     from scipy.integrate import solve_ivp
 
     known = _events(d, mode, y)
@@ -286,7 +288,7 @@ def _span(d: Drop, time: float, y: Floats, mode: Mode, method: Method) -> tuple[
         event = next(n for (n, *_), t in zip(known, found.t_events, strict=True) if len(t))
     if event in ("bottoms", "tyre-exceeded"):
         raise _destroyed(d, event, last, end, mode)
-    span = Span(time, last, found.sol, mode, event)
+    span = DropPhase(time, last, found.sol, mode, event)
     return (span, *(_after(d, event, end, mode) if event != "end" else (end, mode)))
 
 

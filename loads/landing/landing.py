@@ -20,8 +20,8 @@ from loads.landing.drop import (
     TYRE,
     Drop,
     DropForces,
+    DropPhase,
     LandingError,
-    Span,
     U,
     V,
     W,
@@ -91,7 +91,7 @@ class Landing:
     """A drop with its course. Made by `land`."""
 
     drop: Drop
-    spans: tuple[Span, ...]
+    spans: tuple[DropPhase, ...]
 
     @property
     def corners(self) -> tuple[float, ...]:

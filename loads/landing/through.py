@@ -25,7 +25,7 @@ UNIT = 1.0  # s, of a drive through these strokes
 
 
 @dataclass(frozen=True)
-class Place:
+class Touchdown:
     """Where a leg touches the ground in its mechanism: the body and joint of its axle, unit vectors
     up and aft, the number of the strut's drive (None: rigid), and the values of all drives (m or
     rad) with the strut extended.
@@ -53,7 +53,7 @@ def axes(linkage: Linkage, forward: str) -> tuple[Point, Point]:
     return up, (side * up[1], -side * up[0])
 
 
-def travel(linkage: Linkage, place: Place, stroke: float) -> Levered:
+def travel(linkage: Linkage, place: Touchdown, stroke: float) -> Levered:
     """The strokes of a strut by the rise of its axle. Raises: LinkageError, LoadsArgumentError."""
     strokes = np.linspace(0.0, stroke, POINTS)
     assert place.strut is not None
@@ -94,7 +94,7 @@ class AppliedOverTime(Applied):
     """
 
     landing: Landing | None = None
-    place: Place | None = None
+    place: Touchdown | None = None
     mass: float | None = None
 
     def along(self, motion: Motion) -> Complex:
@@ -108,7 +108,7 @@ class AppliedOverTime(Applied):
         return np.asarray(f.vertical * up + f.on_leg * aft)
 
 
-def laws(landing: Landing, place: Place) -> tuple[Law, ...]:
+def laws(landing: Landing, place: Touchdown) -> tuple[Law, ...]:
     """Of all drives of the mechanism."""
     still: list[Law] = [StateDrive(value) for value in place.extended]
     if place.strut is not None:
@@ -116,7 +116,7 @@ def laws(landing: Landing, place: Place) -> tuple[Law, ...]:
     return tuple(still)
 
 
-def pushes(linkage: Linkage, landing: Landing, place: Place) -> tuple[Applied, ...]:
+def pushes(linkage: Linkage, landing: Landing, place: Touchdown) -> tuple[Applied, ...]:
     """All loads of a drop on the mechanism."""
     made = partial(AppliedOverTime, landing=landing, place=place)
     masses = [made(i.name, i.centre, mass=i.mass) for i in linkage.items if i.mass]

@@ -14,11 +14,11 @@ from loads.landing import (
     Levered,
     LinearSpring,
     Oil,
-    Place,
     PowerTyre,
     Strut,
     TableTyre,
     Telescopic,
+    Touchdown,
     Wheel,
     axes,
     land,
@@ -31,7 +31,7 @@ from pinstress.schema.landing import AtWheel, DropCase, GroundCase, StrutTable, 
 from pinstress.study.file import Study
 
 
-def place(study: Study, name: str, case: AtWheel, mechanism: Linkage) -> Place:
+def place(study: Study, name: str, case: AtWheel, mechanism: Linkage) -> Touchdown:
     """Where the ground pushes. Raises: InputError."""
     try:
         up, aft = axes(mechanism, case.forward)
@@ -40,10 +40,10 @@ def place(study: Study, name: str, case: AtWheel, mechanism: Linkage) -> Place:
     strut = getattr(case, "strut", None)
     number = None if strut is None else mechanism.driven.index(strut.drive)
     extended = tuple(value for value, _, _ in state(study, name, case, mechanism))
-    return Place(case.body, case.at, up, aft, number, extended)
+    return Touchdown(case.body, case.at, up, aft, number, extended)
 
 
-def drop(study: Study, name: str, case: DropCase, mechanism: Linkage) -> tuple[Drop, Place]:
+def drop(study: Study, name: str, case: DropCase, mechanism: Linkage) -> tuple[Drop, Touchdown]:
     """A leg that can fall, and where it touches. Raises: InputError, LinkageError."""
     where = place(study, name, case, mechanism)
     key = "case." + name
@@ -139,12 +139,14 @@ def drop_note(case: DropCase) -> str:
     return "" if case.rule is None else f"{DROPS[case.rule].clause}."
 
 
-def still(where: Place) -> list[Law]:
+def still(where: Touchdown) -> list[Law]:
     """Laws that keep all drives as with the strut extended."""
     return [StateDrive(value) for value in where.extended]
 
 
-def ground_load(where: Place, rule: GroundRule, reference: float, mechanism: Linkage) -> Applied:
+def ground_load(
+    where: Touchdown, rule: GroundRule, reference: float, mechanism: Linkage
+) -> Applied:
     """What the ground does to the wheel in the plane of the mechanism, by a rule."""
     x, y = (
         reference * (rule.vertical * u + rule.drag * a)
