@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import pickle
 from pathlib import Path
 from typing import Any
 
@@ -71,6 +72,13 @@ def test_inverse_dynamics_in_falling_axes_give_the_force_of_the_strut() -> None:
     np.testing.assert_allclose(loads.dynamics.drive[:, 0], strut, atol=1e-8 * strut.max())
     length = loads.dynamics.motion.drives[:, 0]
     assert 1.0 - length.min() == pytest.approx(loads.landing.peaks["stroke"].value, rel=1e-3)
+
+
+def test_a_drop_can_be_sent_to_another_process() -> None:
+    loads = all_loads(study_from(vertical_leg()), ["fall"])["fall"]
+    sent = pickle.loads(pickle.dumps(loads))
+    times = np.array([0.05, 0.1])
+    np.testing.assert_array_equal(sent.moving.at(times)[0].forces, loads.moving.at(times)[0].forces)  # type: ignore[union-attr]
 
 
 def test_levers_carry_the_energy_of_the_strut() -> None:
