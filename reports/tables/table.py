@@ -39,6 +39,17 @@ DIMENSIONS = {
     **dict.fromkeys(("power", "power_drives", "power_gravity", "power_applied"), "power"),
     **dict.fromkeys(("power_friction", "kinetic_rate"), "power"),
     **dict.fromkeys(("angle_deg", "degrees"), "degrees"),
+    **dict.fromkeys(("stroke", "tyre_deflection"), "length"),
+    **dict.fromkeys(("vertical", "drag", "strut_force", "leg_drag"), "force"),
+    "sprung_velocity": "velocity",
+    **dict.fromkeys(
+        (
+            *("spring_energy", "tyre_energy", "bending_energy", "oil_energy", "friction_energy"),
+            *("stop_energy", "tyre_damping_energy", "slip_energy", "lift_energy"),
+            "runway_energy",
+        ),
+        "moment",
+    ),
     "omega": "rate of turn",
     "alpha": "rate of rate of turn",
 }
