@@ -24,6 +24,8 @@ from numpy.typing import NDArray
 
 from loads.linkage import GROUND, Floats, Linkage, LinkageError, Point, Slider, Turn
 
+AT_ONCE = 2**20  # entries of the matrices of a batch of instants: 8 MB
+
 Complex = NDArray[np.complex128]
 Ints = NDArray[np.int64]
 
@@ -112,6 +114,11 @@ class Loops:
         """Number of equations."""
         return 2 * len(self.closing) + len(self.linkage.driven)
 
+    def parts(self, count: int) -> list[slice]:
+        """Slices of so many instants that matrices of all instants of one take little memory."""
+        each = max(1, AT_ONCE // max(1, self.rows * self.columns))
+        return [slice(k, min(k + each, count)) for k in range(0, max(count, 1), each)]
+
     @cached_property
     def scale(self) -> Floats:
         """(n,) length per unit of each coordinate: m for an angle, 1 for an extension."""
@@ -179,6 +186,25 @@ class Loops:
         for s, f in enumerate(self.slider_frame):
             if f:
                 out[:, f - 1] += (1j * pose.extension[:, s, None]) * out[:, angles + s]
+        return out
+
+    def velocities(self, pose: Pose, rates: Floats, points: Points) -> Complex:
+        """Velocities (T, N) of points at rates (T, n): `partials` times the rates."""
+        angles = self.frames - 1
+        omega = np.zeros((len(rates), self.frames))
+        omega[:, 1:] = rates[:, :angles]
+        slide = rates[:, angles:] + 1j * omega[:, self.slider_frame] * pose.extension
+        turned = (1j * omega * pose.turn) @ points.turning
+        return np.asarray(turned + (pose.axis * slide) @ points.sliding)
+
+    def along_coordinates(self, pose: Pose, forces: Complex, points: Points) -> Floats:
+        """Forces along the coordinates (T, n) that do the work of forces (T, N) on points."""
+        turned = np.conj(1j * pose.turn) * (forces @ np.conj(points.turning).T)
+        slid = np.conj(pose.axis) * (forces @ points.sliding.T)
+        out = np.concatenate([turned.real[:, 1:], slid.real], axis=1)
+        for s, f in enumerate(self.slider_frame):
+            if f:
+                out[:, f - 1] += pose.extension[:, s] * slid.imag[:, s]
         return out
 
     def bends(self, pose: Pose, rates: Floats, points: Points) -> Complex:

@@ -84,7 +84,9 @@ class Path:
         values = self.drives(times)
         guess = self._guess(times, values)
         try:
-            return _newton(self.loops, guess, values, 0.1 * LARGEST_TURN * self._length)
+            near = 0.1 * LARGEST_TURN * self._length
+            parts = self.loops.parts(len(times))
+            return np.concatenate([_newton(self.loops, guess[k], values[k], near) for k in parts])
         except (_Lost, _Open):
             order = np.argsort(times, kind="stable")
             last = order[_last_good(self.loops, guess[order], values[order])]
@@ -210,8 +212,11 @@ class Path:
         off = values - start - s[:, None] * run
         if not off.any():
             return along
-        factors = Factors(loops.jacobian(loops.pose(q[:, 0])))
-        return np.asarray(along + factors.solve(loops.drive_side(off)) / loops.scale)
+        across = [
+            Factors(loops.jacobian(loops.pose(q[k, 0]))).solve(loops.drive_side(off[k]))
+            for k in loops.parts(len(q))
+        ]
+        return np.asarray(along + np.concatenate(across) / loops.scale)
 
 
 def _part(loops: Loops, passed: Floats, run: Floats) -> Floats:

@@ -221,9 +221,9 @@ def _motion(
     moved = _Moved(name, course, applied)
     found = moved.solve(np.linspace(0.0, end, case.samples))
     if not extremes:
-        require_possible(course, moved.solve, found.motion.times)
+        require_possible(course, moved.solve, found)
         return CaseLoads(found.reactions, found, note)
-    over = over_time(course, moved.solve, found.motion.times)
+    over = over_time(course, moved.solve, found)
     return CaseLoads(
         found.reactions,
         found,
