@@ -9,7 +9,7 @@ statics; the linkage's sharing rule does it.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -103,13 +103,13 @@ def _joined(parts: Sequence[Any]) -> Any:
     """One result of those of its parts in time: arrays one after the other, as are those of the
     dataclasses among its fields; else the first.
     """
-    first = parts[0]
+    first: Any = parts[0]
     if isinstance(first, np.ndarray):
         return np.concatenate(parts)
-    if not is_dataclass(first) or isinstance(first, Motion):
-        return first
-    together = {f.name: _joined([getattr(p, f.name) for p in parts]) for f in fields(first)}
-    return replace(first, **together)
+    if isinstance(first, (Reactions, SliderForces, Dynamics)):
+        keys = [field.name for field in fields(first)]
+        return replace(first, **{key: _joined([getattr(p, key) for p in parts]) for key in keys})
+    return first
 
 
 class _Balance:
@@ -167,8 +167,7 @@ class _Balance:
         return out
 
     def _closing(self, f: Floats) -> Complex:
-        k = len(self.loops.closing)
-        return np.asarray(f[:, :k] + 1j * f[:, k : 2 * k])
+        return self.loops.closing_forces(f)
 
     def _drives(self, f: Floats) -> Floats:
         """(T, D) forces and torques of the drives."""

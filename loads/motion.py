@@ -58,7 +58,7 @@ class Motion:
     @cached_property
     def factors(self) -> Factors:
         """Of the derivatives of the equations, at all instants: for one batch at a time."""
-        return Factors(self.loops.jacobian(self.pose))
+        return self.loops.factors(self.pose)
 
     def solve(self, side: Floats) -> Floats:
         """Rates (T, n) of the coordinates that give the equations these rates (T, rows)."""
@@ -196,7 +196,7 @@ class Course:
         v, a, weakest = np.empty_like(q), np.empty_like(q), np.empty(len(q))
         for part in loops.parts(len(q)):
             pose = loops.pose(q[part])
-            factors = Factors(loops.jacobian(pose))
+            factors = loops.factors(pose)
             weakest[part] = factors.weakest
             if weakest[part].min(initial=1.0) < RANK_TOLERANCE:
                 continue
