@@ -205,9 +205,10 @@ def _efforts(
 ) -> tuple[Effort, ...]:
     """From the last columns: the drives' forces or torques over `effort`, powers over `power`."""
     D = len(effort)
+    found = found.quantities(slice(-2 * D, None))
 
     def efforts(values: Floats) -> Floats:
-        return values[:, -2 * D : -D] * effort
+        return values[:, :D] * effort
 
     best, when = found.largest(lambda values: np.abs(efforts(values)))
     exact = np.abs(np.diagonal(solve(when).drive))

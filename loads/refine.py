@@ -105,6 +105,11 @@ class Resolved:
         """(N,) s, rising: the instants of all panels, between which little happens."""
         return np.unique(_Panels.times(self.panels.low, self.panels.high, _NODES))
 
+    def quantities(self, chosen: slice) -> Resolved:
+        """Some of the quantities."""
+        panels = replace(self.panels, values=self.panels.values[:, :, chosen])
+        return replace(self, values=self.values[:, chosen], panels=panels)
+
     def interpolate(self, times: Floats) -> Floats:
         """(T, K) at times (T,) s; at a corner from the side before."""
         which = np.searchsorted(self.ends, times, side="left") - 1
