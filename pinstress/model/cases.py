@@ -14,6 +14,7 @@ from loads import (
     Course,
     Dynamics,
     Impasse,
+    Layout,
     LegDynamics,
     Linkage,
     LinkageError,
@@ -32,6 +33,7 @@ from loads import (
     read_reactions,
     require_possible,
 )
+from loads.coded import LoadsArgumentError
 from loads.linkage import Floats
 from pinstress.model.linkage import laws, span, state
 from pinstress.model.moving_loads import Acting, MovingLoads, acting
@@ -46,6 +48,7 @@ from pinstress.schema.cases import (
     MotionCase,
     StaticCase,
 )
+from pinstress.schema.units import SYSTEMS, to_si
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study
 
@@ -164,14 +167,19 @@ def _given(study: Study, name: str, case: GivenCase) -> Reactions:
         )
         return given_reactions(name, forces, moments)
     known = {c for p in study.table.pin for c in study.connections(p)}
-    return read_reactions(
-        name,
-        study.path_to(case.table),
-        study.system.factor("force"),
-        study.system.factor("moment"),
-        study.system.factor("time"),
-        known,
-    )
+    layout = Layout(case.table_case or name, case.columns, case.labels, case.time_step)
+    system = SYSTEMS[case.table_units or study.table.units]
+
+    def unit(written: str, dimension: str) -> float:
+        if not written:
+            return system.factor(dimension)
+        try:
+            return to_si(f"1 {written}", dimension, system)
+        except LoadsArgumentError as error:
+            raise TableError(f"{case.table}: {error}", error.code) from None
+
+    found = read_reactions(study.path_to(case.table), layout, unit, known)
+    return replace(found, case=name)
 
 
 def _leg(study: Study, name: str, case: LegCase) -> CaseLoads:
