@@ -40,7 +40,7 @@ def _write_tables(results: Results, directory: Path, others: Sequence[Table]) ->
     write_json(results, directory / "results.json")
     tables = [*others, *load_tables(results)]
     for table in tables:
-        table.write_csv(directory)
+        table.write(directory)
     write_workbook(results, sheets(tables), directory / "tables.xlsx")
     write_published_reactions(results, directory)
     write_published_values(results, directory)
