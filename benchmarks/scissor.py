@@ -35,7 +35,7 @@ def lift(stages: int) -> Linkage:
         return x * LOW, level * height
 
     inertia = 20.0 * BAR**2 / 12.0
-    bodies = [Body("foot", 4.0, at(1, 0)), Body("roller", 4.0, at(1, stages), 0.01)]
+    bodies = [Body("foot", 4.0, at(1, 0), 0.01), Body("roller", 4.0, at(1, stages), 0.01)]
     bodies.append(Body("platform", 150.0, at(0.5, stages), 40.0))
     joints = [
         Joint("O", at(0, 0), (Connection("O", "a0"),), GROUND),

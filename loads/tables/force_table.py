@@ -37,7 +37,7 @@ class Layout:
 
 
 @dataclass(frozen=True)
-class ForceRow:
+class GivenForce:
     """Force and moment on one connection, N and N m; time: s, or None."""
 
     where: str
@@ -56,7 +56,7 @@ class _Column:
     meaning: str
 
 
-def read_forces(path: Path, layout: Layout, unit: Unit, known: set[str]) -> Iterator[ForceRow]:
+def read_forces(path: Path, layout: Layout, unit: Unit, known: set[str]) -> Iterator[GivenForce]:
     """Rows of a table. Raises: TableError."""
     numbered = bool(layout.columns) and all(isinstance(c, int) for c in layout.columns.values())
     names = {label: name for name, label in _labels(layout.labels)}
@@ -83,7 +83,7 @@ def read_forces(path: Path, layout: Layout, unit: Unit, known: set[str]) -> Iter
                 )
             time = _time(row, columns, text, layout, count.setdefault(name, 0))
             count[name] += 1
-            yield ForceRow(row.where, name, time, _values(row, own_columns))
+            yield GivenForce(row.where, name, time, _values(row, own_columns))
     if not found:
         have = ", ".join(sorted(cases)[:6])
         raise TableError(

@@ -64,7 +64,7 @@ def _in_pin_axes(table: ReactionTable, vectors: Floats) -> Floats:
 
 
 class Instants(Sequence[Sequence[Cell]]):
-    """A row per instant and connection of some tables, made when it is asked for: there may be
+    """A row per instant and connection of some tables, made one by one: there may be
     millions.
     """
 
