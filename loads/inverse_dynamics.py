@@ -9,7 +9,8 @@ statics; the linkage's sharing rule does it.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 
@@ -91,7 +92,24 @@ def motion_reactions(
     timed: whether its instants follow each other in time. Raises: LinkageError when connections
     share forces without a rule, JammingError.
     """
-    return _Balance(motion, tuple(applied)).dynamics(case, timed)
+    loads = tuple(applied)
+    solved = (_Balance(part, loads).dynamics(case, timed) for part in motion.parts)
+    # Each part's motion is let go with its matrices, before the next is made.
+    parts = [replace(found, motion=motion) for found in solved]
+    return parts[0] if len(parts) == 1 else _joined(parts)
+
+
+def _joined(parts: Sequence[Any]) -> Any:
+    """One result of those of its parts in time: arrays one after the other, as are those of the
+    dataclasses among its fields; else the first.
+    """
+    first: Any = parts[0]
+    if isinstance(first, np.ndarray):
+        return np.concatenate(parts)
+    if isinstance(first, (Reactions, SliderForces, Dynamics)):
+        keys = [field.name for field in fields(first)]
+        return replace(first, **{key: _joined([getattr(p, key) for p in parts]) for key in keys})
+    return first
 
 
 class _Balance:
@@ -141,16 +159,15 @@ class _Balance:
 
     def _generalised(self) -> Floats:
         """What the bodies need as forces along the coordinates, (T, n) N (N m for angles)."""
-        loops, slopes = self.loops, self.motion.centre_slopes
-        out = np.real(np.conj(slopes) @ self.needed[..., None])[..., 0]
+        loops = self.loops
+        out = loops.along_coordinates(self.motion.pose, self.needed, loops.centres)
         for i in range(len(loops.linkage.items)):
             if f := loops.frame[i]:
                 out[:, f - 1] += self.couples[:, i]
-        return np.asarray(out)
+        return out
 
     def _closing(self, f: Floats) -> Complex:
-        k = len(self.loops.closing)
-        return np.asarray(f[:, :k] + 1j * f[:, k : 2 * k])
+        return self.loops.closing_forces(f)
 
     def _drives(self, f: Floats) -> Floats:
         """(T, D) forces and torques of the drives."""

@@ -14,6 +14,7 @@ from loads import (
     Course,
     Dynamics,
     Impasse,
+    Layout,
     LegDynamics,
     Linkage,
     LinkageError,
@@ -32,6 +33,7 @@ from loads import (
     read_reactions,
     require_possible,
 )
+from loads.coded import LoadsArgumentError
 from loads.landing import GROUND_RULES, Landing, pushes
 from loads.landing import laws as landing_laws
 from loads.linkage import Floats
@@ -58,6 +60,7 @@ from pinstress.schema.cases import (
     StaticCase,
 )
 from pinstress.schema.landing import DropCase, GroundCase
+from pinstress.schema.units import SYSTEMS, to_si
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study
 
@@ -181,14 +184,19 @@ def _given(study: Study, name: str, case: GivenCase) -> Reactions:
         )
         return given_reactions(name, forces, moments)
     known = {c for p in study.table.pin for c in study.connections(p)}
-    return read_reactions(
-        name,
-        study.path_to(case.table),
-        study.system.factor("force"),
-        study.system.factor("moment"),
-        study.system.factor("time"),
-        known,
-    )
+    layout = Layout(case.table_case or name, case.columns, case.labels, case.time_step)
+    system = SYSTEMS[case.table_units or study.table.units]
+
+    def unit(written: str, dimension: str) -> float:
+        if not written:
+            return system.factor(dimension)
+        try:
+            return to_si(f"1 {written}", dimension, system)
+        except LoadsArgumentError as error:
+            raise TableError(f"{case.table}: {error}", error.code) from None
+
+    found = read_reactions(study.path_to(case.table), layout, unit, known)
+    return replace(found, case=name)
 
 
 def _leg(study: Study, name: str, case: LegCase) -> CaseLoads:
@@ -238,7 +246,7 @@ def _motion(
     moved = _Moved(name, course, applied)
     if not extremes:
         found = moved.solve(np.linspace(0.0, end, case.samples))
-        require_possible(course, moved.solve, found.motion.times)
+        require_possible(course, moved.solve, found)
         return CaseLoads(found.reactions, found, note)
     return _over_time(moved, case.samples, note)
 
@@ -247,7 +255,7 @@ def _over_time(moved: _Moved, samples: int, note: str) -> CaseLoads:
     """A case with its extremes."""
     course = moved.course
     found = moved.solve(np.linspace(course.first, course.last, samples))
-    over = over_time(course, moved.solve, found.motion.times)
+    over = over_time(course, moved.solve, found)
     return CaseLoads(
         found.reactions,
         found,
