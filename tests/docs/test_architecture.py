@@ -31,6 +31,7 @@ PLUMBING = {  # without any rule of the physics, and not named on the page
     "fea/fatigue/records.py",
     "fea/harmonic/revolve.py",
     "fea/joint/records.py",
+    "fea/plastic/records.py",
     "fea/single_joint.py",
     "fea/solid/evaluate.py",
     "fea/surface_fields.py",
@@ -46,7 +47,6 @@ PLUMBING = {  # without any rule of the physics, and not named on the page
     "geometry/meshing.py",
     "loads/coded.py",
     "loads/tables/csv_table.py",
-    "loads/tables/force_table.py",
     "loads/tables/regular_file.py",
 }
 
