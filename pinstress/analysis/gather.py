@@ -40,13 +40,25 @@ def results_of(plan: Plan, found: list[Solved]) -> plain.Results:
         for peak, joint in zip(made.peaks, made.joints or [None] * len(made.peaks), strict=True)
     ]
     opinions = {(o.pin, o.case): o for made in found for o in made.opinions}
+    limits = {
+        (peak.pin, peak.case): limit
+        for made in found
+        for peak, limit in zip(made.peaks, made.limits, strict=False)  # none of a task that failed
+    }
     rows.sort(key=lambda row: (pins.index(row[1].pin), cases.index(row[1].case)))
     beam = next((made.beam for made in found if made.beam is not None), None)
     results = _results(study, plan.loads, rows, beam, plan.published, plan.asked.tolerance)
     fatigue = fatigue_of(plan, found)
     results = replace(
         results,
-        pins=tuple(replace(p, second_opinion=opinions.get((p.pin, p.case))) for p in results.pins),
+        pins=tuple(
+            replace(
+                p,
+                second_opinion=opinions.get((p.pin, p.case)),
+                limit_load=limits.get((p.pin, p.case)),
+            )
+            for p in results.pins
+        ),
         landing=tuple(r for made in found for r in made.landing),
         surfaces=tuple(surface for made in found for surface in made.surfaces),
         changes=_worst_changes(found),

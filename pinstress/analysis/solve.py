@@ -19,6 +19,7 @@ from fea.solve_pin import MOST_UNKNOWNS, Asked, Solution, solve_pin
 from geometry import Pin
 from pinstress.analysis import checks, gather, gather_fields
 from pinstress.analysis.gather_surface import surfaces_of
+from pinstress.analysis.limits import limit_loads
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import Entry, Solved, lasting, question
 from pinstress.cache.store import Cache
@@ -176,7 +177,17 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
     histories = stress_histories(task.pin.name, found)
     tell(f"pin {task.pin.name}, what to change")
     to_do = change(plan.asked, task, found, STEPS[study.table.units] if plan.sensitive else None)
-    return Solved(peaks, landing, beam, surfaces, joints=joints, change=to_do, histories=histories)
+    limits = limit_loads(plan, task, every, tell)
+    return Solved(
+        peaks,
+        landing,
+        beam,
+        surfaces,
+        joints=joints,
+        change=to_do,
+        histories=histories,
+        limits=limits,
+    )
 
 
 def _in_lugs(study: Study, task: Task, asked: Asked, tell: Tell) -> tuple[LugSolution, ...]:

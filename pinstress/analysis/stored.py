@@ -12,9 +12,11 @@ from fea.core.memory import too_much
 from fea.core.peak import Peak
 from fea.fatigue.records import PointHistory
 from fea.joint.records import JointResult
+from fea.plastic.records import LimitLoad
 from fea.solve_pin import MESHES, MOST_UNKNOWNS, count_loads, unknowns_after
 from geometry import CutPin, Pin, PinLike
 from loads import read_regular
+from pinstress.analysis.limits import limit_rung
 from pinstress.analysis.plan import Plan
 from pinstress.model.tasks import Task
 from reports.data.changes import Change
@@ -27,7 +29,7 @@ class Solved:
     """A task's peaks in the order of its cases, and what else reports and CalculiX have to say.
     joints: in the same order, empty where nothing is in contact. change: what would make the pin
     reach its factor, if it does not. histories: of stress at its critical points. before: whether
-    an earlier run found it.
+    an earlier run found it. limits: limit loads, in the order of the cases too.
     """
 
     peaks: tuple[Peak, ...]
@@ -39,6 +41,7 @@ class Solved:
     change: Change | None = None
     histories: tuple[PointHistory, ...] = ()
     before: bool = False
+    limits: tuple[LimitLoad | None, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -67,6 +70,7 @@ def question(plan: Plan, task: Task) -> object:
         task.lugs,
         task.surroundings,
         study.table.analysis.joints,
+        limit_rung(study, task.pin.name),
         task.loads,
         task.left_out,
         task.ranges,

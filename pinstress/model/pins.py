@@ -19,7 +19,8 @@ def material(study: Study, name: str) -> Material:
     """A material of the study."""
     m = study.table.material[name]
     strengths = m.yield_strength, m.ultimate_strength, m.shear_strength, m.bearing_strength
-    return Material(name, m.youngs_modulus, m.poisson_ratio, m.density, *strengths)
+    elastic = m.youngs_modulus, m.poisson_ratio, m.density
+    return Material(name, *elastic, *strengths, tuple(m.hardening))
 
 
 def pin(study: Study, name: str) -> PinLike:

@@ -1,5 +1,6 @@
 """The study file's form: materials and pins."""
 
+from itertools import pairwise
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
@@ -41,6 +42,9 @@ class MaterialTable(StrictTable):
     """Stress-life curve, for `fatigue.method` "signed-von-mises" and "critical-plane"."""
     fkm: FkmTable | None = None
     """Data for `fatigue.method` "fkm-p-ram"."""
+    hardening: list[tuple[Annotated[Number, Field(gt=0.0)], Stress]] = []
+    """Pairs of equivalent plastic strain and true stress past yield, in rising order, for limit
+    loads; the stress stays constant after the last. Default: perfectly plastic."""
 
     @model_validator(mode="after")
     def _in_order(self) -> "MaterialTable":
@@ -53,6 +57,18 @@ class MaterialTable(StrictTable):
                     "exceed; check both, and their units",
                     "strengths-out-of-order",
                 )
+        return self
+
+    @model_validator(mode="after")
+    def _hardens(self) -> "MaterialTable":
+        points = [(0.0, self.yield_strength or 0.0), *self.hardening]
+        rising = all(a < b and s <= t for (a, s), (b, t) in pairwise(points))
+        if self.hardening and (self.yield_strength is None or not rising):
+            raise LoadsArgumentError(
+                "hardening needs yield_strength, plastic strains that increase and stresses that "
+                "do not decrease from it",
+                "bad-hardening",
+            )
         return self
 
 

@@ -8,11 +8,10 @@ from pydantic import Field, model_validator
 from loads.coded import LoadsArgumentError
 from pinstress.schema.cases import GivenCase, InstantCase, LegCase, MotionCase, StaticCase
 from pinstress.schema.fatigue import FatigueTable
-from pinstress.schema.landing import DropCase, GroundCase
 from pinstress.schema.leg import SpatialLegTable
 from pinstress.schema.mechanism import MechanismTable
 from pinstress.schema.pins import MaterialTable, PinTable
-from pinstress.schema.types import Name, Number, PositiveLength, StrictTable
+from pinstress.schema.types import LimitLoads, Name, Number, PositiveLength, StrictTable
 
 
 class AnalysisTable(StrictTable):
@@ -33,6 +32,10 @@ class AnalysisTable(StrictTable):
     excluded_distance: Annotated[Number, Field(ge=0.01, le=0.5)] = 0.1
     """Distance from a stress singularity within which stress is not evaluated, as a fraction of the
     local diameter."""
+    limit_load: LimitLoads = "auto"
+    """For which rows the load is found at which the pin collapses: those that yield, by a beam
+    where that decides whether they carry their loads, otherwise by an elastic-plastic solid
+    ("auto"); all rows ("always") or those of some pins, by the solid; none ("never")."""
     required_safety_factor: Annotated[Number, Field(gt=0.0)] | None = None
     """Safety factor that every pin must reach. Default: no comparison."""
     limit_factor: Annotated[Number, Field(gt=0.0)] = 1.0
@@ -127,7 +130,7 @@ class StudyTable(StrictTable):
         dict[
             Name,
             Annotated[
-                GivenCase | MotionCase | StaticCase | InstantCase | LegCase | DropCase | GroundCase,
+                GivenCase | MotionCase | StaticCase | InstantCase | LegCase,
                 Field(discriminator="kind"),
             ],
         ],
@@ -135,7 +138,7 @@ class StudyTable(StrictTable):
     ]
     """Load cases by name; each is run for the pins that it loads."""
     mechanism: MechanismTable | None = None
-    """The linkage, for cases of kind "motion", "static", "instant", "drop" and "ground"."""
+    """The linkage, for cases of kind "motion", "static" and "instant"."""
     spatial_leg: SpatialLegTable | None = None
     """The leg, for cases of kind "spatial_leg"."""
     analysis: AnalysisTable = AnalysisTable()

@@ -189,6 +189,12 @@ JointOrPoint = Annotated[
     Discriminator(lambda value: "<joint>" if isinstance(value, str) else "<point>"),
 ]
 
+LimitLoads = Annotated[
+    Annotated[Literal["auto", "always", "never"], Tag("<way>")]
+    | Annotated[list[Name], Tag("<pins>")],
+    Discriminator(lambda value: "<pins>" if isinstance(value, list) else "<way>"),
+]
+
 TILTS = ("guided", "free")
 Tilt = Annotated[
     Annotated[Literal["guided", "free"], Tag("<way>")]

@@ -27,10 +27,10 @@ from fea.core.dimensions import (
 from fea.core.peak import Refinement, SingularZone
 from fea.fatigue.records import PointFatigue, PointHistory
 from fea.joint.records import JointResult
+from fea.plastic.records import LimitLoad
 from fea.strength.bending_arms import BendingArms
 from fea.strength.margin import PinMargin
 from reports.data.changes import Change
-from reports.data.drop import DropPeak, DropRecord
 from reports.data.fields import BandLoad, Field, Still, Volume
 from reports.data.in_units import Unit, in_units
 from reports.data.mechanics import (
@@ -52,11 +52,11 @@ from reports.data.mechanics import (
 from reports.data.surface import Surface
 
 __all__ = [
-    "BandLoad", "BeamCheck", "Change", "Dimensioned", "DriveEffort", "DriveTable", "DropPeak",
-    "DropRecord", "Extremes", "Fatigue", "Field", "Floats", "GoverningLoad", "GuideForces",
-    "HandCheck", "LandingRange", "LegTable", "LinkageMotion", "MotionCheck", "PeakReaction",
-    "PinResult", "PinShape", "PowerLedger", "Provenance", "PublishedValue", "ReactionTable",
-    "Refinement", "Results", "SingularZone", "Still", "Surface", "TitleBlock", "Units", "Volume",
+    "BandLoad", "BeamCheck", "Change", "Dimensioned", "DriveEffort", "DriveTable", "Extremes",
+    "Fatigue", "Field", "Floats", "GoverningLoad", "GuideForces", "HandCheck", "LandingRange",
+    "LegTable", "LinkageMotion", "MotionCheck", "PeakReaction", "PinResult", "PinShape",
+    "PowerLedger", "Provenance", "PublishedValue", "ReactionTable", "Refinement", "Results",
+    "SingularZone", "Still", "Surface", "TitleBlock", "Units", "Volume",
 ]  # fmt: skip
 
 
@@ -97,7 +97,7 @@ class PinResult:
     the history; the intervals are those over half and twice the excluded distance, and
     error_estimate reaches both ends. error_parts: stresses by what they come from (mesh, time,
     ..). loads: at the governing instant. joint: contact with the lugs there, if that holds the pin.
-    second_opinion: that of CalculiX, if there is one.
+    second_opinion: that of CalculiX, if there is one. limit_load: past yield, if requested.
     """
 
     pin: str
@@ -130,6 +130,7 @@ class PinResult:
     position_unit: str = ""
     joint: JointResult | None = None
     second_opinion: Opinion | None = None
+    limit_load: LimitLoad | None = None
 
     @property
     def instead(self) -> dict[str, str]:
@@ -227,7 +228,6 @@ class Results:
     published: tuple[PublishedValue, ...] = ()
     legs: tuple[LegTable, ...] = ()
     landing: tuple[LandingRange, ...] = ()
-    drops: tuple[DropRecord, ...] = ()
     surfaces: tuple[Surface, ...] = ()
     changes: tuple[Change, ...] = ()
     margins: tuple[PinMargin, ...] = ()

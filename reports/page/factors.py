@@ -16,6 +16,8 @@ from reports.tables.changes import (
     changes_grid,
     sensitivities_grid,
 )
+from reports.tables.limit_load import INTRODUCTION as PAST_YIELD
+from reports.tables.limit_load import LEFT_OUT, limit_grid, limit_notes
 from reports.tables.published import published_maxima
 from reports.tables.safety_factors import (
     TEXTS,
@@ -74,6 +76,10 @@ def factor_parts(results: Results) -> dict[str, Any]:
         "changes": changes_grid(results),
         "sensitivities": sensitivities_grid(results),
         "sensitivities_introduction": DIMENSIONS,
+        "limits": limit_grid(results),
+        "limit_introduction": PAST_YIELD,
+        "limit_notes": limit_notes(results),
+        "limit_left_out": LEFT_OUT,
         "change_introduction": INTRODUCTION,
         "change_notes": change_notes(results),
         "size_command": command(results.changes, results.study, results.required_safety_factor),

@@ -7,11 +7,11 @@ from collections.abc import Iterator
 from reports.data.results import PinResult, ReactionTable, Results
 from reports.plots.checks import beam_plots, motion_plot
 from reports.plots.drive import drive_plot
-from reports.plots.drop import drop_plots
 from reports.plots.fatigue import collective_plot, history_plot
 from reports.plots.joint import joint_plot
 from reports.plots.landing import landing_plot
 from reports.plots.leg import leg_plots
+from reports.plots.limit_load import limit_plot
 from reports.plots.linkage import linkage_plot
 from reports.plots.motion import motion_plots
 from reports.plots.reactions import bars, reaction_plot
@@ -37,8 +37,6 @@ def _mechanics(results: Results) -> Iterator[Plot]:
                 yield reaction_plot(table, pin, units, at.get(pin))
     for drive in results.drive:
         yield drive_plot(drive, units)
-    for drop in results.drops:
-        yield from drop_plots(drop, units)
     for motion in results.motion:
         yield linkage_plot(motion, units)
         yield from motion_plots(motion, units)
@@ -66,6 +64,8 @@ def _pins(results: Results) -> Iterator[Plot]:
         if refined:
             yield pin_refinement_plot(name, refined, units)
     for pin in results.pins:
+        if (limited := limit_plot(pin, units)) is not None:
+            yield limited
         if pin.joint is not None and pin.joint.bands:
             yield joint_plot(pin.pin, pin.case, pin.joint, units)
     yield from _fatigue(results)

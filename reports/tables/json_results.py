@@ -8,18 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from reports.data.decision import outcome
-from reports.data.results import (
-    DropRecord,
-    HandCheck,
-    PinResult,
-    ReactionTable,
-    Results,
-    SingularZone,
-)
+from reports.data.results import HandCheck, PinResult, ReactionTable, Results, SingularZone
 from reports.format.numbers import finite
 from reports.tables.calculix import opinion_json
 from reports.tables.fatigue import fatigue_json
 from reports.tables.joint import joint_json
+from reports.tables.limit_load import limit_load_json
 from reports.tables.margins import margins_json
 
 SCHEMA = "pinstress-results/1"
@@ -41,7 +35,6 @@ def to_json(results: Results) -> dict[str, Any]:
         "changes": [asdict(change) for change in results.changes],
         "fatigue": fatigue_json(results.fatigue),
         "loads": [_loads(results, table) for table in results.reactions],
-        "drops": [_drop(d) for d in results.drops],
         "provenance": [asdict(entry) for entry in results.provenance],
     }
 
@@ -80,20 +73,6 @@ def _loads(results: Results, table: ReactionTable) -> dict[str, Any]:
     }
 
 
-def _drop(d: DropRecord) -> dict[str, Any]:
-    single = ("velocity", "weight", "lift", "load_factor", "imbalance", "impulse_time")
-    more = ("impulse_force", "equal_impulse_time", "spin_up")
-    return {
-        "case": d.case,
-        "clause": d.clause,
-        **{name: finite(getattr(d, name)) for name in (*single, *more)},
-        "peaks": {
-            name: {"value": finite(peak.value), "time": finite(peak.time)}
-            for name, peak in d.peaks.items()
-        },
-    }
-
-
 def _pin(pin: PinResult) -> dict[str, Any]:
     return {
         "pin": pin.pin,
@@ -127,6 +106,7 @@ def _pin(pin: PinResult) -> dict[str, Any]:
         "hand_checks": [_check(check) for check in pin.hand_checks],
         "joint": joint_json(pin.joint),
         "second_opinion": opinion_json(pin.second_opinion),
+        "limit_load": limit_load_json(pin.limit_load),
         "held": pin.held,
         "left_out": list(pin.left_out),
     }

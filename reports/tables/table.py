@@ -8,9 +8,6 @@ from pathlib import Path
 
 from reports.data.results import Units
 from reports.format.csv import Cell, write_csv
-from reports.format.parquet import write_parquet
-
-MOST_IN_CSV = 1_000_000  # rows; a sheet of a spreadsheet has 1,048,576
 
 # What columns are measured in, by their names; tables name the exceptions.
 DIMENSIONS = {
@@ -34,6 +31,7 @@ DIMENSIONS = {
     **dict.fromkeys(("moment_even", "moment_concentrated", "moment_joint"), "moment"),
     **dict.fromkeys(("bending_moment", "bending_moment_calculix"), "moment"),
     **dict.fromkeys(("clearance", "outer_diameter", "length", "z_start", "z_end"), "length"),
+    **dict.fromkeys(("displacement", "permanent_set"), "length"),
     "contact_angle": "degrees",
     **dict.fromkeys(("line_load", "line_load_calculix"), "force per length"),
     **dict.fromkeys(("stress", "strength", "beam_axial_stress"), "stress"),
@@ -42,17 +40,6 @@ DIMENSIONS = {
     **dict.fromkeys(("power", "power_drives", "power_gravity", "power_applied"), "power"),
     **dict.fromkeys(("power_friction", "kinetic_rate"), "power"),
     **dict.fromkeys(("angle_deg", "degrees"), "degrees"),
-    **dict.fromkeys(("stroke", "tyre_deflection"), "length"),
-    **dict.fromkeys(("vertical", "drag", "strut_force", "leg_drag"), "force"),
-    "sprung_velocity": "velocity",
-    **dict.fromkeys(
-        (
-            *("spring_energy", "tyre_energy", "bending_energy", "oil_energy", "friction_energy"),
-            *("stop_energy", "tyre_damping_energy", "slip_energy", "lift_energy"),
-            "runway_energy",
-        ),
-        "moment",
-    ),
     "omega": "rate of turn",
     "alpha": "rate of rate of turn",
 }
@@ -86,7 +73,7 @@ class Table:
 
     name: str
     columns: tuple[str, ...]
-    rows: Sequence[Sequence[Cell]]
+    rows: tuple[Sequence[Cell], ...]
     mixed: tuple[str, ...] = ()
 
     @staticmethod
@@ -102,9 +89,6 @@ class Table:
             return ""
         return unit_name(DIMENSIONS.get(column, ""), units)
 
-    def write(self, directory: Path) -> Path:
-        """Write it into a folder: as CSV, or as Parquet where spreadsheets could not open it."""
-        large = len(self.rows) > MOST_IN_CSV
-        path = directory / f"{self.name}.{'parquet' if large else 'csv'}"
-        (write_parquet if large else write_csv)(path, self.columns, self.rows)
-        return path
+    def write_csv(self, directory: Path) -> None:
+        """Write it into a folder."""
+        write_csv(directory / f"{self.name}.csv", self.columns, self.rows)

@@ -14,6 +14,7 @@ from reports.format.ranges import factor_range, joint_range, margin_range, utili
 from reports.format.words import headline, result_words
 from reports.tables.changes import change_notes, changes_grid, sensitivities_grid
 from reports.tables.fatigue import fatigue_sentence
+from reports.tables.limit_load import limit_grid
 from reports.tables.margins import not_made_briefly, worst_grid
 from reports.tables.published import published_maxima
 from reports.text.fitted_table import Column, fitted_table
@@ -44,6 +45,9 @@ def print_safety_factors(results: Results, console: Console, study: str = "") ->
             console.print(Text(missing))
     if results.fatigue:
         console.print(Text(fatigue_sentence(results.fatigue)))
+    if limits := limit_grid(results):
+        console.print(Text("Past yield", "bold"))
+        console.print(fitted_table(_of_grid(limits), console.width))
     if results.changes:
         _print_changes(results, console, study or results.study)
     if grid := published_maxima(results):

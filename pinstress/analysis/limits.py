@@ -1,0 +1,62 @@
+"""Limit loads of the rows of a task that the study requests."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from fea.core.peak import Peak
+from fea.joint.solve_in_lugs import LugSolution
+from fea.plastic.records import LimitLoad
+from fea.plastic.solve import Rung, limit_load
+from fea.solve_pin import Solution
+from pinstress.analysis.plan import Plan
+from pinstress.model.tasks import Task
+from pinstress.processes.pool import Tell
+from pinstress.study.file import Study
+
+ON_FOUNDATIONS = 'not for a pin on elastic foundations: use joints = "contact"'
+
+
+def limit_rung(study: Study, pin: str) -> Rung | None:
+    """Which model finds the limit loads of a pin; None: they are not requested."""
+    asked = study.table.analysis.limit_load
+    if isinstance(asked, list):
+        return "solid" if pin in asked else None
+    rungs: dict[str, Rung | None] = {"auto": "auto", "always": "solid", "never": None}
+    return rungs[asked]
+
+
+def limit_loads(
+    plan: Plan, task: Task, found: Iterable[Solution | LugSolution], tell: Tell
+) -> tuple[LimitLoad | None, ...]:
+    """One for each case of a task, None where it is not requested."""
+    rung = limit_rung(plan.study, task.pin.name)
+    return tuple(_limit_load(plan, task, solved, rung, tell) for solved in found)
+
+
+def _limit_load(
+    plan: Plan, task: Task, solved: Solution | LugSolution, rung: Rung | None, tell: Tell
+) -> LimitLoad | None:
+    in_lugs = solved if isinstance(solved, LugSolution) else None
+    peak = solved.solution.peak if isinstance(solved, LugSolution) else solved.peak
+    if rung is None or not _asked(peak, task, rung):
+        return None
+    tell(f"pin {task.pin.name}, limit load in {peak.case}")
+    pin, loads = task.pin, peak.governing
+    assert loads is not None
+    if in_lugs is not None:
+        if in_lugs.rings is None:
+            return LimitLoad("none", note=ON_FOUNDATIONS)
+        pin, loads = in_lugs.rings, in_lugs.pressed(loads)
+    clamps = tuple(pin.surface(name) for name in task.clamps)
+    try:
+        return limit_load(pin, task.material, clamps, loads, rung, plan.asked.memory)
+    except ArithmeticError as error:  # the elastic answer stands
+        return LimitLoad("none", note=str(error))
+
+
+def _asked(peak: Peak, task: Task, rung: Rung) -> bool:
+    factor = peak.safety_factor(task.material.yield_strength)
+    if factor is None or peak.governing is None:
+        return False
+    return rung == "solid" or factor < 1.0

@@ -1,0 +1,69 @@
+"""The limit load of a row in tables, in results.json and as a plot."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fea.plastic.records import LimitLoad, LoadCurve, PlasticMesh
+from pinstress.cache.serialise import pack, unpack
+from reports.data.results import Results
+from reports.plots.limit_load import limit_plot
+from reports.tables.json_results import to_json
+from reports.tables.limit_load import limit_grid, limit_load_table, limit_word
+
+CURVE = LoadCurve(
+    np.array([0.0, 0.5, 0.9]), np.array([0.0, 1e-3, 4e-3]), np.array([0.0, 0.0, 2.5e-3])
+)
+FOUND = LimitLoad(
+    method="solid",
+    lower=0.88,
+    upper=0.91,
+    carries=False,
+    permanent_set=1e-3,
+    permanent_at=0.84,
+    meshes=(PlasticMesh(900, 0.9, 0.92, 0.05, 12, 40), PlasticMesh(3000, 0.89, 0.91, 0.03, 12, 44)),
+    curve=CURVE,
+)
+
+
+@pytest.mark.parametrize(
+    ("limit", "word"),
+    [
+        (FOUND, "collapses"),
+        (replace(FOUND, carries=True), "bends"),
+        (replace(FOUND, carries=None), "not decided"),
+        (LimitLoad("none", note="no mesh"), "not computed"),
+    ],
+)
+def test_words(limit: LimitLoad, word: str) -> None:
+    assert limit_word(limit) == word
+
+
+def test_the_cache_gives_back_what_it_took() -> None:
+    back = unpack(LimitLoad, pack(FOUND))
+    assert back.curve is not None
+    np.testing.assert_array_equal(back.curve.factor, CURVE.factor)
+    assert replace(back, curve=None) == replace(FOUND, curve=None)
+
+
+def test_tables_json_and_plot_are_in_the_units_of_the_study(results: Results) -> None:
+    none = to_json(results)["pins"][0]["limit_load"]
+    assert none is None
+    assert limit_grid(results) is None
+    assert limit_load_table(results).rows == ()
+    first = replace(results.pins[0], limit_load=FOUND)
+    with_one = replace(results, pins=(first, *results.pins[1:]))
+    written = to_json(with_one)["pins"][0]["limit_load"]
+    assert (written["lower"], written["upper"], written["carries"]) == (0.88, 0.91, False)
+    assert [mesh["unknowns"] for mesh in written["meshes"]] == [900, 3000]
+    grid = limit_grid(with_one)
+    assert grid is not None
+    assert grid.body[0][:4] == [first.pin, first.case, "collapses", "0.880 to 0.910"]
+    table = limit_load_table(with_one)
+    assert len(table.rows) == 3
+    assert table.unit("displacement", results.units) == results.units.length
+    plot = limit_plot(first, results.units)
+    assert plot is not None
+    rows = plot.spec["data"]["values"].splitlines()[1:]
+    assert all(row.split(",")[1] for row in rows)  # a gap would break the line
