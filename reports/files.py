@@ -40,7 +40,7 @@ def _write_tables(results: Results, directory: Path, others: Sequence[Table]) ->
     write_json(results, directory / "results.json")
     tables = [*others, *load_tables(results)]
     for table in tables:
-        table.write_csv(directory)
+        table.write(directory)
     shown = sheets(tables)
     left_out = [table.name for table in tables if table not in shown]
     write_workbook(results, shown, directory / "tables.xlsx", left_out)

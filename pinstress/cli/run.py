@@ -36,6 +36,7 @@ from pinstress.study.file import Study
 from pinstress.study.file_names import field_name
 from reports.data.results import Field, Units
 from reports.files import write_loads, write_reports
+from reports.tables.table import MOST_IN_CSV
 from reports.text.loads import print_loads
 from reports.text.safety_factors import print_safety_factors
 from reports.text.second_opinion import print_second_opinion
@@ -110,6 +111,7 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
         report_left_out(results)
         report_reused(plan, found)
         click.echo(f"Report: {directory / PAGE}", err=True)
+        _large_tables(directory)
     if wanted.opens:
         open_page(directory / PAGE)
     status = report_missed(results, study.table.analysis.goal == "decide")
@@ -158,7 +160,18 @@ def loads_and_write(
         print_loads(results, console())
     if not quiet:
         click.echo(f"Written: {directory}", err=True)
+        _large_tables(directory)
     return 0
+
+
+def _large_tables(directory: Path) -> None:
+    """Print which tables are too long for CSV."""
+    if names := sorted(path.name for path in directory.glob("*.parquet")):
+        click.echo(
+            f"More than {MOST_IN_CSV:,} rows, so in Parquet (for pandas, polars, DuckDB): "
+            f"{', '.join(names)}",
+            err=True,
+        )
 
 
 def console() -> Console:

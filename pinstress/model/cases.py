@@ -14,6 +14,7 @@ from loads import (
     Course,
     Dynamics,
     Impasse,
+    Layout,
     LegDynamics,
     Linkage,
     LinkageError,
@@ -32,7 +33,19 @@ from loads import (
     read_reactions,
     require_possible,
 )
+from loads.coded import LoadsArgumentError
+from loads.landing import GROUND_RULES, Landing, pushes
+from loads.landing import laws as landing_laws
 from loads.linkage import Floats
+from pinstress.model.landing import (
+    drop,
+    drop_note,
+    fallen,
+    ground_load,
+    ground_note,
+    place,
+    still,
+)
 from pinstress.model.linkage import laws, span, state
 from pinstress.model.moving_loads import Acting, MovingLoads, acting
 from pinstress.model.spatial_leg import AXES, dynamics, hinge_reactions, instants
@@ -46,6 +59,8 @@ from pinstress.schema.cases import (
     MotionCase,
     StaticCase,
 )
+from pinstress.schema.landing import DropCase, GroundCase
+from pinstress.schema.units import SYSTEMS, to_si
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study
 
@@ -79,7 +94,7 @@ class CaseLoads:
     over the ranges of an impulse. impulse: of the only one in the case. leg: of a spatial leg.
     solve: the dynamics at other times (T,) s.
     peaks: the largest forces over the time. over: other results of the whole motion. moving:
-    what acts on the pins at any time.
+    what acts on the pins at any time. landing: of a drop.
     """
 
     reactions: Reactions
@@ -93,6 +108,7 @@ class CaseLoads:
     peaks: PeakForces | None = None
     over: OverTime | None = None
     moving: MovingLoads | None = None
+    landing: Landing | None = None
 
 
 def at_time(case: CaseLoads, time: float) -> CaseLoads | None:
@@ -137,6 +153,10 @@ def case_loads(
         assert mechanism is not None
         if isinstance(case, MotionCase):
             return _motion(study, name, case, mechanism, extremes)
+        if isinstance(case, DropCase):
+            return _drop(study, name, case, mechanism, extremes)
+        if isinstance(case, GroundCase):
+            return _on_ground(study, name, case, mechanism, extremes)
         return _at_instant(study, name, case, mechanism)
     except TableError as error:
         raise InputError(str(error), code=error.code) from None
@@ -164,14 +184,19 @@ def _given(study: Study, name: str, case: GivenCase) -> Reactions:
         )
         return given_reactions(name, forces, moments)
     known = {c for p in study.table.pin for c in study.connections(p)}
-    return read_reactions(
-        name,
-        study.path_to(case.table),
-        study.system.factor("force"),
-        study.system.factor("moment"),
-        study.system.factor("time"),
-        known,
-    )
+    layout = Layout(case.table_case or name, case.columns, case.labels, case.time_step)
+    system = SYSTEMS[case.table_units or study.table.units]
+
+    def unit(written: str, dimension: str) -> float:
+        if not written:
+            return system.factor(dimension)
+        try:
+            return to_si(f"1 {written}", dimension, system)
+        except LoadsArgumentError as error:
+            raise TableError(f"{case.table}: {error}", error.code) from None
+
+    found = read_reactions(study.path_to(case.table), layout, unit, known)
+    return replace(found, case=name)
 
 
 def _leg(study: Study, name: str, case: LegCase) -> CaseLoads:
@@ -219,11 +244,18 @@ def _motion(
     course = Course(mechanism, laws(study), 0.0, end)
     applied, note = _applied(study, case, mechanism)
     moved = _Moved(name, course, applied)
-    found = moved.solve(np.linspace(0.0, end, case.samples))
     if not extremes:
-        require_possible(course, moved.solve, found.motion.times)
+        found = moved.solve(np.linspace(0.0, end, case.samples))
+        require_possible(course, moved.solve, found)
         return CaseLoads(found.reactions, found, note)
-    over = over_time(course, moved.solve, found.motion.times)
+    return _over_time(moved, case.samples, note)
+
+
+def _over_time(moved: _Moved, samples: int, note: str) -> CaseLoads:
+    """A case with its extremes."""
+    course = moved.course
+    found = moved.solve(np.linspace(course.first, course.last, samples))
+    over = over_time(course, moved.solve, found)
     return CaseLoads(
         found.reactions,
         found,
@@ -234,6 +266,39 @@ def _motion(
         over=over,
         moving=MovingLoads(moved.acting, found.motion.times, over.corners),
     )
+
+
+def _drop(study: Study, name: str, case: DropCase, mechanism: Linkage, extremes: bool) -> CaseLoads:
+    leg, where = drop(study, name, case, mechanism)
+    if not extremes:  # its course takes SciPy: extended and at rest instead
+        found = motion_reactions(name, move(mechanism, still(where), np.zeros(1)), (), False)
+        return CaseLoads(found.reactions, found)
+    landing = fallen(study, name, leg)
+    course = Course(mechanism, landing_laws(landing, where), 0.0, leg.duration)
+    moved = _Moved(name, course, pushes(mechanism, landing, where))
+    return replace(_over_time(moved, case.samples, drop_note(case)), landing=landing)
+
+
+def _on_ground(
+    study: Study, name: str, case: GroundCase, mechanism: Linkage, extremes: bool
+) -> CaseLoads:
+    """A rule's load on the leg at rest; that of a drop needs the drop, which `check` leaves out."""
+    where, note = place(study, name, case, mechanism), ""
+    drives, reference = still(where), case.reference or 0.0
+    if case.drop is not None and extremes:
+        of = study.table.case[case.drop]
+        assert isinstance(of, DropCase)
+        leg, where = drop(study, case.drop, of, mechanism)
+        landing = fallen(study, case.drop, leg)
+        peak = landing.peaks["vertical"]
+        reference = peak.value
+        courses = (law(np.array([peak.time]))[0] for law in landing_laws(landing, where))
+        drives = [StateDrive(float(value[0])) for value in courses]
+        where = place(study, name, case, mechanism)
+    applied = ground_load(where, GROUND_RULES[case.rule], reference, mechanism)
+    note = ground_note(study, case, reference) if reference else ""
+    found = motion_reactions(name, move(mechanism, drives, np.zeros(1)), (applied,), timed=False)
+    return CaseLoads(found.reactions, found, note)
 
 
 def _at_instant(

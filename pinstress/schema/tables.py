@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 from loads.coded import LoadsArgumentError
 from pinstress.schema.cases import GivenCase, InstantCase, LegCase, MotionCase, StaticCase
 from pinstress.schema.fatigue import FatigueTable
+from pinstress.schema.landing import DropCase, GroundCase
 from pinstress.schema.leg import SpatialLegTable
 from pinstress.schema.mechanism import MechanismTable
 from pinstress.schema.pins import MaterialTable, PinTable
@@ -130,7 +131,7 @@ class StudyTable(StrictTable):
         dict[
             Name,
             Annotated[
-                GivenCase | MotionCase | StaticCase | InstantCase | LegCase,
+                GivenCase | MotionCase | StaticCase | InstantCase | LegCase | DropCase | GroundCase,
                 Field(discriminator="kind"),
             ],
         ],
@@ -138,7 +139,7 @@ class StudyTable(StrictTable):
     ]
     """Load cases by name; each is run for the pins that it loads."""
     mechanism: MechanismTable | None = None
-    """The linkage, for cases of kind "motion", "static" and "instant"."""
+    """The linkage, for cases of kind "motion", "static", "instant", "drop" and "ground"."""
     spatial_leg: SpatialLegTable | None = None
     """The leg, for cases of kind "spatial_leg"."""
     analysis: AnalysisTable = AnalysisTable()

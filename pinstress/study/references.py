@@ -9,6 +9,7 @@ from fea.fatigue.flight import flight
 from geometry.coded import ArgumentError
 from pinstress.schema.cases import GivenCase, LegCase, MotionCase
 from pinstress.schema.fatigue import FatigueTable
+from pinstress.schema.landing import AtWheel, DropCase, GroundCase
 from pinstress.schema.mechanism import MechanismTable, RotaryDrive, SliderDrive
 from pinstress.schema.pins import MaterialTable
 from pinstress.schema.shown import near, shown
@@ -188,7 +189,22 @@ def _of_its_cases(table: StudyTable, mechanism: MechanismTable) -> Iterator[Wron
             yield from _known(f"{where}.body", "body", load.body, mechanism.body)
             if isinstance(load.at, str):
                 yield from _known(f"{where}.at", "joint", load.at, mechanism.joint)
+        if isinstance(case, AtWheel):
+            yield from _of_wheel(f"case.{name}", case, table, mechanism)
     if (check := table.motion_check) is not None:
         for field in ("joint", "pivot"):
             where = f"motion_check.{field}"
             yield from _known(where, "joint", getattr(check, field), mechanism.joint)
+
+
+def _of_wheel(
+    key: str, case: AtWheel, table: StudyTable, mechanism: MechanismTable
+) -> Iterator[Wrong]:
+    yield from _known(f"{key}.body", "body", case.body, mechanism.body)
+    yield from _known(f"{key}.at", "joint", case.at, mechanism.joint)
+    if isinstance(case, DropCase) and case.strut is not None:
+        slides = {d.slider: d for d in mechanism.drive if isinstance(d, SliderDrive)}
+        yield from _known(f"{key}.strut.drive", "slider drive", case.strut.drive, slides)
+    if isinstance(case, GroundCase) and case.drop is not None:
+        drops = {name: c for name, c in table.case.items() if isinstance(c, DropCase)}
+        yield from _known(f"{key}.drop", "drop case", case.drop, drops)

@@ -31,6 +31,7 @@ from fea.plastic.records import LimitLoad
 from fea.strength.bending_arms import BendingArms
 from fea.strength.margin import PinMargin
 from reports.data.changes import Change
+from reports.data.drop import DropPeak, DropRecord
 from reports.data.fields import BandLoad, Field, Still, Volume
 from reports.data.in_units import Unit, in_units
 from reports.data.mechanics import (
@@ -52,11 +53,11 @@ from reports.data.mechanics import (
 from reports.data.surface import Surface
 
 __all__ = [
-    "BandLoad", "BeamCheck", "Change", "Dimensioned", "DriveEffort", "DriveTable", "Extremes",
-    "Fatigue", "Field", "Floats", "GoverningLoad", "GuideForces", "HandCheck", "LandingRange",
-    "LegTable", "LinkageMotion", "MotionCheck", "PeakReaction", "PinResult", "PinShape",
-    "PowerLedger", "Provenance", "PublishedValue", "ReactionTable", "Refinement", "Results",
-    "SingularZone", "Still", "Surface", "TitleBlock", "Units", "Volume",
+    "BandLoad", "BeamCheck", "Change", "Dimensioned", "DriveEffort", "DriveTable", "DropPeak",
+    "DropRecord", "Extremes", "Fatigue", "Field", "Floats", "GoverningLoad", "GuideForces",
+    "HandCheck", "LandingRange", "LegTable", "LinkageMotion", "MotionCheck", "PeakReaction",
+    "PinResult", "PinShape", "PowerLedger", "Provenance", "PublishedValue", "ReactionTable",
+    "Refinement", "Results", "SingularZone", "Still", "Surface", "TitleBlock", "Units", "Volume",
 ]  # fmt: skip
 
 
@@ -228,6 +229,7 @@ class Results:
     published: tuple[PublishedValue, ...] = ()
     legs: tuple[LegTable, ...] = ()
     landing: tuple[LandingRange, ...] = ()
+    drops: tuple[DropRecord, ...] = ()
     surfaces: tuple[Surface, ...] = ()
     changes: tuple[Change, ...] = ()
     margins: tuple[PinMargin, ...] = ()

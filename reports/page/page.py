@@ -22,6 +22,7 @@ from reports.plots.all import all_plots
 from reports.plots.reactions import WITHOUT
 from reports.plots.spec import Plot
 from reports.plots.theme import on_page, style_sheet
+from reports.tables.drop import drop_words, impulse_grid, peak_grid
 from reports.tables.fatigue import fatigue_grid, fatigue_sentence, worst_points
 from reports.tables.hand_checks import HAND_CHECKS
 from reports.tables.landing import NOTE, landing_blocks
@@ -89,6 +90,9 @@ def render(results: Results, directory: Path) -> str:
         theme=script_json(on_page()),
         shades=style_sheet(),
         drive_names=drive_names,
+        drop_words=drop_words,
+        peak_grid=peak_grid,
+        impulse_grid=impulse_grid,
         ratio=ratio,
         motion=motion_parts(results, plot, directory),
         anchors={part.pin: part.anchor for part in parts},

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from reports.data.results import PinResult, ReactionTable, Results
 from reports.plots.checks import beam_plots, motion_plot
 from reports.plots.drive import drive_plot
+from reports.plots.drop import drop_plots
 from reports.plots.fatigue import collective_plot, history_plot
 from reports.plots.joint import joint_plot
 from reports.plots.landing import landing_plot
@@ -37,6 +38,8 @@ def _mechanics(results: Results) -> Iterator[Plot]:
                 yield reaction_plot(table, pin, units, at.get(pin))
     for drive in results.drive:
         yield drive_plot(drive, units)
+    for drop in results.drops:
+        yield from drop_plots(drop, units)
     for motion in results.motion:
         yield linkage_plot(motion, units)
         yield from motion_plots(motion, units)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from reports.data.results import Results
 from reports.tables.calculix import opinion_tables
+from reports.tables.drop import drop_table
 from reports.tables.fatigue import fatigue_tables
 from reports.tables.hand_checks import hand_check_rows
 from reports.tables.joint import joint_tables
@@ -68,6 +69,8 @@ def load_tables(results: Results) -> list[Table]:
     tables += [reactions_table(results), reactions_pin_axes_table(results), drive_table(results)]
     if results.motion_check is not None:
         tables.append(motion_check_table(results.motion_check))
+    if results.drops:
+        tables.append(drop_table(results))
     if results.legs:
         tables.append(leg_table(results.legs))
     # All tables of a linkage, so that every run has the same files.

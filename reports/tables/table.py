@@ -8,6 +8,9 @@ from pathlib import Path
 
 from reports.data.results import Units
 from reports.format.csv import Cell, write_csv
+from reports.format.parquet import write_parquet
+
+MOST_IN_CSV = 1_000_000  # rows; a sheet of a spreadsheet has 1,048,576
 
 # What columns are measured in, by their names; tables name the exceptions.
 DIMENSIONS = {
@@ -40,6 +43,17 @@ DIMENSIONS = {
     **dict.fromkeys(("power", "power_drives", "power_gravity", "power_applied"), "power"),
     **dict.fromkeys(("power_friction", "kinetic_rate"), "power"),
     **dict.fromkeys(("angle_deg", "degrees"), "degrees"),
+    **dict.fromkeys(("stroke", "tyre_deflection"), "length"),
+    **dict.fromkeys(("vertical", "drag", "strut_force", "leg_drag"), "force"),
+    "sprung_velocity": "velocity",
+    **dict.fromkeys(
+        (
+            *("spring_energy", "tyre_energy", "bending_energy", "oil_energy", "friction_energy"),
+            *("stop_energy", "tyre_damping_energy", "slip_energy", "lift_energy"),
+            "runway_energy",
+        ),
+        "moment",
+    ),
     "omega": "rate of turn",
     "alpha": "rate of rate of turn",
 }
@@ -73,7 +87,7 @@ class Table:
 
     name: str
     columns: tuple[str, ...]
-    rows: tuple[Sequence[Cell], ...]
+    rows: Sequence[Sequence[Cell]]
     mixed: tuple[str, ...] = ()
 
     @staticmethod
@@ -89,6 +103,9 @@ class Table:
             return ""
         return unit_name(DIMENSIONS.get(column, ""), units)
 
-    def write_csv(self, directory: Path) -> None:
-        """Write it into a folder."""
-        write_csv(directory / f"{self.name}.csv", self.columns, self.rows)
+    def write(self, directory: Path) -> Path:
+        """Write it into a folder: as CSV, or as Parquet where spreadsheets could not open it."""
+        large = len(self.rows) > MOST_IN_CSV
+        path = directory / f"{self.name}.{'parquet' if large else 'csv'}"
+        (write_parquet if large else write_csv)(path, self.columns, self.rows)
+        return path

@@ -9,6 +9,7 @@ from reports.data.results import DriveTable, LinkageMotion, ReactionTable, Resul
 from reports.format import markdown
 from reports.format.grid import Grid
 from reports.format.numbers import engineering, short
+from reports.tables.drop import drop_words, impulse_grid, peak_grid
 from reports.text.loads import unresolved
 
 NAMES = ("connection", "body", "pin")
@@ -52,6 +53,10 @@ def _part(table: ReactionTable, results: Results) -> LoadsPart:
     for motion in results.motion:
         notes += _checks(motion, results) if motion.case == table.case else []
     grids = [_forces(table, drives, results), *([_drives(drives, results)] if drives else [])]
+    for drop in results.drops:
+        if drop.case == table.case:
+            notes += [f"{line[0].upper()}{line[1:]}." for line in drop_words(drop, results)]
+            grids += [peak_grid(drop, results), impulse_grid(drop, results)]
     return LoadsPart(table.case, grids, notes)
 
 

@@ -61,7 +61,7 @@ def test_lengths_of_a_joint_are_converted() -> None:
 def test_tables_and_json_have_the_same_numbers(small: Results, tmp_path: Path) -> None:
     for table in joint_tables(small):
         assert all(len(row) == len(table.columns) for row in table.rows)
-        table.write_csv(tmp_path)
+        table.write(tmp_path)
     with (tmp_path / "joint_range.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     found = joint_json(small.pins[0].joint)

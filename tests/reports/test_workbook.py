@@ -62,7 +62,7 @@ def test_every_table_is_a_sheet_with_its_numbers(
     assert list(sheets) == ["about", *(table.name for table in tables)]
     assert list(sheets)[:2] == ["about", "safety_factors"]
     for table in tables:
-        table.write_csv(tmp_path)
+        table.write(tmp_path)
         with (tmp_path / f"{table.name}.csv").open(encoding="utf-8", newline="") as file:
             rows = list(csv.reader(file))
         found = sheets[table.name]
