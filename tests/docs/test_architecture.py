@@ -47,6 +47,7 @@ PLUMBING = {  # without any rule of the physics, and not named on the page
     "geometry/meshing.py",
     "loads/coded.py",
     "loads/tables/csv_table.py",
+    "loads/tables/force_table.py",
     "loads/tables/regular_file.py",
 }
 
