@@ -35,7 +35,7 @@ from geometry import Pin
 from geometry.arrays import Floats, Mask
 
 ROOM = 0.75  # of a diameter, between a clamp and the hinge next to it
-BEAM_ERROR = 0.15  # of the factor: measured against solids, docs/past-yield.md
+BEAM_ERROR = 0.15  # of the factor: an allowance, docs/past-yield.md
 PER_CELL = 101  # sections looked at in a cell
 
 
