@@ -14,6 +14,8 @@ from fea.verdict import FEWEST, Seen
 Model = Literal["auto", "beam", "harmonic", "solid"]
 Goal = Literal["value", "decide"]
 
+DECIDED = "its error does not affect whether the required factor is reached"
+
 
 @dataclass(frozen=True)
 class Asked:
