@@ -13,9 +13,12 @@ from loads.drives import (
     StateDrive,
     TableDrive,
 )
+from loads.forces.acting import Applied, ForceLaw, Load, Spring, Varying
+from loads.forces.curve import ForceTable
+from loads.forces.measures import Clock, Distance, Measure, Position
 from loads.friction import JammingError
 from loads.impulse import impulse_force
-from loads.inverse_dynamics import Applied, Dynamics, motion_reactions
+from loads.inverse_dynamics import Dynamics, motion_reactions
 from loads.linkage import (
     GROUND,
     Body,
@@ -51,17 +54,21 @@ __all__ = [
     "MB",
     "Applied",
     "Body",
+    "Clock",
     "Connection",
     "ConstantDrive",
     "Contact",
     "CosineDrive",
     "Course",
     "CycloidalDrive",
+    "Distance",
     "Dynamics",
     "Effort",
     "Energy",
     "Extreme",
     "FileError",
+    "ForceLaw",
+    "ForceTable",
     "Impasse",
     "JammingError",
     "Joint",
@@ -72,21 +79,26 @@ __all__ = [
     "Lever",
     "Linkage",
     "LinkageError",
+    "Load",
     "LoadsArgumentError",
     "LoadsError",
+    "Measure",
     "Mobility",
     "Motion",
     "OverTime",
     "PeakForces",
+    "Position",
     "Reactions",
     "Resolved",
     "Sharing",
     "Slider",
     "SpatialLeg",
+    "Spring",
     "StateDrive",
     "TableDrive",
     "TableError",
     "Turn",
+    "Varying",
     "at_rest",
     "energy",
     "given_reactions",

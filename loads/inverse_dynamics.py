@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loads.forces.acting import Load, balance
 from loads.friction import MOST_CONTACTS, JammingError, contact_forces
 from loads.joint_forces import connection_members, slider_couple, slider_members
 from loads.linkage import GROUND, Floats, Linkage, LinkageError, Point, Slider
@@ -21,25 +22,6 @@ from loads.motion import Motion
 from loads.reactions import Reactions
 
 STANDS = 1e-13  # of the fastest coordinate of the course: a slider this slow is at rest
-
-
-@dataclass(frozen=True)
-class Applied:
-    """A constant force (N) on a body's point (m, as drawn) and a couple (N m) on the body.
-
-    follows: the force turns with the body (given in axes as drawn); otherwise in world axes.
-    """
-
-    body: str
-    at: Point
-    force: Point = (0.0, 0.0)
-    couple: float = 0.0
-    follows: bool = False
-
-    def along(self, motion: Motion) -> Complex:
-        """The force in world axes at every instant, (T,) N."""
-        force = np.full(len(motion), number(self.force))
-        return force * np.exp(1j * motion.angle(self.body)) if self.follows else force
 
 
 @dataclass(frozen=True)
@@ -65,7 +47,7 @@ class Dynamics:
     reactions: Reactions
     drive: Floats
     motion: Motion
-    applied: tuple[Applied, ...]
+    applied: tuple[Load, ...]
     sliders: SliderForces
     needed: Complex
     couples: Floats
@@ -84,7 +66,7 @@ class Dynamics:
 
 
 def motion_reactions(
-    case: str, motion: Motion, applied: Sequence[Applied] = (), timed: bool = True
+    case: str, motion: Motion, applied: Sequence[Load] = (), timed: bool = True
 ) -> Dynamics:
     """Reactions of a driven motion under gravity, applied loads and friction.
 
@@ -97,7 +79,7 @@ def motion_reactions(
 class _Balance:
     """The balance of forces of one motion: linear in what the bodies need."""
 
-    def __init__(self, motion: Motion, applied: tuple[Applied, ...]) -> None:
+    def __init__(self, motion: Motion, applied: tuple[Load, ...]) -> None:
         self.motion, self.applied, self.loops = motion, applied, motion.loops
         self.connections = connection_members(self.loops)
         self.slides = slider_members(self.loops)
@@ -126,17 +108,13 @@ class _Balance:
 
     def _needs(self) -> tuple[Complex, Floats]:
         """m a - weight - applied force, and the couples about the centres, (T, items) each."""
-        motion, linkage = self.motion, self.motion.linkage
-        centres, _, acceleration = motion.centres
-        needed = motion.masses * (acceleration - number(linkage.gravity))
+        motion = self.motion
+        _, _, acceleration = motion.centres
+        needed = motion.masses * (acceleration - number(motion.linkage.gravity))
         couples = motion.inertias * motion.spin_rate
-        for load in self.applied:
-            i = linkage.index[load.body]
-            force = load.along(motion)
-            at, _, _ = motion.point(load.body, load.at)
-            arm = at[:, 0] + 1j * at[:, 1] - centres[:, i]
+        for i, force, couple in balance(motion, self.applied):
             needed[:, i] -= force
-            couples[:, i] -= cross(arm, force) + load.couple
+            couples[:, i] -= couple
         return needed, couples
 
     def _generalised(self) -> Floats:

@@ -11,7 +11,7 @@ import numpy as np
 from loads.as_drawn import RANK_TOLERANCE
 from loads.drives import Law, StateDrive
 from loads.least_squares import Factors
-from loads.linkage import Floats, Linkage, LinkageError, Point
+from loads.linkage import Floats, Linkage, LinkageError, Point, Slider, Turn
 from loads.loop_equations import Complex, Loops, Points, Pose, number, pairs
 from loads.mobility import Mobility, require_determined
 from loads.positions import Path
@@ -87,6 +87,11 @@ class Motion:
         """Position, velocity, acceleration (T, 2) of the pin of joint `name`."""
         joint = self.linkage.joint(name)
         return self.point(self.linkage.carrier(joint), joint.at)
+
+    def coordinate(self, of: Slider | Turn) -> tuple[Floats, Floats, Floats]:
+        """Length (m) of a slider or angle (rad) of a turn, with its rates, (T,) each."""
+        row = self.loops.along(of) * self.loops.scale / self.loops.unit(of)
+        return of.drawn + self.q @ row, self.v @ row, self.a @ row
 
     def _angular(self, coordinates: Floats, item: str) -> Floats:
         f = self.loops.frame[self.linkage.index[item]]

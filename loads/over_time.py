@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loads.forces.corners import corners as kinks
 from loads.inverse_dynamics import Dynamics
 from loads.linkage import Floats
 from loads.motion import Course, Motion
@@ -179,7 +180,9 @@ def _dense(course: Course, solve: Callable[[Floats], Dynamics], samples: Floats)
     groups = np.concatenate(
         [np.repeat(np.arange(2 * connections), 3), 2 * connections + np.arange(2 * drives)]
     )
-    corners = np.concatenate([course.corners, _reversals(course, start)])
+    corners = np.concatenate(
+        [course.corners, _reversals(course, start), kinks(course, first.applied, start)]
+    )
     found = resolved(start, columns, corners, groups=groups.tolist())
     return _Dense(found, forces, effort, power, corners)
 

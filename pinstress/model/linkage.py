@@ -38,6 +38,7 @@ from pinstress.schema.mechanism import (
     RotaryDrive,
     SliderDrive,
     SliderTable,
+    drive_name,
 )
 from pinstress.schema.units import to_si
 from pinstress.study.errors import InputError, Wrong
@@ -127,11 +128,6 @@ def _mechanism(study: Study) -> MechanismTable:
     if study.table.mechanism is None:
         raise study.error("the study has no [mechanism]; add one", code="no-mechanism")
     return study.table.mechanism
-
-
-def drive_name(drive: AnyDriveTable) -> str:
-    """The name of a drive: its slider, or its own name or that of the body it turns."""
-    return drive.slider if isinstance(drive, SliderDrive) else drive.name or drive.body
 
 
 def _slider(mechanism: MechanismTable, name: str, s: SliderTable, at: dict[str, Point]) -> Slider:

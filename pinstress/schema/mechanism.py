@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
 from loads.coded import LoadsArgumentError
+from pinstress.schema.forces import SpringTable, TorsionSpringTable
 from pinstress.schema.types import (
     NOT_NEGATIVE,
     POSITIVE,
@@ -247,6 +248,11 @@ AnyDrive = Annotated[
 ]
 
 
+def drive_name(drive: SliderDrive | RotaryDrive) -> str:
+    """The name of a drive: its slider, or its own name or that of the body it turns."""
+    return drive.slider if isinstance(drive, SliderDrive) else drive.name or drive.body
+
+
 class SharingTable(StrictTable):
     """How redundant connections share their load, as springs in parallel."""
 
@@ -278,6 +284,10 @@ class MechanismTable(StrictTable):
     """Sliders by name."""
     drive: Annotated[list[AnyDrive], Field(min_length=1)]
     """One table, or several `[[mechanism.drive]]`: as many as there are degrees of freedom."""
+    spring: dict[str, SpringTable] = {}
+    """Springs and dampers by name; they act in all cases."""
+    torsion_spring: dict[str, TorsionSpringTable] = {}
+    """Torsion springs and dampers by name; they act in all cases."""
     sharing: list[SharingTable] = []
     """Redundant connections, and how they share their load."""
 

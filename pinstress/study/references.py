@@ -5,8 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from functools import partial
 
-from pinstress.schema.cases import GivenCase, LegCase, MotionCase
-from pinstress.schema.mechanism import MechanismTable, RotaryDrive, SliderDrive
+from pinstress.schema.cases import ApplyTable, GivenCase, LegCase, MotionCase
+from pinstress.schema.mechanism import (
+    MechanismTable,
+    RotaryDrive,
+    SliderDrive,
+    drive_name,
+)
 from pinstress.schema.shown import near, shown
 from pinstress.schema.tables import StudyTable
 from pinstress.study.errors import Wrong
@@ -96,6 +101,10 @@ def named_joints(mechanism: MechanismTable) -> Iterator[tuple[str, str]]:
     for i, drive in enumerate(mechanism.drive, 1):
         for joint in () if isinstance(drive, SliderDrive) else _lines(drive):
             yield f"drive[{i}].line" if len(mechanism.drive) > 1 else "drive.line", joint
+    for name, spring in mechanism.spring.items():
+        for end in spring.joints or ():
+            if isinstance(end, str):
+                yield f"spring.{name}.joints", end
 
 
 def _lines(drive: RotaryDrive) -> tuple[str, ...]:
@@ -119,6 +128,23 @@ def _of_mechanism(mechanism: MechanismTable) -> Iterator[Wrong]:
             continue
         yield from _known(f"{where}.body", "body", drive.body, bodies)
         yield from _known(f"{where}.against", "body", drive.against, bodies)
+    for name, spring in mechanism.spring.items():
+        where = f"mechanism.spring.{name}"
+        if spring.slider is not None:
+            yield from _known(f"{where}.slider", "slider", spring.slider, mechanism.slider)
+        yield from _two_bodies(where, spring.bodies, bodies)
+    for name, torsion in mechanism.torsion_spring.items():
+        yield from _two_bodies(f"mechanism.torsion_spring.{name}", torsion.bodies, bodies)
+
+
+def _two_bodies(
+    where: str, pair: tuple[str, str] | None, bodies: Mapping[str, object]
+) -> Iterator[Wrong]:
+    for body in pair or ():
+        yield from _known(f"{where}.bodies", "body", body, bodies)
+    if pair is not None and pair[0] == pair[1]:
+        text = f"{where}.bodies: {shown(pair[0])} twice; name two different bodies"
+        yield Wrong(text, code="same-body")
 
 
 def _of_its_cases(table: StudyTable, mechanism: MechanismTable) -> Iterator[Wrong]:
@@ -134,7 +160,34 @@ def _of_its_cases(table: StudyTable, mechanism: MechanismTable) -> Iterator[Wron
             yield from _known(f"{where}.body", "body", load.body, mechanism.body)
             if isinstance(load.at, str):
                 yield from _known(f"{where}.at", "joint", load.at, mechanism.joint)
+            yield from _of_laws(where, load, mechanism, isinstance(case, MotionCase))
     if (check := table.motion_check) is not None:
         for field in ("joint", "pivot"):
             where = f"motion_check.{field}"
             yield from _known(where, "joint", getattr(check, field), mechanism.joint)
+
+
+def _of_laws(
+    where: str, load: ApplyTable, mechanism: MechanismTable, moves: bool
+) -> Iterator[Wrong]:
+    """Arguments of the tables of a load, and its switches."""
+    positions = {**mechanism.slider, **dict.fromkeys(map(drive_name, mechanism.drive))}
+    timed = [key for key in ("begin", "end") if getattr(load, key) is not None]
+    for key in ("force_law", "couple_law"):
+        law = getattr(load, key)
+        if law is None:
+            continue
+        here = f"{where}.{key}"
+        if law.position_of is not None:
+            what = "drive or slider"
+            yield from _known(f"{here}.position_of", what, law.position_of, positions)
+        for joint in law.length_between or ():
+            yield from _known(f"{here}.length_between", "joint", joint, mechanism.joint)
+        if law.position_of is None and law.length_between is None:
+            timed.append(key)
+    if timed and not moves:
+        yield Wrong(
+            f'{where}.{timed[0]}: depends on time, which only a case of kind "motion" has; for a '
+            "table of another argument give position_of or length_between",
+            code="needs-motion",
+        )
