@@ -14,9 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from loads.forces.acting import Load, balance
+from loads.forces.holding import holding, require_closed
 from loads.friction import MOST_CONTACTS, JammingError, contact_forces
 from loads.joint_forces import connection_members, slider_couple, slider_members
-from loads.linkage import GROUND, Floats, Linkage, LinkageError, Point, Slider
+from loads.linkage import GROUND, Floats, Linkage, LinkageError, Point, Slider, Turn
 from loads.loop_equations import Complex, cross, number, pairs
 from loads.motion import Motion
 from loads.reactions import Reactions
@@ -39,12 +40,14 @@ class SliderForces:
 class Dynamics:
     """Reactions, with the forces of the drives and the loads.
 
-    drive: (T, D) N, positive if it extends a slider, or N m, positive counter-clockwise. needed,
+    actuators: A that hold the linkage, its drives first. drive: (T, A) their forces, N, positive if
+    it extends a slider, or N m, positive counter-clockwise. needed,
     couples: (T, items) forces (complex, N) and couples (N m) that joints and drives bring to each
     item. applied: the loads. shared: connections whose forces follow the sharing rule.
     """
 
     reactions: Reactions
+    actuators: tuple[Slider | Turn, ...]
     drive: Floats
     motion: Motion
     applied: tuple[Load, ...]
@@ -55,8 +58,15 @@ class Dynamics:
 
     @property
     def power(self) -> Floats:
-        """Power of every drive, (T, D) W."""
-        return self.drive * self.motion.speeds
+        """Power of every actuator, (T, A) W."""
+        return self.drive * self.course[1]
+
+    @property
+    def course(self) -> tuple[Floats, Floats, Floats]:
+        """Position (m or rad) of every actuator and its rates, (T, A) each."""
+        each = [self.motion.coordinate(a) for a in self.actuators]
+        position, speed, rate = (np.stack([c[k] for c in each], axis=1) for k in range(3))
+        return position, speed, rate
 
     def shaking(self, about: Point) -> tuple[Floats, Floats]:
         """Force (T, 2) N and moment (T,) N m about a point (m) of the linkage on its ground."""
@@ -66,21 +76,27 @@ class Dynamics:
 
 
 def motion_reactions(
-    case: str, motion: Motion, applied: Sequence[Load] = (), timed: bool = True
+    case: str,
+    motion: Motion,
+    applied: Sequence[Load] = (),
+    timed: bool = True,
+    hold: Sequence[str] = (),
 ) -> Dynamics:
     """Reactions of a driven motion under gravity, applied loads and friction.
 
-    timed: whether its instants follow each other in time. Raises: LinkageError when connections
-    share forces without a rule, JammingError.
+    timed: whether its instants follow each other in time. hold: names of the sliders and turns that
+    hold the linkage, by default its drives. Raises: LinkageError when connections share forces
+    without a rule or nothing holds a body, JammingError.
     """
-    return _Balance(motion, tuple(applied)).dynamics(case, timed)
+    return _Balance(motion, tuple(applied), hold).dynamics(case, timed)
 
 
 class _Balance:
     """The balance of forces of one motion: linear in what the bodies need."""
 
-    def __init__(self, motion: Motion, applied: tuple[Load, ...]) -> None:
+    def __init__(self, motion: Motion, applied: tuple[Load, ...], hold: Sequence[str]) -> None:
         self.motion, self.applied, self.loops = motion, applied, motion.loops
+        self.held = holding(motion, hold)
         self.connections = connection_members(self.loops)
         self.slides = slider_members(self.loops)
         self.shared = motion.found.shared
@@ -94,9 +110,11 @@ class _Balance:
         if rubs:
             friction, f = self._with_friction(f, rubs)
         drive = self._drives(f)
+        require_closed(self.held, drive)
         normal, couple = self._slider_forces(f, self.needed, self.couples)
         return Dynamics(
             reactions=self._reactions(case, f, timed),
+            actuators=self.held.actuators,
             drive=drive,
             motion=self.motion,
             applied=self.applied,
@@ -131,15 +149,14 @@ class _Balance:
         return np.asarray(f[:, :k] + 1j * f[:, k : 2 * k])
 
     def _drives(self, f: Floats) -> Floats:
-        """(T, D) forces and torques of the drives."""
-        D = len(self.loops.linkage.driven)
-        return f[:, f.shape[1] - D :] * [self.loops.drive_scale(k) for k in range(D)]
+        """(T, A) forces and torques of the actuators."""
+        return self.held.forces(f[:, f.shape[1] - self.held.weights.shape[2] :])
 
     def _multipliers(self, generalised: Floats, needed: Complex) -> Floats:
         """Multipliers (T, rows) that balance forces along the coordinates, shared by the given
         rules.
         """
-        factors = self.motion.factors
+        factors = self.held.factors
         f = factors.solve_transposed(generalised / self.loops.scale)
         if not self.shared:
             return f
@@ -163,7 +180,8 @@ class _Balance:
         centres, _, _ = self.motion.centres
         bodies, _, at = loops.closing_ends
         closing_at = loops.place(pose, loops.points(bodies, at))
-        torques = self._drives(f)
+        forces = zip(self.held.actuators, self._drives(f).T, strict=True)
+        torques = [(a, force) for a, force in forces if isinstance(a, Turn)]
         couple = np.stack(
             [
                 slider_couple(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -113,12 +114,15 @@ class Slider:
 
 @dataclass(frozen=True)
 class Turn:
-    """The angle of `body` against `base` as a drive sees it; `drawn`: its value as drawn, rad."""
+    """The angle of `body` against `base` as a drive sees it; `drawn`: its value as drawn, rad.
+    carries: of a stop, the sign of the couples on the body that it can carry.
+    """
 
     name: str
     body: str
     drawn: float
     base: str = GROUND
+    carries: Literal["both", "positive", "negative"] = "both"
 
 
 @dataclass(frozen=True)
@@ -127,6 +131,17 @@ class Sharing:
 
     connections: tuple[str, ...]
     stiffness: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Parallel:
+    """Drives in parallel, one of which moves the others: how they divide the force, by areas under
+    the same pressure or by stiffness (in any unit).
+    """
+
+    members: tuple[str, ...]
+    shares: tuple[float, ...]
+    by: Literal["areas", "stiffness"]
 
 
 @dataclass(frozen=True)
@@ -144,6 +159,7 @@ class Linkage:
     turns: tuple[Turn, ...] = ()
     gravity: Point = (0.0, 0.0)
     sharing: tuple[Sharing, ...] = ()
+    parallel: tuple[Parallel, ...] = ()
 
     def __post_init__(self) -> None:
         if wrong := [LinkageError(*each) for each in _contradictions(self)]:
@@ -230,9 +246,24 @@ def _contradictions(linkage: Linkage) -> Iterator[Contradiction]:
             if name not in names:
                 text = f"sharing: there is no connection {name!r}"
                 yield text, "unknown-connection", ("sharing",)
+    for rule in linkage.parallel:
+        yield from _of_parallel(linkage, rule, coordinates)
     for body in linkage.bodies:
         if body.inertia is None:
             yield from _of_particle(linkage, body)
+
+
+def _of_parallel(linkage: Linkage, rule: Parallel, known: list[str]) -> Iterator[Contradiction]:
+    names, at = ", ".join(rule.members), ("sharing",)
+    for name in rule.members:
+        if name not in known:
+            yield f"sharing: there is no slider or turn {name!r}", "unknown-drive", at
+        if sum(name in other.members for other in linkage.parallel) > 1:
+            yield f"sharing: {name} is in two rules; keep one", "shared-twice", at
+    driven = [name for name in rule.members if name in linkage.driven]
+    if len(driven) != 1:
+        text = f"sharing over {names}: exactly one of them must be driven, not {len(driven)}"
+        yield f"{text}; the others follow it", "one-must-drive", at
 
 
 def _of_joints(linkage: Linkage, bodies: dict[str, Body]) -> Iterator[Contradiction]:

@@ -34,12 +34,15 @@ class Extreme:
 @dataclass(frozen=True)
 class Effort:
     """Force (N) or torque (N m) of a drive over a time: the largest magnitude, the mean and the
-    root of the mean square; work (T,) J done up to each sample.
+    root of the mean square; power: largest magnitude, W; stroke: between its extreme positions, m
+    or rad; work (T,) J done up to each sample.
     """
 
     largest: Extreme
     mean: float
     rms: float
+    power: Extreme
+    stroke: float
     work: Floats
 
 
@@ -153,7 +156,7 @@ def over_time(course: Course, solve: Callable[[Floats], Dynamics], samples: Floa
     angles, condition = _postures(course, dense.motion)
     return OverTime(
         peaks,
-        _efforts(d.found, solve, samples, d.effort, d.power),
+        _efforts(d, solve, samples, np.ptp(dense.course[0], axis=0)),
         angles,
         condition,
         ledger(dense).violation,
@@ -188,13 +191,10 @@ def _dense(course: Course, solve: Callable[[Floats], Dynamics], samples: Floats)
 
 
 def _efforts(
-    found: Resolved,
-    solve: Callable[[Floats], Dynamics],
-    samples: Floats,
-    effort: Floats,
-    power: Floats,
+    dense: _Dense, solve: Callable[[Floats], Dynamics], samples: Floats, strokes: Floats
 ) -> tuple[Effort, ...]:
     """From the last columns: the drives' forces or torques over `effort`, powers over `power`."""
+    found, effort, power = dense.found, dense.effort, dense.power
     D = len(effort)
 
     def efforts(values: Floats) -> Floats:
@@ -207,8 +207,16 @@ def _efforts(
     mean = np.where(np.abs(mean) > ROUNDING * best, mean, 0.0)
     rms = np.sqrt(found.mean(lambda values: efforts(values) ** 2))
     work = found.integral(samples, lambda values: values[:, -D:] * power)
+    most, at = found.largest(lambda values: np.abs(values[:, -D:] * power))
     return tuple(
-        Effort(Extreme(float(best[k]), float(when[k])), float(mean[k]), float(rms[k]), work[:, k])
+        Effort(
+            Extreme(float(best[k]), float(when[k])),
+            float(mean[k]),
+            float(rms[k]),
+            Extreme(float(most[k]), float(at[k])),
+            float(strokes[k]),
+            work[:, k],
+        )
         for k in range(D)
     )
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from loads import GROUND, Dynamics, Linkage, OverTime, Slider, energy, ledger
+from loads import GROUND, Dynamics, Effort, Linkage, OverTime, Slider, energy, ledger
 from loads.linkage import Floats
 from loads.loop_equations import pairs
 from loads.transmission_angles import transmission_angles
@@ -55,10 +55,9 @@ LEG_SCALARS = ("actuator", "spin_moment", "kinetic_energy")
 def mechanics(study: Study, loads: dict[str, CaseLoads], published: Published) -> dict[str, Any]:
     """The parts of plain.Results that need no stresses."""
     made = {n: c.dynamics for n, c in loads.items() if c.dynamics is not None}
-    timed = {n: d for n, d in made.items() if d.reactions.times is not None}
     return {
         "reactions": tuple(_reactions(study, n, c, published) for n, c in loads.items()),
-        "drive": tuple(t for n, d in timed.items() for t in _drives(study, n, d, loads[n].over)),
+        "drive": tuple(t for n, d in made.items() for t in _drives(study, n, d, loads[n].over)),
         "motion": tuple(_motion(study, n, d, loads[n].over) for n, d in made.items()),
         "motion_check": motion_check(study, loads, published),
         "published": published_values(study, loads, published),
@@ -67,11 +66,11 @@ def mechanics(study: Study, loads: dict[str, CaseLoads], published: Published) -
 
 
 def _drive_positions(study: Study, dynamics: Dynamics) -> Floats:
-    """(T, D) what is shown as positions: lengths less their offsets, angles in degrees."""
-    shown = np.array(dynamics.motion.drives)
-    for k, drive in enumerate(dynamics.motion.linkage.drives):
-        if isinstance(drive, Slider):
-            shown[:, k] = shown[:, k] - offsets(study)[k]
+    """(T, A) what is shown as positions: lengths less their offsets, angles in degrees."""
+    shown, less = dynamics.course[0], offsets(study)
+    for k, each in enumerate(dynamics.actuators):
+        if isinstance(each, Slider):
+            shown[:, k] = shown[:, k] - less.get(each.name, 0.0)
         else:
             shown[:, k] = np.degrees(shown[:, k])
     return shown
@@ -89,7 +88,7 @@ def position_unit(study: Study, case: CaseLoads) -> str:
     """Of what `drive_position` gives: "deg", or empty for a length."""
     if drive_position(study, case) is None or case.dynamics is None:
         return ""
-    (drive,) = case.dynamics.motion.linkage.drives
+    (drive,) = case.dynamics.actuators
     return "" if isinstance(drive, Slider) else "deg"
 
 
@@ -147,30 +146,41 @@ def _drives(
 ) -> list[plain.DriveTable]:
     motion = dynamics.motion
     stored, shown = energy(motion), _drive_positions(study, dynamics)
-    power, tables = dynamics.power, []
-    assert over is not None
-    for k, (drive, effort) in enumerate(zip(motion.linkage.drives, over.drives, strict=True)):
-        slides = isinstance(drive, Slider)
+    power, (_, speeds, rates) = dynamics.power, dynamics.course
+    tables = []
+    for k, each in enumerate(dynamics.actuators):
+        slides = isinstance(each, Slider)
+        effort = None if over is None else over.drives[k]
         tables.append(
             plain.DriveTable(
                 case=name,
-                name=drive.name,
+                name=each.name,
                 kind="slider" if slides else "rotary",
-                time=motion.times,
+                time=dynamics.reactions.times,
                 position=shown[:, k],
-                velocity=motion.speeds[:, k],
-                acceleration=motion.rates[:, k],
+                velocity=speeds[:, k],
+                acceleration=rates[:, k],
                 force=dynamics.drive[:, k],
                 power=power[:, k],
-                work=effort.work,
+                work=np.zeros(len(motion)) if effort is None else effort.work,
                 kinetic_energy=stored.kinetic,
                 potential_energy=stored.potential - stored.potential[0],
-                effort=plain.DriveEffort(
-                    effort.largest.value, effort.largest.time, effort.mean, effort.rms
-                ),
+                effort=None if effort is None else _effort(effort, slides),
             )
         )
     return tables
+
+
+def _effort(found: Effort, slides: bool) -> plain.DriveEffort:
+    return plain.DriveEffort(
+        found.largest.value,
+        found.largest.time,
+        found.mean,
+        found.rms,
+        found.power.value,
+        found.power.time,
+        found.stroke if slides else float(np.degrees(found.stroke)),
+    )
 
 
 def _extremes(over: OverTime) -> plain.Extremes:

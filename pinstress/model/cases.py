@@ -246,7 +246,8 @@ def _at_instant(
     applied, note = _applied(study, name, case, mechanism)
     drives = [StateDrive(*values) for values in state(study, name, case, mechanism)]
     motion = move(mechanism, drives, np.zeros(1))
-    found = motion_reactions(name, motion, applied, timed=False)
+    hold = (case.hold or ()) if isinstance(case, StaticCase) else ()
+    found = motion_reactions(name, motion, applied, timed=False, hold=hold)
     return CaseLoads(
         found.reactions,
         found,
@@ -351,12 +352,17 @@ def _of_sizes(study: Study, name: str, motion: Motion, which: int, sizes: Floats
     """Reactions with an impulse of these sizes (P,) N, an instant each."""
     case, mechanism = study.table.case[name], motion.linkage
     assert isinstance(case, MechanismCase)
+    hold = (case.hold or ()) if isinstance(case, StaticCase) else ()
     others: list[Load] = [*springs(study, mechanism)]
     for k in range(len(case.apply)):
         others += _load(study, name, case, k, mechanism) if k != which else ()
     found = [
         motion_reactions(
-            name, motion, [*others, *_load(study, name, case, which, mechanism, size)], False
+            name,
+            motion,
+            [*others, *_load(study, name, case, which, mechanism, size)],
+            timed=False,
+            hold=hold,
         ).reactions
         for size in sizes.tolist()
     ]

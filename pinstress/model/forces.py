@@ -40,7 +40,7 @@ DEGREE = math.pi / 180.0
 
 
 @dataclass(frozen=True)
-class Column:
+class _Column:
     """A column of a table: its name in a file, its dimension, SI value of the file's unit, and its
     unit in messages.
     """
@@ -51,16 +51,16 @@ class Column:
     unit: str
 
 
-def _column(study: Study, name: str, dimension: str) -> Column:
-    return Column(name, dimension, study.system.factor(dimension), study.system.unit(dimension))
+def _column(study: Study, name: str, dimension: str) -> _Column:
+    return _Column(name, dimension, study.system.factor(dimension), study.system.unit(dimension))
 
 
-def _angle(name: str) -> Column:
-    return Column(name, "angle", DEGREE, "deg")
+def _angle(name: str) -> _Column:
+    return _Column(name, "angle", DEGREE, "deg")
 
 
 def curve(
-    study: Study, where: str, given: CurveTable | None, x: Column, value: tuple[str, str]
+    study: Study, where: str, given: CurveTable | None, x: _Column, value: tuple[str, str]
 ) -> ForceTable | None:
     """A table as a function; where: its key. x: its argument; value: name and dimension of its
     value.
@@ -83,7 +83,7 @@ def curve(
         raise study.error(f"{where}.points: {error}", code=error.code) from None
 
 
-def _rows(study: Study, given: CurveTable, x: Column, y: Column) -> list[tuple[float, float]]:
+def _rows(study: Study, given: CurveTable, x: _Column, y: _Column) -> list[tuple[float, float]]:
     if given.table is None:
         return [
             (to_si(a, x.dimension, study.system), to_si(b, y.dimension, study.system))
@@ -127,7 +127,7 @@ def _spring(study: Study, mechanism: Linkage, name: str, table: SpringTable) -> 
 
 def _torsion(study: Study, name: str, table: TorsionSpringTable) -> Spring:
     where, value = f"mechanism.torsion_spring.{name}", ("moment", "moment")
-    rate = Column("angular_velocity", "angular velocity", 1.0, "rad/s")
+    rate = _Column("angular_velocity", "angular velocity", 1.0, "rad/s")
     law = ForceLaw(
         table.preload,
         table.stiffness,
@@ -181,7 +181,7 @@ def _varying(
     return None if found is None else Varying(measure, found)
 
 
-def _argument(study: Study, law: ForceLawTable, mechanism: Linkage) -> tuple[Measure, Column]:
+def _argument(study: Study, law: ForceLawTable, mechanism: Linkage) -> tuple[Measure, _Column]:
     if law.length_between is not None:
         joints = [mechanism.joint(name) for name in law.length_between]
         (a, b), (p, q) = (mechanism.carrier(j) for j in joints), (j.at for j in joints)

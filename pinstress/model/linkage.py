@@ -20,6 +20,7 @@ from loads import (
     Linkage,
     LinkageError,
     LoadsArgumentError,
+    Parallel,
     Sharing,
     Slider,
     TableDrive,
@@ -36,8 +37,10 @@ from pinstress.schema.mechanism import (
     BodyTable,
     MechanismTable,
     RotaryDrive,
+    SharingTable,
     SliderDrive,
     SliderTable,
+    StopTable,
     drive_name,
 )
 from pinstress.schema.units import to_si
@@ -117,10 +120,15 @@ def _assembled(study: Study, mechanism: MechanismTable, at: dict[str, Point], g:
             for name, j in mechanism.joint.items()
         ),
         sliders=sliders,
-        turns=turns,
+        turns=(*turns, *(_stop(*item) for item in mechanism.stop.items())),
         driven=tuple(drive_name(d) for d in mechanism.drive),
         gravity=mechanism.gravity,
-        sharing=tuple(Sharing(tuple(s.connections), tuple(s.stiffness)) for s in mechanism.sharing),
+        sharing=tuple(
+            Sharing(tuple(s.connections), tuple(s.stiffness or ()))
+            for s in mechanism.sharing
+            if s.connections is not None
+        ),
+        parallel=tuple(_parallel(s) for s in mechanism.sharing if s.parallel is not None),
     )
 
 
@@ -128,6 +136,17 @@ def _mechanism(study: Study) -> MechanismTable:
     if study.table.mechanism is None:
         raise study.error("the study has no [mechanism]; add one", code="no-mechanism")
     return study.table.mechanism
+
+
+def _stop(name: str, stop: StopTable) -> Turn:
+    base, body = stop.bodies
+    return Turn(name, body, 0.0, base, stop.carries)
+
+
+def _parallel(rule: SharingTable) -> Parallel:
+    by_area = rule.areas is not None
+    shares = rule.areas if rule.areas is not None else rule.stiffness or []
+    return Parallel(tuple(rule.parallel or ()), tuple(shares), "areas" if by_area else "stiffness")
 
 
 def _slider(mechanism: MechanismTable, name: str, s: SliderTable, at: dict[str, Point]) -> Slider:
@@ -228,10 +247,10 @@ def laws(study: Study) -> tuple[Law, ...]:
     return tuple(_law(study, d) for d in _mechanism(study).drive)
 
 
-def offsets(study: Study) -> tuple[float, ...]:
-    """The offset subtracted from each drive's length to display its position, m."""
+def offsets(study: Study) -> dict[str, float]:
+    """The offset subtracted from each driven slider's length to display its position, m."""
     drives = _mechanism(study).drive
-    return tuple(getattr(d, "position_offset", 0.0) for d in drives)
+    return {d.slider: d.position_offset for d in drives if isinstance(d, SliderDrive)}
 
 
 def _law(study: Study, drive: AnyDriveTable) -> Law:

@@ -183,6 +183,9 @@ class StaticCase(MechanismCase):
     position: Coordinates | None = None
     """Position of the drive, a length or an angle with its unit; for several drives, a table by
     drive. Default: as drawn."""
+    hold: Annotated[list[str], Field(min_length=1)] | None = None
+    """Names of the drives, sliders and stops that hold the mechanism in this case. Default: the
+    drives."""
 
 
 class InstantCase(MechanismCase):

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
 from loads.coded import LoadsArgumentError
-from pinstress.schema.forces import SpringTable, TorsionSpringTable
+from pinstress.schema.forces import SpringTable, TorsionSpringTable, require_one
 from pinstress.schema.types import (
     NOT_NEGATIVE,
     POSITIVE,
@@ -253,19 +253,46 @@ def drive_name(drive: SliderDrive | RotaryDrive) -> str:
     return drive.slider if isinstance(drive, SliderDrive) else drive.name or drive.body
 
 
-class SharingTable(StrictTable):
-    """How redundant connections share their load, as springs in parallel."""
+Ratios = Annotated[list[Annotated[Number, Field(ge=1e-18, le=1e18)]], Field(min_length=1)]
 
-    connections: Annotated[list[str], Field(min_length=1)]
-    """The redundant connections."""
-    stiffness: Annotated[list[Annotated[Number, Field(ge=1e-18, le=1e18)]], Field(min_length=1)]
-    """Stiffness of each connection; only the ratios matter."""
+
+class SharingTable(StrictTable):
+    """How redundant connections share their load, as springs in parallel; or how drives in parallel
+    (two lift cylinders), of which one is driven, share their force.
+    """
+
+    connections: Annotated[list[str], Field(min_length=1)] | None = None
+    """The redundant connections. Give either `connections` or `parallel`."""
+    parallel: Annotated[list[str], Field(min_length=2)] | None = None
+    """Drives, sliders or stops in parallel; exactly one of them is driven."""
+    stiffness: Ratios | None = None
+    """Stiffness of each; only the ratios matter."""
+    areas: Ratios | None = None
+    """Piston area of each of the `parallel`, under the same pressure; only the ratios matter. Equal
+    areas: equal forces."""
 
     @model_validator(mode="after")
-    def _same_length(self) -> "SharingTable":
-        if len(self.connections) != len(self.stiffness):
-            raise LoadsArgumentError("give one stiffness for each connection", "lengths-differ")
+    def _one_rule(self) -> "SharingTable":
+        require_one("either connections or parallel", self.connections, self.parallel)
+        if self.connections is not None and self.areas is not None:
+            raise LoadsArgumentError("areas is for parallel drives only", "key-not-applicable")
+        require_one("stiffness (of parallel drives: or areas)", self.stiffness, self.areas)
+        names = self.connections or self.parallel or []
+        if len(names) != len(self.stiffness or self.areas or []):
+            raise LoadsArgumentError("give one number for each name", "lengths-differ")
         return self
+
+
+class StopTable(StrictTable):
+    """A stop or lock, which can keep a body from turning against another in cases whose `hold`
+    names it.
+    """
+
+    bodies: tuple[str, str]
+    """[base, body]; the base may be "ground"."""
+    carries: Literal["both", "positive", "negative"] = "both"
+    """Couples on the body, counter-clockwise positive, that it can carry: "both" for a lock, one
+    sign for a stop, which opens under the other."""
 
 
 class MechanismTable(StrictTable):
@@ -284,6 +311,8 @@ class MechanismTable(StrictTable):
     """Sliders by name."""
     drive: Annotated[list[AnyDrive], Field(min_length=1)]
     """One table, or several `[[mechanism.drive]]`: as many as there are degrees of freedom."""
+    stop: dict[str, StopTable] = {}
+    """Stops and locks by name."""
     spring: dict[str, SpringTable] = {}
     """Springs and dampers by name; they act in all cases."""
     torsion_spring: dict[str, TorsionSpringTable] = {}

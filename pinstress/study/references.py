@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from functools import partial
 
-from pinstress.schema.cases import ApplyTable, GivenCase, LegCase, MotionCase
+from pinstress.schema.cases import ApplyTable, GivenCase, LegCase, MotionCase, StaticCase
 from pinstress.schema.mechanism import (
     MechanismTable,
     RotaryDrive,
@@ -133,6 +133,8 @@ def _of_mechanism(mechanism: MechanismTable) -> Iterator[Wrong]:
         if spring.slider is not None:
             yield from _known(f"{where}.slider", "slider", spring.slider, mechanism.slider)
         yield from _two_bodies(where, spring.bodies, bodies)
+    for name, stop in mechanism.stop.items():
+        yield from _two_bodies(f"mechanism.stop.{name}", stop.bodies, bodies)
     for name, torsion in mechanism.torsion_spring.items():
         yield from _two_bodies(f"mechanism.torsion_spring.{name}", torsion.bodies, bodies)
 
@@ -149,7 +151,11 @@ def _two_bodies(
 
 def _of_its_cases(table: StudyTable, mechanism: MechanismTable) -> Iterator[Wrong]:
     moves = all(d.moves for d in mechanism.drive)
+    holders = dict.fromkeys([*map(drive_name, mechanism.drive), *mechanism.slider, *mechanism.stop])
     for name, case in table.case.items():
+        for each in (case.hold or ()) if isinstance(case, StaticCase) else ():
+            what = "drive, slider or stop"
+            yield from _known(f"case.{name}.hold", what, each, holders)
         if isinstance(case, MotionCase) and not moves:
             yield Wrong(
                 f"case.{name}: a motion needs start, end and duration in [mechanism.drive]",

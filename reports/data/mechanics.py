@@ -102,12 +102,17 @@ class ReactionTable:
 
 @dataclass(frozen=True)
 class DriveEffort:
-    """Force or torque of a drive over a time: largest magnitude and when, mean, and RMS."""
+    """Force or torque of a drive over a time: largest magnitude and when, mean, and RMS; largest
+    magnitude of its power and when; stroke: between its extreme positions.
+    """
 
     largest: Force
     time: Time
     mean: Force
     rms: Force
+    power: Annotated[float, "power"]
+    power_time: Time
+    stroke: Annotated[float, "length"]
 
 
 @dataclass(frozen=True)
@@ -115,11 +120,11 @@ class DriveTable:
     """One drive along a motion, all (T,): a slider's length and force, or (kind "rotary") an angle
     in degrees with its rates in rad and the torque. Energies and work in force x length; the
     energies are the whole linkage's. effort: of the force over the time, between the instants too;
-    None: of the instants alone.
+    None: of the instants alone. time: None for a case at one instant.
     """
 
     case: str
-    time: Times
+    time: Times | None
     position: Lengths
     velocity: Velocities
     acceleration: Accelerations
@@ -143,10 +148,22 @@ class DriveTable:
         return self.effort.largest if self.effort else float(np.abs(self.force).max())
 
     @property
+    def largest_power(self) -> float:
+        """Largest magnitude of the power."""
+        return self.effort.power if self.effort else float(np.abs(self.power).max())
+
+    @property
+    def stroke(self) -> float:
+        """Between the extreme positions."""
+        return self.effort.stroke if self.effort else float(np.ptp(self.position))
+
+    @property
     def mean(self) -> float:
         """Mean force or torque over the time; what is only rounding is zero."""
         if self.effort:
             return self.effort.mean
+        if self.time is None:
+            return float(self.force[0])
         mean = float(np.trapezoid(self.force, self.time) / np.ptp(self.time))
         return mean if abs(mean) > 1e-12 * float(np.abs(self.force).max()) else 0.0
 
@@ -155,6 +172,8 @@ class DriveTable:
         """Root of the mean square of the force or torque over the time."""
         if self.effort:
             return self.effort.rms
+        if self.time is None:
+            return float(np.abs(self.force[0]))
         return float(np.sqrt(np.trapezoid(self.force**2, self.time) / np.ptp(self.time)))
 
 

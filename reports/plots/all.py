@@ -33,7 +33,8 @@ def _mechanics(results: Results) -> Iterator[Plot]:
             for pin in dict.fromkeys(table.pins):
                 yield reaction_plot(table, pin, units, at.get(pin))
     for drive in results.drive:
-        yield drive_plot(drive, units)
+        if drive.time is not None:
+            yield drive_plot(drive, units)
     for motion in results.motion:
         yield linkage_plot(motion, units)
         yield from motion_plots(motion, units)

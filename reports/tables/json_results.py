@@ -58,6 +58,9 @@ def _loads(results: Results, table: ReactionTable) -> dict[str, Any]:
                 "largest": finite(d.largest),
                 "mean": finite(d.mean),
                 "rms": finite(d.rms),
+                "largest_power": finite(d.largest_power),
+                "stroke": finite(d.stroke),
+                "position": finite(d.position[0]) if d.time is None else None,
             }
             for d in results.drive
             if d.case == table.case

@@ -59,17 +59,24 @@ def _forces(table: ReactionTable, drives: list[DriveTable], results: Results) ->
 
 
 def _drives(drives: list[DriveTable], results: Results) -> str:
-    force, length = results.units.force, results.units.length
-    rows = [
-        [
-            d.name,
-            f"torque [{force}·{length}]" if d.kind == "rotary" else f"force [{force}]",
-            *(engineering(x) for x in (d.mean, d.rms, d.largest)),
-        ]
-        for d in drives
-    ]
-    columns = ("drive", "quantity", "mean", "RMS", "maximum")
-    return markdown.table(columns, rows, (False, False, True, True, True))
+    force, length, time = results.units.force, results.units.length, results.units.time
+    moving = drives[0].time is not None
+    columns = ["drive", "quantity"]
+    columns += ["mean", "RMS", "maximum", "stroke"] if moving else ["value", "position"]
+    columns.append(f"power [{force}·{length}/{time}]")
+    rows = []
+    for d in drives:
+        rotary = d.kind == "rotary"
+        unit = "°" if rotary else length
+        row = [d.name, f"torque [{force}·{length}]" if rotary else f"force [{force}]"]
+        if moving:
+            row += [engineering(x) for x in (d.mean, d.rms, d.largest)]
+            row += [f"{engineering(d.stroke)} {unit}", engineering(d.largest_power)]
+        else:
+            row += [engineering(d.force[0]), f"{engineering(d.position[0])} {unit}"]
+            row.append(engineering(d.power[0]))
+        rows.append(row)
+    return markdown.table(columns, rows, [False] * 2 + [True] * (len(columns) - 2))
 
 
 def _checks(motion: LinkageMotion, results: Results) -> list[str]:
