@@ -35,11 +35,8 @@ FEET, EYES = ((0.6, -1.0), (-0.5, -0.8)), ((0.9, 0.1), (0.7, 0.0))
 def lever(*parallel: Parallel) -> Linkage:
     """A massless lever on a pivot at the origin, moved by two cylinders; the first is driven."""
     light = Body("lever", 1e-12, (0.5, 0.0), 1e-12)
-    bodies, joints, sliders = (
-        [light],
-        [Joint("O", (0.0, 0.0), (Connection("O", "lever"),), GROUND)],
-        [],
-    )
+    bodies, sliders = [light], list[Slider]()
+    joints = [Joint("O", (0.0, 0.0), (Connection("O", "lever"),), GROUND)]
     for k, (foot, eye) in enumerate(zip(FEET, EYES, strict=True), 1):
         middle = (0.5 * (foot[0] + eye[0]), 0.5 * (foot[1] + eye[1]))
         bodies += [Body(f"{part}{k}", 1e-12, middle, 1e-12) for part in ("barrel", "rod")]
@@ -119,8 +116,6 @@ def test_a_lock_carries_the_couple_and_the_cylinders_nothing() -> None:
     for k in (1, 2):
         assert np.linalg.norm(found.reactions.force(f"E{k}")) == pytest.approx(0.0, abs=1e-6)
     assert found.reactions.force("O")[0] == pytest.approx([0.0, -LOAD, 0.0], abs=1e-6)
-    ground, moment = found.shaking((0.0, 0.0))
-    assert ground[0] == pytest.approx([0.0, 0.0], abs=1e-6) or moment[0] != 0.0
 
 
 def test_what_cannot_hold() -> None:
