@@ -13,7 +13,10 @@ from pinstress.cli.commands import run_command_line
 from tests.conftest import ROOT
 
 STUDIES = ROOT / "studies"
-MECHANISMS = ["grenier2008", "bowman2019", "matrix_four_bar", "slider_crank", "excavator"]
+MECHANISMS = [
+    *("grenier2008", "bowman2019", "matrix_four_bar", "slider_crank", "excavator"),
+    *("crane", "engine", "hood", "main_gear"),
+]
 
 
 @pytest.mark.slow
@@ -65,8 +68,14 @@ def test_loads_alone(tmp_path: Path, study: str, capsys: pytest.CaptureFixture[s
         assert case["power_violation"] < 1e-9
     for name in ("motion.csv", "joints.csv", "transmission.csv", "linkage.csv"):
         assert len((out / name).read_text().splitlines()) > 1
-    if study != "matrix_four_bar":  # which has instants only
-        assert (out / "drive.csv").is_file()
+    drives = list(csv.DictReader((out / "drive.csv").read_text().splitlines()))
+    for case in found["loads"]:
+        own = [r for r in drives if r["case"] == case["case"]]
+        assert {r["drive"] for r in own} == {d["drive"] for d in case["drives"]} != set()
+        for d in case["drives"]:
+            assert d["largest"] * (1 + 1e-9) >= max(
+                abs(float(r["force"])) for r in own if r["drive"] == d["drive"]
+            )
 
 
 def test_the_leg_in_space(tmp_path: Path) -> None:
