@@ -58,10 +58,13 @@ class Body:
 
 @dataclass(frozen=True)
 class Connection:
-    """A body that turns on a pin; `name` labels the force between them."""
+    """A body that turns on a pin; `name` labels the force between them. friction: radius of the
+    friction circle, m: r mu / sqrt(1 + mu^2) of a pin of radius r.
+    """
 
     name: str
     body: str
+    friction: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -169,6 +172,11 @@ class Linkage:
     def connections(self) -> tuple[tuple[Joint, Connection], ...]:
         """Every connection with its joint, in the order of the joints."""
         return tuple((j, c) for j in self.joints for c in j.connections)
+
+    @property
+    def rubs(self) -> bool:
+        """Whether anything has friction."""
+        return any(s.friction for s in self.sliders) or any(c.friction for _, c in self.connections)
 
     @cached_property
     def drives(self) -> tuple[Slider | Turn, ...]:
@@ -280,6 +288,9 @@ def _of_joints(linkage: Linkage, bodies: dict[str, Body]) -> Iterator[Contradict
         if joint.fixed_in not in (None, GROUND, *bodies):
             text = f"{what}: there is no body {joint.fixed_in!r}"
             yield text, "unknown-body", (*at, "fixed_in")
+        if joint.fixed_in is None and any(c.friction for c in joint.connections):
+            text = f"{what}: friction needs fixed_in, the body that carries the pin"
+            yield f"{text}; a floating pin may turn with either", "friction-floats", at
         if joint.fixed_in is None and len(joint.connections) < 2:
             text = f"{what}: a floating pin needs at least two connections"
             yield text, "too-few-connections", at

@@ -11,7 +11,7 @@ import numpy as np
 from loads.as_drawn import RANK_TOLERANCE
 from loads.drives import Law, StateDrive
 from loads.least_squares import Factors
-from loads.linkage import Floats, Linkage, LinkageError, Point, Slider, Turn
+from loads.linkage import Connection, Floats, Joint, Linkage, LinkageError, Point, Slider, Turn
 from loads.loop_equations import Complex, Loops, Points, Pose, number, pairs
 from loads.mobility import Mobility, require_determined
 from loads.positions import Path
@@ -92,6 +92,11 @@ class Motion:
         """Length (m) of a slider or angle (rad) of a turn, with its rates, (T,) each."""
         row = self.loops.along(of) * self.loops.scale / self.loops.unit(of)
         return of.drawn + self.q @ row, self.v @ row, self.a @ row
+
+    def turning(self, joint: Joint, connection: Connection) -> Floats:
+        """(T,) rad/s of the body at a connection against what carries its pin."""
+        carrier = self.linkage.carrier(joint)
+        return self.angular_velocity(connection.body) - self.angular_velocity(carrier)
 
     def _angular(self, coordinates: Floats, item: str) -> Floats:
         f = self.loops.frame[self.linkage.index[item]]

@@ -222,20 +222,23 @@ def _efforts(
 
 
 def _reversals(course: Course, samples: Floats) -> Floats:
-    """Times (s) at which a slider with friction reverses: its friction jumps there."""
+    """Times (s) at which a slider or pin with friction reverses: its friction jumps there."""
     linkage = course.loops.linkage
     first = course.loops.frames - 1
-    rubs = [first + k for k, s in enumerate(linkage.sliders) if s.friction]
-    if not rubs or not course.pace:
+    slides = [first + k for k, s in enumerate(linkage.sliders) if s.friction]
+    rubbing = [(j, c) for j, c in linkage.connections if c.friction]
+    if not (slides or rubbing) or not course.pace:
         return np.empty(0)
 
     def speeds(times: Floats) -> Floats:
-        return course.at(times).v[:, rubs] / course.pace
+        motion = course.at(times)
+        spins = [motion.turning(j, c)[:, None] * linkage.length_scale for j, c in rubbing]
+        return np.concatenate([motion.v[:, slides], *spins], axis=1) / course.pace
 
     found = resolved(samples, speeds, course.corners)
     low, high = found.times[:-1], found.times[1:]
     out = []
-    for k in range(len(rubs)):
+    for k in range(len(slides) + len(rubbing)):
         v = found.values[:, k]
         turns = np.flatnonzero(v[:-1] * v[1:] < 0.0)
         a, b, sign = low[turns], high[turns], np.sign(v[turns])

@@ -57,12 +57,14 @@ def ledger(dynamics: Dynamics) -> Ledger:
     motion = dynamics.motion
     _, velocity, acceleration = motion.centres
     pull = np.conj(number(motion.linkage.gravity))
+    turns = np.stack([motion.turning(j, c) for j, c in motion.linkage.connections], axis=1)
     slides = motion.v[:, motion.loops.frames - 1 :]
     return Ledger(
         drives=dynamics.power.sum(axis=1),
         gravity=np.real(velocity * pull) @ motion.masses,
         applied=power(motion, dynamics.applied),
-        friction=np.sum(dynamics.sliders.friction * slides, axis=1),
+        friction=np.sum(dynamics.sliders.friction * slides, axis=1)
+        + np.sum(dynamics.pin_friction * turns, axis=1),
         kinetic_rate=np.real(np.conj(velocity) * acceleration) @ motion.masses
         + (motion.spin * motion.spin_rate) @ motion.inertias,
     )

@@ -57,7 +57,7 @@ def mechanics(study: Study, loads: dict[str, CaseLoads], published: Published) -
     made = {n: c.dynamics for n, c in loads.items() if c.dynamics is not None}
     return {
         "reactions": tuple(_reactions(study, n, c, published) for n, c in loads.items()),
-        "drive": tuple(t for n, d in made.items() for t in _drives(study, n, d, loads[n].over)),
+        "drive": tuple(t for n, d in made.items() for t in _drives(study, n, d, loads[n])),
         "motion": tuple(_motion(study, n, d, loads[n].over) for n, d in made.items()),
         "motion_check": motion_check(study, loads, published),
         "published": published_values(study, loads, published),
@@ -132,6 +132,7 @@ def _peaks(study: Study, case: CaseLoads) -> tuple[plain.PeakReaction, ...]:
             tuple(found.vector[name].tolist()),
             position[c],
             found.moment[name].value,
+            None if case.frictionless is None else case.frictionless.peaks.force[name].value,
         )
         for c, (name, peak) in enumerate(found.force.items())
     )
@@ -141,16 +142,15 @@ def _pairs(values: Floats) -> tuple[tuple[float, float], ...]:
     return tuple((float(low), float(high)) for low, high in values)
 
 
-def _drives(
-    study: Study, name: str, dynamics: Dynamics, over: OverTime | None
-) -> list[plain.DriveTable]:
+def _drives(study: Study, name: str, dynamics: Dynamics, case: CaseLoads) -> list[plain.DriveTable]:
     motion = dynamics.motion
     stored, shown = energy(motion), _drive_positions(study, dynamics)
     power, (_, speeds, rates) = dynamics.power, dynamics.course
     tables = []
     for k, each in enumerate(dynamics.actuators):
         slides = isinstance(each, Slider)
-        effort = None if over is None else over.drives[k]
+        effort = None if case.over is None else case.over.drives[k]
+        free = None if case.frictionless is None else case.frictionless.drives[k].largest.value
         tables.append(
             plain.DriveTable(
                 case=name,
@@ -165,13 +165,13 @@ def _drives(
                 work=np.zeros(len(motion)) if effort is None else effort.work,
                 kinetic_energy=stored.kinetic,
                 potential_energy=stored.potential - stored.potential[0],
-                effort=None if effort is None else _effort(effort, slides),
+                effort=None if effort is None else _effort(effort, slides, free),
             )
         )
     return tables
 
 
-def _effort(found: Effort, slides: bool) -> plain.DriveEffort:
+def _effort(found: Effort, slides: bool, frictionless: float | None) -> plain.DriveEffort:
     return plain.DriveEffort(
         found.largest.value,
         found.largest.time,
@@ -180,6 +180,7 @@ def _effort(found: Effort, slides: bool) -> plain.DriveEffort:
         found.power.value,
         found.power.time,
         found.stroke if slides else float(np.degrees(found.stroke)),
+        frictionless,
     )
 
 

@@ -81,7 +81,8 @@ class CaseLoads:
     note: how the loads came about. at: reactions at other times (T,) s of the same motion. range:
     over the ranges of an impulse. impulse: of the only one in the case. leg: of a spatial leg.
     solve: the dynamics at other times (T,) s.
-    peaks: the largest forces over the time. over: other results of the whole motion. moving:
+    peaks: the largest forces over the time. over: other results of the whole motion;
+    frictionless: the same if nothing rubbed, where something does. moving:
     what acts on the pins at any time.
     """
 
@@ -95,6 +96,7 @@ class CaseLoads:
     solve: Callable[[Floats], Dynamics] | None = None
     peaks: PeakForces | None = None
     over: OverTime | None = None
+    frictionless: OverTime | None = None
     moving: MovingLoads | None = None
 
 
@@ -206,8 +208,11 @@ class _Moved:
     course: Course
     applied: tuple[Load, ...]
 
+    friction: bool = True
+
     def solve(self, times: Floats) -> Dynamics:
-        return motion_reactions(self.name, self.course.at(times), self.applied)
+        at = self.course.at(times)
+        return motion_reactions(self.name, at, self.applied, friction=self.friction)
 
     def reactions(self, times: Floats) -> Reactions:
         return self.solve(times).reactions
@@ -228,6 +233,9 @@ def _motion(
         require_possible(course, moved.solve, found.motion.times)
         return CaseLoads(found.reactions, found, note)
     over = over_time(course, moved.solve, found.motion.times)
+    free = None
+    if mechanism.rubs:
+        free = over_time(course, replace(moved, friction=False).solve, found.motion.times)
     return CaseLoads(
         found.reactions,
         found,
@@ -236,6 +244,7 @@ def _motion(
         solve=moved.solve,
         peaks=over.peaks,
         over=over,
+        frictionless=free,
         moving=MovingLoads(moved.acting, found.motion.times, over.corners),
     )
 

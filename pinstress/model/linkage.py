@@ -35,6 +35,7 @@ from pinstress.model.pins import pin
 from pinstress.schema.cases import Coordinates, InstantCase, StaticCase
 from pinstress.schema.mechanism import (
     BodyTable,
+    JointTable,
     MechanismTable,
     RotaryDrive,
     SharingTable,
@@ -113,7 +114,7 @@ def _assembled(study: Study, mechanism: MechanismTable, at: dict[str, Point], g:
             Joint(
                 name,
                 at[name],
-                tuple(Connection(c, body) for c, body in j.connections.items()),
+                tuple(Connection(c, body, _circle(j)) for c, body in j.connections.items()),
                 j.fixed_in,
                 _pin_mass(study, name, j.weight, g) if j.fixed_in is None else 0.0,
             )
@@ -136,6 +137,12 @@ def _mechanism(study: Study) -> MechanismTable:
     if study.table.mechanism is None:
         raise study.error("the study has no [mechanism]; add one", code="no-mechanism")
     return study.table.mechanism
+
+
+def _circle(joint: JointTable) -> float:
+    """Radius of the friction circle, m."""
+    mu = joint.friction or 0.0
+    return 0.5 * (joint.diameter or 0.0) * mu / math.hypot(1.0, mu)
 
 
 def _stop(name: str, stop: StopTable) -> Turn:

@@ -78,6 +78,17 @@ class JointTable(StrictTable):
     """The body that carries the pin, or "ground". Default: none, a floating pin."""
     weight: Weight | None = None
     """Weight of a floating pin. Default: the weight of its profile."""
+    friction: Annotated[Number, Field(ge=0.0, le=10.0)] | None = None
+    """Coefficient of Coulomb friction between the pin and the bodies that turn on it; needs
+    `diameter` and `fixed_in`."""
+    diameter: PositiveLength | None = None
+    """Diameter of the pin, for friction."""
+
+    @model_validator(mode="after")
+    def _with_diameter(self) -> "JointTable":
+        if (self.friction is None) != (self.diameter is None):
+            raise LoadsArgumentError("friction and diameter must be given together", "give-both")
+        return self
 
 
 class BarTable(StrictTable):

@@ -34,7 +34,8 @@ def shown_position(position_unit: str) -> dict[str, str]:
 @dataclass(frozen=True)
 class PeakReaction:
     """A connection's largest force over the time of a motion, between the instants too: its size,
-    when, its components and the drive's position then; and the largest moment.
+    when, its components and the drive's position then; and the largest moment. frictionless: the
+    largest force if nothing rubbed, where something does.
     """
 
     connection: str
@@ -43,6 +44,7 @@ class PeakReaction:
     components: tuple[Force, Force, Force] = (0.0, 0.0, 0.0)
     position: DrivePosition | None = None
     moment: Annotated[float, "moment"] = 0.0
+    frictionless: Force | None = None
 
 
 @dataclass(frozen=True)
@@ -103,7 +105,8 @@ class ReactionTable:
 @dataclass(frozen=True)
 class DriveEffort:
     """Force or torque of a drive over a time: largest magnitude and when, mean, and RMS; largest
-    magnitude of its power and when; stroke: between its extreme positions.
+    magnitude of its power and when; stroke: between its extreme positions. frictionless: the
+    largest if nothing rubbed, where something does.
     """
 
     largest: Force
@@ -113,6 +116,7 @@ class DriveEffort:
     power: Annotated[float, "power"]
     power_time: Time
     stroke: Annotated[float, "length"]
+    frictionless: Force | None = None
 
 
 @dataclass(frozen=True)

@@ -65,6 +65,11 @@ def remarks(results: Results) -> list[str]:
             f"{engineering(d.mean)}, RMS {engineering(d.rms)}; maximum power "
             f"{engineering(d.largest_power)} {power}, stroke {engineering(d.stroke)} {where}"
         )
+        if d.effort and d.effort.frictionless is not None:
+            lines.append(
+                f"{d.case}: drive {d.name} without friction, maximum {what} "
+                f"{engineering(d.effort.frictionless)} {unit}"
+            )
     for m in results.motion:
         at_rest = m.time is None and not m.ledger.drives.any()
         lines.append(

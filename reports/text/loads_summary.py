@@ -40,6 +40,9 @@ def _forces(table: ReactionTable, drives: list[DriveTable], results: Results) ->
         columns.append(
             f"drive {markdown.escaped(drives[0].name)} [{'°' if angle else units.length}]"
         )
+    rubs = any(peak.frictionless is not None for peak in table.largest)
+    if rubs:
+        columns.append(f"without friction [{units.force}]")
     rows = []
     for c, peak in enumerate(table.largest):
         row = [peak.connection, table.bodies[c], table.pins[c], engineering(peak.force)]
@@ -47,6 +50,8 @@ def _forces(table: ReactionTable, drives: list[DriveTable], results: Results) ->
             row.append(engineering(peak.time))
         if at_drive:
             row.append(engineering(peak.position))
+        if rubs:
+            row.append(engineering(peak.frictionless))
         rows.append(row)
     text = markdown.table(columns, rows, [False] * 3 + [True] * (len(columns) - 3))
     if table.unresolved:

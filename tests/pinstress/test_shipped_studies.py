@@ -66,15 +66,17 @@ def test_loads_alone(tmp_path: Path, study: str, capsys: pytest.CaptureFixture[s
     assert found["pins"] == []
     for case in found["loads"]:
         assert case["power_violation"] < 1e-9
-    for name in ("motion.csv", "joints.csv", "transmission.csv", "linkage.csv"):
+    for name in ("motion.csv", "joints.csv", "linkage.csv"):
         assert len((out / name).read_text().splitlines()) > 1
+    angles = (out / "transmission.csv").read_text().splitlines()[1:]
+    assert bool(angles) == (study not in ("crane", "hood"))  # which have no links with two joints
     drives = list(csv.DictReader((out / "drive.csv").read_text().splitlines()))
     for case in found["loads"]:
-        own = [r for r in drives if r["case"] == case["case"]]
-        assert {r["drive"] for r in own} == {d["drive"] for d in case["drives"]} != set()
+        mine = [r for r in drives if r["case"] == case["case"]]
+        assert {r["drive"] for r in mine} == {d["drive"] for d in case["drives"]} != set()
         for d in case["drives"]:
             assert d["largest"] * (1 + 1e-9) >= max(
-                abs(float(r["force"])) for r in own if r["drive"] == d["drive"]
+                abs(float(r["force"])) for r in mine if r["drive"] == d["drive"]
             )
 
 
