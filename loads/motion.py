@@ -18,6 +18,7 @@ from loads.positions import Path
 from loads.singular_positions import impasse
 
 GRID = 257  # instants at which a course evaluates its drives, in addition to those of their laws
+STANDS = 1e-9  # of the fastest coordinate of the course: a point this slow has no direction
 SAME = 1e-12  # of the whole time: this close to a corner is at it
 
 
@@ -82,6 +83,13 @@ class Motion:
         number_of = np.array([self.linkage.index[item]])
         found = self.follow(self.loops.points(number_of, np.array([number(drawn)])))
         return tuple(pairs(z[:, 0]) for z in found)  # type: ignore[return-value]
+
+    def curvature(self, item: str, drawn: Point) -> Floats:
+        """(T,) 1/m of the path of an item's point, positive to the left; NaN where it stands."""
+        _, v, a = self.point(item, drawn)
+        speed = np.linalg.norm(v, axis=1)
+        speed = np.where(speed > STANDS * self.pace, speed, np.nan)
+        return np.asarray((v[:, 0] * a[:, 1] - v[:, 1] * a[:, 0]) / speed**3)
 
     def joint(self, name: str) -> tuple[Floats, Floats, Floats]:
         """Position, velocity, acceleration (T, 2) of the pin of joint `name`."""

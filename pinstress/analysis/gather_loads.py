@@ -243,7 +243,21 @@ def _motion(
         ledger=_ledger(dynamics, over),
         extremes=None if over is None else _extremes(over),
         slider_forces=_slider_forces(dynamics),
+        paths=_paths(study, dynamics),
     )
+
+
+def _paths(study: Study, dynamics: Dynamics) -> dict[str, plain.PointPath]:
+    mechanism, motion = study.table.mechanism, dynamics.motion
+    assert mechanism is not None
+    found = {}
+    for name, point in mechanism.point.items():
+        at = point.at if not isinstance(point.at, str) else motion.linkage.joint(point.at).at
+        position, velocity, _ = motion.point(point.body, at)
+        speed = np.linalg.norm(velocity, axis=1)
+        curvature = motion.curvature(point.body, at)
+        found[name] = plain.PointPath(position, velocity, speed, curvature)
+    return found
 
 
 def _ledger(dynamics: Dynamics, over: OverTime | None) -> plain.PowerLedger:

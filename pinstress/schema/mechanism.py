@@ -294,6 +294,15 @@ class SharingTable(StrictTable):
         return self
 
 
+class PointTable(StrictTable):
+    """A point whose path is written to paths.csv and drawn in the animation (a coupler curve)."""
+
+    body: str
+    """The body to which it belongs."""
+    at: JointOrPoint
+    """A joint, or [x, y] as drawn."""
+
+
 class StopTable(StrictTable):
     """A stop or lock, which can keep a body from turning against another in cases whose `hold`
     names it.
@@ -322,6 +331,8 @@ class MechanismTable(StrictTable):
     """Sliders by name."""
     drive: Annotated[list[AnyDrive], Field(min_length=1)]
     """One table, or several `[[mechanism.drive]]`: as many as there are degrees of freedom."""
+    point: dict[str, PointTable] = {}
+    """Points whose paths are of interest, by name."""
     stop: dict[str, StopTable] = {}
     """Stops and locks by name."""
     spring: dict[str, SpringTable] = {}

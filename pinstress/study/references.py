@@ -101,6 +101,9 @@ def named_joints(mechanism: MechanismTable) -> Iterator[tuple[str, str]]:
     for i, drive in enumerate(mechanism.drive, 1):
         for joint in () if isinstance(drive, SliderDrive) else _lines(drive):
             yield f"drive[{i}].line" if len(mechanism.drive) > 1 else "drive.line", joint
+    for name, point in mechanism.point.items():
+        if isinstance(point.at, str):
+            yield f"point.{name}.at", point.at
     for name, spring in mechanism.spring.items():
         for end in spring.joints or ():
             if isinstance(end, str):
@@ -133,6 +136,8 @@ def _of_mechanism(mechanism: MechanismTable) -> Iterator[Wrong]:
         if spring.slider is not None:
             yield from _known(f"{where}.slider", "slider", spring.slider, mechanism.slider)
         yield from _two_bodies(where, spring.bodies, bodies)
+    for name, point in mechanism.point.items():
+        yield from _known(f"mechanism.point.{name}.body", "body", point.body, mechanism.body)
     for name, stop in mechanism.stop.items():
         yield from _two_bodies(f"mechanism.stop.{name}", stop.bodies, bodies)
     for name, torsion in mechanism.torsion_spring.items():

@@ -215,6 +215,18 @@ class GuideForces:
 
 
 @dataclass(frozen=True)
+class PointPath:
+    """Of a point: position and velocity (T, 2), speed (T,), and curvature (T,) of its path,
+    positive where it bends to the left of the way it goes; NaN where it stands still.
+    """
+
+    position: Lengths
+    velocity: Velocities
+    speed: Velocities
+    curvature: Annotated[Floats, "length^-1"]
+
+
+@dataclass(frozen=True)
 class LinkageMotion:
     """How a linkage moves in one case: T instants (one, without time, when it is at rest).
 
@@ -227,8 +239,8 @@ class LinkageMotion:
     ReactionTable. transmission: by link and joint, (T,) degrees, 90 is best, 0 is a dead point.
     condition: (T,) of the loop equations. shaking_force (T, 2), shaking_moment (T,): of the linkage
     on its ground, the moment about the joint `shaking_about`. slider_forces: by slider
-    of the base on the moving body. extremes: over the time, between the instants too; None: of the
-    instants alone.
+    of the base on the moving body. paths: of named points. extremes: over the time, between the
+    instants too; None: of the instants alone.
     """
 
     case: str
@@ -255,6 +267,7 @@ class LinkageMotion:
     shaking_about: str
     ledger: PowerLedger
     slider_forces: dict[str, GuideForces] = field(default_factory=dict)
+    paths: dict[str, PointPath] = field(default_factory=dict)
     extremes: Extremes | None = None
 
     @property

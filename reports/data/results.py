@@ -40,6 +40,7 @@ from reports.data.mechanics import (
     LinkageMotion,
     MotionCheck,
     PeakReaction,
+    PointPath,
     PowerLedger,
     PublishedValue,
     ReactionTable,
@@ -50,8 +51,8 @@ from reports.data.surface import Surface
 __all__ = [
     "BandLoad", "BeamCheck", "Change", "Dimensioned", "DriveEffort", "DriveTable", "Extremes",
     "Field", "Floats", "GoverningLoad", "GuideForces", "HandCheck", "LandingRange", "LegTable",
-    "LinkageMotion", "MotionCheck", "PeakReaction", "PinResult", "PinShape", "PowerLedger",
-    "Provenance", "PublishedValue", "ReactionTable", "Refinement", "Results", "SingularZone",
+    "LinkageMotion", "MotionCheck", "PeakReaction", "PinResult", "PinShape", "PointPath",
+    "PowerLedger", "Provenance", "PublishedValue", "ReactionTable", "Refinement", "Results", "SingularZone",
     "Still", "Surface", "Units", "Volume",
 ]  # fmt: skip
 

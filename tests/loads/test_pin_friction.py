@@ -134,7 +134,7 @@ def test_crank_rod_and_block_by_hand() -> None:
             b[6] -= -300.0 + rubs
             b[8] = 0.0
             M[6, 8] = 0.0
-            x = np.linalg.solve(M, b)
+            x = np.asarray(np.linalg.solve(M, b), dtype=np.float64)
         assert found.drive[t, 0] == pytest.approx(x[7], abs=1e-8)
         assert found.sliders.normal[t, 0] == pytest.approx(x[6], abs=1e-8)
         assert found.reactions.force("A")[t, :2] == pytest.approx(-x[2:4], abs=1e-8)

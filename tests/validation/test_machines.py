@@ -17,6 +17,7 @@ from pinstress.model.linkage import linkage
 from pinstress.study.file import Study, load_study
 from pinstress.study.in_python import changed_study
 from tests.conftest import ROOT
+from tests.support.mechanisms import circles
 
 G = 9.80665
 Place = complex
@@ -276,3 +277,135 @@ def test_locked_the_brace_carries_the_load(weightless: dict[str, CaseLoads]) -> 
     couple = cross(M - GROUND_LOCK, in_lock * lock)
     assert abs(drive(case)[0, 0]) == pytest.approx(abs(couple), rel=1e-6)
     assert abs(force(case, "E")) < 1e-6 * abs(force(case, "C"))
+
+
+# --- pump jack: energy, and the curvature of paths from their points -----------------------------
+
+
+SHAFT, SADDLE = -2.0 + 0j, 0.5 + 4j
+A0, B0 = SHAFT + 0.9, circles(SHAFT + 0.9, 3.9, SADDLE, 2.5, 1.0)
+
+
+def jack(angle: float) -> dict[str, complex]:
+    """Centres of mass and points, with the turns of pitman and beam as unit numbers."""
+    a = SHAFT + 0.9 * np.exp(1j * angle)
+    b = circles(a, 3.9, SADDLE, 2.5, 1.0)
+    pitman, beam = (b - a) / (B0 - A0), (b - SADDLE) / (B0 - SADDLE)
+    return {
+        "crank": SHAFT + 0.75 * np.exp(1j * angle),
+        "pitman": 0.5 * (a + b),
+        "beam": SADDLE + (0.9 + 4.05j - SADDLE) * beam,
+        "head": SADDLE + 3.0 * beam,
+        "middle": a + (-1.475 + 1.921j - A0) * pitman,
+        "pitman turn": pitman,
+        "beam turn": beam,
+    }
+
+
+def jack_torque(angle: float) -> float:
+    """d(kinetic + potential)/d(angle) less the power of the rod load."""
+    speed = 2.0 * math.pi / 6.0
+    bar = 7850.0 * 0.16 * 0.12 * 3.9
+    bodies = (("crank", 4600.0), ("pitman", bar), ("beam", 1900.0))
+    turns = (("pitman turn", bar * (3.9**2 + 0.16**2) / 12.0), ("beam turn", 4200.0))
+
+    def energy(at: float) -> float:
+        out = 0.0
+        for key, mass in bodies:
+            rate = jack_rate(key, at)
+            out += 0.5 * mass * (speed * abs(rate)) ** 2 + mass * G * jack(at)[key].imag
+        for key, inertia in turns:
+            out += 0.5 * inertia * (speed * abs(jack_rate(key, at))) ** 2
+        return out
+
+    rows = ([0, 80, 105, 265, 290, 360], [22e3, 24e3, 42e3, 46e3, 25e3, 22e3])
+    load = np.interp(math.degrees(angle) % 360.0, *rows)
+    return slope(energy, angle, 1e-3) + load * jack_rate("head", angle).imag
+
+
+def jack_rate(key: str, at: float) -> complex:
+    return _rate(lambda t: jack(t)[key], at)
+
+
+def _rate(of: Callable[[float], complex], at: float, h: float = 1e-3) -> complex:
+    return (8 * (of(at + h) - of(at - h)) - (of(at + 2 * h) - of(at - 2 * h))) / (12 * h)
+
+
+def test_the_torque_of_the_pump_jack() -> None:
+    case = machine("pump_jack")["stroke"]
+    assert case.dynamics is not None
+    angles = case.dynamics.motion.drives[:, 0]
+    expected = [jack_torque(a) for a in angles[::6]]
+    found = drive(case)[::6, 0]
+    np.testing.assert_allclose(found, expected, atol=1e-6 * np.abs(found).max())
+
+
+def test_the_corners_of_the_rod_load_are_instants() -> None:
+    """The drive turns uniformly: the knots of the table are at known times."""
+    case = machine("pump_jack")["stroke"]
+    assert case.over is not None
+    expected = 6.0 / 360.0 * np.array([80.0, 105.0, 265.0, 290.0])
+    np.testing.assert_allclose(np.sort(case.over.corners), expected, atol=1e-8)
+
+
+def test_the_curvature_of_paths() -> None:
+    """The horsehead goes on a circle of 3 m; the coupler curve is differentiated by its points."""
+    case = machine("pump_jack")["stroke"]
+    assert case.dynamics is not None
+    motion = case.dynamics.motion
+    head = motion.curvature("beam", (3.5, 4.0))
+    np.testing.assert_allclose(np.abs(head), 1.0 / 3.0, rtol=1e-9)
+    assert len(np.unique(np.sign(head))) == 2
+    found = motion.curvature("pitman", (-1.475, 1.921))
+    for k in (0, 17, 50, 101):
+        t = motion.drives[k, 0]
+        first = jack_rate("middle", t)
+        second = _rate(lambda s: jack_rate("middle", s), t)
+        assert found[k] == pytest.approx(cross(first, second) / abs(first) ** 3, rel=1e-6)
+
+
+# --- scissor lift and bucket: virtual work -------------------------------------------------------
+
+
+def test_the_cylinder_of_the_scissor_lift() -> None:
+    """The platform is at h = sqrt(4 - x^2), the middles of the arms at half of it."""
+    x = 1.93649167
+    lifted = 24.0 * G + 60.0 * G + 2.0 * G + 5000.0  # per metre of h
+    h = math.sqrt(4.0 - x * x)
+    assert drive(machine("scissor_lift")["lowest"])[0, 0] == pytest.approx(
+        -lifted * x / h, rel=1e-6
+    )
+    over = machine("scissor_lift")["raise"].over
+    assert over is not None
+    gained = lifted * (math.sqrt(4.0 - 1.2**2) - h)
+    assert over.drives[0].work[-1] == pytest.approx(gained, rel=1e-7)
+
+
+def test_the_work_of_the_bucket_cylinder() -> None:
+    """It raises the weights and overcomes the digging curve along the path of the tip."""
+    case = machine("bucket")["dig"]
+    assert case.over is not None
+    y, w = -0.1 + 0.42j, -0.4 + 2.2j
+    x0 = y + 0.6 * np.exp(1j * math.radians(10.0))
+    z0 = circles(x0, 0.6, 0j, 0.45, 1.0)
+    rows = ([1.8, 1.88, 2.0, 2.15, 2.24, 2.3], [0.0, 35e3, 70e3, 95e3, 60e3, 0.0])
+
+    def at(length: float) -> tuple[complex, float]:
+        """The bucket's turn as a unit number, and the potential energy."""
+        x = circles(w, length, y, 0.6, 1.0)
+        z = circles(x, 0.6, 0j, 0.45, 1.0)
+        bucket, axis = z / z0, (x - w) / (x0 - w) * abs(x0 - w) / length
+        barrel = w + (-0.2 + 1.8j - w) * axis
+        rod = x + (0.3 + 0.9j - x0) * axis
+        middles = 35.0 * (x + y) / 2 + 50.0 * (x + z) / 2 + 95.0 * barrel + 55.0 * rod
+        return bucket, G * (650.0 * ((0.4 - 0.7j) * bucket) + middles).imag
+
+    lengths = np.linspace(1.82, 2.29, 8001)
+    turns = np.array([at(s)[0] for s in lengths])
+    sizes = PchipInterpolator(*rows)(lengths)
+    force = sizes * (0.9 + 0.43j) / abs(0.9 + 0.43j) * turns
+    steps = np.gradient((-0.1 - 1.45j) * turns, lengths, edge_order=2)
+    digging = np.trapezoid(np.real(np.conj(force) * steps), lengths)
+    raised = at(2.29)[1] - at(1.82)[1]
+    assert -digging > 5e4
+    assert case.over.drives[0].work[-1] == pytest.approx(raised - digging, rel=1e-6)
