@@ -52,8 +52,8 @@ __all__ = [
     "BandLoad", "BeamCheck", "Change", "Dimensioned", "DriveEffort", "DriveTable", "Extremes",
     "Field", "Floats", "GoverningLoad", "GuideForces", "HandCheck", "LandingRange", "LegTable",
     "LinkageMotion", "MotionCheck", "PeakReaction", "PinResult", "PinShape", "PointPath",
-    "PowerLedger", "Provenance", "PublishedValue", "ReactionTable", "Refinement", "Results", "SingularZone",
-    "Still", "Surface", "Units", "Volume",
+    "PowerLedger", "Provenance", "PublishedValue", "ReactionTable", "Refinement", "Results",
+    "SingularZone", "Still", "Surface", "Units", "Volume",
 ]  # fmt: skip
 
 

@@ -69,9 +69,7 @@ def test_loads_alone(tmp_path: Path, study: str, capsys: pytest.CaptureFixture[s
     for name in ("motion.csv", "joints.csv", "linkage.csv"):
         assert len((out / name).read_text().splitlines()) > 1
     angles = (out / "transmission.csv").read_text().splitlines()[1:]
-    assert bool(angles) == (
-        study not in ("crane", "hood", "scissor_lift")
-    )  # which have no links with two joints
+    assert bool(angles) == (study not in ("crane", "hood", "scissor_lift"))  # no two-joint links
     drives = list(csv.DictReader((out / "drive.csv").read_text().splitlines()))
     for case in found["loads"]:
         mine = [r for r in drives if r["case"] == case["case"]]
