@@ -29,6 +29,7 @@ from benchmarks import (
     peers_motion,
     publications,
     recovery,
+    scissor,
     shoulders,
     speed,
     tension,
@@ -50,6 +51,7 @@ ACCURACY = {
 }
 TIMES = {
     "motion": speed.motion,
+    "scissor": scissor.scissor,
     "motion-accuracy": motion_accuracy.motion_accuracy,
     "assembly": speed.assembly,
     "solvers": linear_solvers.linear_solvers,

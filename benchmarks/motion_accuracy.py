@@ -11,7 +11,6 @@ from scipy.integrate import solve_ivp
 
 from benchmarks.timing import seconds, table
 from loads import Course, Lever, Linkage, Slider, motion_reactions, move, peak_forces
-from loads.least_squares import Factors
 from loads.loop_equations import Loops
 from loads.reactions import Reactions
 from pinstress import load_study
@@ -143,7 +142,7 @@ def _rate(loops: Loops, law: object, t: float, y: Floats) -> Floats:
     pose = loops.pose(q)
     second = law(np.array([t]))[2][None]  # type: ignore[operator]
     side = loops.drive_side(second) + loops.bend_side(pose, v)
-    a = Factors(loops.jacobian(pose)).solve(side) / loops.scale
+    a = loops.factors(pose).solve(side) / loops.scale
     return np.concatenate([v[0], a[0]])
 
 

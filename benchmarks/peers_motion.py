@@ -8,18 +8,23 @@ steps can be extrapolated to none.
 from __future__ import annotations
 
 import math
+import time
+from functools import partial
 
 import numpy as np
 
 from benchmarks.peers import Case, Code, Found, four_bar, landing_gear, ours
-from benchmarks.timing import table
-from loads import mobility
+from benchmarks.scissor import HIGH, LOW, SPAN, lift
+from benchmarks.timing import seconds, table
+from loads import CycloidalDrive, mobility
 from loads.linkage import Floats
 
 MISSING = (
     "exudyn and mujoco are not installed: "
     ".venv/bin/pip install --require-hashes -r requirements-bench.lock"
 )
+
+STAGES = (2, 6)  # of scissor lifts
 
 Quantities = dict[str, Floats]  # (T, 2) of each connection, sums where they share, (T, 1) the drive
 
@@ -31,7 +36,33 @@ def peers_motion() -> str:
         from benchmarks.peers_mujoco import MUJOCO
     except ModuleNotFoundError:
         return MISSING
-    return "\n\n".join(_compared(case, (EXUDYN, MUJOCO)) for case in (landing_gear(), four_bar()))
+    codes = (EXUDYN, MUJOCO)
+    compared = [_compared(case, codes) for case in (landing_gear(), four_bar(), _lift(2))]
+    return "\n\n".join([*compared, _cost([_lift(stages) for stages in STAGES], codes)])
+
+
+def _lift(stages: int) -> Case:
+    law = CycloidalDrive(LOW, HIGH, SPAN)
+    times = np.linspace(0.0, SPAN, 41)[1:]
+    return Case(f"scissor lift of {2 * stages + 3} bodies", lift(stages), law, times)
+
+
+def _cost(cases: list[Case], codes: tuple[Code, ...]) -> str:
+    """Times by the number of bodies; the other codes with the fewest of their steps."""
+    rows: list[tuple[object, ...]] = []
+    for case in cases:
+        reference, count = _quantities(case, ours(case)), len(case.linkage.bodies)
+        rows.append((count, "ours", "-", seconds(partial(ours, case)), "-"))
+        for code in codes:
+            start = time.perf_counter()
+            found = code.solve(case, code.steps[0])
+            spent = time.perf_counter() - start
+            off = _largest(reference, _quantities(case, found, code.shares))
+            rows.append((count, code.name, code.steps[0], spent, off))
+    head = ("bodies", "code", "steps per instant", "s", "difference")
+    return "\n\n".join(
+        ("### Cost", f"{len(cases[0].times)} instants of scissor lifts:", table(head, rows))
+    )
 
 
 def _compared(case: Case, codes: tuple[Code, ...]) -> str:

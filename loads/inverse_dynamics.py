@@ -9,7 +9,8 @@ statics; the linkage's sharing rule does it.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 
@@ -91,7 +92,24 @@ def motion_reactions(
     hold the linkage, by default its drives. friction: whether anything rubs. Raises: LinkageError
     when connections share forces without a rule or the linkage is not held, JammingError.
     """
-    return _Balance(motion, tuple(applied), hold, friction).dynamics(case, timed)
+    loads = tuple(applied)
+    solved = (_Balance(part, loads, hold, friction).dynamics(case, timed) for part in motion.parts)
+    # Each part's motion is let go with its matrices, before the next is made.
+    parts = [replace(found, motion=motion) for found in solved]
+    return parts[0] if len(parts) == 1 else _joined(parts)
+
+
+def _joined(parts: Sequence[Any]) -> Any:
+    """One result of those of its parts in time: arrays one after the other, as are those of the
+    dataclasses among its fields; else the first.
+    """
+    first: Any = parts[0]
+    if isinstance(first, np.ndarray):
+        return np.concatenate(parts)
+    if isinstance(first, (Reactions, SliderForces, Dynamics)):
+        keys = [field.name for field in fields(first)]
+        return replace(first, **{key: _joined([getattr(p, key) for p in parts]) for key in keys})
+    return first
 
 
 @dataclass(frozen=True)
@@ -168,16 +186,15 @@ class _Balance:
 
     def _generalised(self, needed: Complex, couples: Floats) -> Floats:
         """What the bodies need as forces along the coordinates, (T, n) N (N m for angles)."""
-        loops, slopes = self.loops, self.motion.centre_slopes
-        out = np.real(np.conj(slopes) @ needed[..., None])[..., 0]
+        loops = self.loops
+        out = loops.along_coordinates(self.motion.pose, needed, loops.centres)
         for i in range(len(loops.linkage.items)):
             if f := loops.frame[i]:
                 out[:, f - 1] += couples[:, i]
-        return np.asarray(out)
+        return out
 
     def _closing(self, f: Floats) -> Complex:
-        k = len(self.loops.closing)
-        return np.asarray(f[:, :k] + 1j * f[:, k : 2 * k])
+        return self.loops.closing_forces(f)
 
     def _drives(self, f: Floats) -> Floats:
         """(T, A) forces and torques of the actuators."""

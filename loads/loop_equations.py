@@ -22,7 +22,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from loads.least_squares import Factors, Step, elimination
 from loads.linkage import GROUND, Floats, Linkage, LinkageError, Point, Slider, Turn
+
+AT_ONCE = 2**20  # entries of the matrices of a batch of instants: 8 MB
+
+ROUNDING = 1e-14  # of a length: what is left where equal lengths cancel
 
 Complex = NDArray[np.complex128]
 Ints = NDArray[np.int64]
@@ -95,7 +100,8 @@ class Loops:
         self.frames, self.frame = _frames(linkage)
         self.tree, self.closing = _tree(linkage)
         self._root, self._slid = self._chains()
-        self.closures = self._closures()
+        self.gaps = self._gaps()
+        self._combined = _shortest(np.concatenate([self.gaps.turning[1:], self.gaps.sliding]))
         drives = linkage.drives
         self.drawn_drives = np.array([d.drawn for d in drives])
         self._drive_rows = np.zeros((len(drives), self.columns))
@@ -111,6 +117,11 @@ class Loops:
     def rows(self) -> int:
         """Number of equations."""
         return 2 * len(self.closing) + len(self.linkage.driven)
+
+    def parts(self, count: int) -> list[slice]:
+        """Slices of so many instants that matrices of all instants of one take little memory."""
+        each = max(1, AT_ONCE // max(1, self.rows * self.columns))
+        return [slice(k, min(k + each, count)) for k in range(0, max(count, 1), each)]
 
     @cached_property
     def scale(self) -> Floats:
@@ -184,6 +195,25 @@ class Loops:
                 out[:, f - 1] += (1j * pose.extension[:, s, None]) * out[:, angles + s]
         return out
 
+    def velocities(self, pose: Pose, rates: Floats, points: Points) -> Complex:
+        """Velocities (T, N) of points at rates (T, n): `partials` times the rates."""
+        angles = self.frames - 1
+        omega = np.zeros((len(rates), self.frames))
+        omega[:, 1:] = rates[:, :angles]
+        slide = rates[:, angles:] + 1j * omega[:, self.slider_frame] * pose.extension
+        turned = (1j * omega * pose.turn) @ points.turning
+        return np.asarray(turned + (pose.axis * slide) @ points.sliding)
+
+    def along_coordinates(self, pose: Pose, forces: Complex, points: Points) -> Floats:
+        """Forces along the coordinates (T, n) that do the work of forces (T, N) on points."""
+        turned = np.conj(1j * pose.turn) * (forces @ np.conj(points.turning).T)
+        slid = np.conj(pose.axis) * (forces @ points.sliding.T)
+        out = np.concatenate([turned.real[:, 1:], slid.real], axis=1)
+        for s, f in enumerate(self.slider_frame):
+            if f:
+                out[:, f - 1] += pose.extension[:, s] * slid.imag[:, s]
+        return out
+
     def bends(self, pose: Pose, rates: Floats, points: Points) -> Complex:
         """The part of the accelerations that is quadratic in the rates, (T, N)."""
         angles = self.frames - 1
@@ -205,12 +235,38 @@ class Loops:
 
     def jacobian(self, pose: Pose) -> Floats:
         """Derivative of the residual by the scaled coordinates, (T, rows, n), no unit."""
-        n, k = self.columns, len(self.closing)
-        J = np.empty((len(pose.turn), self.rows, n))
-        slopes = np.swapaxes(self.partials(pose, self.closures), 1, 2) / self.scale
-        J[:, :k], J[:, k : 2 * k] = slopes.real, slopes.imag
-        J[:, 2 * k :] = self._drive_rows
-        return J
+        angles, count = self.frames - 1, len(self.closing)
+        J = np.zeros((self.rows, self.columns, len(pose.turn)))  # instants last: few are not zero
+
+        def add(rows: Ints, columns: Ints | int, slopes: Complex) -> None:
+            J[rows, columns] += slopes.real
+            J[count + rows, columns] += slopes.imag
+
+        turning, sliding = self.closures.turning[1:], self.closures.sliding
+        f, k = np.nonzero(turning)
+        add(k, f, (1j / self.scale[f] * turning[f, k])[:, None] * pose.turn.T[1 + f])
+        for s, frame in enumerate(self.slider_frame):
+            k = np.flatnonzero(sliding[s])
+            along = sliding[s, k, None] * pose.axis[:, s]
+            add(k, angles + s, along)
+            if frame:
+                add(k, frame - 1, 1j / self.scale[frame - 1] * pose.extension[:, s] * along)
+        J[2 * count :] = self._drive_rows[:, :, None]
+        return np.moveaxis(J, -1, 0)
+
+    def factors(self, pose: Pose) -> Factors:
+        """Of the Jacobian at T instants."""
+        return Factors(self._elimination, self.jacobian(pose))
+
+    @cached_property
+    def _elimination(self) -> tuple[Step, ...]:
+        turns, slides = self.closures.turning[1:] != 0.0, self.closures.sliding != 0.0
+        for s, f in enumerate(self.slider_frame):
+            if f:
+                turns[f - 1] |= slides[s]
+        closing = np.concatenate([turns, slides]).T
+        pattern = np.concatenate([closing, closing, self._drive_rows != 0.0])
+        return elimination(pattern)
 
     def drive_side(self, values: Floats) -> Floats:
         """Right-hand side (T, rows) that gives the drives these rates (T, D)."""
@@ -256,7 +312,20 @@ class Loops:
         at = [number(sliders[k].end if s else connections[k][0].at) for s, k in self.closing]
         return *ends.reshape(-1, 2).T, np.array(at, dtype=complex)
 
-    def _closures(self) -> Points:
+    def closing_forces(self, f: Floats) -> Complex:
+        """(T, closing) forces at the members that close loops, from multipliers (T, rows)."""
+        k = len(self.closing)
+        return np.asarray((f[:, :k] + 1j * f[:, k : 2 * k]) @ self._combined.T)
+
+    @cached_property
+    def closures(self) -> Points:
+        """The loops' equations: sums and differences of the gaps, with few nonzeros."""
+        turning, sliding = self.gaps.turning @ self._combined, self.gaps.sliding @ self._combined
+        turning[np.abs(turning) < ROUNDING * self.linkage.length_scale] = 0.0
+        return Points(turning, sliding)
+
+    def _gaps(self) -> Points:
+        """By how much each member that closes a loop leaves it open."""
         body, carrier, at = self.closing_ends
         gap = self.points(body, at) - self.points(carrier, at)
         for k, (slides, which) in enumerate(self.closing):
@@ -292,6 +361,30 @@ def _frames(linkage: Linkage) -> tuple[int, Ints]:
     for i in range(len(linkage.items)):
         frame[i] = numbers.get(joined.of(i), 0)
     return len(numbers), frame
+
+
+def _shortest(gaps: Complex) -> Floats:
+    """(K, K) whole numbers by which gaps (n, K) combine to ones with as few nonzeros as sums and
+    differences of two at a time can make: two loops along the same bodies leave the rest.
+    """
+    count = gaps.shape[1]
+    combined, gaps = np.eye(count), gaps.copy()
+    size = np.abs(gaps).max(initial=0.0)
+    better = True
+    while better:
+        better = False
+        for k in np.argsort(-(gaps != 0.0).sum(axis=0), kind="stable"):
+            for sign in (1.0, -1.0):
+                new = gaps[:, k, None] - sign * gaps
+                new[np.abs(new) < ROUNDING * size] = 0.0
+                entries = (new != 0.0).sum(axis=0)
+                entries[k] = len(gaps) + 1
+                j = int(entries.argmin())
+                if entries[j] < (gaps[:, k] != 0.0).sum():
+                    gaps[:, k] = new[:, j]
+                    combined[:, k] -= sign * combined[:, j]
+                    better = True
+    return combined
 
 
 class _Sets:

@@ -95,8 +95,7 @@ def moving_bodies(
 
 def stressed_connections(loops: Loops, multipliers: Floats) -> tuple[str, ...]:
     """Connections that take part in self-equilibrated forces: multipliers (rows, k)."""
-    count = len(loops.closing)
-    closing = (multipliers[:count] + 1j * multipliers[count : 2 * count]).T
+    closing = loops.closing_forces(multipliers.T)
     if not closing.size:
         return ()
     nothing = np.zeros((len(closing), len(loops.linkage.items)), dtype=complex)

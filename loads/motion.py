@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -40,11 +40,32 @@ class Motion:
     q: Floats
     v: Floats
     a: Floats
-    factors: Factors
     pace: float
 
     def __len__(self) -> int:
         return len(self.times)
+
+    def __getitem__(self, part: slice) -> Motion:
+        """The same at some of its instants."""
+        arrays = ("times", "drives", "speeds", "rates", "q", "v", "a")
+        return replace(self, **{key: getattr(self, key)[part] for key in arrays})
+
+    @property
+    def parts(self) -> Iterator[Motion]:
+        """The same in batches of instants that take little memory."""
+        slices = self.loops.parts(len(self))
+        return (self[part] if len(slices) > 1 else self for part in slices)
+
+    @cached_property
+    def factors(self) -> Factors:
+        """Of the derivatives of the equations, at all instants: for one batch at a time."""
+        return self.loops.factors(self.pose)
+
+    def solve(self, side: Floats) -> Floats:
+        """Rates (T, n) of the coordinates that give the equations these rates (T, rows)."""
+        slices = self.loops.parts(len(self))
+        found = [m.factors.solve(side[k]) for m, k in zip(self.parts, slices, strict=True)]
+        return np.concatenate(found) / self.loops.scale
 
     @property
     def linkage(self) -> Linkage:
@@ -58,25 +79,17 @@ class Motion:
 
     def follow(self, points: Points) -> tuple[Complex, Complex, Complex]:
         """Positions, velocities, accelerations (T, N) of points."""
-        return self._course(points, self.loops.partials(self.pose, points))
-
-    def _course(self, points: Points, slopes: Complex) -> tuple[Complex, Complex, Complex]:
-        bends = self.loops.bends(self.pose, self.v, points)
+        loops, pose = self.loops, self.pose
         return (
-            self.loops.place(self.pose, points),
-            _along(self.v, slopes),
-            _along(self.a, slopes) + bends,
+            loops.place(pose, points),
+            loops.velocities(pose, self.v, points),
+            loops.velocities(pose, self.a, points) + loops.bends(pose, self.v, points),
         )
-
-    @cached_property
-    def centre_slopes(self) -> Complex:
-        """(T, n, items) derivatives of the centres of mass by the coordinates."""
-        return self.loops.partials(self.pose, self.loops.centres)
 
     @cached_property
     def centres(self) -> tuple[Complex, Complex, Complex]:
         """Position, velocity, acceleration (T, items) of the centres of mass."""
-        return self._course(self.loops.centres, self.centre_slopes)
+        return self.follow(self.loops.centres)
 
     def point(self, item: str, drawn: Point) -> tuple[Floats, Floats, Floats]:
         """Position, velocity, acceleration (T, 2) of the item's point at `drawn` (m, as drawn)."""
@@ -145,11 +158,8 @@ class Motion:
     @cached_property
     def condition(self) -> Floats:
         """(T,) condition number of the loop and drive equations."""
-        return np.asarray(np.linalg.cond(self.loops.jacobian(self.pose)))
-
-
-def _along(rates: Floats, slopes: Complex) -> Complex:
-    return np.asarray((rates[:, None, :] @ slopes)[:, 0])
+        found = [np.linalg.cond(self.loops.jacobian(part.pose)) for part in self.parts]
+        return np.concatenate(found)
 
 
 class Course:
@@ -201,14 +211,20 @@ class Course:
         loops = self.loops
         drives, speeds, rates = self._values(times)
         q = self.path.at(times)
-        pose = loops.pose(q)
-        factors = Factors(loops.jacobian(pose))
-        weak = int(factors.weakest.argmin())
-        if factors.weakest[weak] < RANK_TOLERANCE:
+        v, a, weakest = np.empty_like(q), np.empty_like(q), np.empty(len(q))
+        for part in loops.parts(len(q)):
+            pose = loops.pose(q[part])
+            factors = loops.factors(pose)
+            weakest[part] = factors.weakest
+            if weakest[part].min(initial=1.0) < RANK_TOLERANCE:
+                continue
+            v[part] = factors.solve(loops.drive_side(speeds[part])) / loops.scale
+            side = loops.drive_side(rates[part]) + loops.bend_side(pose, v[part])
+            a[part] = factors.solve(side) / loops.scale
+        weak = int(weakest.argmin())
+        if weakest[weak] < RANK_TOLERANCE:
             raise impasse(loops, q[weak], drives[weak], drives[int(times.argmax())])
-        v = factors.solve(loops.drive_side(speeds)) / loops.scale
-        a = factors.solve(loops.drive_side(rates) + loops.bend_side(pose, v)) / loops.scale
-        return Motion(loops, self.found, times, drives, speeds, rates, q, v, a, factors, self.pace)
+        return Motion(loops, self.found, times, drives, speeds, rates, q, v, a, self.pace)
 
 
 def move(linkage: Linkage, laws: Sequence[Law], times: Floats) -> Motion:

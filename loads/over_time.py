@@ -94,33 +94,36 @@ def peak_forces(samples: Floats, at: Callable[[Floats], Reactions]) -> PeakForce
 
 
 def _peaks(found: Resolved, at: Callable[[Floats], Reactions], unit: list[float]) -> PeakForces:
-    """From columns fx, fy, fz of every connection, then mx, my, mz, over their units."""
+    """From columns fx, fy, fz of every connection, then mx, my, mz, over their units; with one
+    unit there are no moments.
+    """
     names = at(found.ends[:1]).connections
     count = len(names)
+    width = 3 * count * len(unit)
 
     def sizes(values: Floats) -> Floats:
-        return np.asarray(
-            np.linalg.norm(values[:, : 6 * count].reshape(len(values), -1, 3), axis=2)
-        )
+        return np.asarray(np.linalg.norm(values[:, :width].reshape(len(values), -1, 3), axis=2))
 
     best, when = found.largest(sizes)
     there = at(when)
-    vectors = np.concatenate([there.forces / unit[0], there.moments / unit[1]], axis=1)
-    rows = np.arange(2 * count)
+    both = zip((there.forces, there.moments), unit, strict=False)
+    vectors = np.concatenate([vector / size for vector, size in both], axis=1)
+    rows = np.arange(len(when))
     exact = vectors[rows, rows]
-    limit = found.interpolate(when)[:, : 6 * count].reshape(len(when), -1, 3)[rows, rows]
+    limit = found.interpolate(when)[:, :width].reshape(len(when), -1, 3)[rows, rows]
     size = np.linalg.norm(exact, axis=1)
     agrees = np.abs(size - best) <= AGREES * best
     value = np.where(agrees, size, best) * np.repeat(unit, count)
     vector = np.where(agrees[:, None], exact, limit) * unit[0]
 
-    def named(part: slice) -> dict[str, Extreme]:
-        pairs = zip(names, value[part].tolist(), when[part].tolist(), strict=True)
-        return {name: Extreme(v, t) for name, v, t in pairs}
+    def named(first: int) -> dict[str, Extreme]:
+        found = zip(value[first:].tolist(), when[first:].tolist(), strict=True)
+        return {name: Extreme(*peak) for name, peak in zip(names, found, strict=False)}
 
+    nothing = dict.fromkeys(names, Extreme(0.0, float(found.ends[0])))
     return PeakForces(
-        named(slice(count)),
-        named(slice(count, None)),
+        named(0),
+        named(count) if len(unit) > 1 else nothing,
         dict(zip(names, vector, strict=False)),
         found.unresolved,
     )
@@ -139,54 +142,65 @@ class _Dense:
     corners: Floats
 
 
-def require_possible(course: Course, solve: Callable[[Floats], Dynamics], samples: Floats) -> None:
+def require_possible(
+    course: Course, solve: Callable[[Floats], Dynamics], samples: Dynamics
+) -> None:
     """Raises: as `solve`, also where it fails between the samples."""
-    solve(_dense(course, solve, samples).found.times)
+    solve(_dense(course, solve, samples).found.nodes)
 
 
-def over_time(course: Course, solve: Callable[[Floats], Dynamics], samples: Floats) -> OverTime:
-    """Extremes and means of a motion over the time of its samples (T,) s.
+def over_time(course: Course, solve: Callable[[Floats], Dynamics], samples: Dynamics) -> OverTime:
+    """Extremes and means of a motion over the time of its samples.
 
     solve: the dynamics at times (T,) s of that course. Raises: as `solve`, also where it fails
     between the samples.
     """
     d = _dense(course, solve, samples)
-    peaks = _peaks(d.found, lambda times: solve(times).reactions, [d.forces, 1.0])
-    dense = solve(d.found.times)
-    angles, condition = _postures(course, dense.motion)
+    peaks = _peaks(d.found, lambda times: solve(times).reactions, [d.forces])
+    between = solve(d.found.nodes)
+    angles, condition = _postures(course, between.motion.times)
+    positions = np.concatenate([samples.course[0], between.course[0]])
+    strokes = np.ptp(positions, axis=0)
     return OverTime(
         peaks,
-        _efforts(d, solve, samples, np.ptp(dense.course[0], axis=0)),
+        _efforts(d, solve, samples.motion.times, strokes),
         angles,
         condition,
-        ledger(dense).violation,
+        max(ledger(samples).violation, ledger(between).violation),
         d.corners,
     )
 
 
-def _dense(course: Course, solve: Callable[[Floats], Dynamics], samples: Floats) -> _Dense:
-    start = np.unique(np.concatenate([samples, course.path.nodes]))
-    first = solve(start)
-    forces = float(np.abs(first.reactions.forces).max()) or 1.0
+def _dense(course: Course, solve: Callable[[Floats], Dynamics], samples: Dynamics) -> _Dense:
+    first = (samples, solve(course.path.nodes))
+    forces = max(float(np.abs(d.reactions.forces).max()) for d in first) or 1.0
     scale = course.loops.linkage.length_scale
-    effort = np.maximum(np.abs(first.drive).max(axis=0), NOTHING * forces * max(scale, 1.0))
-    power = np.maximum(np.abs(first.power).max(axis=0), NOTHING * forces * course.pace)
+    drive, power = (
+        np.max([np.abs(getattr(d, key)).max(axis=0) for d in first], axis=0)
+        for key in ("drive", "power")
+    )
+    effort = np.maximum(drive, NOTHING * forces * max(scale, 1.0))
+    power = np.maximum(power, NOTHING * forces * course.pace)
     power = np.where(power > 0.0, power, 1.0)
-    connections, drives = len(first.reactions.connections), len(effort)
+    connections, drives = len(samples.reactions.connections), len(effort)
 
-    def columns(times: Floats) -> Floats:
-        found = solve(times)
+    def columns(found: Dynamics) -> Floats:
         r = found.reactions
-        parts = (r.forces / forces, r.moments, found.drive / effort, found.power / power)
-        return np.concatenate([p.reshape(len(times), -1) for p in parts], axis=1)
+        parts = (r.forces / forces, found.drive / effort, found.power / power)
+        return np.concatenate([p.reshape(len(found.motion), -1) for p in parts], axis=1)
 
     groups = np.concatenate(
-        [np.repeat(np.arange(2 * connections), 3), 2 * connections + np.arange(2 * drives)]
+        [np.repeat(np.arange(connections), 3), connections + np.arange(2 * drives)]
     )
+    asked = np.concatenate([d.motion.times for d in first])
+    start, once = np.unique(asked, return_index=True)
+    known = np.concatenate([columns(d) for d in first])[once]
     corners = np.concatenate(
-        [course.corners, _reversals(course, start), kinks(course, first.applied, start)]
+        [course.corners, _reversals(course, start), kinks(course, samples.applied, start)]
     )
-    found = resolved(start, columns, corners, groups=groups.tolist())
+    found = resolved(
+        start, lambda times: columns(solve(times)), corners, groups=groups.tolist(), known=known
+    )
     return _Dense(found, forces, effort, power, corners)
 
 
@@ -196,9 +210,10 @@ def _efforts(
     """From the last columns: the drives' forces or torques over `effort`, powers over `power`."""
     found, effort, power = dense.found, dense.effort, dense.power
     D = len(effort)
+    found = found.quantities(slice(-2 * D, None))
 
     def efforts(values: Floats) -> Floats:
-        return values[:, -2 * D : -D] * effort
+        return values[:, :D] * effort
 
     best, when = found.largest(lambda values: np.abs(efforts(values)))
     exact = np.abs(np.diagonal(solve(when).drive))
@@ -250,8 +265,11 @@ def _reversals(course: Course, samples: Floats) -> Floats:
     return np.unique(np.concatenate(out))
 
 
-def _postures(course: Course, dense: Motion) -> tuple[dict[tuple[str, str], Extreme], Extreme]:
-    """Smallest transmission angles, and the largest condition number, over the time of `dense`."""
+def _postures(course: Course, times: Floats) -> tuple[dict[tuple[str, str], Extreme], Extreme]:
+    """Smallest transmission angles, and the largest condition number, over times (T,) s that lie
+    as densely as the forces need.
+    """
+    dense = course.at(times)
     keys = [k for k, v in transmission_angles(dense).items() if np.isfinite(v).any()]
 
     def columns(motion: Motion) -> Floats:
@@ -261,7 +279,9 @@ def _postures(course: Course, dense: Motion) -> tuple[dict[tuple[str, str], Extr
         sines = [np.sin(np.nan_to_num(angles.get(k, none), nan=0.5 * np.pi)) ** 2 for k in keys]
         return np.stack([*sines, 1.0 / motion.condition], axis=1)
 
-    found = resolved(dense.times, lambda times: columns(course.at(times)), course.corners)
+    found = resolved(
+        times, lambda few: columns(course.at(few)), course.corners, known=columns(dense)
+    )
     when = found.largest(np.negative)[1]
     values = np.diagonal(columns(course.at(when)))
     angles = {

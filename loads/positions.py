@@ -84,7 +84,9 @@ class Path:
         values = self.drives(times)
         guess = self._guess(times, values)
         try:
-            return _newton(self.loops, guess, values, 0.1 * LARGEST_TURN * self._length)
+            near = 0.1 * LARGEST_TURN * self._length
+            parts = self.loops.parts(len(times))
+            return np.concatenate([_newton(self.loops, guess[k], values[k], near) for k in parts])
         except (_Lost, _Open):
             order = np.argsort(times, kind="stable")
             last = order[_last_good(self.loops, guess[order], values[order])]
@@ -112,10 +114,10 @@ class Path:
                     wanted = self._furthest(here, marks[grid > now])
                     raise impasse(loops, q, here, wanted, opened) from None
                 continue
-            J = loops.jacobian(loops.pose(q1[None]))
-            if factors.turn_to(J)[0] < 0.0:
+            pose = loops.pose(q1[None])
+            if factors.turn_to(loops.jacobian(pose))[0] < 0.0:
                 raise self._crossed((now, end), q, q1, drives, marks[grid > now])
-            beyond = Factors(J)
+            beyond = loops.factors(pose)
             if beyond.weakest[0] < WEAKEST:
                 raise impasse(loops, q1, there, self._furthest(here, marks[grid > now]))
             steps.append(self._step(now, end, here, there - here, (q, q1), (factors, beyond)))
@@ -168,7 +170,7 @@ class Path:
         return _Step(begin, end, start, run, both, rate, bend / loops.scale)
 
     def _factors(self, q: Floats) -> Factors:
-        return Factors(self.loops.jacobian(self.loops.pose(q[None])))
+        return self.loops.factors(self.loops.pose(q[None]))
 
     @staticmethod
     def _furthest(here: Floats, ahead: Floats) -> Floats:
@@ -210,8 +212,11 @@ class Path:
         off = values - start - s[:, None] * run
         if not off.any():
             return along
-        factors = Factors(loops.jacobian(loops.pose(q[:, 0])))
-        return np.asarray(along + factors.solve(loops.drive_side(off)) / loops.scale)
+        across = [
+            loops.factors(loops.pose(q[k, 0])).solve(loops.drive_side(off[k]))
+            for k in loops.parts(len(q))
+        ]
+        return np.asarray(along + np.concatenate(across) / loops.scale)
 
 
 def _part(loops: Loops, passed: Floats, run: Floats) -> Floats:
@@ -247,7 +252,7 @@ def _newton(loops: Loops, q: Floats, drives: Floats, first: float = np.inf) -> F
         with np.errstate(all="ignore"):
             try:
                 if factors is None:
-                    factors = Factors(loops.jacobian(pose))
+                    factors = loops.factors(pose)
                 x = factors.solve(-gap)
             except np.linalg.LinAlgError:
                 raise _Lost from None

@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from loads.linkage import Floats
-from loads.tables.csv_table import TableError, read_table
+from loads.tables.csv_table import TableError
+from loads.tables.force_table import Layout, Unit, read_forces
 
 Components = dict[str, tuple[float, ...]]
 
@@ -84,53 +85,35 @@ def given_reactions(case: str, forces: Components, moments: Components | None = 
     )
 
 
-def read_reactions(
-    case: str,
-    path: Path,
-    force_unit: float,
-    moment_unit: float,
-    time_unit: float,
-    known: set[str],
-) -> Reactions:
-    """Reactions from a CSV with the columns connection, fx, fy and optionally fz, mx, my, mz, time.
-
-    force_unit, moment_unit, time_unit: the table's units in N, N m and s. known: the connections of
-    the study. With a time column the case is a sweep: every connection must be given at every time.
+def read_reactions(path: Path, layout: Layout, unit: Unit, known: set[str]) -> Reactions:
+    """Reactions from a table of forces on pins, in their own axes. unit: SI value of a unit of a
+    dimension. known: the connections of the study. With times the case is a sweep: every
+    connection must be given at every time.
 
     Raises: TableError.
     """
-    units = dict.fromkeys(("fx", "fy", "fz"), force_unit)
-    units |= dict.fromkeys(("mx", "my", "mz"), moment_unit)
-    optional = ("fz", "mx", "my", "mz", "time")
     data: dict[float | None, dict[str, list[float]]] = {}
-    for row in read_table(path, ("connection", "fx", "fy"), optional):
-        name = row.cells["connection"]
-        if name not in known:
+    for row in read_forces(path, layout, unit, known):
+        instant = data.setdefault(row.time, {})
+        if row.connection in instant:
             raise TableError(
-                f"{row.where}: no pin has a connection {name[:40]!r}; there are "
-                f"{', '.join(sorted(known))}",
-                "unknown-connection",
-            )
-        time = row.number("time") * time_unit if "time" in row.cells else None
-        instant = data.setdefault(time, {})
-        if name in instant:
-            raise TableError(
-                f"{row.where}: connection {name} is given twice at the same time; keep one row",
+                f"{row.where}: connection {row.connection} is given twice at the same time; keep "
+                "one row",
                 "duplicate-row",
             )
-        instant[name] = [
-            row.number(c) * unit if c in row.cells else 0.0 for c, unit in units.items()
-        ]
+        instant[row.connection] = row.values
+    if not data:
+        raise TableError(f"{path}: no row is of a connection of the pins", "no-rows")
     names = list(next(iter(data.values())))
     for time, instant in data.items():
         gap = set(names).symmetric_difference(instant)
-        if gap:
+        if gap or (time is None and len(data) > 1):
             raise TableError(
-                f"{path}: connection {sorted(gap)[0]} has no row at time "
-                f"{(time or 0.0) / time_unit:g}; every connection needs one at every time",
+                f"{path}: connection {sorted(gap or names)[0]} has no row at time "
+                f"{(time or 0.0) / unit('', 'time'):g}; every connection needs one at every time",
                 "missing-row",
             )
-    first = given_reactions(case, dict.fromkeys(names, (0.0, 0.0)))
+    first = given_reactions(layout.case, dict.fromkeys(names, (0.0, 0.0)))
     order = sorted(data, key=lambda t: t or 0.0)
     forces, moments = np.split(np.array([[data[t][n] for n in names] for t in order]), 2, axis=2)
     return replace(

@@ -60,11 +60,14 @@ class _Panels:
         """Values (T, K) of the polynomials of panels `which` (T,) at times (T,)."""
         low, high = self.low[which], self.high[which]
         weights = _weights((2.0 * times - low - high) / (high - low))
-        nodes = self.values[which]
-        found = np.einsum("tn,tnk->tk", weights, nodes)
-        if (rough := self.rough[which]).any():
-            found[rough] = np.clip(found[rough], nodes[rough].min(axis=1), nodes[rough].max(axis=1))
-        return np.asarray(found)
+        found = np.empty((len(times), self.values.shape[2]))
+        order = np.argsort(which, kind="stable")
+        cuts = np.flatnonzero(np.diff(which[order])) + 1
+        for here in np.split(order, cuts) if len(order) else ():
+            nodes, rough = self.values[which[here[0]]], self.rough[which[here[0]]]
+            values = weights[here] @ nodes
+            found[here] = np.clip(values, nodes.min(axis=0), nodes.max(axis=0)) if rough else values
+        return found
 
     def halves(self, between: Floats) -> _Panels:
         """Twice as many, from the values (P, nodes - 1, K) halfway between the nodes."""
@@ -102,6 +105,11 @@ class Resolved:
         """(N,) s, rising: the instants of all panels, between which little happens."""
         return np.unique(_Panels.times(self.panels.low, self.panels.high, _NODES))
 
+    def quantities(self, chosen: slice) -> Resolved:
+        """Some of the quantities."""
+        panels = replace(self.panels, values=self.panels.values[:, :, chosen])
+        return replace(self, values=self.values[:, chosen], panels=panels)
+
     def interpolate(self, times: Floats) -> Floats:
         """(T, K) at times (T,) s; at a corner from the side before."""
         which = np.searchsorted(self.ends, times, side="left") - 1
@@ -138,23 +146,32 @@ class Resolved:
         times = _Panels.times(low, high, x)
         found = of(self._inside(times))
         top = found.argmax(axis=0)
-        rows = np.arange(len(top))
-        best, when, panel = found[top, rows], times.ravel()[top], top // FINE
-        width = (high - low)[panel] / (FINE - 1)
-        while np.any(width > 1e-9 * (self.ends[-1] - self.ends[0])):
-            here = _Panels.times(
-                np.maximum(when - width, low[panel]), np.minimum(when + width, high[panel]), x
-            )
-            near = of(self.panels.at(np.repeat(panel, FINE), here.ravel()))
-            near = near.reshape(len(top), FINE, -1)[rows, :, rows]
-            k = near.argmax(axis=1)
-            better = near[rows, k] > best + EQUAL * np.abs(best)
-            best = np.where(better, near[rows, k], best)
-            when = np.where(better, here[rows, k], when)
-            width = width / (0.25 * (FINE - 1))
+        best, when = found[top, np.arange(len(top))], times.ravel()[top]
+        panel, point = np.divmod(top, FINE)
+        beyond = (point == FINE - 1).astype(int) - (point == 0)  # at an end: it may be past that
+        for each in (panel, np.clip(panel + beyond, 0, len(low) - 1)):
+            best, when = self._near(of, best, when, each)
         for k in (-1, 0):
             same = found[k] >= best - SAME * np.abs(best)
             best, when = np.where(same, found[k], best), np.where(same, self.ends[k], when)
+        return best, when
+
+    def _near(
+        self, of: Callable[[Floats], Floats], best: Floats, when: Floats, panel: np.ndarray
+    ) -> tuple[Floats, Floats]:
+        """The largest values (M,) and their times near those known, each in a panel (M,)."""
+        low, high = self.ends[:-1][panel], self.ends[1:][panel]
+        x, rows = np.linspace(-1.0, 1.0, FINE), np.arange(len(panel))
+        at, width = np.clip(when, low, high), (high - low) / (FINE - 1)
+        while np.any(width > 1e-9 * (self.ends[-1] - self.ends[0])):
+            here = _Panels.times(np.maximum(at - width, low), np.minimum(at + width, high), x)
+            near = of(self.panels.at(np.repeat(panel, FINE), here.ravel()))
+            near = near.reshape(len(panel), FINE, -1)[rows, :, rows]
+            k = near.argmax(axis=1)
+            better = near[rows, k] > best + EQUAL * np.abs(best)
+            best = np.where(better, near[rows, k], best)
+            at, when = (np.where(better, here[rows, k], t) for t in (at, when))
+            width = width / (0.25 * (FINE - 1))
         return best, when
 
     def _inside(self, times: Floats) -> Floats:
@@ -168,21 +185,29 @@ def resolved(
     corners: Floats | tuple[float, ...] = (),
     most: int = 4096,
     groups: Sequence[int] | None = None,
+    known: Floats | None = None,
 ) -> Resolved:
     """Quantities at `times` (T,) s, increasing, and at as many instants in between as necessary.
 
     at: values (T, K) at times (T,) in any order. corners: where values or their derivatives may
     jump, s. groups: (K,) numbers of those whose tolerance is a part of the largest magnitude of
     all in the group, by default each quantity is alone. most: evaluations after the first round;
-    what they do not resolve is in `unresolved`.
+    what they do not resolve is in `unresolved`. known: values (T, K) at `times`, if they are.
     """
     ends = _spans(times, corners)
     low, high = _first(ends)
-    asked = np.concatenate([times, _Panels.times(low, high, _NODES).ravel()])
-    known = [(asked, at(asked))]
-    samples, values = times, known[0][1][: len(times)]
-    first = known[0][1][len(times) :].reshape(len(low), DEGREE + 1, -1)
-    active = _Panels(low, high, first, np.zeros(len(low), dtype=bool))
+    samples, values = times, at(times) if known is None else known
+    first = _Panels.times(low, high, _NODES).ravel()
+    solved = [(samples, values), (first, at(first))]
+    large = np.zeros(values.shape[1])
+    for _, found in solved:
+        large = np.maximum(large, np.abs(found).max(axis=0, initial=0.0))
+    active = _Panels(
+        low,
+        high,
+        solved[1][1].reshape(len(low), DEGREE + 1, -1),
+        np.zeros(len(low), dtype=bool),
+    )
     done, left = list[_Panels](), list[_Panels]()
     middle = 0.5 * (_NODES[1:] + _NODES[:-1])
     halfway, used = _weights(middle), 0
@@ -193,11 +218,12 @@ def resolved(
             break
         fresh = at(between.ravel())
         used += between.size
-        known.append((between.ravel(), fresh))
-        large = _scale([v for _, v in known], groups)
+        solved.append((between.ravel(), fresh))
+        large = np.maximum(large, np.abs(fresh).max(axis=0, initial=0.0))
+        scale = _scale(large, groups)
         fresh = fresh.reshape(len(between), DEGREE, -1)
-        off = _largest(np.abs(halfway @ active.values - fresh) / large)
-        np.maximum.at(off, *_off_at(active, samples, values, large))
+        off = _largest(np.abs(halfway @ active.values - fresh) / scale)
+        np.maximum.at(off, *_off_at(active, samples, values, scale))
         good = off <= TOLERANCE
         done.append(active[good].halves(fresh[good]))
         active = active[~good].halves(fresh[~good])
@@ -205,7 +231,7 @@ def resolved(
             break
         if depth == DEEPEST:
             left.append(active)
-    return _gathered(known, done, left, ends)
+    return _gathered(solved, done, left, ends)
 
 
 def _spans(times: Floats, corners: Floats | tuple[float, ...]) -> Floats:
@@ -238,9 +264,10 @@ def _largest(off: Floats) -> Floats:
     return np.asarray(off.max(axis=(1, 2), initial=0.0))
 
 
-def _scale(known: list[Floats], groups: Sequence[int] | None) -> Floats:
-    """(K,) what the tolerance is a part of; one where everything is zero."""
-    large = np.max([np.abs(v).max(axis=0) for v in known], axis=0)
+def _scale(large: Floats, groups: Sequence[int] | None) -> Floats:
+    """(K,) what the tolerance is a part of, from the largest magnitudes (K,); one where everything
+    is zero.
+    """
     if groups is not None:
         of_group = np.zeros(max(groups, default=-1) + 1)
         np.maximum.at(of_group, list(groups), large)
@@ -256,8 +283,10 @@ def _off_at(
     which = np.searchsorted(panels.low, times, side="right") - 1
     inside = (which >= 0) & (times < panels.high[which])
     which = which[inside]
-    off = np.abs(panels.at(which, times[inside]) - values[inside]) / scale
-    return which, off.max(axis=1, initial=0.0)
+    off = panels.at(which, times[inside])
+    off -= values[inside]
+    off /= scale
+    return which, np.abs(off, out=off).max(axis=1, initial=0.0)
 
 
 def _gathered(

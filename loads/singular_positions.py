@@ -98,7 +98,7 @@ def impasse(
     """What prevents the motion near coordinates q (n,). opened: coordinates with open loops."""
     if opened is not None:
         pose = loops.pose(opened[None])
-        gap = np.abs(loops.place(pose, loops.closures)[0])
+        gap = np.abs(loops.place(pose, loops.gaps)[0])
         worst = [i for i, g in enumerate(gap) if g > 0.1 * gap.max()]
         members = [loops.closing[i] for i in worst]
         names = tuple(

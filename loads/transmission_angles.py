@@ -28,7 +28,7 @@ def transmission_angles(motion: Motion) -> dict[tuple[str, str], Floats]:
     for k, drive in enumerate(linkage.drives):
         unit = np.zeros_like(motion.speeds)
         unit[:, k] = 1.0
-        rates = motion.factors.solve(loops.drive_side(unit)) / loops.scale
+        rates = motion.solve(loops.drive_side(unit))
         still = _standing(motion, rates)
         drivers = (drive.base, drive.moving if isinstance(drive, Slider) else drive.body)
         for body, ends in _links(motion, rates, still).items():
@@ -43,7 +43,7 @@ def transmission_angles(motion: Motion) -> dict[tuple[str, str], Floats]:
 def _standing(motion: Motion, rates: Floats) -> set[str]:
     """The ground, and the bodies that do not move at these rates (T, n)."""
     linkage, loops = motion.linkage, motion.loops
-    speed = np.abs((rates[:, None, :] @ motion.centre_slopes)[:, 0]).max(axis=0)
+    speed = np.abs(loops.velocities(motion.pose, rates, loops.centres)).max(axis=0)
     for i in range(len(linkage.bodies)):
         if f := loops.frame[i]:
             speed[i] += linkage.length_scale * np.abs(rates[:, f - 1]).max()
@@ -59,7 +59,7 @@ def _angles(
     index = np.array([motion.linkage.index[body]] * 2)
     points = loops.points(index, np.array([complex(*j.at) for j in ends]))
     place = loops.place(motion.pose, points)
-    way = (rates[:, None, :] @ loops.partials(motion.pose, points))[:, 0]
+    way = loops.velocities(motion.pose, rates, points)
     line = (place[:, 1] - place[:, 0])[:, None]
     with np.errstate(invalid="ignore", divide="ignore"):
         sine = np.abs(np.real(np.conj(line) * way)) / (np.abs(line) * np.abs(way))

@@ -40,8 +40,10 @@ def _write_tables(results: Results, directory: Path, others: Sequence[Table]) ->
     write_json(results, directory / "results.json")
     tables = [*others, *load_tables(results)]
     for table in tables:
-        table.write_csv(directory)
-    write_workbook(results, sheets(tables), directory / "tables.xlsx")
+        table.write(directory)
+    shown = sheets(tables)
+    left_out = [table.name for table in tables if table not in shown]
+    write_workbook(results, shown, directory / "tables.xlsx", left_out)
     write_published_reactions(results, directory)
     write_published_values(results, directory)
     if results.reactions:

@@ -37,6 +37,15 @@ class BeamAnswer:
         """Of the largest stress of the case."""
         return beam_estimate(self._beam, self.case, self.clamps)
 
+    @property
+    def points(self) -> Floats:
+        """Where its stress is, (S, 2): r, z in m."""
+        return self._beam.points
+
+    def harmonics(self, loads: AnyLoads) -> Floats:
+        """Stress there, (3, S, 6, T) Pa: constant, times cos theta, times sin theta."""
+        return harmonics(self._beam, loads)
+
     def maxima(self, loads: AnyLoads, _: float = 0.0) -> Floats:
         """Largest von Mises stress (T,) Pa at every instant."""
         return np.asarray(highest(harmonics(self._beam, loads)).von_mises.max(axis=0))

@@ -13,6 +13,7 @@ ASME BTH-1, Design of Below-the-Hook Lifting Devices, 3-3, has the same for pinn
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -51,13 +52,14 @@ def hand_checks(
     cell, z, t, largest = _largest(forces, c, MOMENT)
     bent = _label(pin, forces, cell), z, _time(loads, t)
     axis = "single shear, at the neutral axis"
-    return (
-        HandCheck("single shear, mean", *shear, mean, in_shear, "V / A", JOINTS),
+    made = (
+        HandCheck("single shear, mean", *shear, mean, in_shear, "V / A", JOINTS, ruptures="shear"),
         HandCheck(axis, *shear, highest, in_shear, formula, f"{SHIGLEY}, 3-11"),
         *_double_shear(pin, forces, c, loads, in_shear),
         *_bearing(pin, loads, yields),
         HandCheck("bending", *bent, largest, yields, "M c / I", f"{SHIGLEY}, 3-10"),
     )
+    return tuple(replace(check, material=material.name) for check in made)
 
 
 def _time(loads: PinLoads, instant: int) -> float | None:
@@ -111,7 +113,8 @@ def _double_shear(
         if load[t] > 0.0 and np.linalg.norm(V[0, t] + V[1, t]) <= HALVES * load[t]:
             area = min(forces.sections[i].area for i in adjacent)
             stress, at = float(load[t]) / (2.0 * area), (band.name, band.middle, _time(loads, t))
-            out.append(HandCheck("double shear, mean", *at, stress, strength, "F / (2 A)", JOINTS))
+            found = HandCheck("double shear, mean", *at, stress, strength, "F / (2 A)", JOINTS)
+            out.append(replace(found, ruptures="shear"))
     return out
 
 
@@ -125,7 +128,8 @@ def _bearing(pin: Pin, loads: PinLoads, strength: float | None) -> list[HandChec
         if size[t] > 0.0:
             pressure = float(size[t]) / (2.0 * band.radius * band.length)
             at = band.name, band.middle, _time(loads, t)
-            out.append(HandCheck("bearing", *at, pressure, strength, "F / (d L)", CONVENTION))
+            found = HandCheck("bearing", *at, pressure, strength, "F / (d L)", CONVENTION)
+            out.append(replace(found, ruptures="bearing"))
     return out
 
 

@@ -97,15 +97,21 @@ def _of_lug(pin: Pin, lug: Lug, loads: PinLoads, bushed: float | None) -> tuple[
     bore = bushed or inside + lug.clearance
     yields = lug.material.yield_strength
     in_shear = yields / math.sqrt(3.0) if yields else None
+    net = net_section_stress(force, W, bore, thickness)
+    out = shear_out_stress(force, W, bore, thickness)
     found = (
-        ("lug, net section", net_section_stress(force, W, bore, thickness), yields, NET, JOINTS),
-        ("lug, shear-out", shear_out_stress(force, W, bore, thickness), in_shear, OUT, BRUHN),
-        ("lug, bearing", bearing_stress(force, inside, thickness), yields, BEARING, CONVENTION),
+        ("lug, net section", net, yields, NET, JOINTS, "ultimate"),
+        ("lug, shear-out", out, in_shear, OUT, BRUHN, "shear"),
+        (
+            *("lug, bearing", bearing_stress(force, inside, thickness), yields),
+            *(BEARING, CONVENTION, "bearing"),
+        ),
     )
     time = None if loads.times is None else float(loads.times[t])
+    at, made_of = (band.name, band.middle, time), lug.material.name
     return tuple(
-        HandCheck(name, band.name, band.middle, time, stress, strength, formula, source)
-        for name, stress, strength, formula, source in found
+        HandCheck(name, *at, stress, strength, formula, source, made_of, ruptures)
+        for name, stress, strength, formula, source, ruptures in found
     )
 
 

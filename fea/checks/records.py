@@ -27,6 +27,8 @@ class HandCheck:
     the case: stress and strength in Pa (None without a yield strength), formula and source.
 
     at: the segment, by the name of its surface; z: there, m; time: s, None without a motion.
+    material: whose strength it is. ruptures: the strength of that material ("shear", "bearing",
+    "ultimate") that the stress reaches at rupture; empty where that is no measure of it.
     """
 
     name: str
@@ -37,6 +39,8 @@ class HandCheck:
     strength: Stress | None
     formula: str
     source: str
+    material: str = ""
+    ruptures: str = ""
 
     @property
     def factor(self) -> float | None:

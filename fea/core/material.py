@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -12,10 +13,12 @@ from geometry.arrays import Floats
 
 @dataclass(frozen=True)
 class Material:
-    """youngs_modulus and yield_strength in Pa, density in kg/m^3.
+    """youngs_modulus and strengths in Pa, density in kg/m^3; shear_strength and bearing_strength
+    are ultimate ones. hardening: equivalent plastic strains and yield stresses (Pa) there, straight
+    between them from the yield strength on and constant after the last.
 
-    Raises: ArgumentError outside -1 < poisson_ratio < 0.5 or for a modulus that is not positive and
-    finite.
+    Raises: ArgumentError outside -1 < poisson_ratio < 0.5, for a modulus that is not positive and
+    finite, and for hardening whose strains do not increase or whose stresses decrease.
     """
 
     name: str
@@ -23,6 +26,10 @@ class Material:
     poisson_ratio: float
     density: float | None = None
     yield_strength: float | None = None
+    ultimate_strength: float | None = None
+    shear_strength: float | None = None
+    bearing_strength: float | None = None
+    hardening: tuple[tuple[float, float], ...] = ()
 
     def __post_init__(self) -> None:
         if not 0.0 < self.youngs_modulus < np.inf:
@@ -35,6 +42,18 @@ class Material:
                 f"{self.poisson_ratio:g}",
                 "out-of-range",
             )
+        if self.hardening and not self._hardens():
+            raise ArgumentError(
+                f"material {self.name}: hardening needs a yield strength, plastic strains that "
+                "increase from above 0, and stresses that do not decrease from the yield strength",
+                "bad-hardening",
+            )
+
+    def _hardens(self) -> bool:
+        if self.yield_strength is None:
+            return False
+        points = ((0.0, self.yield_strength), *self.hardening)
+        return all(a < b and s <= t < np.inf for (a, s), (b, t) in pairwise(points))
 
     @property
     def lame(self) -> tuple[float, float]:

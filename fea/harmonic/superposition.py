@@ -44,7 +44,7 @@ METRIC = np.zeros((5, 6))  # METRIC^T METRIC is tensor.VON_MISES
 METRIC[0, :3] = np.array([1.0, -1.0, 0.0]) * np.sqrt(0.75)
 METRIC[1, :3] = [-0.5, -0.5, 1.0]
 METRIC[[2, 3, 4], [4, 3, 5]] = np.sqrt(3.0)
-_BACK = np.array([True, True, True, False, True, False])  # stresses that go as cos psi
+BACK = np.array([True, True, True, False, True, False])  # stresses that go as cos psi
 
 
 @dataclass(frozen=True)
@@ -328,7 +328,7 @@ class Circumference:
             c, s = np.cos(self._n[wave.start] * angles), np.sin(self._n[wave.start] * angles)
             back = first[:, None] * c[:, None] + second[:, None] * s[:, None]
             forth = first[:, None] * s[:, None] - second[:, None] * c[:, None]
-            out += np.where(_BACK, back, forth)
+            out += np.where(BACK, back, forth)
         return out
 
 

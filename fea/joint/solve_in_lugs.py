@@ -62,13 +62,14 @@ class InLugs:
 class LugSolution:
     """A case: the solution of the pin under its pressures, what contact says at the governing
     instant, None where that failed, and what presses on the pin under other loads of its links.
-    pressure: of contact, with `joint`.
+    pressure: of contact, with `joint`. rings: the pin that these loads press on, its bands cut.
     """
 
     solution: Solution
     joint: JointResult | None
     pressed: Callable[[PinLoads], PinLoads]
     pressure: CellPressure | None = None
+    rings: Pin | None = None
 
 
 def solve_in_lugs(
@@ -249,7 +250,8 @@ class _Contact:
         joint = joint_result(contact, known.range(peak.max_von_mises or 0.0))
         (pressed,) = contact.contact
         pressure = CellPressure(contact.bands, pressed.pressure, pressed.angle)
-        return LugSolution(replace(solution, peak=peak), joint, self.press, pressure)
+        found = replace(solution, peak=peak)
+        return LugSolution(found, joint, self.press, pressure, self.model.pin)
 
 
 def _instants(case: PinLoads, between: Between | None) -> PinLoads:

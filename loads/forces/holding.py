@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from loads.as_drawn import RANK_TOLERANCE
-from loads.least_squares import Factors
+from loads.least_squares import Factors, elimination
 from loads.linkage import Floats, Linkage, LinkageError, Parallel, Slider, Turn
 from loads.mobility import moving_bodies
 from loads.motion import Motion
@@ -60,7 +60,7 @@ def holding(motion: Motion, hold: Sequence[str] = ()) -> Holding:
     J = loops.jacobian(motion.pose)
     rows = np.stack([loops.along(a) / loops.unit(a) for a in actuators])
     J[:, J.shape[1] - len(sets) :] = np.swapaxes(weights, 1, 2) @ rows
-    factors = Factors(J)
+    factors = Factors(elimination((J != 0.0).any(axis=0)), J.copy())
     if factors.weakest.min() < RANK_TOLERANCE:
         raise _loose(motion, J[int(factors.weakest.argmin())], [a.name for a in actuators])
     return Holding(actuators, weights, factors)

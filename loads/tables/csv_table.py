@@ -6,8 +6,9 @@ import csv
 import io
 import math
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 from typing import TextIO
 
@@ -33,10 +34,13 @@ class Row:
 
     where: str
     cells: dict[str, str]
+    comma: bool = False  # whether decimals are written with one
 
     def number(self, column: str) -> float:
         """A cell's number. Raises: TableError unless it is finite and at most LARGEST."""
         text = self.cells[column]
+        if self.comma and DECIMAL_COMMA.fullmatch(text):
+            text = text.replace(",", ".")
         what = f"{self.where}: {column} = {text[:40]}"
         try:
             value = float(text)
@@ -54,15 +58,26 @@ class Row:
 
 
 def read_table(
-    path: Path, needed: Sequence[str], optional: Sequence[str] | None = None
+    path: Path,
+    needed: Sequence[str],
+    optional: Sequence[str] | None = None,
+    free: bool = False,
+    numbered: bool = False,
 ) -> Iterator[Row]:
     """The rows of a table with a header. optional: further columns that are allowed; None: any.
+    free: also with semicolons, tabs, or blanks in place of commas, then with decimal commas, and
+    with comments (#). numbered: without a header; the columns are called 1, 2 and so on.
 
     Raises: TableError for a file that is not such a table.
     """
     try:
         text = io.StringIO(read_regular(path, LARGEST_TABLE).decode("utf-8-sig"), newline="")
-        yield from _rows(path, _lines(path, text), needed, optional)
+        lines = _lines(path, text)
+        separator = ","
+        if free:
+            first, lines = _uncommented(lines)
+            separator = _separator(first, numbered)
+        yield from _rows(path, _cells(lines, separator), (needed, optional), separator, numbered)
     except FileNotFoundError:
         raise TableError(
             f"{path}: no such file; the paths of tables are relative to the study's folder",
@@ -94,15 +109,47 @@ def _lines(path: Path, file: TextIO) -> Iterator[str]:
         yield line
 
 
+def _uncommented(lines: Iterator[str]) -> tuple[str, Iterator[str]]:
+    """The first line with cells, and all lines with comments left blank, so that they count."""
+    plain = ("\n" if line.lstrip().startswith("#") else line for line in lines)
+    before = list[str]()
+    for line in plain:
+        before.append(line)
+        if line.strip():
+            break
+    return (before or [""])[-1], chain(before, plain)
+
+
+def _separator(line: str, numbered: bool) -> str:
+    """What separates the cells of a line; blanks only where there is no header."""
+    found = next((s for s in (";", "\t") if s in line), ",")
+    return " " if numbered and found == "," and "," not in line else found
+
+
+def _cells(text: Iterator[str], separator: str) -> Iterator[tuple[int, list[str]]]:
+    """The lines with cells, by their numbers."""
+    if separator == " ":
+        split = ((k, line.split()) for k, line in enumerate(text, 1))
+        return ((k, cells) for k, cells in split if cells)
+    lines = csv.reader(text, skipinitialspace=True, delimiter=separator)
+    return ((lines.line_num, cells) for cells in lines if cells)  # blank lines are no rows
+
+
 def _rows(
-    path: Path, text: Iterable[str], needed: Sequence[str], optional: Sequence[str] | None
+    path: Path,
+    lines: Iterator[tuple[int, list[str]]],
+    allowed: tuple[Sequence[str], Sequence[str] | None],
+    separator: str,
+    numbered: bool,
 ) -> Iterator[Row]:
-    lines = csv.reader(text, skipinitialspace=True)
-    columns = [name.strip() for name in next(lines, [])]
-    _require(path, columns, needed, optional)
-    count = 0
-    for count, cells in enumerate(filter(None, lines), 1):  # blank lines are no rows
-        where = f"{path}, line {lines.line_num}"
+    first, cells = next(lines, (1, list[str]()))
+    columns = [name.strip() for name in cells]
+    if numbered:
+        columns, lines = [str(k + 1) for k in range(len(cells))], chain([(first, cells)], lines)
+    _require(path, columns, *allowed)
+    count, comma = 0, separator != ","
+    for count, (line, cells) in enumerate(lines, 1):
+        where = f"{path}, line {line}"
         if len(cells) != len(columns):
             raise _cell_count(where, cells, columns)
         if count > MOST_ROWS:
@@ -110,7 +157,7 @@ def _rows(
                 f"{where}: the table has more than {MOST_ROWS:,} rows, the limit; give fewer",
                 "too-many-rows",
             )
-        yield Row(where, {c: cell.strip() for c, cell in zip(columns, cells, strict=True)})
+        yield Row(where, {c: cell.strip() for c, cell in zip(columns, cells, strict=True)}, comma)
     if not count:
         raise TableError(f"{path}: the table has no rows below its header", "no-rows")
 

@@ -8,14 +8,12 @@ from importlib.metadata import version
 
 import numpy as np
 
-from fea.checks.hand_checks import hand_checks
-from fea.checks.lug_checks import lug_checks
-from fea.checks.records import BeamCheck, HandCheck
+from fea.checks.records import BeamCheck
 from fea.core.peak import Peak, decides
 from fea.core.pin_loads import PinLoads
 from fea.joint.records import JointResult
 from fea.solve_pin import Solution
-from geometry import CutPin, Pin
+from pinstress.analysis.gather_fatigue import fatigue_margins, fatigue_of
 from pinstress.analysis.gather_loads import drive_position, mechanics, position_unit
 from pinstress.analysis.plan import Plan, all_loads
 from pinstress.analysis.stored import Solved
@@ -23,6 +21,8 @@ from pinstress.cache.store import PACKAGES
 from pinstress.model.cases import CaseLoads, at_time
 from pinstress.model.pins import outline, weight
 from pinstress.model.tasks import Task
+from pinstress.schema.tables import ReportTable
+from pinstress.strength.checked import Checked, checked, factor_assumption
 from pinstress.study.choices import select
 from pinstress.study.file import Study
 from pinstress.study.published_tables import Published, read_published
@@ -43,12 +43,16 @@ def results_of(plan: Plan, found: list[Solved]) -> plain.Results:
     rows.sort(key=lambda row: (pins.index(row[1].pin), cases.index(row[1].case)))
     beam = next((made.beam for made in found if made.beam is not None), None)
     results = _results(study, plan.loads, rows, beam, plan.published, plan.asked.tolerance)
+    fatigue = fatigue_of(plan, found)
     results = replace(
         results,
         pins=tuple(replace(p, second_opinion=opinions.get((p.pin, p.case))) for p in results.pins),
         landing=tuple(r for made in found for r in made.landing),
         surfaces=tuple(surface for made in found for surface in made.surfaces),
         changes=_worst_changes(found),
+        histories=tuple(history for made in found for history in made.histories),
+        fatigue=fatigue,
+        margins=(*results.margins, *fatigue_margins(fatigue)),
     )
     return _in_study_units(results, study)
 
@@ -83,6 +87,7 @@ def _results(
     """Everything a run found, in SI. rows: each peak with its task, in the order of the table."""
     table = study.table
     tasks = {task.pin.name: task for task, _, _ in reversed(rows)}
+    strength = [checked(study, task, peak, joint) for task, peak, joint in rows]
     return plain.Results(
         title=table.title,
         study=study.path.name,
@@ -91,17 +96,30 @@ def _results(
         required_safety_factor=table.analysis.required_safety_factor,
         tolerance=tolerance,
         pins=tuple(
-            _pin_result(study, loads, task, peak, published, joint) for task, peak, joint in rows
+            _pin_result(study, loads, *row, found, published)
+            for row, found in zip(rows, strength, strict=True)
         ),
         shapes=tuple(_shape(tasks[name]) for name in table.pin if name in tasks),
+        margins=tuple(margin for found in strength for margin in found.margins),
+        arms=tuple(found.arms for found in strength if found.arms),
         **mechanics(study, loads, published),
         beam_check=beam,
         provenance=tuple(plain.Provenance(**asdict(source)) for source in study.provenance),
         published_source=table.published.source if table.published else "",
-        assumptions=(*table.assumptions, *(f"Hardly meant: {q}" for q in study.questions)),
+        assumptions=(
+            *table.assumptions,
+            *factor_assumption(study, strength),
+            *(f"Hardly meant: {q}" for q in study.questions),
+        ),
         versions={name: version(name) for name in PACKAGES},
         study_text=study.text,
+        title_block=_title_block(table.report),
     )
+
+
+def _title_block(given: ReportTable) -> plain.TitleBlock:
+    date = "" if given.date is None else given.date.isoformat()
+    return plain.TitleBlock(given.revision, date, given.prepared, given.checked, given.approved)
 
 
 def _pin_result(
@@ -109,8 +127,9 @@ def _pin_result(
     loads: dict[str, CaseLoads],
     task: Task,
     peak: Peak,
-    published: Published,
     joint: JointResult | None,
+    found: Checked,
+    published: Published,
 ) -> plain.PinResult:
     strength = task.material.yield_strength
     required = study.table.analysis.required_safety_factor
@@ -145,7 +164,7 @@ def _pin_result(
         published_safety_factor=theirs[1],
         why=peak.why,
         singular_at=peak.singular_at,
-        hand_checks=_hand_checks(study, task, peak.case),
+        hand_checks=found.hand_checks,
         max_von_mises_interval=peak.interval,
         safety_factor_interval=_factors(peak, strength),
         error_parts={} if peak.parts is None else asdict(peak.parts),
@@ -181,27 +200,6 @@ def _meets(peak: Peak, strength: float | None, required: float | None) -> bool |
     if strength is None or required is None:
         return None
     return decides(peak, strength / required)
-
-
-def _hand_checks(study: Study, task: Task, case: str) -> tuple[HandCheck, ...]:
-    """Of a pin with a profile, and of its lugs whose size is given; a pin that is cut is checked as
-    if it were not. What a structure's lugs take of the loads is not known to a hand check.
-    """
-    pin = task.pin.profile if isinstance(task.pin, CutPin) else task.pin
-    if not isinstance(pin, Pin):
-        return ()
-    loads = next(x for x in task.loads if x.case == case)
-    given = study.table.pin[pin.name].lug
-    sized = [x for x in task.lugs if x.connection in given and given[x.connection].outer_diameter]
-    bores = {
-        lug.connection: 2.0 * (pin.band(lug.connection).radius + lug.bushing.thickness)
-        for lug in sized
-        if lug.bushing is not None
-    }
-    of_lugs = lug_checks(pin, sized, loads, bores)
-    if any(lug.connection not in pin.connections for lug in task.lugs):
-        return of_lugs
-    return hand_checks(pin, task.material, loads, task.clamps) + of_lugs
 
 
 def _shape(task: Task) -> plain.PinShape:

@@ -11,6 +11,7 @@ from loads.linkage import Floats
 from loads.loop_equations import pairs
 from loads.transmission_angles import transmission_angles
 from pinstress.analysis.checks import motion_check
+from pinstress.analysis.gather_drops import drop_record
 from pinstress.analysis.published_quantities import published_values
 from pinstress.model.cases import CaseLoads
 from pinstress.model.linkage import ground_joint, offsets
@@ -61,6 +62,7 @@ def mechanics(study: Study, loads: dict[str, CaseLoads], published: Published) -
         "motion": tuple(_motion(study, n, d, loads[n].over) for n, d in made.items()),
         "motion_check": motion_check(study, loads, published),
         "published": published_values(study, loads, published),
+        "drops": tuple(drop_record(study, n, c) for n, c in loads.items() if c.landing),
         "legs": tuple(_leg(study, n, c) for n, c in loads.items() if c.leg is not None),
     }
 

@@ -10,6 +10,7 @@ from fea.checks.opinions import Opinion
 from fea.core.memory import allowed_memory, solid_memory
 from fea.core.peak import Peak
 from fea.core.pin_loads import PinLoads
+from fea.fatigue.critical_points import stress_histories
 from fea.joint.foundation.solve_on_foundations import solve_joints
 from fea.joint.foundation.variations import prescribed_ranges
 from fea.joint.records import JointResult
@@ -172,9 +173,10 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
         beam = checks.beam_check(study, task)
     joints = tuple(j.joint for j in joined) or _around(plan, task, peaks)
     surfaces = surfaces_of(plan.loads, task, found, pressures)
+    histories = stress_histories(task.pin.name, found)
     tell(f"pin {task.pin.name}, what to change")
     to_do = change(plan.asked, task, found, STEPS[study.table.units] if plan.sensitive else None)
-    return Solved(peaks, landing, beam, surfaces, joints=joints, change=to_do)
+    return Solved(peaks, landing, beam, surfaces, joints=joints, change=to_do, histories=histories)
 
 
 def _in_lugs(study: Study, task: Task, asked: Asked, tell: Tell) -> tuple[LugSolution, ...]:

@@ -10,6 +10,7 @@ from fea.checks.opinions import Opinion
 from fea.checks.records import BeamCheck
 from fea.core.memory import too_much
 from fea.core.peak import Peak
+from fea.fatigue.records import PointHistory
 from fea.joint.records import JointResult
 from fea.solve_pin import MESHES, MOST_UNKNOWNS, count_loads, unknowns_after
 from geometry import CutPin, Pin, PinLike
@@ -25,8 +26,8 @@ from reports.data.surface import Surface
 class Solved:
     """A task's peaks in the order of its cases, and what else reports and CalculiX have to say.
     joints: in the same order, empty where nothing is in contact. change: what would make the pin
-    reach its factor, if it does not. before: whether an earlier run
-    found it.
+    reach its factor, if it does not. histories: of stress at its critical points. before: whether
+    an earlier run found it.
     """
 
     peaks: tuple[Peak, ...]
@@ -36,6 +37,7 @@ class Solved:
     opinions: tuple[Opinion, ...] = ()
     joints: tuple[JointResult | None, ...] = ()
     change: Change | None = None
+    histories: tuple[PointHistory, ...] = ()
     before: bool = False
 
 

@@ -15,6 +15,7 @@ from pinstress.model.pins import lost_shape, weight
 from pinstress.model.pins import pin as pin_of
 from pinstress.model.tasks import Task, tasks
 from pinstress.schema.cases import GivenCase, LegCase, MotionCase
+from pinstress.schema.landing import DropCase, GroundCase
 from pinstress.schema.pins import PinTable
 from pinstress.study.errors import Errors
 from pinstress.study.file import Study
@@ -131,6 +132,10 @@ def _words(study: Study, name: str, loads: CaseLoads) -> str:
     if isinstance(case, LegCase):
         assert table is not None
         return f"spatial leg, {case.samples} instants over {table.fold.duration:g} s"
+    if isinstance(case, DropCase):
+        return f"drop, {case.samples} instants over {case.duration:g} s, ground on {case.body}"
+    if isinstance(case, GroundCase):
+        return f"ground, 14 CFR {case.rule}, on {case.body}"
     applied = ", ".join(f"{load.body}" for load in case.apply)
     if isinstance(case, MotionCase):
         also = f", loads on {applied}" if applied else ""

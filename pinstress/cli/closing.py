@@ -11,9 +11,12 @@ import click
 
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import Solved
-from reports.data.decision import outcome
+from reports.data.decision import FAILS, YIELDS, outcome
+from reports.data.governing import governing
 from reports.data.results import PinResult, Results, SingularZone
+from reports.format.numbers import engineering
 
+NUMERICS_FAILED, REQUIREMENT_MISSED = 3, 4  # exit statuses
 Reason = TypeVar("Reason", bound=Hashable)
 DESCRIBED = {
     "singular": "singular",
@@ -69,6 +72,22 @@ def report_disagreements(results: Results) -> int:
     return int(any(o.complaint for o in opinions))
 
 
+def report_violations(results: Results) -> int:
+    """The pins that miss their required factor or have a negative margin; returns the status."""
+    short = [p for p in results.pins if outcome(p) in (FAILS, YIELDS)]
+    if short:
+        click.echo(f"Required factor missed: {_listed(short)}.", err=True)
+    negative = [found for found in governing(results) if found.used > 1.0]
+    for found in negative:
+        m = found.margin
+        click.echo(
+            f"Negative margin of safety: {found.pin} ({found.case}): {m.method}, "
+            f"{engineering(m.margin, 3)}.",
+            err=True,
+        )
+    return REQUIREMENT_MISSED if short or negative else 0
+
+
 def report_missed(results: Results, decide: bool) -> int:
     """The rows without a converged maximum and those that failed; returns the exit status.
 
@@ -85,7 +104,7 @@ def report_missed(results: Results, decide: bool) -> int:
         click.echo(line, err=True)
     for which, reason in _together((p, p.note) for p in failed):
         click.echo(f"Error: the numerics failed: {_listed(which)}: {reason}", err=True)
-    return 3 if failed else int(bool(missed))
+    return NUMERICS_FAILED if failed else int(bool(missed))
 
 
 def _lines(rows: Iterable[PinResult]) -> list[str]:

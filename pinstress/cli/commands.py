@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from pinstress.cli.more_commands import completion, init, plots, schema, size, view
+from pinstress.cli.more_commands import completion, init, pdf_of, plots, schema, size, view
 from pinstress.cli.shared import example, names, read_study
 from pinstress.processes import interrupts
 from pinstress.processes.environment import settle_surroundings
@@ -85,7 +85,8 @@ def commands() -> None:
     + "\nCompute reactions, stresses and safety factors. Prints the safety factor table; writes "
     "tables, VTK files and report.html with its plots.\n\n"
     "Exit status: 0 done; 1 done, but a requested accuracy was not reached or CalculiX disagrees; "
-    "2 bad input; 3 the numerics failed; 130 interrupted.",
+    "2 bad input; 3 the numerics failed; 4 with --fail-on-miss, where a pin misses its "
+    "requirements; 130 interrupted.",
 )
 @click.argument("study", type=click.Path(path_type=Path))
 @click.option("--out", type=click.Path(path_type=Path), help="Output folder [out/<study name>].")
@@ -102,6 +103,7 @@ def commands() -> None:
     help="Override the study's tolerance on the maximum stress.",
 )
 @click.option("--plots", is_flag=True, help=PLOTS)
+@click.option("--pdf", is_flag=True, help="Also write report.pdf, as `pinstress pdf` does.")
 @click.option("--no-pictures", is_flag=True, hidden=True)  # the default, which it was not
 @click.option(
     "--vtk",
@@ -135,6 +137,11 @@ def commands() -> None:
     is_flag=True,
     help="Also find what a little more of each dimension does to the factors of pins that fail.",
 )
+@click.option(
+    "--fail-on-miss",
+    is_flag=True,
+    help="Exit with status 4 where a pin misses its required factor or a margin is negative.",
+)
 @click.option("--no-cache", is_flag=True, help="Solve all pins again; do not reuse cached results.")
 @click.option("--json", "as_json", is_flag=True, help="Print results.json instead of the table.")
 @click.option("--quiet", is_flag=True, help="No progress bar, no notes; errors are still reported.")
@@ -147,12 +154,14 @@ def run(
     model: Model | None,
     tolerance: float | None,
     plots: bool,
+    pdf: bool,
     no_pictures: bool,
     vtk: str,
     jobs: int | None,
     memory_limit: float | None,
     second_opinion: str | None,
     sensitivities: bool,
+    fail_on_miss: bool,
     no_cache: bool,
     as_json: bool,
     quiet: bool,
@@ -166,7 +175,9 @@ def run(
 
     second, cached = second_opinion is not None, not no_cache
     drawn = plots and not no_pictures
-    wanted = Wanted(drawn, second, vtk, as_json, quiet, opens, jobs, cached, sensitivities)
+    wanted = Wanted(
+        drawn, pdf, second, vtk, as_json, quiet, opens, jobs, cached, sensitivities, fail_on_miss
+    )
     return run_and_write(
         loaded,
         directory,
@@ -313,5 +324,5 @@ def check(study: Path) -> int:
     return NOT_REACHED if unheld else REACHED
 
 
-for _command in (init, plots, schema, size, view, completion):
+for _command in (init, pdf_of, plots, schema, size, view, completion):
     commands.add_command(_command)

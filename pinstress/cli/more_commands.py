@@ -71,6 +71,20 @@ def plots(results: Path) -> None:
 
 
 @click.command(
+    "pdf",
+    short_help="Write the report of an earlier run as a PDF.",
+    help=example("pinstress pdf out/grenier2008")
+    + "\nWrite report.pdf into the folder of an earlier run: title block, contents, safety "
+    "factors, what to change, every pin with its plots, loads, and the values with their sources.",
+)
+@click.argument("results", type=click.Path(path_type=Path))
+def pdf_of(results: Path) -> None:
+    from pinstress.cli.plots import pdf
+
+    pdf(results)
+
+
+@click.command(
     short_help="Show a pin of an earlier run in a 3D window.",
     help=example("pinstress view out/grenier2008 --pin B --case landing")
     + "\nShow the von Mises stress of a pin of an earlier run at its governing instant, in a "

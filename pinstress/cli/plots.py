@@ -1,10 +1,14 @@
-"""The `plots` command: what a report draws in the browser, as files."""
+"""The `plots` and `pdf` commands: what the report of a folder shows, as files."""
 
 from __future__ import annotations
 
 import json
 import re
 import shutil
+import zlib
+from base64 import b64decode
+from collections.abc import Iterator
+from html import unescape
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -15,14 +19,20 @@ from pinstress.cli import manifest
 from pinstress.processes.pool import preload
 from pinstress.study.errors import InputError
 from pinstress.study.file_names import field_name
+from reports.pdf.typeset import shown_plots, write_pdf
 from reports.plots.draw import draw
 from reports.plots.spec import Plot
 from reports.vtk.read_back import LARGEST, open_results
 from reports.vtk.renderer import renderer_problem
 
-FOLDER, PAGE = "plots", "report.html"
+FOLDER, PAGE, PDF = "plots", "report.html", "report.pdf"
 PAINTERS = ("pyvista.plotting",)
-FIGURE = re.compile(r'<script type="application/json" data-plot="([\w.%~-]+)">(.*?)</script>')
+FIGURE = re.compile(
+    r"<figcaption>([^<]*)</figcaption>\n"
+    r'<details class="values" hidden><summary>Values</summary></details>\n'
+    r'<script type="application/json" data-plot="([\w.%~-]+)">(.*?)</script>'
+)
+PAPER = re.compile(r'<script type="text/plain" id="paper">([\w+/=]+)</script>')
 
 
 def plots(directory: Path, quiet: bool = False) -> None:
@@ -30,13 +40,7 @@ def plots(directory: Path, quiet: bool = False) -> None:
 
     Raises: InputError.
     """
-    known = manifest.listed(directory)
-    if known is None:
-        raise InputError(
-            f"{directory}: no results of pinstress; name the folder that `pinstress run` or "
-            "`pinstress loads` wrote",
-            code="no-results",
-        )
+    known = require_results(directory)
     own = f"{FOLDER}/"
     strange = {n for n in manifest.entries(directory) - known - {own} if n.startswith(own)}
     if strange:
@@ -55,6 +59,24 @@ def plots(directory: Path, quiet: bool = False) -> None:
     click.echo(f"Written: {directory / FOLDER}", err=True)
 
 
+def require_results(directory: Path) -> set[str]:
+    """The files of a results folder that are ours. Raises: InputError."""
+    known = manifest.listed(directory)
+    if known is None:
+        raise InputError(
+            f"{directory}: no results of pinstress; name the folder that `pinstress run` or "
+            "`pinstress loads` wrote",
+            code="no-results",
+        )
+    return known
+
+
+def plots_of(page: str) -> Iterator[Plot]:
+    """What a page draws, with its captions."""
+    for caption, name, spec in FIGURE.findall(page):
+        yield Plot(name, unescape(caption), json.loads(spec))
+
+
 def draw_folder(directory: Path, into: Path, quiet: bool = False) -> list[Path]:
     """Draw what the report of a folder shows, and its pins by their fields; returns the files.
 
@@ -66,8 +88,7 @@ def draw_folder(directory: Path, into: Path, quiet: bool = False) -> list[Path]:
     except (OSError, ValueError, FileError):
         text = f"{directory}: no report.html and results.json to draw from"
         raise InputError(text, code="no-results") from None
-    found = (Plot(name, "", json.loads(spec)) for name, spec in FIGURE.findall(page))
-    paths = draw(found, into)
+    paths = draw(plots_of(page), into)
     rows = [row for row in opened.content["pins"] if (directory / "vtk").is_dir()]
     problem = renderer_problem() if rows else None
     if problem is not None and not quiet:
@@ -85,3 +106,33 @@ def draw_folder(directory: Path, into: Path, quiet: bool = False) -> list[Path]:
             render_pin(field, picture, opened.units, opened.title(row))
             paths.append(picture)
     return paths
+
+
+def pdf(directory: Path) -> None:
+    """Write report.pdf into a results folder. Raises: InputError."""
+    known = require_results(directory)
+    target = directory / PDF
+    if PDF in manifest.entries(directory) - known:
+        text = f"{directory}: pinstress did not write {PDF}; move it elsewhere"
+        raise InputError(text, code="strange-file")
+    try:
+        manifest.add(directory, [PDF])
+        print_folder(directory)
+    except OSError as error:
+        text = f"{target}: cannot be written ({error.strerror})"
+        raise InputError(text, code="cannot-write") from None
+    click.echo(f"Written: {target}", err=True)
+
+
+def print_folder(directory: Path) -> None:
+    """Write report.pdf of what the folder's report.html says. Raises: InputError, OSError."""
+    problem = f"{directory}: no report.html of this version of pinstress to print; run it again"
+    try:
+        page = read_regular(directory / PAGE, LARGEST).decode("utf-8")
+        (packed,) = PAPER.findall(page)
+        content = json.loads(zlib.decompress(b64decode(packed)))
+    except (OSError, ValueError, FileError, zlib.error):
+        raise InputError(problem, code="no-results") from None
+    wanted = set(shown_plots(content))
+    plots = {plot.name: plot for plot in plots_of(page) if plot.name in wanted}
+    write_pdf(content, plots, directory / PDF)

@@ -18,14 +18,16 @@ from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.solve import solve_tasks
 from pinstress.cache.store import user_cache
 from pinstress.cli.closing import (
+    NUMERICS_FAILED,
     report_disagreements,
     report_left_out,
     report_missed,
     report_reused,
     report_slow_rows,
+    report_violations,
 )
 from pinstress.cli.output_folder import replacing, require_replaceable
-from pinstress.cli.plots import FOLDER, PAGE, draw_folder
+from pinstress.cli.plots import FOLDER, PAGE, draw_folder, print_folder
 from pinstress.cli.shared import open_page
 from pinstress.cli.streams import unneeded
 from pinstress.processes.pool import Progress, preload, processes
@@ -34,6 +36,7 @@ from pinstress.study.file import Study
 from pinstress.study.file_names import field_name
 from reports.data.results import Field, Units
 from reports.files import write_loads, write_reports
+from reports.tables.table import MOST_IN_CSV
 from reports.text.loads import print_loads
 from reports.text.safety_factors import print_safety_factors
 from reports.text.second_opinion import print_second_opinion
@@ -49,14 +52,16 @@ SOLVERS = (
 
 @dataclass(frozen=True)
 class Wanted:
-    """The output of a run: plots and pictures as files; CalculiX's second opinion; fields (vtk, as
-    --vtk names them); results.json on stdout instead of the table; no progress and no notes; the
-    report opened.
+    """The output of a run: plots and pictures as files; report.pdf; CalculiX's second
+    opinion; fields (vtk, as --vtk names them); results.json on stdout instead of the table; no
+    progress and no notes; the report opened.
     jobs: number of parallel processes, default the number of cores. cached: whether results in the
     user's cache may be reused. sensitive: whether to find what dimensions do to the factors.
+    strict: whether a pin that misses its requirements changes the exit status.
     """
 
     plots: bool = False
+    pdf: bool = False
     second: bool = False
     vtk: str = "model"
     as_json: bool = False
@@ -65,6 +70,7 @@ class Wanted:
     jobs: int | None = None
     cached: bool = True
     sensitive: bool = False
+    strict: bool = False
 
 
 def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpack[Chosen]) -> int:
@@ -90,6 +96,8 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
             write_reports(results, staging)
             if wanted.plots:
                 draw_folder(staging, staging / FOLDER, wanted.quiet)
+            if wanted.pdf:
+                print_folder(staging)
     if cache:
         cache.trim()
     if wanted.as_json:
@@ -103,10 +111,13 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
         report_left_out(results)
         report_reused(plan, found)
         click.echo(f"Report: {directory / PAGE}", err=True)
+        _large_tables(directory)
     if wanted.opens:
         open_page(directory / PAGE)
     status = report_missed(results, study.table.analysis.goal == "decide")
-    return max(status, report_disagreements(results))
+    status = max(status, report_disagreements(results))
+    violated = report_violations(results) if wanted.strict else 0
+    return status if status == NUMERICS_FAILED else max(status, violated)
 
 
 def _second_opinion(plan: Plan, quiet: bool) -> dict[str, Any]:
@@ -149,7 +160,18 @@ def loads_and_write(
         print_loads(results, console())
     if not quiet:
         click.echo(f"Written: {directory}", err=True)
+        _large_tables(directory)
     return 0
+
+
+def _large_tables(directory: Path) -> None:
+    """Print which tables are too long for CSV."""
+    if names := sorted(path.name for path in directory.glob("*.parquet")):
+        click.echo(
+            f"More than {MOST_IN_CSV:,} rows, so in Parquet (for pandas, polars, DuckDB): "
+            f"{', '.join(names)}",
+            err=True,
+        )
 
 
 def console() -> Console:

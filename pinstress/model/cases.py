@@ -15,6 +15,7 @@ from loads import (
     Course,
     Dynamics,
     Impasse,
+    Layout,
     LegDynamics,
     Linkage,
     LinkageError,
@@ -34,8 +35,20 @@ from loads import (
     read_reactions,
     require_possible,
 )
+from loads.coded import LoadsArgumentError
+from loads.landing import GROUND_RULES, Landing, pushes
+from loads.landing import laws as landing_laws
 from loads.linkage import Floats
 from pinstress.model.forces import load, springs
+from pinstress.model.landing import (
+    drop,
+    drop_note,
+    fallen,
+    ground_load,
+    ground_note,
+    place,
+    still,
+)
 from pinstress.model.linkage import laws, span, state
 from pinstress.model.moving_loads import Acting, MovingLoads, acting
 from pinstress.model.spatial_leg import AXES, dynamics, hinge_reactions, instants
@@ -49,6 +62,8 @@ from pinstress.schema.cases import (
     MotionCase,
     StaticCase,
 )
+from pinstress.schema.landing import DropCase, GroundCase
+from pinstress.schema.units import SYSTEMS, to_si
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study
 
@@ -83,7 +98,7 @@ class CaseLoads:
     solve: the dynamics at other times (T,) s.
     peaks: the largest forces over the time. over: other results of the whole motion;
     frictionless: the same if nothing rubbed, where something does. moving:
-    what acts on the pins at any time.
+    what acts on the pins at any time. landing: of a drop.
     """
 
     reactions: Reactions
@@ -98,6 +113,7 @@ class CaseLoads:
     over: OverTime | None = None
     frictionless: OverTime | None = None
     moving: MovingLoads | None = None
+    landing: Landing | None = None
 
 
 def at_time(case: CaseLoads, time: float) -> CaseLoads | None:
@@ -142,6 +158,10 @@ def case_loads(
         assert mechanism is not None
         if isinstance(case, MotionCase):
             return _motion(study, name, case, mechanism, extremes)
+        if isinstance(case, DropCase):
+            return _drop(study, name, case, mechanism, extremes)
+        if isinstance(case, GroundCase):
+            return _on_ground(study, name, case, mechanism, extremes)
         return _at_instant(study, name, case, mechanism)
     except TableError as error:
         raise InputError(str(error), code=error.code) from None
@@ -170,14 +190,19 @@ def _given(study: Study, name: str, case: GivenCase) -> Reactions:
         )
         return given_reactions(name, forces, moments)
     known = {c for p in study.table.pin for c in study.connections(p)}
-    return read_reactions(
-        name,
-        study.path_to(case.table),
-        study.system.factor("force"),
-        study.system.factor("moment"),
-        study.system.factor("time"),
-        known,
-    )
+    layout = Layout(case.table_case or name, case.columns, case.labels, case.time_step)
+    system = SYSTEMS[case.table_units or study.table.units]
+
+    def unit(written: str, dimension: str) -> float:
+        if not written:
+            return system.factor(dimension)
+        try:
+            return to_si(f"1 {written}", dimension, system)
+        except LoadsArgumentError as error:
+            raise TableError(f"{case.table}: {error}", error.code) from None
+
+    found = read_reactions(study.path_to(case.table), layout, unit, known)
+    return replace(found, case=name)
 
 
 def _leg(study: Study, name: str, case: LegCase) -> CaseLoads:
@@ -228,14 +253,22 @@ def _motion(
     course = Course(mechanism, laws(study), 0.0, end)
     applied, note = _applied(study, name, case, mechanism)
     moved = _Moved(name, course, applied)
-    found = moved.solve(np.linspace(0.0, end, case.samples))
     if not extremes:
-        require_possible(course, moved.solve, found.motion.times)
+        found = moved.solve(np.linspace(0.0, end, case.samples))
+        require_possible(course, moved.solve, found)
         return CaseLoads(found.reactions, found, note)
-    over = over_time(course, moved.solve, found.motion.times)
+    return _over_time(moved, case.samples, note)
+
+
+def _over_time(moved: _Moved, samples: int, note: str) -> CaseLoads:
+    """A case with its extremes."""
+    course = moved.course
+    found = moved.solve(np.linspace(course.first, course.last, samples))
+    over = over_time(course, moved.solve, found)
     free = None
-    if mechanism.rubs:
-        free = over_time(course, replace(moved, friction=False).solve, found.motion.times)
+    if course.loops.linkage.rubs:
+        smooth = replace(moved, friction=False).solve
+        free = over_time(course, smooth, smooth(found.motion.times))
     return CaseLoads(
         found.reactions,
         found,
@@ -247,6 +280,41 @@ def _motion(
         frictionless=free,
         moving=MovingLoads(moved.acting, found.motion.times, over.corners),
     )
+
+
+def _drop(study: Study, name: str, case: DropCase, mechanism: Linkage, extremes: bool) -> CaseLoads:
+    leg, where = drop(study, name, case, mechanism)
+    if not extremes:  # its course takes SciPy: extended and at rest instead
+        found = motion_reactions(name, move(mechanism, still(where), np.zeros(1)), (), False)
+        return CaseLoads(found.reactions, found)
+    landing = fallen(study, name, leg)
+    course = Course(mechanism, landing_laws(landing, where), 0.0, leg.duration)
+    loads: list[Load] = [*springs(study, mechanism), *pushes(mechanism, landing, where)]
+    moved = _Moved(name, course, tuple(loads))
+    return replace(_over_time(moved, case.samples, drop_note(case)), landing=landing)
+
+
+def _on_ground(
+    study: Study, name: str, case: GroundCase, mechanism: Linkage, extremes: bool
+) -> CaseLoads:
+    """A rule's load on the leg at rest; that of a drop needs the drop, which `check` leaves out."""
+    where, note = place(study, name, case, mechanism), ""
+    drives, reference = still(where), case.reference or 0.0
+    if case.drop is not None and extremes:
+        of = study.table.case[case.drop]
+        assert isinstance(of, DropCase)
+        leg, where = drop(study, case.drop, of, mechanism)
+        landing = fallen(study, case.drop, leg)
+        peak = landing.peaks["vertical"]
+        reference = peak.value
+        courses = (law(np.array([peak.time]))[0] for law in landing_laws(landing, where))
+        drives = [StateDrive(float(value[0])) for value in courses]
+        where = place(study, name, case, mechanism)
+    applied = ground_load(where, GROUND_RULES[case.rule], reference, mechanism)
+    note = ground_note(study, case, reference) if reference else ""
+    loads: list[Load] = [*springs(study, mechanism), applied]
+    found = motion_reactions(name, move(mechanism, drives, np.zeros(1)), loads, timed=False)
+    return CaseLoads(found.reactions, found, note)
 
 
 def _at_instant(

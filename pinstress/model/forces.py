@@ -28,7 +28,7 @@ from pinstress.schema.cases import ApplyTable
 from pinstress.schema.forces import (
     CurveTable,
     ForceLawTable,
-    SpringTable,
+    LineSpringTable,
     TorsionSpringTable,
 )
 from pinstress.schema.types import JointOrPoint
@@ -102,7 +102,7 @@ def springs(study: Study, mechanism: Linkage) -> tuple[Spring, ...]:
     return (*lines, *turns)
 
 
-def _spring(study: Study, mechanism: Linkage, name: str, table: SpringTable) -> Spring:
+def _spring(study: Study, mechanism: Linkage, name: str, table: LineSpringTable) -> Spring:
     between: Distance | Position
     if table.slider is not None:
         slider = next(s for s in mechanism.sliders if s.name == table.slider)

@@ -33,6 +33,7 @@ from loads.mobility import Mobility, require_determined
 from pinstress.model.joint_layout import LayoutError, Point, places
 from pinstress.model.pins import pin
 from pinstress.schema.cases import Coordinates, InstantCase, StaticCase
+from pinstress.schema.landing import AtWheel
 from pinstress.schema.mechanism import (
     BodyTable,
     JointTable,
@@ -301,7 +302,7 @@ def _table(study: Study, drive: AnyDriveTable) -> TableDrive:
 
 
 def state(
-    study: Study, name: str, case: StaticCase | InstantCase, drawn: Linkage
+    study: Study, name: str, case: StaticCase | InstantCase | AtWheel, drawn: Linkage
 ) -> list[tuple[float, float, float]]:
     """Position, velocity and acceleration of every drive in a case, SI. Raises: InputError."""
     drives = _mechanism(study).drive

@@ -18,7 +18,8 @@ METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
 def material(study: Study, name: str) -> Material:
     """A material of the study."""
     m = study.table.material[name]
-    return Material(name, m.youngs_modulus, m.poisson_ratio, m.density, m.yield_strength)
+    strengths = m.yield_strength, m.ultimate_strength, m.shear_strength, m.bearing_strength
+    return Material(name, m.youngs_modulus, m.poisson_ratio, m.density, *strengths)
 
 
 def pin(study: Study, name: str) -> PinLike:

@@ -46,8 +46,21 @@ class GivenCase(CaseTable):
     moments: dict[str, Annotated[list[Moment], Field(min_length=2, max_length=3)]] | None = None
     """Moment on the pin at each connection, about x, y (and z) through the middle of the band."""
     table: str | None = None
-    """CSV file in the study's folder with the columns connection,fx,fy[,fz][,mx,my,mz][,time],
-    instead of `forces` and `moments`; a sweep if it has times."""
+    """File in the study's folder, instead of `forces` and `moments`; a sweep if it has times. Its
+    columns are connection,fx,fy[,fz][,mx,my,mz][,time][,case], or one per component, as B.fx,B.fy
+    for connection B; units in brackets: fx [kN]. Separated by commas, or by semicolons or tabs,
+    then also with decimal commas; # begins a comment."""
+    table_case: str | None = None
+    """Which rows of a table with a column `case`; by default those with the name of this case."""
+    columns: dict[str, str | int] = {}
+    """Columns of a table of another program: by our name the header, or the number from 1 where the
+    table has no header; with a minus before it where the sign is the opposite."""
+    labels: dict[str, str | int] = {}
+    """What the connections are called in the table's column `connection`; others are skipped."""
+    time_step: Annotated[Duration, POSITIVE] | None = None
+    """Time between the rows of one connection, where the table has no times."""
+    table_units: Literal["in-lbf-s", "mm-N-s", "m-N-s"] | None = None
+    """System of units of the table's numbers, by default the study's."""
 
     @model_validator(mode="after")
     def _one_source(self) -> "GivenCase":
@@ -57,6 +70,18 @@ class GivenCase(CaseTable):
                 'give either forces = { ... }, moments = { ... } or both, or table = "file.csv"',
                 "give-one",
             )
+        of_table: dict[str, object] = {
+            "table_case": self.table_case,
+            "columns": self.columns,
+            "labels": self.labels,
+            "time_step": self.time_step,
+            "table_units": self.table_units,
+        }
+        for key, value in of_table.items():
+            if value and self.table is None:
+                raise LoadsArgumentError(
+                    f'{key} describes a table; give table = "file.csv"', "no-table"
+                )
         for key, given in stated.items():
             if given is not None and not given:
                 raise LoadsArgumentError(f"{key} is empty; give at least one connection", "empty")

@@ -63,7 +63,7 @@ class ForceLawTable(CurveTable):
         return self
 
 
-class SpringTable(StrictTable):
+class LineSpringTable(StrictTable):
     """A spring, damper or gas spring along a slider, or between two points. Its force, positive
     where it pushes them apart, is preload - stiffness (length - reference) - damping velocity, and
     what the tables add.
@@ -89,7 +89,7 @@ class SpringTable(StrictTable):
     """Force by a table of the velocity, the rate of the length."""
 
     @model_validator(mode="after")
-    def _between(self) -> "SpringTable":
+    def _between(self) -> "LineSpringTable":
         require_one("either slider, or bodies and joints", self.slider, self.bodies)
         if (self.bodies is None) != (self.joints is None):
             raise LoadsArgumentError("bodies and joints must be given together", "give-both")

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
 from loads.coded import LoadsArgumentError
-from pinstress.schema.forces import SpringTable, TorsionSpringTable, require_one
+from pinstress.schema.forces import LineSpringTable, TorsionSpringTable, require_one
 from pinstress.schema.types import (
     NOT_NEGATIVE,
     POSITIVE,
@@ -335,7 +335,7 @@ class MechanismTable(StrictTable):
     """Points whose paths are of interest, by name."""
     stop: dict[str, StopTable] = {}
     """Stops and locks by name."""
-    spring: dict[str, SpringTable] = {}
+    spring: dict[str, LineSpringTable] = {}
     """Springs and dampers by name; they act in all cases."""
     torsion_spring: dict[str, TorsionSpringTable] = {}
     """Torsion springs and dampers by name; they act in all cases."""

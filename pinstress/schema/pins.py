@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from loads.coded import LoadsArgumentError
+from pinstress.schema.fatigue import FkmTable, SnTable
 from pinstress.schema.types import (
     Angle,
     Density,
@@ -30,6 +31,29 @@ class MaterialTable(StrictTable):
     """Density, for the weight and inertia of the pin. Default: no weight."""
     yield_strength: Stress | None = None
     """Yield strength. Without it no safety factors are computed."""
+    ultimate_strength: Stress | None = None
+    """Ultimate tensile strength, for checks at ultimate load."""
+    shear_strength: Stress | None = None
+    """Ultimate shear strength."""
+    bearing_strength: Stress | None = None
+    """Ultimate bearing strength, on the projected area."""
+    fatigue: SnTable | None = None
+    """Stress-life curve, for `fatigue.method` "signed-von-mises" and "critical-plane"."""
+    fkm: FkmTable | None = None
+    """Data for `fatigue.method` "fkm-p-ram"."""
+
+    @model_validator(mode="after")
+    def _in_order(self) -> "MaterialTable":
+        ultimate = self.ultimate_strength
+        for key in ("yield_strength", "shear_strength"):
+            lower = getattr(self, key)
+            if ultimate is not None and lower is not None and lower > ultimate:
+                raise LoadsArgumentError(
+                    f"{key} is {lower / ultimate:.4g} times ultimate_strength, which it cannot "
+                    "exceed; check both, and their units",
+                    "strengths-out-of-order",
+                )
+        return self
 
 
 class SegmentTable(StrictTable):
@@ -157,6 +181,9 @@ class PinTable(StrictTable):
     lug: dict[str, LugTable] = {}
     """Lugs, by connection or by the name of a segment; an empty table takes all defaults. With any,
     the pin is supported by its lugs (see `analysis.joints`). Only with a profile."""
+    replaceable: Switch = False
+    """Whether the pin is meant to be replaced; then EN 1993-1-8, 3.13 limits bearing, bending and
+    contact stress at limit load, too."""
     clamp: list[str] = []
     """Clamped surfaces: "start" and "end" (the end faces), the name or connection of a segment (its
     outer surface), "hole 1", "flat 1", or a band. Default: none; the loads must then be nearly in

@@ -1,10 +1,14 @@
 """The study file's form: every table and key, with its unit, domain and description."""
 
+import datetime
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
+from loads.coded import LoadsArgumentError
 from pinstress.schema.cases import GivenCase, InstantCase, LegCase, MotionCase, StaticCase
+from pinstress.schema.fatigue import FatigueTable
+from pinstress.schema.landing import DropCase, GroundCase
 from pinstress.schema.leg import SpatialLegTable
 from pinstress.schema.mechanism import MechanismTable
 from pinstress.schema.pins import MaterialTable, PinTable
@@ -31,6 +35,24 @@ class AnalysisTable(StrictTable):
     local diameter."""
     required_safety_factor: Annotated[Number, Field(gt=0.0)] | None = None
     """Safety factor that every pin must reach. Default: no comparison."""
+    limit_factor: Annotated[Number, Field(gt=0.0)] = 1.0
+    """Factor on the loads of the study for checks at limit load, against yield."""
+    ultimate_factor: Annotated[Number, Field(gt=0.0)] = 1.5
+    """Factor on the loads of the study for checks at ultimate load, against rupture and collapse.
+    The default is that of 14 CFR 25.303."""
+    fitting_factor: Annotated[Number, Field(ge=1.0)] = 1.0
+    """Additional factor of all checks of margins, for fittings whose strength no test proves; 14
+    CFR 25.625 demands 1.15."""
+
+    @model_validator(mode="after")
+    def _ultimate_is_more(self) -> "AnalysisTable":
+        if self.ultimate_factor < self.limit_factor:
+            raise LoadsArgumentError(
+                f"ultimate_factor {self.ultimate_factor:g} is less than limit_factor "
+                f"{self.limit_factor:g}; ultimate loads are limit loads or more",
+                "factors-out-of-order",
+            )
+        return self
 
 
 class BeamCheckTable(StrictTable):
@@ -75,6 +97,21 @@ class PublishedTable(StrictTable):
     """CSV file with the columns case,time,quantity,name,published,reason."""
 
 
+class ReportTable(StrictTable):
+    """The title block of the report; what is not given is left blank."""
+
+    revision: Annotated[str, Field(max_length=100)] = ""
+    """Revision, as "B"."""
+    date: datetime.date | None = None
+    """Date of the revision, as 2026-03-31 without quotes; also the PDF's date of creation."""
+    prepared: Annotated[str, Field(max_length=100)] = ""
+    """Name of who prepared it."""
+    checked: Annotated[str, Field(max_length=100)] = ""
+    """Name of who checked it."""
+    approved: Annotated[str, Field(max_length=100)] = ""
+    """Name of who approved it."""
+
+
 class StudyTable(StrictTable):
     """A study: pins, their materials, their loads and the requirements on the analysis."""
 
@@ -90,7 +127,7 @@ class StudyTable(StrictTable):
         dict[
             Name,
             Annotated[
-                GivenCase | MotionCase | StaticCase | InstantCase | LegCase,
+                GivenCase | MotionCase | StaticCase | InstantCase | LegCase | DropCase | GroundCase,
                 Field(discriminator="kind"),
             ],
         ],
@@ -98,16 +135,20 @@ class StudyTable(StrictTable):
     ]
     """Load cases by name; each is run for the pins that it loads."""
     mechanism: MechanismTable | None = None
-    """The linkage, for cases of kind "motion", "static" and "instant"."""
+    """The linkage, for cases of kind "motion", "static", "instant", "drop" and "ground"."""
     spatial_leg: SpatialLegTable | None = None
     """The leg, for cases of kind "spatial_leg"."""
     analysis: AnalysisTable = AnalysisTable()
     """Requirements on the analysis."""
+    fatigue: FatigueTable | None = None
+    """How often cases occur, for damage and life. Default: fatigue is not assessed."""
     beam_check: BeamCheckTable | None = None
     """A comparison with beam theory."""
     motion_check: MotionCheckTable | None = None
     """A comparison with the closed form of a lever."""
     published: PublishedTable | None = None
     """Published values for comparison."""
+    report: ReportTable = ReportTable()
+    """The title block of the report."""
     assumptions: list[str] = []
     """Assumptions, as sentences for the report."""

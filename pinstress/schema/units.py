@@ -27,6 +27,8 @@ DIMENSIONS: dict[str, tuple[tuple[int, int, int], str]] = {
     "power": ((1, 1, -1), "3 W"),
     "moment": ((1, 1, 0), "12 N m"),
     "torsional stiffness": ((1, 1, 0), "2e5 N m/rad"),
+    "area": ((2, 0, 0), "300 mm^2"),
+    "volume": ((3, 0, 0), "2e-3 m^3"),
     "stiffness": ((-1, 1, 0), "20 N/mm"),
     "damping": ((-1, 1, 1), "500 N s/m"),
     "torsional damping": ((1, 1, 1), "5 N m s/rad"),

@@ -5,13 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from functools import partial
 
+from fea.fatigue.flight import flight
+from geometry.coded import ArgumentError
 from pinstress.schema.cases import ApplyTable, GivenCase, LegCase, MotionCase, StaticCase
+from pinstress.schema.fatigue import FatigueTable
+from pinstress.schema.landing import AtWheel, DropCase, GroundCase
 from pinstress.schema.mechanism import (
     MechanismTable,
     RotaryDrive,
     SliderDrive,
     drive_name,
 )
+from pinstress.schema.pins import MaterialTable
 from pinstress.schema.shown import near, shown
 from pinstress.schema.tables import StudyTable
 from pinstress.study.errors import Wrong
@@ -46,6 +51,8 @@ def cross_references(table: StudyTable) -> Iterator[Wrong]:
         yield from _of_pins(table, table.mechanism, bears)
         yield from _of_mechanism(table.mechanism)
         yield from _of_its_cases(table, table.mechanism)
+    if table.fatigue is not None:
+        yield from _of_fatigue(table, table.fatigue)
     for key, check, pools in (
         ("beam_check", table.beam_check, (("pin", table.pin), ("case", table.case))),
         ("motion_check", table.motion_check, (("case", table.case),)),
@@ -75,6 +82,51 @@ def _of_cases(table: StudyTable, bears: dict[str, str]) -> Iterator[Wrong]:
                 yield Wrong(f"case.{name}: kind 'spatial_leg' needs a [spatial_leg]", code="no-leg")
         elif table.mechanism is None:
             yield Wrong(f"case.{name}: kind {case.kind!r} needs a [mechanism]", code="no-mechanism")
+
+
+METHODS = {"signed-von-mises": "fatigue", "critical-plane": "fatigue", "fkm-p-ram": "fkm"}
+
+
+def _of_fatigue(table: StudyTable, fatigue: FatigueTable) -> Iterator[Wrong]:
+    """A spectrum of cases that exist, and data for its method in some material of a pin."""
+    for case in fatigue.occurrences:
+        yield from _known(f"fatigue.occurrences.{case}", "case", case, table.case)
+    try:
+        flight([*fatigue.occurrences.values()])
+    except ArgumentError as error:
+        yield Wrong(f"fatigue.occurrences: {error}", code=error.code)
+    if fatigue.method == "fkm-p-ram" and (fatigue.failure_probability or 0.0) > 0.5:
+        text = 'fatigue.failure_probability: must be at most 0.5 for method "fkm-p-ram"'
+        yield Wrong(text, code="out-of-range")
+    needs, used = METHODS[fatigue.method], {pin.material for pin in table.pin.values()}
+    given = [name for name in used & table.material.keys() if getattr(table.material[name], needs)]
+    if not given:
+        yield Wrong(
+            f"fatigue.method: {fatigue.method!r} needs material.NAME.{needs} of the material of a "
+            "pin",
+            code="no-fatigue-data",
+        )
+    for name in sorted(given):
+        for key, value in _parameters(table.material[name], fatigue).items():
+            if value is None:
+                yield Wrong(f"material.{name}.{key} is missing", code="missing-key")
+
+
+def _parameters(material: MaterialTable, fatigue: FatigueTable) -> dict[str, float | None]:
+    """What else a method needs, by key."""
+    ultimate = {"ultimate_strength": material.ultimate_strength}
+    sn = material.fatigue
+    if fatigue.method == "fkm-p-ram" or sn is None:
+        return ultimate
+    asked = fatigue.failure_probability
+    scattered = asked is not None and asked != sn.failure_probability
+    scatter = {"fatigue.scatter": sn.scatter} if scattered else {}
+    sensitivity = {"fatigue.mean_stress_sensitivity": sn.mean_stress_sensitivity}
+    if fatigue.method == "critical-plane":
+        return sensitivity | scatter
+    walker = {"fatigue.walker_exponent": sn.walker_exponent}
+    rules = {"fkm": sensitivity, "goodman": ultimate, "walker": walker}
+    return rules.get(sn.mean_stress, {}) | scatter
 
 
 def _of_pins(
@@ -172,6 +224,8 @@ def _of_its_cases(table: StudyTable, mechanism: MechanismTable) -> Iterator[Wron
             if isinstance(load.at, str):
                 yield from _known(f"{where}.at", "joint", load.at, mechanism.joint)
             yield from _of_laws(where, load, mechanism, isinstance(case, MotionCase))
+        if isinstance(case, AtWheel):
+            yield from _of_wheel(f"case.{name}", case, table, mechanism)
     if (check := table.motion_check) is not None:
         for field in ("joint", "pivot"):
             where = f"motion_check.{field}"
@@ -202,3 +256,16 @@ def _of_laws(
             "table of another argument give position_of or length_between",
             code="needs-motion",
         )
+
+
+def _of_wheel(
+    key: str, case: AtWheel, table: StudyTable, mechanism: MechanismTable
+) -> Iterator[Wrong]:
+    yield from _known(f"{key}.body", "body", case.body, mechanism.body)
+    yield from _known(f"{key}.at", "joint", case.at, mechanism.joint)
+    if isinstance(case, DropCase) and case.strut is not None:
+        slides = {d.slider: d for d in mechanism.drive if isinstance(d, SliderDrive)}
+        yield from _known(f"{key}.strut.drive", "slider drive", case.strut.drive, slides)
+    if isinstance(case, GroundCase) and case.drop is not None:
+        drops = {name: c for name, c in table.case.items() if isinstance(c, DropCase)}
+        yield from _known(f"{key}.drop", "drop case", case.drop, drops)

@@ -13,7 +13,7 @@ import numpy as np
 T = TypeVar("T")
 Unit = Callable[[str], float]
 
-UNCHANGED = ("degrees", "rad", "rad/s", "rad/s^2")  # the same in every system
+UNCHANGED = ("1", "degrees", "rad", "rad/s", "rad/s^2")  # the same in every system
 
 
 def in_units(value: T, unit: Unit) -> T:

@@ -25,8 +25,12 @@ from fea.core.dimensions import (
     Velocity,
 )
 from fea.core.peak import Refinement, SingularZone
+from fea.fatigue.records import PointFatigue, PointHistory
 from fea.joint.records import JointResult
+from fea.strength.bending_arms import BendingArms
+from fea.strength.margin import PinMargin
 from reports.data.changes import Change
+from reports.data.drop import DropPeak, DropRecord
 from reports.data.fields import BandLoad, Field, Still, Volume
 from reports.data.in_units import Unit, in_units
 from reports.data.mechanics import (
@@ -49,11 +53,12 @@ from reports.data.mechanics import (
 from reports.data.surface import Surface
 
 __all__ = [
-    "BandLoad", "BeamCheck", "Change", "Dimensioned", "DriveEffort", "DriveTable", "Extremes",
-    "Field", "Floats", "GoverningLoad", "GuideForces", "HandCheck", "LandingRange", "LegTable",
-    "LinkageMotion", "MotionCheck", "PeakReaction", "PinResult", "PinShape", "PointPath",
-    "PowerLedger", "Provenance", "PublishedValue", "ReactionTable", "Refinement", "Results",
-    "SingularZone", "Still", "Surface", "Units", "Volume",
+    "BandLoad", "BeamCheck", "Change", "Dimensioned", "DriveEffort", "DriveTable", "DropPeak",
+    "DropRecord", "Extremes", "Fatigue", "Field", "Floats", "GoverningLoad", "GuideForces",
+    "HandCheck", "LandingRange", "LegTable", "LinkageMotion", "MotionCheck", "PeakReaction",
+    "PinResult", "PinShape", "PointPath", "PowerLedger", "Provenance", "PublishedValue",
+    "ReactionTable", "Refinement", "Results", "SingularZone", "Still", "Surface", "TitleBlock",
+    "Units", "Volume",
 ]  # fmt: skip
 
 
@@ -178,6 +183,33 @@ class Provenance:
 
 
 @dataclass(frozen=True)
+class Fatigue:
+    """Fatigue under a spectrum, by how often each case occurs per `unit`. points: the worst first.
+    probability: of failure, None for that of the S-N data. life: for which pins are designed.
+    left_out: what was not assessed, in sentences.
+    """
+
+    unit: str
+    occurrences: dict[str, float]
+    method: str
+    probability: float | None
+    life: float | None
+    points: tuple[PointFatigue, ...]
+    left_out: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class TitleBlock:
+    """What the study says of its report; empty texts are filled in by hand. date: ISO 8601."""
+
+    revision: str = ""
+    date: str = ""
+    prepared: str = ""
+    checked: str = ""
+    approved: str = ""
+
+
+@dataclass(frozen=True)
 class Results:
     """All results of a run, without the fields inside pins (those are written pin by pin)."""
 
@@ -197,13 +229,19 @@ class Results:
     published: tuple[PublishedValue, ...] = ()
     legs: tuple[LegTable, ...] = ()
     landing: tuple[LandingRange, ...] = ()
+    drops: tuple[DropRecord, ...] = ()
     surfaces: tuple[Surface, ...] = ()
     changes: tuple[Change, ...] = ()
+    margins: tuple[PinMargin, ...] = ()
+    arms: tuple[BendingArms, ...] = ()
+    histories: tuple[PointHistory, ...] = ()
+    fatigue: Fatigue | None = None
     provenance: tuple[Provenance, ...] = ()
     published_source: str = ""
     assumptions: tuple[str, ...] = ()
     versions: dict[str, str] = field(default_factory=dict)
     study_text: str = ""
+    title_block: TitleBlock = field(default_factory=TitleBlock)
 
     def __getitem__(self, row: tuple[str, str]) -> PinResult:
         """A pin in a case: results["E", "landing"]. Raises: KeyError."""

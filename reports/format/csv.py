@@ -17,7 +17,10 @@ def write_csv(path: Path, columns: Sequence[str], rows: Iterable[Sequence[Cell]]
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(columns)
-        writer.writerows([cell(value) for value in row] for row in rows)
+        # Most are finite floats, which the writer itself writes with every digit.
+        writer.writerows(
+            [v if type(v) is float and v - v == 0.0 else cell(v) for v in row] for row in rows
+        )
 
 
 def cell(value: Cell) -> str:

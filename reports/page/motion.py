@@ -9,6 +9,7 @@ from pathlib import Path
 
 from reports.data.results import Results
 from reports.format.file_names import animation_name
+from reports.format.packed import deflated
 from reports.plots.spec import Plot
 
 Find = Callable[..., Plot | None]
@@ -17,7 +18,7 @@ LEG = ("leg-motion", "leg-momenta", "leg-hinge")
 
 @dataclass(frozen=True)
 class MotionPart:
-    """A motion: its animation as an HTML page (or empty), and its plots."""
+    """A motion: its animation as an HTML page, compressed (or empty), and its plots."""
 
     case: str
     animation: str
@@ -53,4 +54,4 @@ def _linkage(case: str, find: Find) -> Iterator[str]:
 
 def _animation(case: str, directory: Path) -> str:
     path = directory / animation_name(case)
-    return path.read_text(encoding="utf-8") if path.is_file() else ""
+    return deflated(path.read_bytes()) if path.is_file() else ""

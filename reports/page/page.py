@@ -4,29 +4,41 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from fea.core.dimensions import Point
 from reports.animation.player_data import script_json
 from reports.data.results import PinShape, Results
 from reports.format.file_names import drive_names, plot_name
-from reports.format.numbers import DASH, components, engineering, like, ratio, short
+from reports.format.numbers import DASH, engineering, like, ratio, short
+from reports.format.packed import deflated
 from reports.format.ranges import error_words, factor_range
 from reports.format.template import VENDOR, environment
 from reports.format.words import BEYOND, headline, verdict_words
 from reports.page.factors import factor_parts
 from reports.page.loads import timings
 from reports.page.motion import motion_parts
-from reports.page.pin_drawing import draw_pin
+from reports.page.paper import document
+from reports.page.pin_drawing import WIDTH, draw_pin
 from reports.page.pins import pin_parts, reaction_tables
 from reports.plots.all import all_plots
 from reports.plots.reactions import WITHOUT
 from reports.plots.spec import Plot
 from reports.plots.theme import on_page, style_sheet
+from reports.tables.drop import drop_words, impulse_grid, peak_grid
+from reports.tables.fatigue import fatigue_grid, fatigue_sentence, worst_points
 from reports.tables.hand_checks import HAND_CHECKS
 from reports.tables.landing import NOTE, landing_blocks
+from reports.tables.margins import (
+    READING_ARMS,
+    READING_MARGINS,
+    arms_grid,
+    governing_grid,
+    not_made_words,
+)
 from reports.tables.published import published_reactions
 from reports.tables.singular_zones import circles, pin_zones
+from reports.text.method import METHOD
 from reports.text.summary import summary
 
+ON_PAPER = 420.0  # width of a pin's drawing, of half a page
 LIBRARIES = ("vega.min.js", "vega-lite.min.js", "vega-interpreter.js")
 
 
@@ -48,10 +60,10 @@ def render(results: Results, directory: Path) -> str:
         like=like,
         error=error_words,
         factor=factor_range,
-        place=_place,
     )
     template = templates.get_template("report.html.j2")
     drawings: dict[str, str] = {s.pin: Markup(_drawing(s, results)) for s in results.shapes}
+    printed = {s.pin: _drawing(s, results, ON_PAPER) for s in results.shapes}
     parts = pin_parts(results, drawings)
     plots = all_plots(results)
 
@@ -69,13 +81,18 @@ def render(results: Results, directory: Path) -> str:
         verdict_words=verdict_words,
         hand_checks=HAND_CHECKS,
         landing_note=NOTE,
+        method=METHOD,
+        paper=deflated(script_json(document(results, printed)).encode()),
         plot=plot,
         without=WITHOUT,
         embedded=lambda shown: script_json(shown.spec),
-        libraries=[Markup((VENDOR / name).read_text("utf-8")) for name in LIBRARIES],
+        libraries=deflated(b"\n".join((VENDOR / name).read_bytes() for name in LIBRARIES)),
         theme=script_json(on_page()),
         shades=style_sheet(),
         drive_names=drive_names,
+        drop_words=drop_words,
+        peak_grid=peak_grid,
+        impulse_grid=impulse_grid,
         ratio=ratio,
         motion=motion_parts(results, plot, directory),
         anchors={part.pin: part.anchor for part in parts},
@@ -85,18 +102,22 @@ def render(results: Results, directory: Path) -> str:
         landing=landing_blocks(results),
         landed=list(dict.fromkeys(r.case for r in results.landing)),
         reactions=reaction_tables(results),
+        fatigue=fatigue_grid(results),
+        fatigue_points=worst_points(results.fatigue) if results.fatigue else [],
+        fatigue_sentence=fatigue_sentence(results.fatigue) if results.fatigue else "",
         cases=list(dict.fromkeys(pin.case for pin in results.pins)),
+        margins=governing_grid(results),
+        margins_not_made=not_made_words(results),
+        margins_reading=READING_MARGINS,
+        arms=arms_grid(results),
+        arms_reading=READING_ARMS,
         **factor_parts(results),
     )
 
 
-def _drawing(shape: PinShape, results: Results) -> str:
+def _drawing(shape: PinShape, results: Results, width: float = WIDTH) -> str:
     zones = pin_zones(results, shape.pin).values()
-    return draw_pin(shape, results.units, circles(zone for case in zones for zone in case))
-
-
-def _place(location: Point) -> str:
-    return ", ".join(components(location, max(map(abs, location))))
+    return draw_pin(shape, results.units, circles(zone for case in zones for zone in case), width)
 
 
 def _short(value: float | None) -> str:

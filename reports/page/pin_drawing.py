@@ -35,9 +35,14 @@ class _Piece:
         return self.x + 0.5 * self.width
 
 
-def draw_pin(shape: PinShape, units: Units, zones: list[Zone] | None = None) -> str:
-    """The drawing as an <svg> element; zones: one per circle. All its text is escaped."""
-    pieces = _pieces(shape)
+def draw_pin(
+    shape: PinShape, units: Units, zones: list[Zone] | None = None, width: float = WIDTH
+) -> str:
+    """The drawing as an <svg> element; zones: one per circle. All its text is escaped.
+
+    width: of the drawing, in pixels, of which letters have the size 11.
+    """
+    pieces = _pieces(shape, width)
     if not pieces:
         return ""
     tops = rows([p.middle for p in pieces], [_text_width(p) for p in pieces])
@@ -46,12 +51,12 @@ def draw_pin(shape: PinShape, units: Units, zones: list[Zone] | None = None) -> 
     axis = 8.0 + 2.0 * LINE * (max(tops) + 1) + 12.0 + radius
     left, right = pieces[0].x, pieces[-1].x + pieces[-1].width
     scale = (right - left) / sum(s[0] for s in shape.segments)
-    marks = ZoneMarks(zones or [], left, scale, WIDTH)
+    marks = ZoneMarks(zones or [], left, scale, width)
     chain = axis + radius + marks.height + 24.0
     overall = chain + LINE * (max(feet) + 1) + 22.0
     height = overall + 12.0
     parts = [
-        f'<svg class="pin" viewBox="0 0 {WIDTH:.0f} {height:.0f}" role="img" '
+        f'<svg class="pin" viewBox="0 0 {width:.0f} {height:.0f}" role="img" '
         f'xmlns="http://www.w3.org/2000/svg" font-size="11" font-family="sans-serif">'
         f"<title>{escape(f'Profile of pin {shape.pin}')}</title>",
         '<defs><pattern id="held" width="6" height="6" patternUnits="userSpaceOnUse" '
@@ -76,13 +81,13 @@ def draw_pin(shape: PinShape, units: Units, zones: list[Zone] | None = None) -> 
     return "".join(parts) + "</svg>"
 
 
-def _pieces(shape: PinShape) -> list[_Piece]:
+def _pieces(shape: PinShape, across: float) -> list[_Piece]:
     length = sum(s[0] for s in shape.segments)
     widest = max((s[1] for s in shape.segments), default=0.0)
     if length <= 0.0 or widest <= 0.0:
         return []
-    scale = min((WIDTH - 2 * MARGIN) / length, TALLEST / widest)
-    x = 0.5 * (WIDTH - scale * length)
+    scale = min((across - 2 * MARGIN) / length, TALLEST / widest)
+    x = 0.5 * (across - scale * length)
     pieces = []
     for long, diameter, bore, label, kind in shape.segments:
         size = f"⌀{short(diameter)}" + (f" / {short(bore)}" if bore > 0.0 else "")

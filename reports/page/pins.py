@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from reports.data.decision import outcome
-from reports.data.results import PinResult, PinShape, ReactionTable, Results, Units
+from reports.data.results import PinResult, ReactionTable, Results, Units
 from reports.format.grid import Grid
 from reports.format.numbers import ratio
 from reports.page.joint import JointPart, joint_part
@@ -13,22 +13,25 @@ from reports.page.loads import loads_at
 from reports.page.second_opinion import OpinionPart, opinion_part
 from reports.page.viewer import PinView, pin_views
 from reports.tables.hand_checks import hand_check_table
+from reports.tables.margins import margins_grid
 from reports.tables.singular_zones import Zone, pin_zones, zone_table
+from reports.text.pin_sentence import drawing_caption, pin_sentence
 
 ZONE_NUMBERS = ("zone", "exponent")
 
 
 @dataclass(frozen=True)
 class PinCase:
-    """A pin in one case: result, outcome, unit of the drive position, singular zones, hand checks,
-    loads, contact with lugs, CalculiX's opinion, and our maximum over the published one.
+    """A pin in one case: result, outcome, what it is in a sentence, singular zones, hand checks,
+    margins of safety, loads, contact with lugs, CalculiX's opinion, our maximum over the published.
     """
 
     result: PinResult
     outcome: str
-    position_unit: str
+    sentence: str
     zones: Grid | None
     checks: Grid | None
+    margins: Grid | None
     loads: Grid | None
     joint: JointPart | None
     opinion: OpinionPart | None
@@ -37,25 +40,19 @@ class PinCase:
 
 @dataclass(frozen=True)
 class PinPart:
-    """One pin: anchor on the page, profile and drawing, cases, moving cases, and 3D views."""
+    """One pin: anchor on the page, drawing with its caption, cases, moving cases, 3D views."""
 
     pin: str
     anchor: str
-    shape: PinShape | None
+    caption: str
     drawing: str
     cases: tuple[PinCase, ...]
     moving: tuple[str, ...]
     views: list[PinView]
 
-    @property
-    def zoned(self) -> bool:
-        """Whether any case has singular zones."""
-        return any(case.zones for case in self.cases)
-
 
 def pin_parts(results: Results, drawings: dict[str, str]) -> list[PinPart]:
     """The pins in the order of the results, then those that were not solved."""
-    positions = {t.case: t.position_unit for t in results.reactions}
     shapes = {shape.pin: shape for shape in results.shapes}
     names = dict.fromkeys([p.pin for p in results.pins] + list(shapes))
     zones = {name: pin_zones(results, name) for name in names}
@@ -63,15 +60,18 @@ def pin_parts(results: Results, drawings: dict[str, str]) -> list[PinPart]:
         PinPart(
             pin=name,
             anchor=f"pin-{number}",
-            shape=shapes.get(name),
+            caption=drawing_caption(shapes[name], results.units, any(zones[name].values()))
+            if name in shapes
+            else "",
             drawing=drawings.get(name, ""),
             cases=tuple(
                 PinCase(
                     p,
                     outcome(p),
-                    positions.get(p.case) or results.units.length,
+                    pin_sentence(p, results.units),
                     _zones(zones[name][p.case], results.units),
                     Grid(*hand_check_table(p, results.units)) if p.hand_checks else None,
+                    margins_grid(results, p.pin, p.case),
                     loads_at(p, results.units),
                     joint_part(p, results.units),
                     opinion_part(p.second_opinion, results.units),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from base64 import b64encode
 from dataclasses import dataclass
 from math import inf
 from typing import Any
@@ -16,13 +15,15 @@ from reports.data.surface import HalfSection, LoadCourse, Surface, SurfaceCase
 from reports.format.camera import View
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering
+from reports.format.packed import packed
 from reports.format.ranges import error_words, factor_range
 from reports.format.words import verdict_words
 
 SECTORS = 72  # of a body of revolution
-WHOLE = 32767  # fields are integers up to this, scaled by the largest value at a point
+WHOLE = 32767  # loads are integers up to this, scaled by the largest
+FINE = 4095  # the same of stresses, scaled by the largest at a point; thinning leaves 8e-3 of it
 COARSE = 127  # the same of displacements, which are shown by nothing but the shape
-PARTS = 65535  # stresses on a section are integers up to this, at the maximum
+PARTS = 4095  # stresses on a section are integers up to this, at the maximum
 BENEATH = 0.999  # of the maximum; if the whole surface is below it, the maximum is inside
 
 
@@ -97,14 +98,14 @@ def _surface(surface: Surface) -> dict[str, Any]:
     longest = np.abs(moved).max(axis=(0, 1), initial=0.0)
     return {
         "sectors": SECTORS if surface.revolved else 1,
-        "points": _packed(surface.points, "<f4"),
-        "triangles": None if surface.revolved else _packed(surface.triangles, "<u4"),
+        "points": packed(surface.points, "<f4"),
+        "triangles": None if surface.revolved else packed(surface.triangles, "<u4"),
         "n": surface.n.tolist(),
         "even": [int(e) for e in surface.even],
-        "stress": _packed(np.rint(_parts(stress, each[:, None, None], WHOLE)), "<i2"),
-        "stress_scale": _packed(each / WHOLE, "<f4"),
-        "moved": _packed(np.rint(_parts(moved, longest, COARSE)), "<i1"),
-        "moved_scale": _packed(longest / COARSE, "<f4"),
+        "stress": packed(np.rint(_parts(stress, each[:, None, None], FINE)).T, "<i2"),
+        "stress_scale": packed(each / FINE, "<f4"),
+        "moved": packed(np.rint(_parts(moved, longest, COARSE)).T, "<i1"),
+        "moved_scale": packed(longest / COARSE, "<f4"),
     }
 
 
@@ -135,12 +136,12 @@ def _case(case: SurfaceCase, pin: PinResult, number: int, surface: Surface) -> d
         "beneath": on_surface < least,
         "zoned": bool(case.excluded.any() or len(case.zones)),
         "zones": case.zones.tolist(),
-        "excluded": None if surface.revolved else _packed(case.excluded, "u1"),
+        "excluded": None if surface.revolved else packed(case.excluded, "u1"),
         "pressure": _pressure(case),
         "loads": [_load(load) for load in case.loads],
         "section": None if case.section is None else _section(case.section),
         "turn": _turn(_box(surface), pin),
-        "amounts": _packed(np.rint(_parts(amounts, scale[:, None], WHOLE)), "<i2"),
+        "amounts": packed(np.rint(_parts(amounts, scale[:, None], WHOLE)).T, "<i2"),
         "amounts_scale": (scale / WHOLE).tolist(),
     }
 
@@ -159,7 +160,7 @@ def _load(load: LoadCourse) -> dict[str, Any]:
         "z": load.z,
         "radius": load.radius,
         "held": load.held,
-        "forces": _packed(np.rint(load.forces / scale), "<i2"),
+        "forces": packed(np.rint(load.forces / scale), "<i2"),
         "scale": scale,
     }
 
@@ -168,11 +169,11 @@ def _section(section: HalfSection) -> dict[str, Any]:
     largest = float(section.von_mises.max())
     return {
         "angle": section.angle,
-        "z": _packed(section.z, "<f4"),
-        "inner": _packed(section.inner, "<f4"),
-        "outer": _packed(section.outer, "<f4"),
-        "part": _packed(section.part, "<f4"),
-        "values": _packed(np.rint(_parts(section.von_mises, np.asarray(largest), PARTS)), "<u2"),
+        "z": packed(section.z, "<f4"),
+        "inner": packed(section.inner, "<f4"),
+        "outer": packed(section.outer, "<f4"),
+        "part": packed(section.part, "<f4"),
+        "values": packed(np.rint(_parts(section.von_mises, np.asarray(largest), PARTS)), "<u2"),
         "scale": largest / PARTS,
     }
 
@@ -184,8 +185,8 @@ def _pressure(case: SurfaceCase) -> dict[str, Any] | None:
         "sectors": case.pressure.shape[1],
         "first": case.first,
         "largest": float(case.pressure.max()),
-        "rings": _packed(case.rings, "<i2"),
-        "cells": _packed(case.pressure, "<f4"),
+        "rings": packed(case.rings, "<i2"),
+        "cells": packed(case.pressure, "<f4"),
     }
 
 
@@ -240,7 +241,3 @@ def _most(case: SurfaceCase, z: Floats, low: float, high: float) -> list[str]:
 def _parts(values: Floats, largest: Floats, whole: int) -> Floats:
     """Values scaled to `whole` at `largest`, not rounded."""
     return np.asarray(whole * values / np.where(largest > 0.0, largest, 1.0))
-
-
-def _packed(values: np.ndarray[Any, Any], kind: str) -> str:
-    return b64encode(np.ascontiguousarray(values, dtype=kind).tobytes()).decode("ascii")

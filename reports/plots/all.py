@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from reports.data.results import PinResult, ReactionTable, Results
 from reports.plots.checks import beam_plots, motion_plot
 from reports.plots.drive import drive_plot
+from reports.plots.drop import drop_plots
+from reports.plots.fatigue import collective_plot, history_plot
 from reports.plots.joint import joint_plot
 from reports.plots.landing import landing_plot
 from reports.plots.leg import leg_plots
@@ -16,6 +18,7 @@ from reports.plots.reactions import bars, reaction_plot
 from reports.plots.refinement import pin_refinement_plot, refinement_plot
 from reports.plots.spec import Plot
 from reports.plots.surface import surface_plot
+from reports.tables.fatigue import worst_points
 
 
 def all_plots(results: Results) -> dict[str, Plot]:
@@ -35,6 +38,8 @@ def _mechanics(results: Results) -> Iterator[Plot]:
     for drive in results.drive:
         if drive.time is not None:
             yield drive_plot(drive, units)
+    for drop in results.drops:
+        yield from drop_plots(drop, units)
     for motion in results.motion:
         yield linkage_plot(motion, units)
         yield from motion_plots(motion, units)
@@ -64,12 +69,23 @@ def _pins(results: Results) -> Iterator[Plot]:
     for pin in results.pins:
         if pin.joint is not None and pin.joint.bands:
             yield joint_plot(pin.pin, pin.case, pin.joint, units)
+    yield from _fatigue(results)
     found = {(p.pin, p.case): p for p in results.pins}
     shapes = {s.pin: s for s in results.shapes}
     for surface in results.surfaces:
         for shown in surface.cases if surface.revolved else ():
             row, shape = found[surface.pin, shown.case], shapes.get(surface.pin)
             yield surface_plot(surface, shown, row, shape, units)
+
+
+def _fatigue(results: Results) -> Iterator[Plot]:
+    """Of each pin's worst point."""
+    if results.fatigue is None:
+        return
+    histories = {(h.pin, h.point): h for h in results.histories}
+    for point in worst_points(results.fatigue):
+        yield history_plot(histories[point.pin, point.point], results.units)
+        yield collective_plot(point, results.fatigue.unit, results.units)
 
 
 def governing(results: Results, table: ReactionTable) -> dict[str, float]:

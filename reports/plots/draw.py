@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from reports.format.file_names import PNG, SVG
-from reports.plots.spec import Plot, still
+from reports.plots.spec import Plot, Spec, still
 from reports.plots.theme import on_paper
 
 VERSION = "6.4"  # of Vega-Lite
@@ -23,12 +23,18 @@ def draw(plots: Iterable[Plot], directory: Path) -> list[Path]:
     directory.mkdir(parents=True, exist_ok=True)
     paths = []
     for plot in plots:
-        spec = json.dumps({**still(plot.spec), "config": on_paper()})
-        svg = _numbered(vl_convert.vegalite_to_svg(spec, vl_version=VERSION))
+        drawn = svg({**plot.spec, "config": on_paper()})
         paths += [directory / f"{plot.name}{end}" for end in (SVG, PNG)]
-        paths[-2].write_text(svg, encoding="utf-8", newline="\n")
-        paths[-1].write_bytes(vl_convert.svg_to_png(svg, scale=SCALE))
+        paths[-2].write_text(drawn, encoding="utf-8", newline="\n")
+        paths[-1].write_bytes(vl_convert.svg_to_png(drawn, scale=SCALE))
     return paths
+
+
+def svg(spec: Spec) -> str:
+    """A specification with its configuration, drawn."""
+    import vl_convert
+
+    return _numbered(vl_convert.vegalite_to_svg(json.dumps(still(spec)), vl_version=VERSION))
 
 
 def _numbered(svg: str) -> str:

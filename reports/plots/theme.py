@@ -37,10 +37,10 @@ def style_sheet() -> str:
     return f":root {{ {' '.join(shades)} }}"
 
 
-def on_paper() -> dict[str, Any]:
+def on_paper(font: str = "DejaVu Sans, sans-serif") -> dict[str, Any]:
     """The configuration of plots that stand alone."""
     colours = {name: light for name, (light, _) in COLOURS.items()}
-    return {**_config(colours, "DejaVu Sans, sans-serif"), "background": colours["paper"]}
+    return {**_config(colours, font), "background": colours["paper"]}
 
 
 def on_page() -> dict[str, Any]:

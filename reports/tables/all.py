@@ -6,10 +6,13 @@ from collections.abc import Sequence
 
 from reports.data.results import Results
 from reports.tables.calculix import opinion_tables
+from reports.tables.drop import drop_table
+from reports.tables.fatigue import fatigue_tables
 from reports.tables.hand_checks import hand_check_rows
 from reports.tables.joint import joint_tables
 from reports.tables.landing import landing_table
 from reports.tables.linkage import linkage_tables
+from reports.tables.margins import arms_table, margins_table
 from reports.tables.motion import (
     beam_check_table,
     drive_table,
@@ -26,6 +29,7 @@ from reports.tables.table import Table
 # Long tables of the motion, seldom read in a spreadsheet, are left out of the workbook.
 CSV_ONLY = (
     "line_loads",
+    "stress_history",
     "second_opinion_loads",
     "reactions_pin_axes",
     "motion",
@@ -45,8 +49,14 @@ def sheets(tables: Sequence[Table]) -> list[Table]:
 def stress_tables(results: Results) -> list[Table]:
     """Tables that need stresses, without empty ones; safety factors first."""
     check = results.beam_check
-    rest = [hand_check_rows(results), zones_table(results), landing_table(results)]
-    rest += [*joint_tables(results), *opinion_tables(results)]
+    rest = [
+        margins_table(results),
+        arms_table(results),
+        hand_check_rows(results),
+        zones_table(results),
+        landing_table(results),
+    ]
+    rest += [*joint_tables(results), *opinion_tables(results), *fatigue_tables(results)]
     rest += [] if check is None else [beam_check_table(check)]
     return [safety_factors_table(results), *(table for table in rest if table.rows)]
 
@@ -57,6 +67,8 @@ def load_tables(results: Results) -> list[Table]:
     tables += [reactions_table(results), reactions_pin_axes_table(results), drive_table(results)]
     if results.motion_check is not None:
         tables.append(motion_check_table(results.motion_check))
+    if results.drops:
+        tables.append(drop_table(results))
     if results.legs:
         tables.append(leg_table(results.legs))
     # All tables of a linkage, so that every run has the same files.

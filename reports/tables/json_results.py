@@ -8,10 +8,19 @@ from pathlib import Path
 from typing import Any
 
 from reports.data.decision import outcome
-from reports.data.results import HandCheck, PinResult, ReactionTable, Results, SingularZone
+from reports.data.results import (
+    DropRecord,
+    HandCheck,
+    PinResult,
+    ReactionTable,
+    Results,
+    SingularZone,
+)
 from reports.format.numbers import finite
 from reports.tables.calculix import opinion_json
+from reports.tables.fatigue import fatigue_json
 from reports.tables.joint import joint_json
+from reports.tables.margins import margins_json
 
 SCHEMA = "pinstress-results/1"
 
@@ -28,8 +37,11 @@ def to_json(results: Results) -> dict[str, Any]:
         "tolerance": finite(results.tolerance),
         "versions": {name: results.versions[name] for name in sorted(results.versions)},
         "pins": [_pin(pin) for pin in results.pins],
+        "margins": margins_json(results),
         "changes": [asdict(change) for change in results.changes],
+        "fatigue": fatigue_json(results.fatigue),
         "loads": [_loads(results, table) for table in results.reactions],
+        "drops": [_drop(d) for d in results.drops],
         "provenance": [asdict(entry) for entry in results.provenance],
     }
 
@@ -74,6 +86,20 @@ def _loads(results: Results, table: ReactionTable) -> dict[str, Any]:
         "unresolved": [[finite(low), finite(high)] for low, high in table.unresolved],
         "power_violation": finite(moved.ledger.violation) if moved else None,
         "largest_condition": finite(moved.worst_condition[0]) if moved else None,
+    }
+
+
+def _drop(d: DropRecord) -> dict[str, Any]:
+    single = ("velocity", "weight", "lift", "load_factor", "imbalance", "impulse_time")
+    more = ("impulse_force", "equal_impulse_time", "spin_up")
+    return {
+        "case": d.case,
+        "clause": d.clause,
+        **{name: finite(getattr(d, name)) for name in (*single, *more)},
+        "peaks": {
+            name: {"value": finite(peak.value), "time": finite(peak.time)}
+            for name, peak in d.peaks.items()
+        },
     }
 
 

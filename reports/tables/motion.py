@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import islice
+from typing import overload
 
 import numpy as np
 
@@ -50,18 +52,16 @@ MOTION = (
 
 def reactions_table(results: Results) -> Table:
     """The forces and moments on the pins, world axes: a row per instant and connection."""
-    rows = (row for table in results.reactions for row in _instants(table))
-    return Table.of("reactions", REACTIONS, rows)
+    return Table("reactions", REACTIONS, Instants(results.reactions))
 
 
 def reactions_pin_axes_table(results: Results) -> Table:
     """The same in the axes of each pin, which turn with the body that carries it."""
-    turned = (
+    turned = tuple(
         replace(t, forces=_in_pin_axes(t, t.forces), moments=_in_pin_axes(t, t.moments))
         for t in results.reactions
     )
-    rows = (row for table in turned for row in _instants(table))
-    return Table.of("reactions_pin_axes", REACTIONS, rows)
+    return Table("reactions_pin_axes", REACTIONS, Instants(turned))
 
 
 def _in_pin_axes(table: ReactionTable, vectors: Floats) -> Floats:
@@ -71,11 +71,36 @@ def _in_pin_axes(table: ReactionTable, vectors: Floats) -> Floats:
     return np.stack([c * x + s * y, c * y - s * x, z], axis=2)
 
 
-def _instants(table: ReactionTable) -> Iterator[list[Cell]]:
-    for t in range(len(table.forces)):
-        time = None if table.times is None else float(table.times[t])
-        for c, (connection, body) in enumerate(zip(table.connections, table.bodies, strict=True)):
-            yield [table.case, time, connection, body, *table.forces[t, c], *table.moments[t, c]]
+class Instants(Sequence[Sequence[Cell]]):
+    """A row per instant and connection of some tables, made one by one: there may be
+    millions.
+    """
+
+    def __init__(self, tables: Sequence[ReactionTable]) -> None:
+        self._tables = tables
+
+    def __len__(self) -> int:
+        return sum(len(t.forces) * len(t.connections) for t in self._tables)
+
+    @overload
+    def __getitem__(self, k: int) -> Sequence[Cell]: ...
+
+    @overload
+    def __getitem__(self, k: slice) -> list[Sequence[Cell]]: ...
+
+    def __getitem__(self, k: int | slice) -> Sequence[Cell] | list[Sequence[Cell]]:
+        if isinstance(k, slice):
+            return list(islice(self, *k.indices(len(self))))
+        return next(islice(self, range(len(self))[k], None))
+
+    def __iter__(self) -> Iterator[Sequence[Cell]]:
+        for table in self._tables:
+            names = list(zip(table.connections, table.bodies, strict=True))
+            values = np.concatenate([table.forces, table.moments], axis=2)
+            for t, instant in enumerate(values):
+                time = None if table.times is None else float(table.times[t])
+                for name, parts in zip(names, instant.tolist(), strict=True):
+                    yield [table.case, time, *name, *parts]
 
 
 def drive_table(results: Results) -> Table:

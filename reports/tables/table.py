@@ -8,6 +8,9 @@ from pathlib import Path
 
 from reports.data.results import Units
 from reports.format.csv import Cell, write_csv
+from reports.format.parquet import write_parquet
+
+MOST_IN_CSV = 1_000_000  # rows; a sheet of a spreadsheet has 1,048,576
 
 # What columns are measured in, by their names; tables name the exceptions.
 DIMENSIONS = {
@@ -28,19 +31,52 @@ DIMENSIONS = {
     ),
     **dict.fromkeys(("joint_low", "joint_high", "largest_pressure"), "stress"),
     **dict.fromkeys(("max_von_mises_same_mesh", "max_von_mises_calculix"), "stress"),
+    **dict.fromkeys(("moment_even", "moment_concentrated", "moment_joint"), "moment"),
     **dict.fromkeys(("bending_moment", "bending_moment_calculix"), "moment"),
     **dict.fromkeys(("clearance", "outer_diameter", "length", "z_start", "z_end"), "length"),
     "contact_angle": "degrees",
     "curvature": "curvature",
     **dict.fromkeys(("line_load", "line_load_calculix"), "force per length"),
     **dict.fromkeys(("stress", "strength", "beam_axial_stress"), "stress"),
+    **dict.fromkeys(("von_mises", "signed", "amplitude", "mean_stress"), "stress"),
     **dict.fromkeys(("fea_axial_stress", "fea_axial_stress_axis_load"), "stress"),
     **dict.fromkeys(("power", "power_drives", "power_gravity", "power_applied"), "power"),
     **dict.fromkeys(("power_friction", "kinetic_rate"), "power"),
     **dict.fromkeys(("angle_deg", "degrees"), "degrees"),
+    **dict.fromkeys(("stroke", "tyre_deflection"), "length"),
+    **dict.fromkeys(("vertical", "drag", "strut_force", "leg_drag"), "force"),
+    "sprung_velocity": "velocity",
+    **dict.fromkeys(
+        (
+            *("spring_energy", "tyre_energy", "bending_energy", "oil_energy", "friction_energy"),
+            *("stop_energy", "tyre_damping_energy", "slip_energy", "lift_energy"),
+            "runway_energy",
+        ),
+        "moment",
+    ),
     "omega": "rate of turn",
     "alpha": "rate of rate of turn",
 }
+
+
+def unit_name(dimension: str, units: Units) -> str:
+    """Name of the unit of a dimension; empty where there is none."""
+    names = {
+        "time": units.time,
+        "force": units.force,
+        "length": units.length,
+        "stress": units.stress,
+        "moment": f"{units.force} {units.length}",
+        "velocity": f"{units.length}/{units.time}",
+        "acceleration": f"{units.length}/{units.time}²",
+        "power": f"{units.force} {units.length}/{units.time}",
+        "force per length": f"{units.force}/{units.length}",
+        "curvature": f"1/{units.length}",
+        "degrees": "°",
+        "rate of turn": f"rad/{units.time}",
+        "rate of rate of turn": f"rad/{units.time}²",
+    }
+    return names.get(dimension, "")
 
 
 @dataclass(frozen=True)
@@ -52,7 +88,7 @@ class Table:
 
     name: str
     columns: tuple[str, ...]
-    rows: tuple[Sequence[Cell], ...]
+    rows: Sequence[Sequence[Cell]]
     mixed: tuple[str, ...] = ()
 
     @staticmethod
@@ -66,23 +102,11 @@ class Table:
         """Of a column's numbers; empty for texts, ratios, and what differs from row to row."""
         if column in self.mixed:
             return ""
-        names = {
-            "time": units.time,
-            "force": units.force,
-            "length": units.length,
-            "stress": units.stress,
-            "moment": f"{units.force} {units.length}",
-            "velocity": f"{units.length}/{units.time}",
-            "acceleration": f"{units.length}/{units.time}²",
-            "power": f"{units.force} {units.length}/{units.time}",
-            "force per length": f"{units.force}/{units.length}",
-            "curvature": f"1/{units.length}",
-            "degrees": "°",
-            "rate of turn": f"rad/{units.time}",
-            "rate of rate of turn": f"rad/{units.time}²",
-        }
-        return names.get(DIMENSIONS.get(column, ""), "")
+        return unit_name(DIMENSIONS.get(column, ""), units)
 
-    def write_csv(self, directory: Path) -> None:
-        """Write it into a folder."""
-        write_csv(directory / f"{self.name}.csv", self.columns, self.rows)
+    def write(self, directory: Path) -> Path:
+        """Write it into a folder: as CSV, or as Parquet where spreadsheets could not open it."""
+        large = len(self.rows) > MOST_IN_CSV
+        path = directory / f"{self.name}.{'parquet' if large else 'csv'}"
+        (write_parquet if large else write_csv)(path, self.columns, self.rows)
+        return path

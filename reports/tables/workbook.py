@@ -27,8 +27,12 @@ LARGE, SMALL = 1e7, 1e-3  # from and below which numbers are shown with a power 
 FORMATS = {-3: "0.000000", -2: "0.00000", -1: "0.0000", 0: "0.000", 1: "#,##0.00", 2: "#,##0.0"}
 
 
-def write_workbook(results: Results, tables: Sequence[Table], path: Path) -> None:
-    """Write tables, numbers as numbers, and a first sheet that says what they are."""
+def write_workbook(
+    results: Results, tables: Sequence[Table], path: Path, left_out: Sequence[str] = ()
+) -> None:
+    """Write tables, numbers as numbers, and a first sheet that says what they are. left_out: names
+    of tables that are CSV files only.
+    """
     import xlsxwriter
 
     # Texts stay texts, whatever they begin with; a quote keeps them so when they are edited.
@@ -42,13 +46,19 @@ def write_workbook(results: Results, tables: Sequence[Table], path: Path) -> Non
     with xlsxwriter.Workbook(content, safe) as book:
         book.set_properties({"title": results.title, "created": LONG_AGO})
         bold = book.add_format({"bold": True, "text_wrap": True, "valign": "top", "bottom": 1})
-        _about(book, results, tables, bold)
+        _about(book, results, [table.name for table in tables], left_out, bold)
         for table in tables:
             _sheet(book, table, results, bold)
     path.write_bytes(content.getvalue())
 
 
-def _about(book: xlsxwriter.Workbook, results: Results, tables: Sequence[Table], bold: Any) -> None:
+def _about(
+    book: xlsxwriter.Workbook,
+    results: Results,
+    sheets: Sequence[str],
+    left_out: Sequence[str],
+    bold: Any,
+) -> None:
     sheet = book.add_worksheet("about")
     wrap = book.add_format({"text_wrap": True, "valign": "top"})
     u = results.units
@@ -59,8 +69,11 @@ def _about(book: xlsxwriter.Workbook, results: Results, tables: Sequence[Table],
         ("made by", ", ".join(f"{k} {v}" for k, v in sorted(results.versions.items()))),
         ("how to read", READING),
         *MEANING.items(),
-        ("sheets", ", ".join(table.name for table in tables) + "; all tables are CSV files, too"),
+        ("sheets", f"{', '.join(sheets)}; all tables are CSV files, too"),
     ]
+    if left_out:
+        files = ", ".join(f"{name}.csv" for name in left_out)
+        lines.append(("not here", f"long tables, which are only in the same folder: {files}"))
     sheet.set_column(0, 0, 14)
     sheet.set_column(1, 1, 100)
     for row, (name, text) in enumerate(lines):

@@ -2,13 +2,13 @@
 
 const plots = [...document.querySelectorAll("figure.plot")];
 
+let libraries = null; // until they are inflated; one script
+
 const startLibraries = () => {
   if (window.vega) return;
-  for (const text of document.querySelectorAll("script.library")) {
-    const script = document.createElement("script");
-    script.text = text.textContent;
-    document.head.append(script);
-  }
+  const script = document.createElement("script");
+  script.text = libraries;
+  document.head.append(script);
 };
 
 const specOf = (figure) => JSON.parse(figure.querySelector("script").textContent);
@@ -102,6 +102,13 @@ const nearby = new IntersectionObserver((seen) => {
     drawPlot(target);
   }
 }, { rootMargin: "400px" });
-plots.forEach((figure) => nearby.observe(figure));
+if (plots.length && !old) {
+  inflated(document.getElementById("libraries").textContent).then((bytes) => {
+    libraries = new TextDecoder().decode(bytes);
+    plots.forEach((figure) => nearby.observe(figure));
+  });
+}
 // On paper all that is open is drawn.
-addEventListener("beforeprint", () => plots.filter((figure) => figure.offsetParent).forEach(drawPlot));
+addEventListener("beforeprint", () => {
+  if (libraries) plots.filter((figure) => figure.offsetParent).forEach(drawPlot);
+});

@@ -1,5 +1,13 @@
 // Table sorting, folded parts, light and dark colours, animation frames.
 
+// Bytes of a compressed text (reports/format/packed.py).
+const inflated = async (text) => {
+  const stream = new Blob([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))]).stream();
+  return new Uint8Array(await new Response(stream.pipeThrough(new DecompressionStream("deflate"))).arrayBuffer());
+};
+const old = !("DecompressionStream" in window);
+document.getElementById("old").hidden = !old;
+
 const sortable = (table) => {
   const heads = [...table.tHead.rows[0].cells];
   const key = (row, k) => row.cells[k].dataset.value ?? row.cells[k].textContent.trim();
@@ -69,7 +77,7 @@ const framed = (frame) => {
   shaded();
   new ResizeObserver(() => fit(frame)).observe(frame.contentDocument.documentElement);
 };
-for (const frame of frames) {
+for (const frame of old ? [] : frames) {
   frame.addEventListener("load", () => framed(frame));
-  if (frame.contentDocument?.readyState === "complete") framed(frame);
+  inflated(frame.dataset.packed).then((bytes) => { frame.srcdoc = new TextDecoder().decode(bytes); });
 }

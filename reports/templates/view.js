@@ -35,8 +35,8 @@ const facing = (direction) => {
 };
 const NONE = [0, 0, 0], RED = "#d01c1c", NOWHERE = -1e30;
 
-const startView = (root, paint) => {
-  const data = JSON.parse(root.querySelector("script").textContent), { units, strength } = data;
+const startView = (root, paint, data) => {
+  const { units, strength } = data;
   const surfaces = data.surfaces.map(surfaceOf), cases = data.cases.map(caseOf);
   const one = (name) => root.querySelector(`[data-is="${name}"]`);
   const canvas = root.querySelector("canvas"), flat = canvas.getContext("2d");
@@ -394,19 +394,27 @@ const startView = (root, paint) => {
 
 const startViews = () => {
   const views = [...document.querySelectorAll("[data-view]")];
-  const paint = views.length ? painter() : null;
+  const paint = views.length && !old ? painter() : null;
   if (!paint) {
     document.querySelectorAll("[data-unseen]").forEach((text) => { text.hidden = false; });
     return;
   }
   document.documentElement.classList.add("live");
-  const waiting = new Set(views), begin = (view) => {
-    if (waiting.delete(view)) startView(view, paint);
+  const waiting = new Map(), begin = (view) => {
+    const data = waiting.get(view);
+    if (waiting.delete(view)) startView(view, paint, data);
   };
   const watcher = new IntersectionObserver((seen) => {
     for (const { isIntersecting, target } of seen) if (isIntersecting) begin(target);
   }, { rootMargin: "300px" });
-  views.forEach((view) => watcher.observe(view));
-  addEventListener("beforeprint", () => [...waiting].forEach(begin));
+  // One after another: a page of many pins stays quick, and can be printed at any time.
+  const unpackAll = async () => {
+    for (const view of views) {
+      waiting.set(view, await unpacked(JSON.parse(view.querySelector("script").textContent)));
+      watcher.observe(view);
+    }
+  };
+  unpackAll();
+  addEventListener("beforeprint", () => [...waiting.keys()].forEach(begin));
 };
 startViews();

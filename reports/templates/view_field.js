@@ -1,35 +1,46 @@
 // Superposition of surfaces' unit fields at an instant. reports/page/viewer.py packs the arrays.
 
-const unpacked = (Type, text) => new Type(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
+const KINDS = { i1: Int8Array, i2: Int16Array, u1: Uint8Array, u2: Uint16Array, u4: Uint32Array, f4: Float32Array };
 
-// Integers times a scale per point.
-const scaled = (whole, scale) => {
+// reports/format/packed.py: bytes by their place in a number, and differences of integers.
+const numbers = (Type, bytes) => {
+  const size = Type.BYTES_PER_ELEMENT, count = bytes.length / size, out = new Uint8Array(bytes.length);
+  for (let b = 0; b < size; b++) for (let i = 0; i < count; i++) out[size * i + b] = bytes[b * count + i];
+  const found = new Type(out.buffer);
+  if (Type !== Float32Array) for (let i = 1; i < count; i++) found[i] += found[i - 1];
+  return found;
+};
+
+// Data with all arrays in it unpacked.
+const unpacked = async (part) => {
+  if (part?.packed) return numbers(KINDS[part.kind], await inflated(part.packed));
+  if (Array.isArray(part)) return typeof part[0] === "object" ? Promise.all(part.map(unpacked)) : part;
+  if (!part || typeof part !== "object") return part;
+  return Object.fromEntries(await Promise.all(Object.entries(part).map(async ([name, value]) => [name, await unpacked(value)])));
+};
+
+// Integers times a scale per first index, or per last one.
+const byFirst = (whole, scale) => {
   const each = whole.length / scale.length;
   return Float32Array.from(whole, (x, i) => x * scale[Math.floor(i / each)]);
 };
+const byLast = (whole, scale) => Float32Array.from(whole, (x, i) => x * scale[i % scale.length]);
 
-// Integers times a scale per unit load, the last index but for `after` more.
-const loadwise = (whole, scale, after = 1) => Float32Array.from(whole, (x, i) => x * scale[Math.floor(i / after) % scale.length]);
+// stress, moved: by unit load, component, point.
+const surfaceOf = (data) => ({
+  points: data.points, count: data.points.length / 3, around: data.sectors, K: data.n.length, n: data.n, even: data.even,
+  waves: [...new Set(data.n)],
+  stress: byLast(data.stress, data.stress_scale),
+  moved: byFirst(data.moved, data.moved_scale),
+  triangles: data.triangles,
+});
 
-const surfaceOf = (data) => {
-  const points = unpacked(Float32Array, data.points);
-  return {
-    points, count: points.length / 3, around: data.sectors, K: data.n.length, n: data.n, even: data.even,
-    waves: [...new Set(data.n)],
-    stress: scaled(unpacked(Int16Array, data.stress), unpacked(Float32Array, data.stress_scale)),
-    moved: loadwise(unpacked(Int8Array, data.moved), unpacked(Float32Array, data.moved_scale)),
-    triangles: data.triangles && unpacked(Uint32Array, data.triangles),
-  };
-};
-
-// start: the angle of the maximum, at which the first meridian is drawn.
+// start: the angle of the maximum, at which the first meridian is drawn. amounts: by phase, unit load, instant.
 const caseOf = (data) => ({
   ...data,
   start: Math.atan2(data.location[1], data.location[0]),
-  amounts: loadwise(unpacked(Int16Array, data.amounts), data.amounts_scale, 2),
-  excluded: data.excluded && unpacked(Uint8Array, data.excluded),
-  pressure: data.pressure && { ...data.pressure, rings: unpacked(Int16Array, data.pressure.rings), cells: unpacked(Float32Array, data.pressure.cells) },
-  loads: data.loads.map((load) => ({ ...load, forces: Float32Array.from(unpacked(Int16Array, load.forces), (x) => x * load.scale) })),
+  amounts: byFirst(data.amounts, [...data.amounts_scale, ...data.amounts_scale]),
+  loads: data.loads.map((load) => ({ ...load, forces: Float32Array.from(load.forces, (x) => x * load.scale) })),
   section: data.section && sectionOf(data.section),
 });
 
@@ -86,8 +97,7 @@ const normals = ({ places: x, triangles }) => {
 
 // The plane through the axis and the maximum: vertices with their stress, both halves.
 const sectionOf = (data) => {
-  const [z, inner, outer, part] = ["z", "inner", "outer", "part"].map((name) => unpacked(Float32Array, data[name]));
-  const x = Math.cos(data.angle), y = Math.sin(data.angle), places = [];
+  const { z, inner, outer, part } = data, x = Math.cos(data.angle), y = Math.sin(data.angle), places = [];
   for (const side of [1, -1]) {
     z.forEach((height, i) => part.forEach((along) => {
       const r = side * (inner[i] + along * (outer[i] - inner[i]));
@@ -99,7 +109,7 @@ const sectionOf = (data) => {
   all.set(half.map((v) => v + z.length * part.length), half.length);
   return {
     places: new Float32Array(places), triangles: all, normals: new Float32Array(places.length),
-    value: Float32Array.from(unpacked(Uint16Array, data.values), (v) => v * data.scale),
+    value: Float32Array.from(data.values, (v) => v * data.scale),
     away: [y, -x, 0], // from the half that is kept
   };
 };
@@ -116,7 +126,8 @@ const pressing = (surface, { start, pressure: { sectors, first, rings, cells } }
 // Von Mises stress and displacement (x, y, z) of all vertices at an instant of a case.
 const superposed = (surface, chosen, instant) => {
   const { count, around, K, n, waves, even } = surface, turns = angles(surface, surface.triangles ? 0 : chosen.start);
-  const amount = chosen.amounts.subarray(2 * K * instant, 2 * K * (instant + 1));
+  const instants = chosen.amounts.length / (2 * K), amount = (phase, k) => chosen.amounts[(phase * K + k) * instants + instant];
+  const first = surface.n.map((_, k) => amount(0, k)), second = surface.n.map((_, k) => amount(1, k));
   const cos = waves.map((wave) => turns.map((turn) => Math.cos(wave * turn))), sin = waves.map((wave) => turns.map((turn) => Math.sin(wave * turn)));
   const value = new Float32Array(count * around), moved = new Float32Array(3 * count * around);
   const back = new Float64Array(8), forth = new Float64Array(8), eight = new Float64Array(8 * around);
@@ -128,9 +139,9 @@ const superposed = (surface, chosen, instant) => {
       for (let k = 0; k < K; k++) {
         if (n[k] !== wave) continue;
         for (let i = 0; i < 8; i++) {
-          const unit = i < 5 ? surface.stress[(5 * p + i) * K + k] : surface.moved[(3 * p + i - 5) * K + k];
-          back[i] += unit * amount[2 * k];
-          forth[i] += unit * amount[2 * k + 1];
+          const unit = i < 5 ? surface.stress[(5 * k + i) * count + p] : surface.moved[(3 * k + i - 5) * count + p];
+          back[i] += unit * first[k];
+          forth[i] += unit * second[k];
         }
       }
       for (let j = 0; j < around; j++) {

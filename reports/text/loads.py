@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from reports.data.results import ReactionTable, Results
 from reports.format.numbers import DASH, engineering, short
+from reports.tables.drop import drop_words
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -88,6 +89,9 @@ def remarks(results: Results) -> list[str]:
     for case in results.reactions:
         if case.note:
             lines.append(f"{case.case}: {case.note}")
+        for drop in results.drops:
+            if drop.case == case.case:
+                lines += [f"{case.case}: {words}" for words in drop_words(drop, results)]
         if case.unresolved:
             lines.append(f"{case.case}: {unresolved(case, results.units.time)}")
     return lines

@@ -13,6 +13,8 @@ from reports.format.numbers import DASH, engineering, short
 from reports.format.ranges import factor_range, joint_range, margin_range, utilisation_range
 from reports.format.words import headline, result_words
 from reports.tables.changes import change_notes, changes_grid, sensitivities_grid
+from reports.tables.fatigue import fatigue_sentence
+from reports.tables.margins import not_made_briefly, worst_grid
 from reports.tables.published import published_maxima
 from reports.text.fitted_table import Column, fitted_table
 from reports.text.summary import summary
@@ -35,6 +37,13 @@ def print_safety_factors(results: Results, console: Console, study: str = "") ->
         console.print(Text(headline(results), "bold"))
         console.print(fitted_table(_columns(results), console.width))
     console.print(Text(summary(results)))
+    if grid := worst_grid(results):
+        console.print(Text("Margins of safety, the governing check of each pin", "bold"))
+        console.print(fitted_table(_of_grid(grid), console.width))
+        if missing := not_made_briefly(results):
+            console.print(Text(missing))
+    if results.fatigue:
+        console.print(Text(fatigue_sentence(results.fatigue)))
     if results.changes:
         _print_changes(results, console, study or results.study)
     if grid := published_maxima(results):

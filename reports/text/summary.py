@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from reports.data.decision import BELOW, FAILS, NOT_DECIDED, SAFE, YIELDS, outcome
+from reports.data.governing import governing
 from reports.data.results import PinResult, Results
 from reports.format.numbers import short
 from reports.format.words import BEYOND, undecided_because
@@ -12,7 +13,7 @@ def summary(results: Results) -> str:
     """How many pins are safe, which are not, and the rows without a maximum."""
     if not results.pins:
         return "No pin was solved."
-    ways = (_against_required, _over_joints, _left_out, _yielding, _unknown)
+    ways = (_against_required, _over_joints, _left_out, _yielding, _negative, _unknown)
     return " ".join(part for part in (way(results) for way in ways) if part)
 
 
@@ -81,6 +82,11 @@ def _yielding(results: Results) -> str:
     if not pins:
         return ""
     return f"{BEYOND.capitalize()}, where linear elasticity is not valid: {_names(pins)}."
+
+
+def _negative(results: Results) -> str:
+    rows = [f"{m.pin} ({m.case})" if m.case else m.pin for m in governing(results) if m.used > 1.0]
+    return f"Negative margins of safety: {', '.join(rows)}." if rows else ""
 
 
 def _unknown(results: Results) -> str:

@@ -14,9 +14,11 @@ from tests.support.browser_page import errors, opened, part, pixels, slide, view
 pytestmark = pytest.mark.browser
 
 LARGEST = """
-const data = JSON.parse(arguments[0].querySelector("script").textContent);
-const chosen = caseOf(data.cases[0]);
-return Math.max(...pressing(surfaceOf(data.surfaces[0]), chosen));
+const found = unpacked(JSON.parse(arguments[0].querySelector("script").textContent));
+return found.then((data) => {
+  const chosen = caseOf(data.cases[0]);
+  return Math.max(...pressing(surfaceOf(data.surfaces[0]), chosen));
+});
 """
 
 

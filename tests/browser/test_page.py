@@ -135,6 +135,7 @@ def test_animations_are_inside(page: Any) -> None:
     frames = page.find_elements("css selector", "iframe")
     assert len(frames) == 2
     page.execute_script("arguments[0].scrollIntoView();", frames[0])
+    wait(page, lambda: frames[0].get_attribute("srcdoc"))
     page.switch_to.frame(frames[0])
     try:
         wait(page, lambda: page.find_element("css selector", "#play").is_displayed())

@@ -27,8 +27,8 @@ pytestmark = pytest.mark.browser
 
 # Largest stress of all vertices that are not excluded, at some instants of every case of a view.
 VERTICES = """
-const data = JSON.parse(arguments[0].querySelector("script").textContent);
-return data.cases.map(caseOf).map((c) => {
+const found = unpacked(JSON.parse(arguments[0].querySelector("script").textContent));
+return found.then((data) => data.cases.map(caseOf).map((c) => {
   const surface = surfaceOf(data.surfaces[c.surface]), { places } = meshOf(surface, c);
   const last = c.maxima.length - 1, some = new Set([0, last >> 2, last >> 1, last, c.instant]);
   return { case: c.name, beneath: c.beneath, instant: c.instant, at: [...some].map((k) => {
@@ -41,7 +41,7 @@ return data.cases.map(caseOf).map((c) => {
     });
     return [k, most, c.maxima[k]];
   }) };
-});
+}));
 """
 
 

@@ -28,8 +28,10 @@ PLUMBING = {  # without any rule of the physics, and not named on the page
     "fea/checks/records.py",
     "fea/core/cgroup.py",
     "fea/core/sparsity.py",
+    "fea/fatigue/records.py",
     "fea/harmonic/revolve.py",
     "fea/joint/records.py",
+    "fea/plastic/records.py",
     "fea/single_joint.py",
     "fea/solid/evaluate.py",
     "fea/surface_fields.py",
@@ -45,6 +47,7 @@ PLUMBING = {  # without any rule of the physics, and not named on the page
     "geometry/meshing.py",
     "loads/coded.py",
     "loads/tables/csv_table.py",
+    "loads/tables/force_table.py",
     "loads/tables/regular_file.py",
 }
 

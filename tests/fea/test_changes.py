@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from fea.core.material import Material
-from fea.joint.lugs.changes import Change, changes
+from fea.joint.lugs.changes import JointChange, changes
 from fea.joint.lugs.lug import Lug, LugRange
 from geometry import ArgumentError, Pin, Segment
 
@@ -18,7 +18,7 @@ TIGHT = Lug("L", 0.05, STEEL, tilt=math.inf)
 LOOSE = Lug("M", 0.05, STEEL, clearance=1e-4, tilt=1e5)
 
 
-def by_name(lugs: tuple[Lug, ...]) -> dict[tuple[str, str], Change]:
+def by_name(lugs: tuple[Lug, ...]) -> dict[tuple[str, str], JointChange]:
     return {(change.what, change.value): change for change in changes(PIN, lugs)}
 
 

@@ -53,7 +53,7 @@ def resolved_turn(samples: int, *loads: Load) -> OverTime:
     def solve(times: Floats) -> Dynamics:
         return motion_reactions("x", course.at(times), loads)
 
-    return over_time(course, solve, np.linspace(0.0, 1.0, samples))
+    return over_time(course, solve, solve(np.linspace(0.0, 1.0, samples)))
 
 
 def test_the_monotone_cubic_is_that_of_scipy() -> None:

@@ -45,7 +45,7 @@ def course_of(
         return motion_reactions("x", course.at(times), applied)
 
     found = solve(np.linspace(0.0, last, samples))
-    return found, over_time(course, solve, found.motion.times)
+    return found, over_time(course, solve, found)
 
 
 @cache

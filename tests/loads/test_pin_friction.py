@@ -157,7 +157,7 @@ def test_peaks_where_a_pin_turns_back() -> None:
     def solve(times: Floats) -> Dynamics:
         return motion_reactions("x", course.at(times), [])
 
-    few, many = (over_time(course, solve, np.linspace(0.0, 1.0, n)) for n in (5, 800))
+    few, many = (over_time(course, solve, solve(np.linspace(0.0, 1.0, n))) for n in (5, 800))
     assert len(few.corners) == 2
     assert len(few.peaks.unresolved) == 0
     for ours, theirs in zip(few.drives, many.drives, strict=True):

@@ -5,24 +5,28 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
-from loads import TableError, given_reactions, impulse_force, read_reactions
+from loads import Layout, Reactions, TableError, given_reactions, impulse_force, read_reactions
 from tests.support.errors import raises
 
 
-def read(tmp_path: Path, text: str) -> object:
+def unit(written: str, dimension: str) -> float:
+    """Tables are in 2 N and 3 N m unless they say otherwise."""
+    return {"kN": 1e3, "ms": 1e-3}.get(written) or {"force": 2.0, "moment": 3.0}.get(dimension, 1.0)
+
+
+def read(tmp_path: Path, text: str, **layout: Any) -> Reactions:
     path = tmp_path / "table.csv"
     path.write_text(text)
-    return read_reactions("case", path, 2.0, 3.0, 1.0, {"B", "C"})
+    return read_reactions(path, Layout("case", **layout), unit, {"B", "C"})
 
 
 def test_a_sweep(tmp_path: Path) -> None:
-    path = tmp_path / "table.csv"
-    path.write_text("connection, fx, fy, time\nB,1,2,0.5\nC,3,4,0.5\nB,5,6,0\nC,7,8,0\n")
-    found = read_reactions("case", path, 2.0, 3.0, 1.0, {"B", "C"})
+    found = read(tmp_path, "connection, fx, fy, time\nB,1,2,0.5\nC,3,4,0.5\nB,5,6,0\nC,7,8,0\n")
     assert found.times is not None
     assert found.times.tolist() == [0.0, 0.5]
     assert found.force("B").tolist() == [[10.0, 12.0, 0.0], [2.0, 4.0, 0.0]]
@@ -32,11 +36,10 @@ def test_a_sweep(tmp_path: Path) -> None:
 
 def test_a_table_with_moments(tmp_path: Path) -> None:
     """In the table's own units; columns in any order, those that are absent are zero."""
-    path = tmp_path / "table.csv"
-    path.write_text(
-        "connection,mz,fx,fy,mx,time\nB,1,2,3,4,0\nC,5,6,7,8,0\nB,0,0,0,9,1\nC,0,0,0,0,1\n"
+    found = read(
+        tmp_path,
+        "connection,mz,fx,fy,mx,time\nB,1,2,3,4,0\nC,5,6,7,8,0\nB,0,0,0,9,1\nC,0,0,0,0,1\n",
     )
-    found = read_reactions("case", path, 2.0, 3.0, 1.0, {"B", "C"})
     assert found.connections == ("B", "C")
     assert found.forces[0].tolist() == [[4.0, 6.0, 0.0], [12.0, 14.0, 0.0]]
     assert found.moments.tolist() == [
@@ -62,9 +65,12 @@ def test_a_table_with_moments(tmp_path: Path) -> None:
         ("connection,fx,fy,MZ\nB,1,2,3\n", "unknown-column", "'MZ'"),
         ("connection,fx,fy\nB,1,1e99\n", "too-large", "line 2: fy = 1e99"),
         ("connection,fx,fy\nB,1," + "9" * 200_000, "not-csv", "table.csv"),
-        ("connection;fx;fy\nB;1;2\n", "wrong-separator", "semicolons"),
-        ("connection\tfx\tfy\nB\t1\t2\n", "wrong-separator", "tabs"),
-        ("connection;fx;fy\nB;1,5;2,0\n", "wrong-separator", "semicolons"),
+        ("connection|fx|fy\nB|1|2\n", "unknown-column", "connection|fx|fy"),
+        ("B.fx,B.mz\n1,2\n", "missing-column", "B.fy"),
+        ("X.fx,X.fy\n1,2\n", "unknown-connection", "line 2: "),
+        ("case,connection,fx,fy\nother,B,1,2\n", "no-such-case", "other"),
+        ("time,case,connection,fx,fy\n,case,B,1,2\n1,case,B,1,2\n", "missing-row", "B"),
+        ("# nothing\n\n", "no-rows", "table.csv"),
         ('connection,fx,fy\nB,"1,5","2,0"\n', "decimal-comma", "line 2: fx = '1,5'"),
         ("connection,fx,fy\nB,1,5,2,0\n", "cell-count", "line 2: 5 "),
         ("connection,fx,fy\nB,1,2\nB,1,2\n", "duplicate-row", "line 3: "),
@@ -79,7 +85,7 @@ def test_a_bad_table_is_refused(tmp_path: Path, text: str, code: str, named: str
 
 def test_a_missing_table_is_named(tmp_path: Path) -> None:
     with raises(TableError, "no-such-file", "gone.csv"):
-        read_reactions("case", tmp_path / "gone.csv", 1.0, 1.0, 1.0, {"B"})
+        read_reactions(tmp_path / "gone.csv", Layout("case"), unit, {"B"})
 
 
 def test_the_pins_own_axes_turn_with_it() -> None:
@@ -117,3 +123,69 @@ def test_every_pulse_takes_the_same_momentum(
     s = np.linspace(0.0, 1.0, 20001)
     area = 0.15 * float(np.trapezoid(shape(s), s))
     assert impulse_force(1000.0, 7.0, 0.15, pulse) * area == pytest.approx(7000.0, rel=1e-8)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "time [ms],B.fx [kN],B.fy [kN],B.mz\n0,1.5,-2,1\n500,2.5,0,0\n",
+        "# on a rig\n\ntime [ms];B fx [kN];B fy (kN);B mz\n0;1,5;-2;1\n# later\n500;2,5;0;0\n",
+        "time\tconnection\tfx [kN]\tfy [kN]\tmz\n0\tB\t1,5\t-2\t1\n0,5\tB\t2.5\t0\t0\n",
+    ],
+    ids=["wide", "semicolons", "tabs"],
+)
+def test_the_same_forces_however_they_are_laid_out(tmp_path: Path, text: str) -> None:
+    found = read(tmp_path, text)
+    assert found.times == pytest.approx([0.0, 0.5])
+    assert found.force("B").tolist() == [[1500.0, -2000.0, 0.0], [2500.0, 0.0, 0.0]]
+    assert found.moments[:, 0, 2].tolist() == [3.0, 0.0]
+
+
+def test_a_decimal_comma_needs_another_separator(tmp_path: Path) -> None:
+    with raises(TableError, "cell-count", "line 2: 3 "):
+        read(tmp_path, "B.fx,B.fy\n1,5,2\n")
+
+
+def test_many_cases_in_one_table(tmp_path: Path) -> None:
+    text = "case,B.fx,B.fy,C.fx,C.fy\n" + "".join(f"c{k},{k},0,0,{-k}\n" for k in range(50))
+    for k in (0, 49):
+        path = tmp_path / "table.csv"
+        path.write_text(text)
+        found = read_reactions(path, Layout(f"c{k}"), unit, {"B", "C"})
+        assert found.times is None
+        assert found.forces[0].tolist() == [[2.0 * k, 0.0, 0.0], [0.0, -2.0 * k, 0.0]]
+
+
+def test_joint_forces_of_mbdyn(tmp_path: Path) -> None:
+    """A .jnt has no header and no time: a row per joint and step with its label, force and moment
+    in the joint's axes, then both in global axes (MBDyn input manual, output of joints).
+    """
+    rows = ""
+    for step in range(3):
+        for label in (7, 12, 99):
+            local = " ".join(["5.0e-1"] * 6)
+            rows += f"      {label} {local} {step + label:e} {-2.0 * label:e} 0. 0. 0. {step}.5\n"
+    mapping = {"connection": 1, "fx": -8, "fy": -9, "fz": -10, "mz": -13}
+    found = read(tmp_path, rows, columns=mapping, labels={"B": 12, "C": 7}, step=0.25)
+    assert found.times == pytest.approx([0.0, 0.25, 0.5])
+    assert found.force("B").tolist() == [[-2.0 * (k + 12), 48.0, 0.0] for k in range(3)]
+    assert found.force("C")[:, 1].tolist() == [28.0] * 3
+    assert found.moments[:, 0, 2].tolist() == [-3.0 * (k + 0.5) for k in range(3)]
+
+
+def test_a_sensor_file_of_exudyn(tmp_path: Path) -> None:
+    """Comments, then time and components separated by commas (Exudyn user documentation)."""
+    head = "#Exudyn sensor output file\n#sensor type = Object\n#\n"
+    text = f"{head}0.000,1.0,2.0,0.0\n0.001,3.0,4.0,0.0\n"
+    found = read(tmp_path, text, columns={"time": 1, "B.fx": 2, "B.fy": 3})
+    assert found.times == pytest.approx([0.0, 0.001])
+    assert found.force("B").tolist() == [[2.0, 4.0, 0.0], [6.0, 8.0, 0.0]]
+
+
+def test_columns_by_the_headers_of_a_plot_export(tmp_path: Path) -> None:
+    text = "Time\tPIN_1.FX (kN)\tPIN_1.FY (kN)\tunused\n0.0\t1.0\t2.0\t9\n0.5\t3.0\t4.0\t9\n"
+    mapping = {"time": "Time", "C.fx": "-PIN_1.FX (kN)", "C.fy": "-PIN_1.FY (kN)"}
+    found = read(tmp_path, text, columns=mapping)
+    assert found.force("C").tolist() == [[-1e3, -2e3, 0.0], [-3e3, -4e3, 0.0]]
+    with raises(TableError, "missing-column", "PIN_2"):
+        read(tmp_path, text, columns={"C.fx": "PIN_2.FX", "C.fy": "Time"})

@@ -118,3 +118,30 @@ def test_a_component_counts_as_its_group() -> None:
     assert len(grouped.times) < 0.7 * len(alone.times)
     t = np.linspace(0.0, 3.0, 999)
     assert grouped.interpolate(t) == pytest.approx(at(t), abs=1e-6)
+
+
+def test_a_maximum_just_past_the_end_of_a_panel_is_found() -> None:
+    samples = np.linspace(0.0, 2.0, 5)
+    ends = resolved(samples, lambda t: np.cos(t)[:, None]).ends
+    inner, width = ends[1:-1], np.diff(ends).min()
+    crests = np.concatenate([inner - 0.01 * width, inner, inner + 0.01 * width])
+    found = resolved(samples, lambda t: np.cos(t[:, None] - crests))
+    best, when = found.largest()
+    assert when == pytest.approx(crests, abs=1e-5)
+    assert best == pytest.approx(np.ones(len(crests)), rel=1e-12)
+
+
+def test_values_known_at_the_samples_are_not_requested_again() -> None:
+    samples, requested = np.linspace(0.0, 1.0, 1001), []
+
+    def at(times: Floats) -> Floats:
+        requested.append(times)
+        return np.sin(5.0 * times)[:, None]
+
+    plain = resolved(samples, at)
+    asked = requested.pop(0)
+    assert np.array_equal(asked, samples)
+    requested.clear()
+    found = resolved(samples, at, known=np.sin(5.0 * samples)[:, None])
+    assert not np.isin(samples[1:-1], np.concatenate(requested)).any()
+    assert np.array_equal(found.values, plain.values)

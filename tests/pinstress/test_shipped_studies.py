@@ -27,6 +27,7 @@ MECHANISMS = [
         ("matrix_four_bar", "C", "converged"),
         ("slider_crank", "A", "converged"),
         ("clevis", "P", "converged"),
+        ("fatigue", "P", "converged"),
         ("kuleuven2014", "trunnion", "singular"),
     ],
 )

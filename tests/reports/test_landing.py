@@ -18,7 +18,7 @@ from tests.support.made_up_run import ranged
 
 def test_every_pair_is_a_row(results: Results, tmp_path: Path) -> None:
     some = replace(results, landing=(ranged("A"), ranged("B", "unconverged")))
-    landing_table(some).write_csv(tmp_path)
+    landing_table(some).write(tmp_path)
     rows = list(csv.DictReader((tmp_path / "landing_range.csv").read_text().splitlines()))
     assert len(rows) == 8
     first = rows[0]
@@ -47,7 +47,7 @@ def test_nothing_is_written_without_ranges(results: Results, tmp_path: Path) -> 
 
 def test_a_material_without_strength_has_no_factors(results: Results, tmp_path: Path) -> None:
     weak = replace(ranged("A"), safety_factor=None)
-    landing_table(replace(results, landing=(weak,))).write_csv(tmp_path)
+    landing_table(replace(results, landing=(weak,))).write(tmp_path)
     rows = list(csv.DictReader((tmp_path / "landing_range.csv").read_text().splitlines()))
     assert {r["safety_factor"] for r in rows} == {""}
     assert landing_plot("landing", [weak], 1.5, results.units) is None
@@ -69,7 +69,7 @@ def test_published_values_stand_beside_ours(results: Results, tmp_path: Path) ->
     value = PublishedValue("snap", None, "force_x", "=F|1", 2.0, 4.0, "lbf", "a slip")
     one = replace(results, published=(value,))
     write_published_values(one, tmp_path)
-    published_values_table(one).write_csv(tmp_path)
+    published_values_table(one).write(tmp_path)
     (row,) = csv.DictReader((tmp_path / "published.csv").read_text().splitlines())
     assert row["name"] == "'=F|1"
     assert float(row["ratio"]) == 0.5

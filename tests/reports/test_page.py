@@ -19,7 +19,7 @@ from reports.plots.all import all_plots
 from tests.support.html_page import EVIL, parse
 from tests.support.made_up_run import leg
 
-LIBRARY = re.compile(r'<script type="text/plain" class="library">.*?</script>', re.S)
+LIBRARY = re.compile(r'<script type="text/plain" id="libraries">.*?</script>', re.S)
 ANIMATION = '<!DOCTYPE html><p title="&lt;">moves & "turns"</p>'
 
 
@@ -73,7 +73,7 @@ def test_anchors_lead_somewhere(written: Path) -> None:
 
 def specs(page: Path) -> dict[str, Any]:
     """The plots of a page by their names."""
-    found = FIGURE.findall(page.read_text(encoding="utf-8"))
+    found = [(n, spec) for _, n, spec in FIGURE.findall(page.read_text(encoding="utf-8"))]
     assert len(found) == len(dict(found))
     return {name: json.loads(spec) for name, spec in found}
 
@@ -157,7 +157,9 @@ def moving(results: Results, tmp_path_factory: pytest.TempPathFactory) -> Path:
     drives = tuple(replace(results.drive[0], name=name, kind="rotary") for name in ("a.b", "c"))
     legs = (leg(np.asarray(results.drive[0].time)),)
     table = replace(results.reactions[0], position_unit="deg")
+    pins = tuple(replace(pin, position_unit="deg") for pin in results.pins)
     found = replace(results, motion=(motion,), legs=legs, drive=drives, reactions=(table,))
+    found = replace(found, pins=pins)
     return write_page(found, directory)
 
 

@@ -78,7 +78,7 @@ def test_every_digit_for_programs(found: Results, tmp_path: Path) -> None:
     assert row["singular_at"][0]["notch_stress_intensity"] == 4321.0
     assert to_json(found)["pins"][1]["max_von_mises_interval"] is None
     for table in (safety_factors_table(found), zones_table(found)):
-        table.write_csv(tmp_path)
+        table.write(tmp_path)
     with (tmp_path / "safety_factors.csv").open(encoding="utf-8") as file:
         first, second = csv.DictReader(file)
     assert (float(first["max_von_mises_low"]), float(first["safety_factor_high"])) == (

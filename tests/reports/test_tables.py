@@ -53,7 +53,7 @@ def read(path: Path) -> list[dict[str, str]]:
 
 
 def written(table: Table, directory: Path) -> list[dict[str, str]]:
-    table.write_csv(directory)
+    table.write(directory)
     return read(directory / f"{table.name}.csv")
 
 
@@ -132,7 +132,7 @@ def test_safety_factors_agree_with_json(results: Results, tmp_path: Path) -> Non
 def test_no_cell_says_nan(results: Results, tmp_path: Path) -> None:
     odd = with_first_pin(results, safety_factor=float("nan"))
     write_safety_factors(odd, tmp_path)
-    safety_factors_table(odd).write_csv(tmp_path)
+    safety_factors_table(odd).write(tmp_path)
     for path in tmp_path.iterdir():
         assert "nan" not in path.read_text(encoding="utf-8").lower()
 

@@ -93,7 +93,7 @@ def test_json_of_zones_and_checks(found: Results) -> None:
 
 def test_tables_say_the_verdict_and_yield(found: Results, tmp_path: Path) -> None:
     write_safety_factors(found, tmp_path)
-    safety_factors_table(found).write_csv(tmp_path)
+    safety_factors_table(found).write(tmp_path)
     rows = list(csv.DictReader((tmp_path / "safety_factors.csv").read_text().splitlines()))
     assert [r["meets_required"] for r in rows] == ["yes", "", "no", "no", "no", ""]
     assert [r["verdict"] for r in rows] == [p.verdict for p in found.pins]
@@ -173,7 +173,7 @@ def test_singular_ranges_of_a_landing_can_only_miss(found: Results, tmp_path: Pa
     members = [ranged("A", "singular"), ranged("B"), ranged("C", "unconverged")]
     some = replace(found, landing=tuple(members))
     write_landing(some, tmp_path)
-    landing_table(some).write_csv(tmp_path)
+    landing_table(some).write(tmp_path)
     rows = list(csv.DictReader((tmp_path / "landing_range.csv").read_text().splitlines()))
     for r in rows:
         expected = "yes" if float(r["safety_factor"]) >= 1.5 else "no"

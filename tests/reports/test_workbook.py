@@ -62,7 +62,7 @@ def test_every_table_is_a_sheet_with_its_numbers(
     assert list(sheets) == ["about", *(table.name for table in tables)]
     assert list(sheets)[:2] == ["about", "safety_factors"]
     for table in tables:
-        table.write_csv(tmp_path)
+        table.write(tmp_path)
         with (tmp_path / f"{table.name}.csv").open(encoding="utf-8", newline="") as file:
             rows = list(csv.reader(file))
         found = sheets[table.name]
@@ -86,6 +86,16 @@ def test_long_tables_are_csv_alone(tables: list[Table]) -> None:
     full, longer = (replace(first, rows=(row,) * n) for n in (LONGEST, LONGEST + 1))
     motion = replace(first, name="motion")
     assert sheets([full, longer, motion]) == [full]
+
+
+def test_the_first_sheet_lists_what_is_not_there(
+    results: Results, tables: list[Table], tmp_path: Path
+) -> None:
+    for left_out in (["motion", "joints"], []):
+        write_workbook(results, tables, tmp_path / "t.xlsx", left_out)
+        sheets, _ = read(tmp_path / "t.xlsx")
+        about = " ".join(str(cell) for row in sheets["about"] for cell in row.values())
+        assert ("motion.csv, joints.csv" in about) == bool(left_out)
 
 
 def test_headings_have_units(results: Results, tables: list[Table], tmp_path: Path) -> None:

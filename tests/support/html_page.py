@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import zlib
+from base64 import b64decode
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -26,8 +28,8 @@ class Reader(HTMLParser):
         for name, value in attrs:
             if name in ("src", "href", "srcset", "data", "xlink:href"):
                 self.addresses.append(value or "")
-            if name == "srcdoc":
-                self.within.append(value or "")
+            if name == "data-packed":
+                self.within.append(zlib.decompress(b64decode(value or "")).decode())
             if name == "id":
                 self.ids.append(value or "")
 

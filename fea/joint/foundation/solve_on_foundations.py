@@ -96,6 +96,15 @@ class FoundationAnswer:
         top = self._von_mises(loads)
         return float(top.von_mises[top.place]), top.place[1]
 
+    @property
+    def points(self) -> Floats:
+        """Where its stress is, (S, 2): r, z in m."""
+        return np.stack([self.stress.r, self.stress.z], axis=1)
+
+    def harmonics(self, loads: PinLoads) -> Floats:
+        """Stress there, (3, S, 6, T) Pa: constant, times cos theta, times sin theta."""
+        return self.stress.harmonics(self.stress.model.solve(loads))
+
     def _von_mises(self, loads: AnyLoads) -> Highest:
         whole = isinstance(loads, PinLoads)
         links = loads if isinstance(loads, PinLoads) else _as_loads(loads, self.case)

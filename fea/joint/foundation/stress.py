@@ -70,7 +70,7 @@ class FoundationStress:
 
     def von_mises(self, found: JointFoundation) -> Highest:
         """At all points and instants, the largest over the circumference."""
-        return highest(self._harmonics(found))
+        return highest(self.harmonics(found))
 
     def lacking(self, found: JointFoundation, von_mises: Floats) -> list[str]:
         """Of the notches that loads reach, why there is no factor. von_mises: (S, T) Pa."""
@@ -84,7 +84,7 @@ class FoundationStress:
             if (any_ and n.bending is None) or (t and n.torsion is None)
         ]
 
-    def _harmonics(self, found: JointFoundation) -> Floats:
+    def harmonics(self, found: JointFoundation) -> Floats:
         """(3, S, 6, T): even, times cos theta, times sin theta, as fea.beam.maximum has them."""
         across = np.stack([-found.shear_force(self.z), found.bending_moment(self.z)], axis=-1)
         first, second = np.einsum("siq,tsaq->asit", self.per_force[:, :, :AXIAL], across)

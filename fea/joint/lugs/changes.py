@@ -22,7 +22,7 @@ ENDS = (0, 1)
 
 
 @dataclass(frozen=True)
-class Change:
+class JointChange:
     """A joint with something changed: what, to what in words, the lugs, and by how much each is
     softer. length: the value, m, where it is one, the largest of all lugs.
     """
@@ -34,21 +34,21 @@ class Change:
     length: float | None = None
 
 
-def changes(pin: Pin, lugs: Sequence[Lug]) -> Iterator[Change]:
+def changes(pin: Pin, lugs: Sequence[Lug]) -> Iterator[JointChange]:
     """Of the lugs on a pin's bands, one thing at a time; not what changes nothing."""
     same = (1.0,) * len(lugs)
     found = []
     for end in ENDS:
         loose, words = zip(*(_loose(pin, lug, end) for lug in lugs), strict=True)
         size = max(lug.clearance for lug in loose)
-        found.append(Change("clearance", _in_words(words), loose, same, size))
+        found.append(JointChange("clearance", _in_words(words), loose, same, size))
     for end in ENDS:
         stiff, words = zip(*(_stiffness(lug, end) for lug in lugs), strict=True)
         by = tuple(1.0 / times for times in stiff)
-        found.append(Change("stiffness of the lugs", _in_words(words), tuple(lugs), by))
+        found.append(JointChange("stiffness of the lugs", _in_words(words), tuple(lugs), by))
     for end in ENDS:
         tilted, words = zip(*(_tilted(lug, end) for lug in lugs), strict=True)
-        found.append(Change("tilt", _in_words(words), tilted, same))
+        found.append(JointChange("tilt", _in_words(words), tilted, same))
     unchanged = (tuple(lugs), same)
     return (change for change in found if (change.lugs, change.softness) != unchanged)
 

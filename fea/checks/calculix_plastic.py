@@ -1,0 +1,113 @@
+"""The limit load in CalculiX: the same hexahedra, C3D20R, the same supports and forces, which rise
+until it finds no equilibrium; the load factor that it reached is a lower bound of that mesh.
+"""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from skfem import ElementHexS2
+
+from fea.checks.calculix import COMMAND, JOB, CalculixError, end
+from fea.checks.calculix_deck import mesh_lines, real
+from fea.core.material import Material
+from fea.plastic.body import Ties
+from fea.plastic.pin_body import PinBody
+from geometry.arrays import Floats, Ints
+
+ROUND = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))  # corners of a face, by C3D20's order
+SMALLEST = 1e-3  # increment of the loads, of the largest
+LARGEST = 0.04
+
+
+def factor_reached(pin: PinBody, most: float, folder: Path) -> float:
+    """The load factor that CalculiX reaches on its way to `most`, to a thousandth of that.
+
+    Raises: CalculixError when it converges in no increment.
+    """
+    _write(pin, most, folder / f"{JOB}.inp")
+    done = subprocess.run(
+        [COMMAND, "-i", JOB], cwd=folder, capture_output=True, text=True, errors="replace"
+    )
+    reached = [
+        float(line.split()[-2])
+        for line in (folder / f"{JOB}.sta").read_text("ascii").splitlines()
+        if line.split()[:1] == ["1"] and "U" not in line
+    ]
+    if not reached:
+        raise CalculixError(f"{COMMAND} failed: {end(done.stdout)}", "failed")
+    return most * reached[-1]
+
+
+def c3d20() -> Ints:
+    """Which of skfem's nodes are those of C3D20, in its order."""
+    ours = [tuple(x) for x in np.asarray(ElementHexS2().doflocs).tolist()]
+    middles = [((a + c) / 2, (b + d) / 2) for (a, b), (c, d) in zip(ROUND, (*ROUND[1:], ROUND[0]),
+                                                                  strict=True)]  # fmt: skip
+    theirs = [(*xy, z) for z in (0.0, 1.0) for xy in ROUND]
+    theirs += [(*xy, z) for z in (0.0, 1.0) for xy in middles]
+    theirs += [(*xy, 0.5) for xy in ROUND]
+    return np.array([ours.index(x) for x in theirs])
+
+
+def _write(pin: PinBody, most: float, path: Path) -> None:
+    material, ties = pin.body.rule.material, pin.body.ties
+    lines = [
+        *_mesh(pin, material),
+        "*PLASTIC",
+        *(f"{real(s)}, {real(e)}" for e, s in zip(*pin.body.rule.curve, strict=True)),
+        "*SOLID SECTION, ELSET=PIN, MATERIAL=ONE",
+        *_supports(ties),
+        "*STEP, INC=1000",
+        "*STATIC",
+        f"{LARGEST}, 1., {SMALLEST}, {LARGEST}",
+        "*CLOAD",
+        *_forces(ties, most * pin.forces),
+        "*END STEP",
+    ]
+    path.write_text("\n".join(lines) + "\n", encoding="ascii")
+
+
+def _mesh(pin: PinBody, material: Material) -> Iterator[str]:
+    """With a line for each 16 numbers of an element, and without the section."""
+    for line in mesh_lines("C3D20R", pin.mesh.nodes, pin.mesh.elements[:, c3d20()], material):
+        if line.startswith("*SOLID SECTION"):
+            continue
+        numbers = line.split(", ")
+        if len(numbers) > 16 and not line.startswith("*"):
+            yield ", ".join(numbers[:12]) + ",\n" + ", ".join(numbers[12:])
+        else:
+            yield line
+
+
+def _supports(ties: Ties) -> Iterator[str]:
+    """Zero components, and those that are plus or minus others."""
+    yield "*BOUNDARY"
+    for node, axis in zip(*divmod(np.flatnonzero(ties.unknown < 0), 3), strict=True):
+        yield f"{node + 1}, {axis + 1}"
+    for one, other in _pairs(ties):
+        sign = -ties.sign[one] * ties.sign[other]
+        (n, a), (m, b) = divmod(one, 3), divmod(other, 3)
+        yield f"*EQUATION\n2\n{n + 1}, {a + 1}, 1., {m + 1}, {b + 1}, {sign:.0f}."
+
+
+def _pairs(ties: Ties) -> Iterator[tuple[int, int]]:
+    """Components tied to another, and that."""
+    first = _first(ties)
+    for component in np.flatnonzero(ties.unknown >= 0).tolist():
+        if (other := int(first[ties.unknown[component]])) != component:
+            yield component, other
+
+
+def _first(ties: Ties) -> Ints:
+    return np.unique(ties.unknown, return_index=True)[1][-ties.matrix.shape[1] :]
+
+
+def _forces(ties: Ties, forces: Floats) -> Iterator[str]:
+    first = _first(ties)
+    for component, force in zip(first.tolist(), (forces * ties.sign[first]).tolist(), strict=True):
+        node, axis = divmod(component, 3)
+        yield f"{node + 1}, {axis + 1}, {real(force)}"

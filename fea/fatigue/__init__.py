@@ -1,0 +1,1 @@
+"""Fatigue: stress histories at critical points, cycles, damage."""

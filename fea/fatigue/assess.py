@@ -1,0 +1,175 @@
+"""Damage at a critical point under a spectrum, by one of three methods.
+
+signed-von-mises   rainflow of the signed von Mises stress, mean stress, S-N curve
+critical-plane     Findley's plane of largest damage                  (fea.fatigue.critical_plane)
+fkm-p-ram          local strains by the FKM guideline                 (fea.fatigue.fkm)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import inf, isfinite
+from typing import Literal
+
+import numpy as np
+
+from fea.fatigue.critical_plane import findley_k, plane_cycles
+from fea.fatigue.fkm import FkmMaterial, p_ram_life
+from fea.fatigue.flight import Cycles, case_by_case, flight, rainflow
+from fea.fatigue.records import PointFatigue, PointHistory
+from fea.fatigue.sn_curve import SnCurve
+from geometry.arrays import Floats
+
+Method = Literal["signed-von-mises", "critical-plane", "fkm-p-ram"]
+SHOWN = (0.1, 0.5, 0.9)  # failure probabilities
+LEAST = 0.01  # of the largest amplitude: smaller ones are not shown
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """occurrences: of cases per unit. probability: of failure at which damage is found, by default
+    that of the S-N data. life: in units, for which the pin is designed.
+    """
+
+    occurrences: Mapping[str, float]
+    method: Method = "signed-von-mises"
+    probability: float | None = None
+    life: float | None = None
+
+
+@dataclass(frozen=True)
+class FatigueMaterial:
+    """What a method needs: an S-N curve, Findley's mean stress sensitivity, FKM's data."""
+
+    curve: SnCurve | None = None
+    sensitivity: float | None = None
+    fkm: FkmMaterial | None = None
+
+
+@dataclass(frozen=True)
+class _Found:
+    """Damage per unit at a probability (None: the asked one), and the cycles behind it."""
+
+    damage: dict[float | None, float]
+    amplitude: float
+    mean: float
+    equivalent: Floats
+    units: int
+
+
+def assess(
+    history: PointHistory, spectrum: Spectrum, material: FatigueMaterial
+) -> PointFatigue | None:
+    """Damage at a point; None where no case of the spectrum acts, or no data are given for the
+    method.
+    """
+    cases = [c for c in history.cases if spectrum.occurrences.get(c.case, 0.0) > 0.0]
+    if not cases or (material.fkm if spectrum.method == "fkm-p-ram" else material.curve) is None:
+        return None
+    if spectrum.method == "fkm-p-ram":
+        found = _by_fkm([c.signed for c in cases], _often(history, spectrum), spectrum, material)
+    elif spectrum.method == "critical-plane":
+        found = _by_plane([c.stress for c in cases], _often(history, spectrum), spectrum, material)
+    else:
+        found = _by_sign([c.signed for c in cases], _often(history, spectrum), spectrum, material)
+    damage = found.damage[None]
+    shown, counts = _collective(found.equivalent, found.units)
+    return PointFatigue(
+        pin=history.pin,
+        point=history.point,
+        location=history.location,
+        cases=tuple(c.case for c in cases),
+        method=spectrum.method,
+        damage=damage,
+        life=_life(damage),
+        lives=tuple(_life(found.damage[p]) for p in SHOWN if p in found.damage),
+        utilisation=None if spectrum.life is None else damage * spectrum.life,
+        amplitude=found.amplitude,
+        mean=found.mean,
+        amplitudes=shown,
+        counts=counts,
+        note=history.chosen,
+    )
+
+
+def _life(damage: float) -> float | None:
+    return 1.0 / damage if damage > 0.0 and isfinite(damage) else (0.0 if damage else None)
+
+
+def _often(history: PointHistory, spectrum: Spectrum) -> list[float]:
+    every = (spectrum.occurrences.get(c.case, 0.0) for c in history.cases)
+    return [n for n in every if n > 0.0]
+
+
+def _by_sign(
+    courses: list[Floats], often: list[float], spectrum: Spectrum, material: FatigueMaterial
+) -> _Found:
+    curve, order = material.curve, flight(often)
+    assert curve is not None
+    cycles = rainflow(order.sequence([case_by_case(course)[0] for course in courses]))
+    equivalent = curve.equivalent(cycles.amplitude, cycles.mean)
+    damage = _damage(curve, equivalent, order.units, spectrum.probability)
+    return _Found(damage, *_largest(cycles, equivalent), equivalent, order.units)
+
+
+def _by_plane(
+    courses: list[Floats], often: list[float], spectrum: Spectrum, material: FatigueMaterial
+) -> _Found:
+    curve, order = material.curve, flight(often)
+    assert curve is not None
+    planes = plane_cycles(courses, order, findley_k(material.sensitivity or 0.0))
+    worst = max(planes, key=lambda plane: (curve.damage(plane.equivalent), plane.equivalent.max()))
+    damage = _damage(curve, worst.equivalent, order.units, spectrum.probability)
+    return _Found(damage, *_largest(worst.shear, worst.equivalent), worst.equivalent, order.units)
+
+
+def _by_fkm(
+    courses: list[Floats], often: list[float], spectrum: Spectrum, material: FatigueMaterial
+) -> _Found:
+    order, data = flight(often), material.fkm
+    assert data is not None
+    sequence = order.sequence([case_by_case(course)[0] for course in courses])
+    cycles = rainflow(sequence)
+
+    found: dict[float | None, float] = dict.fromkeys((None, *SHOWN), 0.0)
+    if sequence.any():
+        whole = np.append(sequence, 0.0)
+        middle = p_ram_life(whole, data)
+        asked = middle
+        if spectrum.probability not in (None, 0.5):
+            asked = p_ram_life(whole, data, spectrum.probability)
+        if not asked.infinite:
+            found[None] = 1.0 / (asked.repetitions * order.units)
+        if not middle.infinite and middle.at is not None:
+            found |= {p: 1.0 / (middle.at(p) * order.units) for p in SHOWN}
+    return _Found(found, *_largest(cycles, cycles.amplitude), cycles.amplitude, order.units)
+
+
+def _damage(
+    curve: SnCurve, equivalent: Floats, units: int, probability: float | None
+) -> dict[float | None, float]:
+    """Per unit, at the asked probability and, with a scatter, at those that are shown."""
+    every = (None, *SHOWN) if curve.scatter > 1.0 else (None,)
+    return {
+        p: curve.damage(equivalent, 1.0 / units, probability if p is None else p) for p in every
+    }
+
+
+def _largest(cycles: Cycles, equivalent: Floats) -> tuple[float, float]:
+    """Amplitude and mean of the cycle that is largest at stress ratio -1, Pa."""
+    if not len(equivalent):
+        return 0.0, 0.0
+    k = int(equivalent.argmax())
+    return float(cycles.amplitude[k]), float(cycles.mean[k])
+
+
+def _collective(equivalent: Floats, units: int) -> tuple[Floats, Floats]:
+    """Different amplitudes (C,) Pa, the largest first, and how often each occurs per unit."""
+    largest = equivalent.max(initial=0.0)
+    if not isfinite(largest):
+        largest = float(equivalent[equivalent < inf].max(initial=0.0))
+    kept = equivalent[(equivalent >= LEAST * largest) & (equivalent < inf)]
+    scale = largest * 1e-6 or 1.0
+    values, counts = np.unique(np.round(kept / scale), return_counts=True)
+    return values[::-1] * scale, counts[::-1] / units

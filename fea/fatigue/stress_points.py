@@ -1,0 +1,94 @@
+"""Stress at any points of a pin and all instants of a case, of every model alike."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea.beam.model import BeamAnswer
+from fea.core.pin_loads import PinLoads
+from fea.core.solution import Answer
+from fea.harmonic.evaluate import HarmonicAnswer
+from fea.harmonic.superposition import BACK
+from fea.joint.foundation.solve_on_foundations import FoundationAnswer
+from fea.solid.evaluate import SolidAnswer
+from geometry.arrays import Floats, Ints, Mask
+
+Stress = Callable[[Ints, Floats, Ints], Floats]
+
+
+@dataclass(frozen=True)
+class StressPoints:
+    """Points (S, 3) m where a model knows the stress, of a body of revolution those at theta = 0.
+
+    surface: (S,) those at which fatigue is looked for: on the surface, outside of singularities.
+    at: the stress (J, T, 6) Pa at points (J,) turned by angles (J,), rad, at some instants (T,) by
+    their numbers. Of bodies that are not of revolution angles count for nothing.
+    """
+
+    points: Floats
+    surface: Mask
+    revolved: bool
+    count: int
+    at: Stress
+
+
+def stress_points(answer: Answer | None, loads: PinLoads) -> StressPoints | None:
+    """Of a solution and the loads of its case; None where nothing was solved."""
+    if isinstance(answer, HarmonicAnswer):
+        return _harmonic(answer, loads)
+    if isinstance(answer, BeamAnswer | FoundationAnswer):
+        return _beam(answer.points, answer.harmonics(loads), len(loads))
+    return _solid(answer, loads) if isinstance(answer, SolidAnswer) else None
+
+
+def _harmonic(answer: HarmonicAnswer, loads: PinLoads) -> StressPoints:
+    fields, acting = answer.fields, loads.coefficients()
+    units = [k for k, load in enumerate(fields.loads) if load in acting]
+    n = np.array([fields.loads[k].n for k in units])
+    amounts = np.zeros((len(loads), len(units), 2))
+    for i, k in enumerate(units):
+        amounts[:, i] = acting[fields.loads[k]]
+    even = BACK[:, None]
+
+    def at(rows: Ints, angles: Floats, instants: Ints) -> Floats:
+        turns = np.outer(angles, n)[:, None, :]
+        c, s = np.cos(turns), np.sin(turns)
+        unit, now = fields.stress[rows][:, :, units], amounts[instants]
+        first = (unit * np.where(even, c, s)) @ now[..., 0].T
+        second = (unit * np.where(even, s, -c)) @ now[..., 1].T
+        return np.asarray((first + second).swapaxes(1, 2))
+
+    surface = fields.outside(answer.singularities)
+    surface[fields.skin :] = False
+    return StressPoints(_at_zero(fields.points), surface, True, len(loads), at)
+
+
+def _beam(points: Floats, stress: Floats, count: int) -> StressPoints:
+    """Of stresses (3, S, 6, T): constant, times cos theta, times sin theta."""
+
+    def at(rows: Ints, angles: Floats, instants: Ints) -> Floats:
+        constant, cosine, sine = stress[:, rows][..., instants]
+        c, s = (x[:, None, None] for x in (np.cos(angles), np.sin(angles)))
+        return np.asarray((constant + c * cosine + s * sine).swapaxes(1, 2))
+
+    return StressPoints(_at_zero(points), points[:, 0] > 0.0, True, count, at)
+
+
+def _solid(answer: SolidAnswer, loads: PinLoads) -> StressPoints:
+    fields = answer.solution.fields
+    amounts, read = fields.coefficients(loads), fields.read
+
+    def at(rows: Ints, _: Floats, instants: Ints) -> Floats:
+        return np.asarray((read[rows] @ amounts[instants].T).swapaxes(1, 2))
+
+    surface = answer.solution.outside.copy()
+    surface[len(fields.surface.nodes) :] = False
+    return StressPoints(fields.points, surface, False, len(loads), at)
+
+
+def _at_zero(points: Floats) -> Floats:
+    r, z = points.T
+    return np.stack([r, np.zeros_like(r), z], axis=1)

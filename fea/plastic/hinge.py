@@ -1,0 +1,173 @@
+"""Plastic hinges and slip of a pin as a beam: bounds of its load factor at every instant.
+
+Static theorem: internal forces in equilibrium, here the elastic ones, that yield in no section,
+
+    (M/Mp)^2 + (N/Np)^2 + (V/Vs)^2 + (T/Tp)^2 <= 1,
+
+with Mp the plastic moment, Np = A s_y, Tp the plastic torque, and Vs = A s_y / sqrt 3 over the
+elastic ratio of the largest to the mean shear stress, so that shear alone would yield nowhere.
+
+Kinematic theorem: the least of the work of flow over the power of the loads among mechanisms. Slip
+of a section costs Vp = A s_y / sqrt 3. A hinge costs Mp; one is enough where one side of a span is
+free, three where both are clamped. Next to a clamp or a shoulder the section cannot
+warp and contract: a hinge is ROOM away from it, where the solid has it too, and what is nearer is
+left to slip.
+
+Both are theorems of beams. The solid differs by what happens within a diameter of loads and clamps,
+so of a bracket only what is beyond BEAM_ERROR decides.
+
+Source: B. G. Neal, The Plastic Methods of Structural Analysis (1977), chapters 2, 3 and 6.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea.beam.line_load import acting, shares
+from fea.beam.round_section import Circle
+from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, Span, stepped_beam
+from fea.core.material import Material
+from fea.core.pin_loads import AnyLoads
+from geometry import Pin
+from geometry.arrays import Floats, Mask
+
+ROOM = 0.75  # of a diameter, between a clamp and the hinge next to it
+BEAM_ERROR = 0.15  # of the factor: measured against solids, docs/past-yield.md
+PER_CELL = 101  # sections looked at in a cell
+
+
+@dataclass(frozen=True)
+class BeamBounds:
+    """Bounds of the load factor at every instant, (T,); infinite where nothing acts. slip: the
+    upper bound by slip alone, which holds for the solid as well: what slips is rigid.
+    """
+
+    lower: Floats
+    upper: Floats
+    slip: Floats
+
+    @property
+    def governing(self) -> int:
+        """The instant with the least lower bound."""
+        return int(self.lower.argmin())
+
+
+def plastic_moment(section: Circle, strength: float) -> float:
+    """N m, of a round section."""
+    return 4.0 / 3.0 * strength * (section.outer**3 - section.inner**3)
+
+
+def beam_bounds(
+    pin: Pin, material: Material, clamps: tuple[str, ...], loads: AnyLoads
+) -> BeamBounds:
+    """Of a pin with a yield strength, by its last hardening if it has any, for the upper bound."""
+    units = acting(loads)
+    first = material.yield_strength
+    assert first is not None
+    last = material.hardening[-1][1] if material.hardening else first
+    lower, upper, slip = np.full((3, len(loads)), np.inf)
+    if not units:
+        return BeamBounds(lower, upper, slip)
+    forces = stepped_beam(pin, material, units, clamps)
+    amounts = shares(units, loads)
+    for span in forces.spans:
+        z, sections, inside = _sampled(forces, span, amounts)
+        strong = _strengths(sections)
+        lower = np.minimum(lower, first * _static(sections, strong, inside))
+        slip = np.minimum(slip, last * _slip(span, strong, inside))
+        upper = np.minimum(upper, last * _hinges(span, sections, z, strong, inside))
+    return BeamBounds(lower, np.minimum(upper, slip), slip)
+
+
+def _sampled(
+    forces: InternalForces, span: Span, amounts: Floats
+) -> tuple[Floats, list[Circle], Floats]:
+    """z (S,) m, sections (S) and V, M, N, T there, (T, 2, S, 4) by phase."""
+    cells = np.repeat(np.arange(span.first, span.last), PER_CELL)
+    part = np.tile(np.linspace(0.0, 1.0, PER_CELL), span.last - span.first)
+    z = forces.stations[cells] + part * np.diff(forces.stations)[cells]
+    inside = np.einsum("sqk,tpk->tpsq", forces.inside(cells, z), amounts)
+    return z, [forces.sections[c] for c in cells], inside
+
+
+def _strengths(sections: list[Circle]) -> Floats:
+    """Vp, Mp, Np, Tp (S, 4) per Pa of yield stress."""
+    return np.array(
+        [
+            (
+                s.area / math.sqrt(3.0),
+                plastic_moment(s, 1.0),
+                s.area,
+                2.0 / 3.0 * math.pi * (s.outer**3 - s.inner**3) / math.sqrt(3.0),
+            )
+            for s in sections
+        ]
+    ).reshape(-1, 4)
+
+
+def _static(sections: list[Circle], strong: Floats, inside: Floats) -> Floats:
+    """Lower bounds (T,) per Pa of yield stress."""
+    peak = np.ones_like(strong)
+    peak[:, SHEAR] = [s.vq_it for s in sections]
+    used = np.sqrt(((inside * peak / strong) ** 2).sum(axis=(1, 3)))
+    return _inverse(used.max(axis=1))
+
+
+def _slip(span: Span, strong: Floats, inside: Floats) -> Floats:
+    """Upper bounds (T,) per Pa of yield stress, by a section that slips, or the part between two
+    of a span that is clamped at both ends, which the ends of cells are enough for.
+    """
+    if not (span.left and span.right):
+        return _inverse((np.linalg.norm(inside, axis=1) / strong)[..., SHEAR].max(axis=1))
+    ends = np.arange(len(strong)) % PER_CELL % (PER_CELL - 1) == 0
+    shear, most = inside[:, :, ends, SHEAR], strong[ends, SHEAR]
+    jump = shear[:, :, :, None] - shear[:, :, None, :]
+    power = np.linalg.norm(jump, axis=1) / (most[:, None] + most)
+    return _inverse(power.max(axis=(1, 2)))
+
+
+def _hinges(
+    span: Span, sections: list[Circle], z: Floats, strong: Floats, inside: Floats
+) -> Floats:
+    """Upper bounds (T,) per Pa of yield stress, by bending, pulling and twisting."""
+    away = _away(span, sections, z)
+    across = np.linalg.norm(inside, axis=1) / strong  # (T, S, 4)
+    if span.left and span.right:
+        return _inverse(_three_hinges(z, away, strong[:, MOMENT], inside[..., MOMENT]))
+    used = across[:, :, [AXIAL, TORQUE]].max(axis=(1, 2))
+    if away.any():
+        used = np.maximum(used, across[:, away, MOMENT].max(axis=1))
+    return _inverse(used)
+
+
+def _away(span: Span, sections: list[Circle], z: Floats) -> Mask:
+    """Which sections (S,) have room for a hinge between clamps and thicker ones."""
+    radius = np.array([s.outer for s in sections])
+    gap = np.where(radius > (1.0 + 1e-9) * radius[:, None], np.abs(z - z[:, None]), np.inf)
+    room = gap.min(axis=1)
+    if span.left:
+        room = np.minimum(room, z - z[0])
+    if span.right:
+        room = np.minimum(room, z[-1] - z)
+    return np.asarray(room >= ROOM * 2.0 * radius)
+
+
+def _three_hinges(z: Floats, away: Mask, strong: Floats, moment: Floats) -> Floats:
+    """Power over work (T,) of a hinge near each end and one between, moment (T, 2, S)."""
+    places = np.flatnonzero(away)
+    if len(places) < 3:
+        return np.zeros(len(moment))
+    a, b = places[0], places[-1]
+    middle = places[1:-1]
+    middle = middle[(z[middle] > z[a]) & (z[middle] < z[b])]
+    right = (z[middle] - z[a]) / (z[b] - z[middle])
+    power = moment[..., middle] * (1.0 + right) - moment[..., [a]] - moment[..., [b]] * right
+    work = strong[middle] * (1.0 + right) + strong[a] + strong[b] * right
+    return np.asarray((np.linalg.norm(power, axis=1) / work).max(axis=1, initial=0.0))
+
+
+def _inverse(used: Floats) -> Floats:
+    return np.divide(1.0, used, out=np.full_like(used, np.inf), where=used > 0.0)

@@ -1,0 +1,57 @@
+"""What a run says about the limit load of a pin in a case."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from fea.core.dimensions import Floats, Length, Lengths
+
+
+@dataclass(frozen=True)
+class PlasticMesh:
+    """One mesh of the solid: unknowns, bounds of the load factor on it, change of volume over the
+    equivalent strain of its mechanism, load steps and iterations.
+    """
+
+    unknowns: int
+    lower: float
+    upper: float
+    volume: float
+    steps: int
+    iterations: int
+
+
+@dataclass(frozen=True)
+class LoadCurve:
+    """Load factors (S,) and the largest displacement at them, from zero on; permanent: what is left
+    of it (S,) when the loads are taken off.
+    """
+
+    factor: Floats
+    displacement: Lengths
+    permanent: Lengths
+
+
+@dataclass(frozen=True)
+class LimitLoad:
+    """The load factor at which a pin collapses is between lower and upper: all loads of the case at
+    its governing instant, in proportion. method: beam or solid, or why there is no answer ("none",
+    with the reason in `note`).
+
+    carries: whether the pin carries its loads (factor 1) without collapse; None where that is not
+    decided. permanent_set: what is left of the largest displacement after the loads reached the
+    factor permanent_at and were taken off. curve: of the finest mesh.
+    """
+
+    method: Literal["beam", "solid", "none"]
+    lower: float | None = None
+    upper: float | None = None
+    carries: bool | None = None
+    hardening: bool = False
+    permanent_set: Length | None = None
+    permanent_at: float | None = None
+    seconds: float = 0.0
+    meshes: tuple[PlasticMesh, ...] = ()
+    curve: LoadCurve | None = None
+    note: str = ""

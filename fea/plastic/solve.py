@@ -1,0 +1,131 @@
+"""The limit load of a pin by the smallest model that decides whether it carries its loads.
+
+beam     hinges and slip, if even the model's error leaves no doubt      (fea.plastic.hinge)
+solid    elastic-plastic, on two meshes, a third if they differ much    (fea.plastic.limit_load)
+"""
+
+from __future__ import annotations
+
+import time
+from typing import Literal
+
+from fea.core.material import Material
+from fea.core.memory import solid_memory
+from fea.core.pin_loads import PinLoads
+from fea.plastic.flow import FlowRule
+from fea.plastic.hinge import BEAM_ERROR, BeamBounds, beam_bounds
+from fea.plastic.limit_load import OnMesh, bracket, limit_on_mesh
+from fea.plastic.pin_body import acting_at, hexahedral, pin_body, plane_of
+from fea.plastic.records import LimitLoad, PlasticMesh
+from geometry import Pin, PinLike
+from geometry.mesh.hexahedra import HexSize
+
+Rung = Literal["auto", "solid"]
+
+SIZES = HexSize(2, 0.5), HexSize(4, 0.25), HexSize(6, 1.0 / 6.0)
+WIDEST = 0.05  # of a bracket, over its middle
+MOST_UNKNOWNS = 60_000  # of the solid: a minute or two
+BEFORE_COLLAPSE = 0.95  # of the limit: at most the load after which the permanent set is reported
+TOO_LARGE = "the solid would need more than {:,} unknowns or the memory that is allowed"
+
+
+def limit_load(
+    pin: PinLike,
+    material: Material,
+    clamps: tuple[str, ...],
+    loads: PinLoads,
+    rung: Rung = "auto",
+    memory: float | None = None,
+) -> LimitLoad:
+    """Of a pin clamped at surfaces (by name) under the loads of one instant. rung: "solid" even if
+    the beam decides. memory: MB that may be used.
+
+    Raises: ArgumentError for a material without yield strength; SolveError.
+    """
+    begin = time.perf_counter()
+    rule = FlowRule(material)
+    if not isinstance(pin, Pin):
+        return LimitLoad("none", note="only for bodies of revolution from a profile")
+    bounds = _of_beam(pin, material, clamps, loads)
+    if bounds is not None and rung == "auto":
+        carries = decided(bounds)
+        if carries is not None:
+            return LimitLoad(
+                "beam",
+                float(bounds.lower[0]),
+                float(bounds.upper[0]),
+                carries,
+                hardening=bool(material.hardening),
+                seconds=time.perf_counter() - begin,
+                note=f"the theorems for beams; that decides by more than {BEAM_ERROR:.0%}",
+            )
+    meshes, note = _meshes(pin, rule, clamps, loads, memory)
+    if len(meshes) < 2:
+        return LimitLoad("none", seconds=time.perf_counter() - begin, note=note)
+    return _of_solid(meshes, bounds, rule, note, time.perf_counter() - begin)
+
+
+def decided(bounds: BeamBounds) -> bool | None:
+    """Whether a beam carries its loads at the first instant, None if its error leaves that open."""
+    if bounds.lower[0] > 1.0 + BEAM_ERROR:
+        return True
+    return False if bounds.upper[0] < 1.0 - BEAM_ERROR else None
+
+
+def _of_beam(
+    pin: Pin, material: Material, clamps: tuple[str, ...], loads: PinLoads
+) -> BeamBounds | None:
+    """None for contact pressures on rings, which the beam does not take."""
+    if any(load.parts for load in loads.coefficients()):
+        return None
+    return beam_bounds(pin, material, clamps, loads)
+
+
+def _meshes(
+    pin: Pin, rule: FlowRule, clamps: tuple[str, ...], loads: PinLoads, memory: float | None
+) -> tuple[list[OnMesh], str]:
+    """The finest two at least, if there is room for them; why not otherwise."""
+    acting = acting_at(loads, 0, -plane_of(loads, 0))
+    meshes: list[OnMesh] = []
+    for size in SIZES:
+        made = pin_body(pin, rule, clamps, acting, size)
+        too_much = memory is not None and solid_memory(made.body.size) > memory
+        if made.body.size > MOST_UNKNOWNS or too_much:
+            return meshes, TOO_LARGE.format(MOST_UNKNOWNS)
+        fine = hexahedral(made.mesh.nodes, made.mesh.elements, 3)
+        meshes.append(limit_on_mesh(made.body, made.forces, fine))
+        if len(meshes) > 1 and _narrow(*bracket(meshes)):
+            break
+    return meshes, ""
+
+
+def _narrow(lower: float, upper: float) -> bool:
+    """Whether a bracket is, and does not leave open whether it holds."""
+    return upper - lower <= WIDEST * (upper + lower) / 2.0 and not lower < 1.0 < upper
+
+
+def _of_solid(
+    meshes: list[OnMesh], bounds: BeamBounds | None, rule: FlowRule, note: str, seconds: float
+) -> LimitLoad:
+    lower, upper = bracket(meshes)
+    if bounds is not None and bounds.slip[0] < upper:
+        upper, note = float(bounds.slip[0]), "slip of a section is the upper bound"
+        lower = min(lower, upper)
+    finest = meshes[-1]
+    at = min(1.0, BEFORE_COLLAPSE * lower)
+    return LimitLoad(
+        "solid",
+        lower,
+        upper,
+        True if lower > 1.0 else False if upper < 1.0 else None,
+        hardening=bool(rule.material.hardening),
+        permanent_set=finest.permanent_at(at),
+        permanent_at=at,
+        seconds=seconds,
+        meshes=tuple(
+            PlasticMesh(m.unknowns, m.lower, m.upper, m.volume, m.steps, m.iterations)
+            for m in meshes
+        ),
+        curve=finest.curve,
+        note=note,
+    )

@@ -1,0 +1,1 @@
+"""Margins of safety: checks by formula and of the model's stress against strengths."""

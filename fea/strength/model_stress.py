@@ -1,0 +1,58 @@
+"""The model's maximum von Mises stress as margins: yield at limit load, rupture at ultimate load.
+
+The demand is the upper end of the maximum: with its error, or of a singular row the upper end of
+its interval. Past yield a linear stress is larger than the true one, so the second is cautious for
+a ductile material.
+
+Source: 14 CFR 25.305 (no detrimental permanent deformation at limit load, no failure at ultimate).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from fea.core.material import Material
+from fea.core.peak import Peak
+from fea.strength.margin import Level, Margin, not_made
+from fea.strength.situation import LoadFactors
+from fea.strength.worst import strength_key
+
+CLAUSE = "14 CFR 25.305"
+METHODS: tuple[tuple[str, Level, str], ...] = (
+    ("von Mises stress, yield", "limit", "yield"),
+    ("von Mises stress, rupture", "ultimate", "ultimate"),
+)
+
+
+def model_margins(peak: Peak, material: Material, factors: LoadFactors) -> list[Margin]:
+    """Both, of one pin in one case."""
+    demand = _upper(peak)
+    out = []
+    for method, level, which in METHODS:
+        factor = factors.at(level)
+        strength: float | None = getattr(material, f"{which}_strength")
+        if strength is None:
+            needs = strength_key(material.name, which)
+            out.append(not_made(method, CLAUSE, level, factor, needs))
+        elif demand is None:
+            needs = f"a maximum of the model, which is {peak.verdict}"
+            out.append(not_made(method, CLAUSE, level, factor, needs))
+        else:
+            found = Margin(method, CLAUSE, level, demand, strength, factor)
+            out.append(replace(found, time=peak.time, basis=_basis(peak)))
+    return out
+
+
+def _upper(peak: Peak) -> float | None:
+    """Pa."""
+    if peak.max_von_mises is None:
+        return None
+    if peak.interval is not None:
+        return peak.interval[1]
+    return peak.max_von_mises + (peak.error_estimate or 0.0)
+
+
+def _basis(peak: Peak) -> str:
+    if peak.verdict == "singular":
+        return "outside the excluded zones, upper end of its interval"
+    return f"maximum with its error ({peak.verdict})"

@@ -1,0 +1,53 @@
+"""The landing of one leg as a drop: two masses, strut, tyre, wheel; cases of 14 CFR."""
+
+from loads.landing.drop import Drop, LandingError
+from loads.landing.landing import Landing, LandingHistory, land
+from loads.landing.requirements import (
+    DROPS,
+    GROUND_RULES,
+    descent_velocity,
+    required_velocity,
+    spin_up_drag,
+)
+from loads.landing.strut import GasSpring, LinearSpring, Oil, Strut
+from loads.landing.through import (
+    AppliedOverTime,
+    StrokeDrive,
+    Touchdown,
+    axes,
+    laws,
+    pushes,
+    travel,
+)
+from loads.landing.travel import Levered, Telescopic
+from loads.landing.tyre import PowerTyre, TableTyre
+from loads.landing.wheel import Wheel
+
+__all__ = [
+    "DROPS",
+    "GROUND_RULES",
+    "AppliedOverTime",
+    "Drop",
+    "GasSpring",
+    "Landing",
+    "LandingError",
+    "LandingHistory",
+    "Levered",
+    "LinearSpring",
+    "Oil",
+    "PowerTyre",
+    "StrokeDrive",
+    "Strut",
+    "TableTyre",
+    "Telescopic",
+    "Touchdown",
+    "Wheel",
+    "axes",
+    "descent_velocity",
+    "land",
+    "laws",
+    "pushes",
+    "required_velocity",
+    "spin_up_drag",
+    "travel",
+]

@@ -1,0 +1,317 @@
+"""The drop of one leg: a sprung and an unsprung mass, a strut, a tyre and a wheel.
+
+Downwards is positive. z2 is the way of the axle since the tyre touched, which is the deflection of
+the tyre; u is how far the axle has risen against the aircraft. The strut stands still (extended
+until its preload is overcome, or stuck by friction) or moves one way; the tyre touches or not; the
+wheel slides one way or rolls. Integration ends and begins anew at every change of these.
+
+Sources: B. Milwitzky, F. E. Cook, NACA TR 1154 (1953), for the form of the equations.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
+
+from loads.coded import LoadsError
+from loads.landing.strut import Strut
+from loads.landing.travel import TELESCOPIC, Levered, Telescopic
+from loads.landing.tyre import Tyre, damped
+from loads.landing.wheel import Wheel
+from loads.linkage import Floats
+
+RTOL = 1e-11
+ATOL = 1e-13  # of the scale of each variable
+FIRST_STEP = 1e-7  # of the time left: what begins at zero must leave it before it is watched
+STEPS = 200  # at least, so that no event is missed within one
+MOST_SPANS = 500
+Method = Literal["DOP853", "Radau"]
+ROWS = Z, V, U, W, BEND, BENDS, SPIN, OIL, RUB, TYRE, SLIP, RUNWAY, STOP = range(13)
+
+
+class LandingError(LoadsError, ValueError):
+    """A drop that the leg does not survive, or that cannot be computed."""
+
+
+@dataclass(frozen=True)
+class Drop:
+    """One leg and what falls on it: masses kg, velocity of sinking m/s, lift as a part of the
+    weight, gravity m/s^2, duration s. Without a strut the leg is rigid.
+    """
+
+    sprung: float
+    unsprung: float
+    velocity: float
+    tyre: Tyre
+    strut: Strut | None = None
+    wheel: Wheel | None = None
+    lift: float = 0.0
+    gravity: float = 9.80665
+    duration: float = 0.5
+    travel: Telescopic | Levered = TELESCOPIC
+
+    @property
+    def mass(self) -> float:
+        """Of both, kg."""
+        return self.sprung + self.unsprung
+
+    @property
+    def weight(self) -> float:
+        """Of both, N."""
+        return self.mass * self.gravity
+
+
+@dataclass(frozen=True)
+class Mode:
+    """strut: 1 closing, -1 opening, 0 standing still. wheel: 1, -1 sliding aft or forward, 0
+    rolling. touches: whether the tyre is on the ground.
+    """
+
+    strut: int = 0
+    wheel: int = 1
+    touches: bool = True
+
+
+@dataclass(frozen=True)
+class DropForces:
+    """At T states: of the ground on the tyre, vertical and drag (aft); of the strut at the wheel
+    and along the strut; drag that the leg passes on; accelerations of sprung and unsprung mass; all
+    downwards but the first, in N and m/s^2. stroke, speed: of the strut, m and m/s.
+    """
+
+    vertical: Floats
+    drag: Floats
+    at_wheel: Floats
+    along: Floats
+    on_leg: Floats
+    sprung: Floats
+    unsprung: Floats
+    stroke: Floats
+    speed: Floats
+    lever: Floats
+
+
+def forces(d: Drop, y: Floats, mode: Mode) -> DropForces:
+    """At states y (ROWS, T)."""
+    vertical = damped(d.tyre, y[Z], y[V])
+    stroke, lever, _ = d.travel.at(y[U])
+    speed = lever * y[W]
+    common = d.gravity * (1.0 - d.lift) - vertical / d.mass
+    if d.strut is None or mode.strut == 0:
+        sprung = unsprung = common
+        at_wheel = d.sprung * (d.gravity - common) - d.lift * d.weight
+        along = at_wheel / lever
+    else:
+        push = d.strut.spring.force(stroke) + d.strut.oil_force(speed)
+        along = push + mode.strut * d.strut.friction
+        at_wheel = along * lever
+        sprung = d.gravity - (d.lift * d.weight + at_wheel) / d.sprung
+        unsprung = d.gravity + (at_wheel - vertical) / d.unsprung
+    drag = on_leg = np.zeros_like(vertical)
+    if d.wheel is not None:
+        drag = mode.wheel * d.wheel.friction * vertical
+        if mode.wheel == 0:
+            drag = d.wheel.rolling_drag(y[BEND], y[BENDS])
+        on_leg = d.wheel.on_leg(drag, y[BEND], y[BENDS])
+    return DropForces(
+        vertical, drag, at_wheel, along, on_leg, sprung, unsprung, stroke, speed, lever
+    )
+
+
+def _rates(d: Drop, y: Floats, mode: Mode) -> Floats:
+    """Derivatives of the state, (ROWS, T)."""
+    f, out = forces(d, y, mode), np.zeros_like(y)
+    out[Z], out[V], out[U], out[W] = y[V], f.unsprung, y[W], f.sprung - f.unsprung
+    if d.strut is not None:
+        out[OIL] = d.strut.oil_force(f.speed) * f.speed
+        out[RUB] = mode.strut * d.strut.friction * f.speed
+    out[TYRE] = (f.vertical - d.tyre.force(y[Z])) * y[V]
+    if d.wheel is not None:
+        out[BEND] = y[BENDS]
+        out[BENDS], out[SPIN] = d.wheel.rates(f.drag, y[BEND], y[BENDS])
+        slip = 0.0 if mode.wheel == 0 else d.wheel.slip(y[BENDS], y[SPIN])
+        out[SLIP] = f.drag * slip + d.wheel.rate * y[BENDS] ** 2
+        out[RUNWAY] = f.drag * d.wheel.speed
+    return out
+
+
+def _limits(d: Drop, y: Floats) -> tuple[float, float]:
+    """Between what forces at the wheel (N) a strut that stands still remains so."""
+    if d.strut is None:
+        return -np.inf, np.inf
+    stroke, lever, _ = d.travel.at(y[U])
+    spring, rub = d.strut.spring.force(stroke), d.strut.friction
+    low = -np.inf if y[U] == 0.0 else float(lever * (spring - rub))
+    return low, float(lever * (spring + rub))
+
+
+Event = tuple[str, int, Callable[[Floats], float]]
+
+
+def _events(d: Drop, mode: Mode, y: Floats) -> list[Event]:
+    """(name, direction, function of the state) of all that may end a mode."""
+    out: list[Event] = [("tyre", -1 if mode.touches else 1, lambda y: y[Z])]
+    if np.isfinite(d.tyre.most):
+        out.append(("tyre-exceeded", 1, lambda y: y[Z] - d.tyre.most))
+    if d.strut is not None and mode.strut:
+        most = d.travel.rise(d.strut.stroke)
+        out.append(("turns", -mode.strut, lambda y: y[W]))
+        out.append(("extended", -1, lambda y: y[U]))
+        out.append(("bottoms", 1, lambda y: y[U] - most))
+    elif d.strut is not None:
+        low, high = _limits(d, y)
+        out.append(("moves", 1, lambda y: float(forces(d, y, mode).at_wheel) - high))
+        if np.isfinite(low):
+            out.append(("moves", -1, lambda y: float(forces(d, y, mode).at_wheel) - low))
+    if d.wheel is None or not mode.touches:
+        return out
+    if mode.wheel:
+        wheel = d.wheel
+        out.append(("rolls", -mode.wheel, lambda y: float(wheel.slip(y[BENDS], y[SPIN]))))
+    elif d.wheel.stiffness is not None:
+        out.append(("slides", 1, lambda y: _beyond_grip(d, y, mode)))
+    return out
+
+
+def _beyond_grip(d: Drop, y: Floats, mode: Mode) -> float:
+    """Drag that rolling needs, less what friction gives, N."""
+    assert d.wheel is not None
+    f = forces(d, y, replace(mode, wheel=0))
+    return float(np.abs(f.drag) - d.wheel.friction * f.vertical)
+
+
+def _after(d: Drop, event: str, y: Floats, mode: Mode) -> tuple[Floats, Mode]:
+    """State and mode with which to go on."""
+    y = y.copy()
+    if event == "tyre":
+        y[Z] = 0.0
+        return y, replace(mode, touches=not mode.touches, wheel=_slides(d, y))
+    if event in ("rolls", "slides"):
+        return y, replace(mode, wheel=_wheel(d, y, mode, event))
+    if event == "extended":
+        both = (d.sprung * (y[V] + y[W]) + d.unsprung * y[V]) / d.mass
+        y[STOP] += 0.5 * d.sprung * d.unsprung / d.mass * y[W] ** 2
+        y[V], y[U] = both, 0.0
+    y[W] = 0.0
+    low, high = _limits(d, y)
+    hold = float(forces(d, y, replace(mode, strut=0)).at_wheel)
+    if event == "moves":
+        way = 1 if abs(hold - high) <= abs(hold - low) else -1
+    else:
+        way = (hold > high) - (hold < low)
+    # What turned does not go on as before: it did so for less than the first step.
+    return y, replace(mode, strut=-way if event == "turns" and way == mode.strut else way)
+
+
+def _slides(d: Drop, y: Floats) -> int:
+    """Which way a wheel slides that touches the ground."""
+    return -1 if d.wheel is not None and d.wheel.slip(y[BENDS], y[SPIN]) < 0.0 else 1
+
+
+def _wheel(d: Drop, y: Floats, mode: Mode, event: str) -> int:
+    """How the wheel goes on: it rolls only if friction suffices."""
+    if event == "rolls" and _beyond_grip(d, y, mode) <= 0.0:
+        return 0
+    return 1 if float(forces(d, y, replace(mode, wheel=0)).drag) >= 0.0 else -1
+
+
+@dataclass(frozen=True)
+class DropPhase:
+    """Between two changes of mode: times s, state at times (T,) in it, mode; event: its end."""
+
+    first: float
+    last: float
+    state: Callable[[Floats], Floats]
+    mode: Mode
+    event: str
+
+
+def fall(d: Drop, method: Method = "DOP853") -> tuple[DropPhase, ...]:
+    """Integrate from the touch of the tyre. Raises: LandingError where the strut bottoms or the
+    tyre goes beyond its table.
+    """
+    y, mode, time, spans = _start(d), Mode(), 0.0, list[DropPhase]()
+    for _ in range(MOST_SPANS):
+        span, y, mode = _span(d, time, y, mode, method)
+        if span.last > span.first:
+            spans.append(span)
+        if span.event == "end":
+            return tuple(spans)
+        time = span.last
+    raise LandingError(
+        f"the strut or the wheel changes its mode more than {MOST_SPANS:,} times until "
+        f"{time:.6g} s; reduce the friction or the duration",
+        "too-many-events",
+    )
+
+
+def _start(d: Drop) -> Floats:
+    y = np.zeros(len(ROWS))
+    y[V] = d.velocity
+    return y
+
+
+def _scales(d: Drop) -> Floats:
+    """Of the rows of the state."""
+    out = np.full(len(ROWS), d.mass * d.velocity**2)
+    out[[V, W, BENDS]] = d.velocity
+    out[[Z, U, BEND]] = d.velocity * 0.1
+    out[SPIN] = 1.0 if d.wheel is None else max(d.wheel.speed / d.wheel.radius, 1.0)
+    return out
+
+
+def _span(
+    d: Drop, time: float, y: Floats, mode: Mode, method: Method
+) -> tuple[DropPhase, Floats, Mode]:
+    from scipy.integrate import solve_ivp
+
+    known = _events(d, mode, y)
+    found: Any = solve_ivp(
+        lambda _, y: _rates(d, y, mode),
+        (time, d.duration),
+        y,
+        method,
+        dense_output=True,
+        events=[_terminal(direction, of) for _, direction, of in known],
+        rtol=RTOL,
+        atol=ATOL * _scales(d),
+        max_step=d.duration / STEPS,
+        first_step=FIRST_STEP * (d.duration - time),
+    )
+    if found.status < 0:
+        raise LandingError(f"the drop cannot be integrated: {found.message}", "not-integrated")
+    last, end, event = float(found.t[-1]), found.y[:, -1], "end"
+    if found.status == 1:
+        event = next(n for (n, *_), t in zip(known, found.t_events, strict=True) if len(t))
+    if event in ("bottoms", "tyre-exceeded"):
+        raise _destroyed(d, event, last, end, mode)
+    span = DropPhase(time, last, found.sol, mode, event)
+    return (span, *(_after(d, event, end, mode) if event != "end" else (end, mode)))
+
+
+def _terminal(direction: int, of: Callable[[Floats], float]) -> Any:
+    def event(_: float, y: Floats) -> float:
+        return of(y)
+
+    event.terminal, event.direction = True, direction  # type: ignore[attr-defined]
+    return event
+
+
+def _destroyed(d: Drop, event: str, time: float, y: Floats, mode: Mode) -> LandingError:
+    f = forces(d, y, mode)
+    left = 0.5 * d.mass * float(y[V] + y[W] * d.sprung / d.mass) ** 2
+    where = f"{time:.4g} s after touch-down, the aircraft still sinking at {y[V] + y[W]:.3g} m/s"
+    if event == "bottoms":
+        return LandingError(
+            f"the strut bottoms at {float(f.stroke):.4g} m {where} (about {left:.4g} J are left): "
+            "a longer stroke, a higher gas pressure or a smaller orifice is needed",
+            "strut-bottoms",
+        )
+    return LandingError(
+        f"the tyre is deflected beyond the last row of its table, {d.tyre.most:.4g} m, {where}; "
+        "give more rows, or a stiffer tyre",
+        "tyre-exceeded",
+    )

@@ -1,0 +1,185 @@
+"""A drop's course: forces, motion and energies at any time, and their largest values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from loads.landing.drop import (
+    BEND,
+    BENDS,
+    OIL,
+    ROWS,
+    RUB,
+    RUNWAY,
+    SLIP,
+    SPIN,
+    STOP,
+    TYRE,
+    Drop,
+    DropForces,
+    DropPhase,
+    LandingError,
+    U,
+    V,
+    W,
+    Z,
+    fall,
+    forces,
+)
+from loads.linkage import Floats
+from loads.refine import resolved
+
+PEAKS = ("vertical", "along", "stroke", "deflection", "drag", "on_leg", "spring_back")
+
+
+@dataclass(frozen=True)
+class LandingEnergies:
+    """(T,) J. lift and runway: work taken by lift, work done by the ground that passes under the
+    wheel; all others of the leg and what falls on it.
+    """
+
+    kinetic: Floats
+    potential: Floats
+    spring: Floats
+    tyre: Floats
+    bending: Floats
+    oil: Floats
+    friction: Floats
+    stop: Floats
+    tyre_damping: Floats
+    slip: Floats
+    lift: Floats
+    runway: Floats
+
+    @property
+    def imbalance(self) -> Floats:
+        """Change of everything that should stay, over the first kinetic energy, (T,)."""
+        held = self.kinetic + self.potential + self.spring + self.tyre + self.bending
+        lost = self.oil + self.friction + self.stop + self.tyre_damping + self.slip + self.lift
+        return np.asarray((held + lost - self.runway - self.kinetic[0]) / self.kinetic[0])
+
+
+@dataclass(frozen=True)
+class LandingHistory:
+    """(T,) each, in SI: times; deflection and rise of the axle; velocity of the sprung mass,
+    downwards; spin of the wheel; forces; rise_rate and rise_acceleration; energies.
+    """
+
+    times: Floats
+    deflection: Floats
+    rise: Floats
+    rise_rate: Floats
+    sink_velocity: Floats
+    spin: Floats
+    forces: DropForces
+    energies: LandingEnergies
+
+
+@dataclass(frozen=True)
+class LandingPeak:
+    """A largest value and its time, s."""
+
+    value: float
+    time: float
+
+
+@dataclass(frozen=True)
+class Landing:
+    """A drop with its course. Made by `land`."""
+
+    drop: Drop
+    spans: tuple[DropPhase, ...]
+
+    @property
+    def corners(self) -> tuple[float, ...]:
+        """Times at which something changes its mode, s."""
+        return tuple(span.last for span in self.spans[:-1])
+
+    def events(self, name: str) -> tuple[float, ...]:
+        """Times of "tyre", "moves", "turns", "extended", "rolls", "slides", s."""
+        return tuple(span.last for span in self.spans if span.event == name)
+
+    def at(self, times: Floats) -> LandingHistory:
+        """At times (T,) s; outside the drop as at its ends, and at a change as just before."""
+        d, inside = self.drop, np.clip(times, 0.0, self.spans[-1].last)
+        which = np.searchsorted([span.last for span in self.spans], inside)
+        y, parts = np.empty((len(ROWS), len(times))), dict[str, Floats]()
+        for k in np.unique(which):
+            here, span = which == k, self.spans[k]
+            y[:, here] = span.state(inside[here])
+            for name, values in vars(forces(d, y[:, here], span.mode)).items():
+                parts.setdefault(name, np.empty(len(times)))[here] = values
+        f = DropForces(**parts)
+        return LandingHistory(
+            times, y[Z], y[U], y[W], y[V] + y[W], y[SPIN], f, _energies(d, y, f.stroke)
+        )
+
+    @cached_property
+    def peaks(self) -> dict[str, LandingPeak]:
+        """Largest values by name of PEAKS, between the steps, too; spring_back: of the leg's drag
+        forward.
+        """
+        times = np.linspace(0.0, self.spans[-1].last, 201)
+
+        def columns(times: Floats) -> Floats:
+            h = self.at(times)
+            f = h.forces
+            values = (f.vertical, f.along, f.stroke, h.deflection, f.drag, f.on_leg, -f.on_leg)
+            return np.stack(values, axis=1)
+
+        best, when = resolved(times, columns, self.corners).largest(lambda values: values)
+        exact = np.diagonal(columns(when))
+        return {
+            name: LandingPeak(float(max(value, 0.0)), float(time))
+            for name, value, time in zip(PEAKS, np.maximum(best, exact), when, strict=True)
+        }
+
+    @property
+    def load_factor(self) -> float:
+        """Largest vertical force of the ground over the weight."""
+        return self.peaks["vertical"].value / self.drop.weight
+
+    @property
+    def equal_impulse_time(self) -> float:
+        """Time (s) over which m V has the peak as its mean: of the impulse that gives as much."""
+        return self.drop.mass * self.drop.velocity / self.peaks["vertical"].value
+
+
+def land(drop: Drop) -> Landing:
+    """Let the leg fall. Raises: LandingError, also when the aircraft still sinks at the end."""
+    landing = Landing(drop, fall(drop))
+    ends = [span.last for span in landing.spans]
+    if landing.at(np.array([0.0, *ends])).sink_velocity.min() > 0.0:
+        raise LandingError(
+            f"the aircraft still sinks after {drop.duration:g} s; give a longer duration",
+            "drop-too-short",
+        )
+    return landing
+
+
+def _energies(d: Drop, y: Floats, stroke: Floats) -> LandingEnergies:
+    """At states y (ROWS, T)."""
+    z1, v1, none = y[Z] + y[U], y[V] + y[W], np.zeros(y.shape[1])
+    wheel, bending = d.wheel, none
+    kinetic = 0.5 * (d.sprung * v1**2 + d.unsprung * y[V] ** 2)
+    if wheel is not None:
+        bent = wheel.mass if wheel.stiffness is not None else 0.0
+        kinetic = kinetic + 0.5 * (bent * y[BENDS] ** 2 + wheel.inertia * y[SPIN] ** 2)
+        bending = 0.5 * (wheel.stiffness or 0.0) * y[BEND] ** 2
+    return LandingEnergies(
+        kinetic=kinetic,
+        potential=-d.gravity * (d.sprung * z1 + d.unsprung * y[Z]),
+        spring=none if d.strut is None else d.strut.spring.energy(stroke),
+        tyre=d.tyre.energy(y[Z]),
+        bending=bending,
+        oil=y[OIL],
+        friction=y[RUB],
+        stop=y[STOP],
+        tyre_damping=y[TYRE],
+        slip=y[SLIP],
+        lift=d.lift * d.weight * z1,
+        runway=y[RUNWAY],
+    )

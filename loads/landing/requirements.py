@@ -1,0 +1,127 @@
+"""Landing cases of 14 CFR: what they prescribe, with the clause.
+
+Parts 25 and, before amendment 64 (2017), 23.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from loads.coded import LoadsArgumentError
+
+FOOT = 0.3048
+PSF = 4.4482216152605 / FOOT**2  # lbf/ft^2 in Pa
+FRICTION = 0.8  # which no sliding coefficient of a tyre need exceed: 25.473(d), appendix D to 23
+
+
+@dataclass(frozen=True)
+class DropRule:
+    """A descent velocity (m/s; None: it follows from the wing loading) and the most lift over
+    weight, by a clause.
+    """
+
+    clause: str
+    velocity: float | None
+    lift: float
+
+
+DROPS = {
+    "25.473-landing-weight": DropRule(
+        "14 CFR 25.473(a)(2): 10 ft/s at the design landing weight, lift at most the weight",
+        10.0 * FOOT,
+        1.0,
+    ),
+    "25.473-take-off-weight": DropRule(
+        "14 CFR 25.473(a)(3): 6 ft/s at the design take-off weight, lift at most the weight",
+        6.0 * FOOT,
+        1.0,
+    ),
+    "25.723-reserve-energy": DropRule(
+        "14 CFR 25.723(b): reserve energy, 12 ft/s at the design landing weight, lift at most the "
+        "weight; the gear may not fail",
+        12.0 * FOOT,
+        1.0,
+    ),
+    "23.473": DropRule(
+        "14 CFR 23.473(d), (e): 4.4 (W/S)^(1/4) ft/s, from 7 to 10 ft/s, lift at most 2/3 of the "
+        "weight",
+        None,
+        2.0 / 3.0,
+    ),
+}
+
+
+@dataclass(frozen=True)
+class GroundRule:
+    """Parts of a reference load at the wheel: vertical, drag (aft; negative: forward), side. base:
+    what the reference is.
+    """
+
+    clause: str
+    vertical: float
+    drag: float
+    side: float
+    base: str
+
+
+LARGEST, STATIC = "largest vertical reaction", "static load on the wheel"
+GROUND_RULES = {
+    "25.479-drag": GroundRule(
+        "14 CFR 25.479(d)(1): the largest vertical reaction with a quarter of it aft",
+        1.0, 0.25, 0.0, LARGEST,
+    ),
+    "25.479-drift": GroundRule(
+        "14 CFR 25.479(d)(2): 75 % of the largest vertical reaction, with 40 % of that aft and "
+        "25 % to the side",
+        0.75, 0.75 * 0.40, 0.75 * 0.25, LARGEST,
+    ),
+    "23.479-drag": GroundRule(
+        "14 CFR 23.479(b): the largest vertical reaction with a quarter of it aft, the least drag",
+        1.0, 0.25, 0.0, LARGEST,
+    ),
+    "23.499-aft": GroundRule(
+        "14 CFR 23.499(a): 2.25 times the static load, with 0.8 of that aft",
+        2.25, 2.25 * 0.8, 0.0, STATIC,
+    ),
+    "23.499-forward": GroundRule(
+        "14 CFR 23.499(b): 2.25 times the static load, with 0.4 of that forward",
+        2.25, -2.25 * 0.4, 0.0, STATIC,
+    ),
+    "23.499-side": GroundRule(
+        "14 CFR 23.499(c): 2.25 times the static load, with 0.7 of that to the side",
+        2.25, 0.0, 2.25 * 0.7, STATIC,
+    ),
+}  # fmt: skip
+
+
+def descent_velocity(wing_loading: float) -> float:
+    """m/s of 14 CFR 23.473(d), at a wing loading in Pa."""
+    return min(max(4.4 * math.sqrt(math.sqrt(wing_loading / PSF)), 7.0), 10.0) * FOOT
+
+
+def required_velocity(rule: str, wing_loading: float | None) -> float:
+    """Of a rule in DROPS, m/s. Raises: LoadsArgumentError without the wing loading it needs."""
+    fixed = DROPS[rule].velocity
+    if fixed is not None:
+        return fixed
+    if wing_loading is None:
+        raise LoadsArgumentError(
+            f"{DROPS[rule].clause}: give wing_loading or velocity", "no-wing-loading"
+        )
+    return descent_velocity(wing_loading)
+
+
+def spin_up_drag(
+    inertia: float, radius: float, speed: float, vertical: float, time: float
+) -> float:
+    """Largest spin-up drag on a wheel, N: sqrt(2 I v n F / t) / r, at most n F, where n = 0.8 is
+    the effective coefficient of friction; spring-back is its reverse.
+
+    inertia: kg m^2. radius: effective, m. speed: of the ground past the tyre less that by which it
+    is pre-rotated, m/s. vertical: the largest vertical force, N. time: until then from touch-down.
+
+    Source: appendix D to 14 CFR part 23.
+    """
+    drag = math.sqrt(2.0 * inertia * speed * FRICTION * vertical / time) / radius
+    return min(drag, FRICTION * vertical)

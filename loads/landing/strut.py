@@ -1,0 +1,131 @@
+"""The shock strut: its spring (gas or linear), its orifice, its friction.
+
+The form is that of Milwitzky & Cook, NACA TR 1154 (1953). Force and stroke are positive in
+compression.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from loads.coded import LoadsArgumentError
+from loads.linkage import Floats
+
+ALMOST_NO_GAS = 0.98  # of the volume: the most that a full stroke may displace
+
+
+class StrutSpring(Protocol):
+    """Force (N) and stored energy (J) at strokes (T,) m."""
+
+    def force(self, stroke: Floats) -> Floats: ...
+
+    def energy(self, stroke: Floats) -> Floats: ...
+
+
+@dataclass(frozen=True)
+class GasSpring:
+    """A gas column: A ((p + b) (v0 / (v0 - A s))^n - b) at stroke s.
+
+    pressure p: of the extended strut above ambient, Pa. volume v0: of the extended strut, m^3.
+    area A: m^2. exponent n: of the polytropic change of state. ambient b: Pa; with b = 0 it is the
+    form of NACA TR 1154.
+    """
+
+    pressure: float
+    volume: float
+    area: float
+    exponent: float = 1.1
+    ambient: float = 0.0
+
+    def force(self, stroke: Floats) -> Floats:
+        """N; the preload at no stroke."""
+        ratio = self.volume / (self.volume - self.area * stroke)
+        absolute = (self.pressure + self.ambient) * ratio**self.exponent
+        return np.asarray(self.area * (absolute - self.ambient))
+
+    def energy(self, stroke: Floats) -> Floats:
+        """J taken up from no stroke on: the integral of the force."""
+        log = -np.log1p(-self.area * stroke / self.volume)
+        n1 = self.exponent - 1.0
+        part = log if n1 == 0.0 else np.expm1(n1 * log) / n1
+        work = (self.pressure + self.ambient) * self.volume * part
+        return np.asarray(work - self.ambient * self.area * stroke)
+
+
+@dataclass(frozen=True)
+class LinearSpring:
+    """A leaf or coil: preload (N) and stiffness (N/m)."""
+
+    stiffness: float
+    preload: float = 0.0
+
+    def force(self, stroke: Floats) -> Floats:
+        """N."""
+        return self.preload + self.stiffness * stroke
+
+    def energy(self, stroke: Floats) -> Floats:
+        """J taken up from no stroke on."""
+        return self.preload * stroke + 0.5 * self.stiffness * stroke**2
+
+
+@dataclass(frozen=True)
+class Oil:
+    """An orifice: rho A_h^3 / (2 (Cd A_n)^2) v |v| at closing speed v.
+
+    density rho: kg/m^3. area A_h: hydraulic area, m^2. orifice A_n: m^2. discharge: Cd. rebound:
+    the orifice while the strut extends, m^2; by default the same.
+    """
+
+    density: float
+    area: float
+    orifice: float
+    discharge: float = 0.9
+    rebound: float | None = None
+
+    def __post_init__(self) -> None:
+        if max(self.orifice, self.rebound or 0.0) >= self.area:
+            raise LoadsArgumentError(
+                f"an orifice of {max(self.orifice, self.rebound or 0.0):g} m^2 is not smaller than "
+                f"the hydraulic area of {self.area:g} m^2",
+                "orifice-too-large",
+            )
+
+    def coefficient(self, orifice: float) -> float:
+        """Force over the square of the speed, N s^2/m^2."""
+        return self.density * self.area**3 / (2.0 * (self.discharge * orifice) ** 2)
+
+    def force(self, speed: Floats) -> Floats:
+        """N."""
+        closing = self.coefficient(self.orifice)
+        opening = self.coefficient(self.rebound or self.orifice)
+        return np.asarray(np.where(speed > 0.0, closing, opening) * speed * np.abs(speed))
+
+
+@dataclass(frozen=True)
+class Strut:
+    """A shock strut. stroke: at which it bottoms, m. friction: of its bearings and seals, N,
+    whatever the load.
+    """
+
+    spring: GasSpring | LinearSpring
+    stroke: float
+    oil: Oil | None = None
+    friction: float = 0.0
+
+    def __post_init__(self) -> None:
+        gas = self.spring
+        if isinstance(gas, GasSpring) and gas.area * self.stroke > ALMOST_NO_GAS * gas.volume:
+            raise LoadsArgumentError(
+                f"a stroke of {self.stroke:g} m displaces {gas.area * self.stroke:.4g} m^3 of gas, "
+                f"but the extended strut has {gas.volume:.4g} m^3, of which at most "
+                f"{ALMOST_NO_GAS:.0%} can be displaced: shorten the stroke to at most "
+                f"{ALMOST_NO_GAS * gas.volume / gas.area:.4g} m, or enlarge the volume",
+                "stroke-exceeds-gas",
+            )
+
+    def oil_force(self, speed: Floats) -> Floats:
+        """N at closing speeds (T,) m/s."""
+        return np.zeros_like(speed) if self.oil is None else self.oil.force(speed)

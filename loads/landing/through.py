@@ -1,0 +1,123 @@
+"""A drop as loads on a mechanism, in axes that fall with the aircraft.
+
+The strut's drive follows the stroke; the ground pushes on the axle; and every mass is pulled by
+what the aircraft's deceleration adds to gravity (d'Alembert).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from loads.coded import LoadsArgumentError
+from loads.drives import ConstantDrive, Law, StateDrive, Values
+from loads.forces.acting import Applied
+from loads.landing.landing import Landing
+from loads.landing.travel import Levered
+from loads.linkage import Floats, Linkage, Point
+from loads.loop_equations import Complex, number
+from loads.motion import Course, Motion
+
+POINTS = 65  # strokes at which the rise of the axle is computed
+UNIT = 1.0  # s, of a drive through these strokes
+
+
+@dataclass(frozen=True)
+class Touchdown:
+    """Where a leg touches the ground in its mechanism: the body and joint of its axle, unit vectors
+    up and aft, the number of the strut's drive (None: rigid), and the values of all drives (m or
+    rad) with the strut extended.
+    """
+
+    body: str
+    joint: str
+    up: Point
+    aft: Point
+    strut: int | None
+    extended: tuple[float, ...]
+
+
+def axes(linkage: Linkage, forward: str) -> tuple[Point, Point]:
+    """Up, against gravity, and aft; forward: "left" or "right" of up. Raises: LoadsArgumentError
+    without gravity.
+    """
+    size = float(np.hypot(*linkage.gravity))
+    if size == 0.0:
+        raise LoadsArgumentError(
+            "a drop needs gravity, which says where up is: give mechanism.gravity", "no-gravity"
+        )
+    up = (-linkage.gravity[0] / size, -linkage.gravity[1] / size)
+    side = 1.0 if forward == "left" else -1.0
+    return up, (side * up[1], -side * up[0])
+
+
+def travel(linkage: Linkage, place: Touchdown, stroke: float) -> Levered:
+    """The strokes of a strut by the rise of its axle. Raises: LinkageError, LoadsArgumentError."""
+    strokes = np.linspace(0.0, stroke, POINTS)
+    assert place.strut is not None
+    laws: list[Law] = [StateDrive(value) for value in place.extended]
+    start = place.extended[place.strut]
+    laws[place.strut] = ConstantDrive(start, start - stroke, UNIT)
+    at, _, _ = Course(linkage, laws, 0.0, UNIT).at(UNIT * strokes / stroke).joint(place.joint)
+    rises = (at - at[0]) @ np.array(place.up)
+    return Levered(tuple(rises.tolist()), tuple(strokes.tolist()))
+
+
+@dataclass(frozen=True)
+class StrokeDrive:
+    """The length of a strut's slider along a drop, from its extended length (m) on."""
+
+    landing: Landing
+    extended: float
+
+    @property
+    def corners(self) -> tuple[float, ...]:
+        """Where the strut changes how it moves, s."""
+        return self.landing.corners
+
+    pieces = corners
+
+    def __call__(self, times: Floats) -> Values:
+        h = self.landing.at(times)
+        s, lever, bend = self.landing.drop.travel.at(h.rise)
+        rise_acceleration = h.forces.sprung - h.forces.unsprung
+        second = lever * rise_acceleration + bend * h.rise_rate**2
+        return self.extended - s, -lever * h.rise_rate, -second
+
+
+@dataclass(frozen=True)
+class AppliedOverTime(Applied):
+    """A load of a drop, in world axes. mass: kg of what is pulled by the deceleration of the
+    aircraft; None: the forces of the ground on the axle.
+    """
+
+    landing: Landing | None = None
+    place: Touchdown | None = None
+    mass: float | None = None
+
+    def along(self, motion: Motion) -> Complex:
+        """(T,) N."""
+        assert self.landing is not None
+        assert self.place is not None
+        f = self.landing.at(motion.times).forces
+        up, aft = number(self.place.up), number(self.place.aft)
+        if self.mass is not None:
+            return np.asarray(self.mass * f.sprung * up)
+        return np.asarray(f.vertical * up + f.on_leg * aft)
+
+
+def laws(landing: Landing, place: Touchdown) -> tuple[Law, ...]:
+    """Of all drives of the mechanism."""
+    still: list[Law] = [StateDrive(value) for value in place.extended]
+    if place.strut is not None:
+        still[place.strut] = StrokeDrive(landing, place.extended[place.strut])
+    return tuple(still)
+
+
+def pushes(linkage: Linkage, landing: Landing, place: Touchdown) -> tuple[Applied, ...]:
+    """All loads of a drop on the mechanism."""
+    made = partial(AppliedOverTime, landing=landing, place=place)
+    masses = [made(i.name, i.centre, mass=i.mass) for i in linkage.items if i.mass]
+    return (made(place.body, linkage.joint(place.joint).at), *masses)

@@ -1,0 +1,62 @@
+"""How the strut's stroke follows from how far the axle rises against the aircraft."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from loads.coded import LoadsArgumentError
+from loads.linkage import Floats
+
+
+@dataclass(frozen=True)
+class Telescopic:
+    """A vertical strut: its stroke is the rise of the axle."""
+
+    def at(self, rise: Floats) -> tuple[Floats, Floats, Floats]:
+        """Stroke (T,) m at rises (T,) m, and its first two derivatives by the rise."""
+        return rise, np.ones_like(rise), np.zeros_like(rise)
+
+    def rise(self, stroke: float) -> float:
+        """At a stroke, m."""
+        return stroke
+
+
+TELESCOPIC = Telescopic()
+
+
+@dataclass(frozen=True)
+class Levered:
+    """Any leg: rises (N,) m at strokes (N,) m, both from zero on, joined by the spline of degree
+    five. The force at the wheel is that of the strut times the derivative (virtual work).
+
+    Raises: LoadsArgumentError where the axle does not rise.
+    """
+
+    rises: tuple[float, ...]
+    strokes: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        if np.any(np.diff(self.rises) <= 0.0):
+            raise LoadsArgumentError(
+                "the axle does not rise all along the stroke of the strut: check which way the "
+                "strut's drive shortens, its extended position and the direction of gravity",
+                "axle-does-not-rise",
+            )
+
+    @cached_property
+    def _spline(self) -> Any:
+        from scipy.interpolate import make_interp_spline
+
+        return make_interp_spline(self.rises, self.strokes, k=5)
+
+    def at(self, rise: Floats) -> tuple[Floats, Floats, Floats]:
+        """Stroke (T,) m at rises (T,) m, and its first two derivatives by the rise."""
+        return self._spline(rise), self._spline(rise, 1), self._spline(rise, 2)
+
+    def rise(self, stroke: float) -> float:
+        """At a stroke of the table, m."""
+        return float(np.interp(stroke, self.strokes, self.rises))

@@ -1,0 +1,86 @@
+"""From drops to their records in results, in SI."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+
+import numpy as np
+
+from loads import impulse_force
+from loads.landing import Landing, spin_up_drag
+from loads.linkage import Floats
+from pinstress.model.cases import CaseLoads
+from pinstress.schema.landing import DropCase
+from pinstress.study.file import Study
+from reports.data.drop import PEAKS, DropPeak, DropRecord
+
+STROKES = 101  # at which force over stroke is drawn
+
+
+def drop_record(study: Study, name: str, loads: CaseLoads) -> DropRecord:
+    """Of a case of kind drop."""
+    case, landing, times = study.table.case[name], loads.landing, loads.reactions.times
+    assert isinstance(case, DropCase)
+    assert landing is not None
+    assert times is not None
+    leg, h, peaks = landing.drop, landing.at(times), landing.peaks
+    strokes, closing, opening = _over_stroke(landing)
+    return DropRecord(
+        case=name,
+        clause=loads.note,
+        velocity=leg.velocity,
+        weight=leg.weight,
+        lift=leg.lift,
+        time=times,
+        stroke=h.forces.stroke,
+        deflection=np.maximum(h.deflection, 0.0),
+        sink_velocity=h.sink_velocity,
+        vertical=h.forces.vertical,
+        drag=h.forces.drag,
+        strut=h.forces.along,
+        leg_drag=h.forces.on_leg,
+        energies={f.name: getattr(h.energies, f.name) for f in fields(h.energies)},
+        peaks={
+            key: DropPeak(words, peaks[key].value, peaks[key].time, dimension)
+            for key, (words, dimension) in PEAKS.items()
+        },
+        load_factor=landing.load_factor,
+        imbalance=float(np.abs(h.energies.imbalance).max()),
+        impulse_time=case.impulse_time,
+        impulse_force=impulse_force(leg.mass, leg.velocity, case.impulse_time),
+        equal_impulse_time=landing.equal_impulse_time,
+        spin_up=_spin_up(landing),
+        strokes=strokes,
+        closing=closing,
+        opening=opening,
+    )
+
+
+def _spin_up(landing: Landing) -> float | None:
+    wheel, peak = landing.drop.wheel, landing.peaks["vertical"]
+    if wheel is None:
+        return None
+    return spin_up_drag(wheel.inertia, wheel.radius, wheel.speed, peak.value, peak.time)
+
+
+def _over_stroke(landing: Landing) -> tuple[Floats, Floats, Floats]:
+    """Strokes (P,) with the vertical force while the strut first closes and then opens; NaN where
+    it does not get there.
+    """
+    spans = [span for span in landing.spans if span.mode.strut]
+    most = landing.peaks["stroke"].value
+    strokes = np.linspace(0.0, most, STROKES)
+    nothing = np.full(STROKES, np.nan)
+    if not most:
+        return strokes, nothing, nothing
+    turn = landing.peaks["stroke"].time
+    begin = spans[0].first
+    end = min((t for t in landing.events("extended") if t > turn), default=landing.drop.duration)
+    branches = []
+    for first, last in ((begin, turn), (turn, end)):
+        h = landing.at(np.linspace(first, last, 2001)).forces
+        order = np.argsort(h.stroke, kind="stable")
+        branches.append(
+            np.interp(strokes, h.stroke[order], h.vertical[order], left=np.nan, right=np.nan)
+        )
+    return strokes, branches[0], branches[1]

@@ -1,0 +1,173 @@
+"""From a study's drop to the fallen leg, and to where it touches the ground in its mechanism."""
+
+from __future__ import annotations
+
+from loads import Applied, Law, Linkage, StateDrive
+from loads.coded import LoadsArgumentError
+from loads.landing import (
+    DROPS,
+    GROUND_RULES,
+    Drop,
+    GasSpring,
+    Landing,
+    LandingError,
+    Levered,
+    LinearSpring,
+    Oil,
+    PowerTyre,
+    Strut,
+    TableTyre,
+    Telescopic,
+    Touchdown,
+    Wheel,
+    axes,
+    land,
+    required_velocity,
+    travel,
+)
+from loads.landing.requirements import GroundRule
+from pinstress.model.linkage import STANDARD_GRAVITY, state
+from pinstress.schema.landing import AtWheel, DropCase, GroundCase, StrutTable, TyreTable
+from pinstress.study.file import Study
+
+
+def place(study: Study, name: str, case: AtWheel, mechanism: Linkage) -> Touchdown:
+    """Where the ground pushes. Raises: InputError."""
+    try:
+        up, aft = axes(mechanism, case.forward)
+    except LoadsArgumentError as error:
+        raise study.error(f"case.{name}: {error}", code=error.code) from None
+    strut = getattr(case, "strut", None)
+    number = None if strut is None else mechanism.driven.index(strut.drive)
+    extended = tuple(value for value, _, _ in state(study, name, case, mechanism))
+    return Touchdown(case.body, case.at, up, aft, number, extended)
+
+
+def drop(study: Study, name: str, case: DropCase, mechanism: Linkage) -> tuple[Drop, Touchdown]:
+    """A leg that can fall, and where it touches. Raises: InputError, LinkageError."""
+    where = place(study, name, case, mechanism)
+    key = "case." + name
+    try:
+        key = f"case.{name}.strut"
+        strut = None if case.strut is None else _strut(case.strut)
+        rises: Telescopic | Levered = Telescopic()
+        if case.strut is not None:
+            rises = travel(mechanism, where, case.strut.stroke)
+        key = f"case.{name}.tyre"
+        tyre = _tyre(case.tyre)
+        key = f"case.{name}"
+        return _drop(case, mechanism, strut, rises, tyre), where
+    except LoadsArgumentError as error:
+        raise study.error(f"{key}: {error}", code=error.code) from None
+
+
+def _drop(
+    case: DropCase,
+    mechanism: Linkage,
+    strut: Strut | None,
+    rises: Telescopic | Levered,
+    tyre: PowerTyre | TableTyre,
+) -> Drop:
+    g = (mechanism.gravity[0] ** 2 + mechanism.gravity[1] ** 2) ** 0.5
+    mass = case.mass if case.mass is not None else (case.weight or 0.0) / STANDARD_GRAVITY
+    if case.unsprung >= mass:
+        raise LoadsArgumentError(
+            f"unsprung, {case.unsprung:g} kg, is part of the mass on the leg, {mass:g} kg, and "
+            "must be smaller",
+            "unsprung-too-large",
+        )
+    rule = None if case.rule is None else DROPS[case.rule]
+    velocity = case.velocity
+    if velocity is None:
+        assert case.rule is not None
+        velocity = required_velocity(case.rule, case.wing_loading)
+    lift = case.lift if case.lift is not None else (0.0 if rule is None else rule.lift)
+    return Drop(
+        sprung=mass - case.unsprung,
+        unsprung=case.unsprung,
+        velocity=velocity,
+        tyre=tyre,
+        strut=strut,
+        wheel=_wheel(case),
+        lift=lift,
+        gravity=g,
+        duration=case.duration,
+        travel=rises,
+    )
+
+
+def _strut(table: StrutTable) -> Strut:
+    spring: GasSpring | LinearSpring
+    if table.gas is not None:
+        gas = table.gas
+        spring = GasSpring(gas.pressure, gas.volume, gas.area, gas.exponent, gas.ambient)
+    else:
+        assert table.spring is not None
+        spring = LinearSpring(table.spring.stiffness, table.spring.preload)
+    oil = table.oil
+    made = None
+    if oil is not None:
+        made = Oil(oil.density, oil.area, oil.orifice, oil.discharge, oil.rebound)
+    return Strut(spring, table.stroke, made, table.friction)
+
+
+def _tyre(table: TyreTable) -> PowerTyre | TableTyre:
+    if table.at is not None:
+        deflection, force = table.at
+        return PowerTyre(force / deflection**table.exponent, table.exponent, table.damping)
+    return TableTyre(tuple(table.deflection or ()), tuple(table.force or ()), table.damping)
+
+
+def _wheel(case: DropCase) -> Wheel | None:
+    w = case.wheel
+    if w is None:
+        return None
+    mass = case.unsprung if w.mass is None else w.mass
+    return Wheel(w.inertia, w.radius, w.speed, w.friction, w.stiffness, mass, w.damping)
+
+
+def fallen(study: Study, name: str, leg: Drop) -> Landing:
+    """The drop's course. Raises: InputError where the leg does not survive it."""
+    try:
+        return land(leg)
+    except LandingError as error:
+        raise study.error(f"case.{name}: {error}", code=error.code) from None
+
+
+def drop_note(case: DropCase) -> str:
+    """The clause of a drop."""
+    return "" if case.rule is None else f"{DROPS[case.rule].clause}."
+
+
+def still(where: Touchdown) -> list[Law]:
+    """Laws that keep all drives as with the strut extended."""
+    return [StateDrive(value) for value in where.extended]
+
+
+def ground_load(
+    where: Touchdown, rule: GroundRule, reference: float, mechanism: Linkage
+) -> Applied:
+    """What the ground does to the wheel in the plane of the mechanism, by a rule."""
+    x, y = (
+        reference * (rule.vertical * u + rule.drag * a)
+        for u, a in zip(where.up, where.aft, strict=True)
+    )
+    return Applied(where.body, mechanism.joint(where.joint).at, (x, y))
+
+
+def ground_note(study: Study, case: GroundCase, reference: float) -> str:
+    """Clause and components of a rule's load."""
+    rule, force = GROUND_RULES[case.rule], study.system.factor("force")
+    parts = {
+        "vertical": rule.vertical,
+        "aft" if rule.drag >= 0.0 else "forward": abs(rule.drag),
+        "side": rule.side,
+    }
+    shown = ", ".join(
+        f"{name} {part * reference / force:,.1f} {study.system.force}"
+        for name, part in parts.items()
+        if part
+    )
+    side = " The side load is not in the plane of the mechanism and is not applied: bring its "
+    side += "effect on the pins in by a case of kind given."
+    return f"{rule.clause}: {shown}.{side if rule.side else ''}"

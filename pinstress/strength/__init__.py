@@ -1,0 +1,1 @@
+"""Checks of strength of a study's pins."""

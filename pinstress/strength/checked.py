@@ -1,0 +1,123 @@
+"""A pin in a case, checked: hand checks, margins of safety, bending arms."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fea.checks.hand_checks import hand_checks
+from fea.checks.lug_checks import lug_checks
+from fea.checks.records import HandCheck
+from fea.core.peak import Peak
+from fea.core.pin_loads import PinLoads
+from fea.joint.lugs.fit import on_structure
+from fea.joint.records import JointResult
+from fea.strength.bending_arms import BendingArms, bending_arms
+from fea.strength.margin import PinMargin, not_made
+from fea.strength.model_stress import model_margins
+from fea.strength.pin_checks import formula_margins
+from fea.strength.situation import LoadFactors, Situation, with_supports
+from geometry import CutPin, Pin
+from pinstress.model.tasks import Task
+from pinstress.study.file import Study
+
+FORMULAS = "checks by formula"
+FACTORS = ("limit_factor", "ultimate_factor", "fitting_factor")
+
+
+@dataclass(frozen=True)
+class Checked:
+    """What was found of one pin in one case; arms: None where formulas do not apply."""
+
+    hand_checks: tuple[HandCheck, ...]
+    margins: tuple[PinMargin, ...]
+    arms: BendingArms | None = None
+
+
+def checked(study: Study, task: Task, peak: Peak, joint: JointResult | None) -> Checked:
+    """By formula and by the model. A pin that is cut is checked as if it were not."""
+    factors = load_factors(study)
+    margins = model_margins(peak, task.material, factors)
+    loads = next(x for x in task.loads if x.case == peak.case)
+    profile = task.pin.profile if isinstance(task.pin, CutPin) else task.pin
+    checks: tuple[HandCheck, ...] = ()
+    arms = None
+    if not isinstance(profile, Pin):
+        why = "a profile, which a pin from a file does not have"
+    else:
+        s, why = _situation(study, task, profile, loads)
+        if s is None:
+            checks = _lugs_checked(study, task, profile, loads)
+        else:
+            checks = hand_checks(s.pin, s.material, s.loads, s.clamps)
+            checks += _lugs_checked(study, task, s.pin, s.loads)
+            if peak.verdict == "rigid":
+                why = "supports of the pin, or loads in equilibrium"
+            else:
+                margins += formula_margins(s, checks)
+                arms = _arms(s, task, peak, joint)
+    if why:
+        margins.append(not_made(FORMULAS, "", "limit", factors.at("limit"), why))
+    return Checked(checks, tuple(PinMargin(peak.pin, peak.case, m) for m in margins), arms)
+
+
+def load_factors(study: Study) -> LoadFactors:
+    """Those of a study."""
+    a = study.table.analysis
+    return LoadFactors(a.limit_factor, a.ultimate_factor, a.fitting_factor)
+
+
+def factor_assumption(study: Study, found: Sequence[Checked]) -> tuple[str, ...]:
+    """A sentence on the factors that the study does not give, if any margin depends on them."""
+    table = study.table.analysis
+    assumed = [key for key in FACTORS if key not in table.model_fields_set]
+    if not assumed or not any(x.margins for x in found):
+        return ()
+    values = ", ".join(f"{key} {getattr(table, key):g}" for key in assumed)
+    return (f"Margins of safety take the loads of the study as limit loads, with {values}.",)
+
+
+def _situation(
+    study: Study, task: Task, profile: Pin, loads: PinLoads
+) -> tuple[Situation | None, str]:
+    """None, and why, where equilibrium does not give all forces."""
+    structure = [x.connection for x in task.lugs if x.connection not in profile.connections]
+    whole = with_supports(profile, loads, structure)
+    if whole is None:
+        names = ", ".join(structure)
+        return None, f"the forces of the structure's lugs {names}, which equilibrium does not give"
+    table = study.table.pin[profile.name]
+    lugs = tuple(x for x in task.lugs if x.connection in table.lug)
+    pin = on_structure(profile, task.lugs) if structure else profile
+    factors = load_factors(study)
+    made_of, clamps = task.material, task.clamps
+    return Situation(pin, made_of, whole, clamps, lugs, factors, table.replaceable), ""
+
+
+def _lugs_checked(study: Study, task: Task, pin: Pin, loads: PinLoads) -> tuple[HandCheck, ...]:
+    """Of the lugs whose size is given."""
+    given = study.table.pin[pin.name].lug
+    sized = [x for x in task.lugs if x.connection in given and given[x.connection].outer_diameter]
+    bores = {
+        lug.connection: 2.0 * (pin.band(lug.connection).radius + lug.bushing.thickness)
+        for lug in sized
+        if lug.bushing is not None
+    }
+    return lug_checks(pin, sized, loads, bores)
+
+
+def _arms(s: Situation, task: Task, peak: Peak, joint: JointResult | None) -> BendingArms:
+    """At the governing instant."""
+    now = s.loads.at(np.array([0]))
+    if peak.time is not None and peak.case in task.between:
+        links = task.between[peak.case](np.array([peak.time]))
+        structure = [name for name in s.loads.surfaces if name not in links.surfaces]
+        whole = with_supports(s.pin, links, structure)
+        assert whole is not None  # as for the instants of the case
+        now = whole
+    elif peak.time is not None and s.loads.times is not None:
+        now = s.loads.at(np.array([np.abs(s.loads.times - peak.time).argmin()]))
+    moment, model = (joint.bending_moment, joint.model) if joint else (None, "")
+    return bending_arms(replace(s, loads=now), moment, model)

@@ -1,0 +1,69 @@
+"""A drop in results."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from fea.core.dimensions import Energies, Force, Forces, Lengths, Time, Times, Velocities, Velocity
+
+PEAKS = {  # what is reported of a drop, and its dimension
+    "vertical": ("vertical force of the ground", "force"),
+    "along": ("force along the strut", "force"),
+    "stroke": ("stroke of the strut", "length"),
+    "deflection": ("deflection of the tyre", "length"),
+    "drag": ("drag of the ground (spin-up)", "force"),
+    "on_leg": ("drag that the leg passes on", "force"),
+    "spring_back": ("forward force that the leg passes on (spring-back)", "force"),
+}
+
+
+@dataclass(frozen=True)
+class DropPeak:
+    """A largest value and its time; dimension: of the value."""
+
+    name: str
+    value: Annotated[float, "own"]
+    time: Time
+    dimension: str
+
+    @property
+    def instead(self) -> dict[str, str]:
+        return {"own": self.dimension}
+
+
+@dataclass(frozen=True)
+class DropRecord:
+    """A landing as a drop: (T,) over time; sink_velocity of the sprung mass, positive downwards;
+    strut: force along it; leg_drag: what the leg passes on of the drag. peaks: by name of PEAKS.
+    load_factor: vertical force over the weight. imbalance: largest, of the energies over the first
+    kinetic energy. impulse_force: m V over impulse_time; equal_impulse_time: that at which both
+    agree. spin_up: largest drag by appendix D to 14 CFR part 23; None without a wheel. drive: the
+    largest force of the strut's drive in the mechanism. closing, opening: (P,) vertical force over
+    the strokes (P,) of the first compression and extension.
+    """
+
+    case: str
+    clause: str
+    velocity: Velocity
+    weight: Force
+    lift: float
+    time: Times
+    stroke: Lengths
+    deflection: Lengths
+    sink_velocity: Velocities
+    vertical: Forces
+    drag: Forces
+    strut: Forces
+    leg_drag: Forces
+    energies: dict[str, Energies]
+    peaks: dict[str, DropPeak]
+    load_factor: float
+    imbalance: float
+    impulse_time: Time
+    impulse_force: Force
+    equal_impulse_time: Time
+    spin_up: Force | None
+    strokes: Lengths
+    closing: Forces
+    opening: Forces

@@ -1,0 +1,32 @@
+"""Which check governs: the one with the least margin of safety."""
+
+from __future__ import annotations
+
+from fea.strength.bending_stress import CONCENTRATED
+from fea.strength.margin import PinMargin
+from reports.data.results import Results
+
+
+def governing(results: Results) -> list[PinMargin]:
+    """Of every pin in every case, the worst first; none of those of which no check was made.
+
+    Bending by concentrated forces governs no pin whose joint was solved: its moment is known.
+    """
+    solved = {(arms.pin, arms.case) for arms in results.arms if arms.joint}
+    found: dict[tuple[str, str], PinMargin] = {}
+    for margin in results.margins:
+        key = margin.pin, margin.case
+        if margin.margin.method == CONCENTRATED.method and key in solved:
+            continue
+        if margin.used >= 0.0 and (key not in found or margin.used > found[key].used):
+            found[key] = margin
+    return sorted(found.values(), key=lambda margin: -margin.used)
+
+
+def not_made(results: Results) -> dict[str, list[PinMargin]]:
+    """The checks that were not made, by what they need."""
+    found: dict[str, list[PinMargin]] = {}
+    for margin in results.margins:
+        if margin.margin.needs:
+            found.setdefault(margin.margin.needs, []).append(margin)
+    return found

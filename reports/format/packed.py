@@ -1,0 +1,27 @@
+"""Data inside a page: compressed, as text."""
+
+from __future__ import annotations
+
+import zlib
+from base64 import b64encode
+from typing import Any
+
+import numpy as np
+
+
+def deflated(content: bytes) -> str:
+    """Compressed by zlib, in base64; `inflated` of report.js reads it."""
+    return b64encode(zlib.compress(content, 9)).decode("ascii")
+
+
+def packed(values: np.ndarray[Any, Any], kind: str) -> dict[str, str]:
+    """Numbers of a type of numpy, little-endian; `unpacked` of view_field.js reads them.
+
+    Of integers the differences of successive ones are stored, of all the first bytes, then the
+    second ones, and so on: more of them are the same.
+    """
+    flat = np.ascontiguousarray(values, dtype=kind).ravel()
+    if flat.dtype.kind in "iu" and len(flat):
+        flat = np.diff(flat, prepend=flat.dtype.type(0))  # it wraps round, and so does the sum
+    of_each = flat.astype(kind).view(np.uint8).reshape(-1, flat.dtype.itemsize)
+    return {"kind": kind[1:], "packed": deflated(of_each.T.tobytes())}

@@ -1,0 +1,34 @@
+"""Parquet for tables of millions of rows: a tenth of the size of CSV, and read in a moment."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import chain, islice
+from pathlib import Path
+
+from reports.format.csv import Cell
+
+AT_ONCE = 100_000  # rows of a group
+
+
+def write_parquet(path: Path, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
+    """Write rows under column names, a group of rows at a time. What the first group has decides
+    whether a column is of texts, truth values or numbers; None stays empty.
+    """
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    left = iter(rows)
+    first = _group(left)
+    found = [pa.array(column, from_pandas=True).type for column in zip(*first, strict=True)]
+    kinds = [pa.float64() if pa.types.is_null(kind) else kind for kind in found]
+    schema = pa.schema(list(zip(columns, kinds, strict=True)))
+    with parquet.ParquetWriter(path, schema) as writer:
+        for group in chain([first], iter(lambda: _group(left), [])):
+            cells = zip(zip(*group, strict=True), kinds, strict=True)
+            arrays = [pa.array(column, kind, from_pandas=True) for column, kind in cells]
+            writer.write_table(pa.Table.from_arrays(arrays, schema=schema))
+
+
+def _group(left: Iterator[Sequence[Cell]]) -> list[Sequence[Cell]]:
+    return list(islice(left, AT_ONCE))

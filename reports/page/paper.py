@@ -1,0 +1,104 @@
+"""What the PDF says: texts, tables and drawings of the page, in its order, as plain data.
+
+The page carries it, so that an earlier run can be printed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+from reports.data.changes import command
+from reports.data.decision import outcome, worst_first
+from reports.data.results import PinResult, Provenance, Results
+from reports.format.file_names import plot_name
+from reports.format.grid import Grid
+from reports.format.words import headline
+from reports.page.joint import joint_part
+from reports.tables.changes import INTRODUCTION, change_notes, changes_grid
+from reports.tables.published import published_maxima
+from reports.tables.safety_factors import TEXTS, reading, shown, shown_columns, shown_rows
+from reports.text.loads_summary import load_parts
+from reports.text.method import METHOD
+from reports.text.pin_sentence import drawing_caption, pin_sentence
+from reports.text.summary import summary
+
+Content = dict[str, Any]
+
+
+def document(results: Results, drawings: dict[str, str]) -> Content:
+    """The content of report.typ. drawings: of the pins, as SVG."""
+    maxima = published_maxima(results)
+    return {
+        "title": results.title,
+        "study": results.study,
+        "sha256": results.study_sha256,
+        "versions": dict(sorted(results.versions.items())),
+        "block": asdict(results.title_block),
+        "headline": headline(results),
+        "summary": summary(results),
+        "units": asdict(results.units),
+        "factors": _factors(results),
+        "reading": reading(shown_columns(shown_rows(results), results)),
+        "changes": _changes(results),
+        "maxima": None if maxima is None else asdict(maxima),
+        "published_source": results.published_source,
+        "pins": [_pin(results, name, drawings) for name in drawings],
+        "loads": [
+            {"case": part.case, "notes": part.notes, "grids": [asdict(g) for g in part.grids]}
+            for part in load_parts(results)
+        ],
+        "provenance": asdict(_provenance(results.provenance)) if results.provenance else None,
+        "assumptions": results.assumptions,
+        "method": METHOD,
+    }
+
+
+def _factors(results: Results) -> Content | None:
+    if not results.pins:
+        return None
+    rows = shown_rows(results)
+    columns = shown_columns(rows, results)
+    for name in ("verdict", "model"):
+        columns.pop(name)
+    body = [[shown(name, row) for name in columns] for row in rows]
+    grid = Grid(list(columns.values()), body, [name not in TEXTS for name in columns])
+    return asdict(grid) | {"outcomes": [outcome(pin) for pin in worst_first(results)]}
+
+
+def _changes(results: Results) -> Content | None:
+    if not results.changes:
+        return None
+    notes = [INTRODUCTION, *change_notes(results)]
+    size = command(results.changes, results.study, results.required_safety_factor)
+    return {"grid": asdict(changes_grid(results)), "notes": notes, "command": size or None}
+
+
+def _pin(results: Results, name: str, drawings: dict[str, str]) -> Content:
+    shape = next(s for s in results.shapes if s.pin == name)
+    zoned = any(p.singular_at for p in results.pins if p.pin == name)
+    return {
+        "pin": name,
+        "drawing": drawings[name],
+        "caption": drawing_caption(shape, results.units, zoned),
+        "refinement": plot_name("refinement-pin", name),
+        "cases": [_case(p, results) for p in results.pins if p.pin == name],
+    }
+
+
+def _case(pin: PinResult, results: Results) -> Content:
+    joint = joint_part(pin, results.units)
+    return {
+        "case": pin.case,
+        "outcome": outcome(pin),
+        "sentence": pin_sentence(pin, results.units),
+        "model": pin.why,
+        "held": pin.held,
+        "plot": plot_name("surface", pin.case, pin.pin),
+        "bands": asdict(joint.bands) if joint and joint.bands else None,
+    }
+
+
+def _provenance(found: tuple[Provenance, ...]) -> Grid:
+    body = [[each.key, each.value, each.kind, each.note] for each in found]
+    return Grid(["input", "value", "source", "note"], body, [False] * 4)

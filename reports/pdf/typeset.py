@@ -1,0 +1,72 @@
+"""report.pdf, typeset by typst: https://typst.app/docs; docs/output.md says why."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from reports.format.template import TEMPLATES
+from reports.plots.draw import svg
+from reports.plots.spec import Plot, Spec
+from reports.plots.theme import on_paper
+
+Content = dict[str, Any]  # of reports.page.paper
+
+UNDATED = datetime(2000, 1, 1, tzinfo=UTC)  # the same results, the same bytes
+FONT = "Libertinus Serif"  # comes with typst
+WIDTH, HIGHER, FLAT = 330, 120, 95  # of plots, and of the views in them that are higher
+FAMILY = re.compile(r'font-family="[^"]*"')
+
+
+def typeset(content: Content, plots: Mapping[str, Plot]) -> bytes:
+    """The PDF, tagged for accessibility (PDF/UA-1). plots: by their names."""
+    import typst
+
+    files = {"main": (TEMPLATES / "report.typ").read_bytes()}
+    captions = {}
+    for name, plot in plots.items():
+        captions[name] = plot.caption
+        files[f"{name}.svg"] = _drawn(plot.spec).encode()
+    pins = []
+    for number, pin in enumerate(content["pins"]):
+        files[f"pin{number}.svg"] = FAMILY.sub(f'font-family="{FONT}"', pin["drawing"]).encode()
+        pins.append({**pin, "drawing": f"pin{number}.svg"})
+    data = {**content, "pins": pins, "captions": captions}
+    files["data.json"] = json.dumps(data, ensure_ascii=False).encode()
+    day = content["block"]["date"]
+    made = datetime.fromisoformat(day).replace(tzinfo=UTC) if day else UNDATED
+    fonts = typst.Fonts(include_system_fonts=False)
+    compiler = typst.Compiler(files, font_paths=fonts)  # type: ignore[type-var]  # says its stub
+    found = compiler.compile(format="pdf", pdf_standards="ua-1", timestamp=made)
+    assert isinstance(found, bytes)
+    return found
+
+
+def shown_plots(content: Content) -> list[str]:
+    """Names of the plots that the PDF shows, if there are such."""
+    cases = [case["plot"] for pin in content["pins"] for case in pin["cases"]]
+    return [*(pin["refinement"] for pin in content["pins"]), *cases]
+
+
+def write_pdf(content: Content, plots: Mapping[str, Plot], path: Path) -> None:
+    """Write it into a file."""
+    path.write_bytes(typeset(content, plots))
+
+
+def _drawn(spec: Spec) -> str:
+    """A plot for half the width of a page; its caption is the title."""
+    config = on_paper(FONT)
+    config["view"] |= {"continuousWidth": WIDTH}
+    small = _flatter({key: value for key, value in spec.items() if key != "title"})
+    return svg({**small, "config": config})
+
+
+def _flatter(spec: Spec) -> Spec:
+    flat = {**spec, "height": FLAT} if spec.get("height", 0) > HIGHER else spec
+    if "vconcat" in spec:
+        flat = {**flat, "vconcat": [_flatter(part) for part in spec["vconcat"]]}
+    return flat

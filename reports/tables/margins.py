@@ -1,0 +1,162 @@
+"""Margins of safety, as rows and for display."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fea.strength.margin import RATIO, PinMargin
+from reports.data.governing import governing, not_made
+from reports.data.results import Results
+from reports.format.grid import Grid
+from reports.format.numbers import DASH, engineering, finite, short
+from reports.tables.table import Table, unit_name
+
+COLUMNS = ("pin", "case", "method", "clause", "at", "level", "demand", "allowable", "factor",
+           "utilisation", "margin", "unit", "time", "basis", "not_made")  # fmt: skip
+
+SHOWN = {name: name for name in ("pin", "case", "check", "margin", "utilisation", "loads", "at",
+         "time", "demand", "allowable", "clause")}  # fmt: skip
+NUMERIC = ("time", "demand", "allowable", "utilisation", "margin")
+READING_MARGINS = (
+    "Margin of safety = allowable / (factor × demand) − 1, of the check that governs each pin in "
+    "each case. Checks against yield are made at limit load, those against rupture and collapse at "
+    "ultimate load; all checks of a pin are with the pin, and in margins.csv."
+)
+READING_ARMS = (
+    "The largest bending moment along the pin, with the force of each link even over its band, "
+    "as EN 1993-1-8 takes it, and concentrated at the band's middle, next to that of the joint "
+    "model. Above 1, the formula is conservative."
+)
+ARMS = ("pin", "case", "time", "layout", "moment_even", "moment_concentrated", "moment_joint",
+        "joint_model", "moment_unit")  # fmt: skip
+
+
+def margins_table(results: Results) -> Table:
+    """A row for every check of every pin and case, with all digits."""
+    rows = ([_row(found, results)[name] for name in COLUMNS] for found in results.margins)
+    return Table.of("margins", COLUMNS, rows, mixed=("demand", "allowable"))
+
+
+def margins_json(results: Results) -> list[dict[str, Any]]:
+    """The same for results.json."""
+    return [_row(found, results) for found in results.margins]
+
+
+def _row(found: PinMargin, results: Results) -> dict[str, Any]:
+    m = found.margin
+    return {
+        "pin": found.pin,
+        "case": found.case,
+        "method": m.method,
+        "clause": m.clause,
+        "at": m.at,
+        "level": m.level,
+        "demand": finite(m.demand),
+        "allowable": finite(m.allowable),
+        "factor": finite(m.factor),
+        "utilisation": finite(m.utilisation),
+        "margin": finite(m.margin),
+        "unit": m.dimension if m.dimension == RATIO else unit_name(m.dimension, results.units),
+        "time": finite(m.time),
+        "basis": m.basis,
+        "not_made": f"needs {m.needs}" if m.needs else "",
+    }
+
+
+def governing_grid(results: Results) -> Grid | None:
+    """The governing check of every pin and case, the worst first; None where no check was made."""
+    return _grid(governing(results), results, without=("clause",))
+
+
+def worst_grid(results: Results) -> Grid | None:
+    """The same in brief, of the worst case of each pin; for terminals."""
+    worst: dict[str, PinMargin] = {}
+    for found in governing(results):
+        worst.setdefault(found.pin, found)
+    if not worst:
+        return None
+    rows = [_cells(found, results) for found in worst.values()]
+    names = ("pin", "case", "check", "margin", "utilisation", "loads", "at", "clause")
+    body = [[row[name] for name in names] for row in rows]
+    return Grid(list(names), body, [name in NUMERIC for name in names])
+
+
+def margins_grid(results: Results, pin: str, case: str) -> Grid | None:
+    """All checks that were made of a pin in a case, the worst first."""
+    own = [m for m in results.margins if (m.pin, m.case) == (pin, case) and m.used >= 0.0]
+    return _grid(sorted(own, key=lambda m: -m.used), results, without=("pin", "case"))
+
+
+def not_made_words(results: Results) -> list[str]:
+    """A line for everything that checks need and the study does not give, with these checks."""
+    pins = {p.pin for p in results.pins}
+    lines = []
+    for needs, of in not_made(results).items():
+        own = list(dict.fromkeys(m.pin for m in of))
+        where = "" if len(own) == len(pins) else f" (pin{'s' * (len(own) > 1)} {', '.join(own)})"
+        methods = "; ".join(dict.fromkeys(m.margin.method for m in of))
+        lines.append(f"Not made{where}, for want of {needs}: {methods}.")
+    return lines
+
+
+def not_made_briefly(results: Results) -> str:
+    """The same in a sentence without the checks; empty where all were made."""
+    needs = ", ".join(not_made(results))
+    return f"Checks not made, for want of: {needs}." if needs else ""
+
+
+def arms_table(results: Results) -> Table:
+    """Bending moments of formulas and models, with all digits."""
+    unit = unit_name("moment", results.units)
+    rows = (
+        [a.pin, a.case, a.time, a.layout, a.even, a.concentrated, a.joint, a.model, unit]
+        for a in results.arms
+    )
+    return Table.of("bending_arms", ARMS, rows)
+
+
+def arms_grid(results: Results) -> Grid | None:
+    """The same for display, of the pins whose joint model has a moment."""
+    known = [a for a in results.arms if a.joint]
+    unit = unit_name("moment", results.units)
+    head = ["pin", "case", "layout", f"even [{unit}]", f"concentrated [{unit}]",
+            f"joint model [{unit}]", "even / model", "concentrated / model"]  # fmt: skip
+    body = [
+        [
+            a.pin,
+            a.case,
+            a.layout,
+            *(engineering(m) for m in (a.even, a.concentrated, a.joint)),
+            *(engineering(m / a.joint, 3) for m in (a.even, a.concentrated) if a.joint),
+        ]
+        for a in known
+    ]
+    return Grid(head, body, [False] * 3 + [True] * 5) if body else None
+
+
+def _grid(found: list[PinMargin], results: Results, without: tuple[str, ...] = ()) -> Grid | None:
+    rows = [_cells(m, results) for m in found]
+    empty = {name for name in ("at", "time") if all(row[name] == DASH for row in rows)}
+    names = [n for n in SHOWN if n not in without and n not in empty]
+    heads = {**SHOWN, "time": f"time [{results.units.time}]"}
+    body = [[row[name] for name in names] for row in rows]
+    return Grid([heads[n] for n in names], body, [n in NUMERIC for n in names]) if body else None
+
+
+def _cells(found: PinMargin, results: Results) -> dict[str, str]:
+    m = found.margin
+    unit = "" if m.dimension == RATIO else f" {unit_name(m.dimension, results.units)}"
+    used = None if m.utilisation is None else 100.0 * m.utilisation
+    return {
+        "pin": found.pin,
+        "case": found.case or DASH,
+        "check": m.method,
+        "at": m.at or DASH,
+        "time": DASH if m.time is None else short(m.time),
+        "loads": f"{m.level}\u00a0×\u00a0{short(m.factor)}",
+        "demand": f"{engineering(m.demand)}{unit}",
+        "allowable": f"{engineering(m.allowable)}{unit}",
+        "utilisation": f"{engineering(used, 3)} %",
+        "margin": f"{'+' if (m.margin or 0.0) > 0.0 else ''}{engineering(m.margin, 3)}",
+        "clause": m.clause,
+    }

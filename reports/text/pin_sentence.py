@@ -1,0 +1,41 @@
+"""A pin's result in a case, and its drawing, in sentences."""
+
+from __future__ import annotations
+
+from reports.data.results import PinResult, PinShape, Units
+from reports.format.numbers import components, engineering, short
+from reports.format.ranges import error_words, factor_range
+from reports.format.words import verdict_words
+
+
+def pin_sentence(pin: PinResult, units: Units) -> str:
+    """Maximum, error, when, where, factor of safety and verdict."""
+    verdict = pin.verdict.capitalize() + (f": {pin.note}" if pin.note else "") + "."
+    if pin.max_von_mises is None:
+        return verdict
+    outside = " outside the excluded zones" if pin.verdict == "singular" else ""
+    text = f"Maximum von Mises stress{outside} {engineering(pin.max_von_mises)} {units.stress}"
+    text += f" ({error_words(pin)})"
+    if pin.time is not None:
+        text += f", at t = {short(pin.time)} {units.time}"
+    if pin.position is not None:
+        unit = pin.position_unit or units.length
+        text += f" (drive position {engineering(pin.position)} {unit})"
+    if pin.location is not None:
+        place = ", ".join(components(pin.location, max(map(abs, pin.location))))
+        text += f", at x, y, z = {place} {units.length} in pin axes"
+    factor = f"{factor_range(pin)} ({verdict_words(pin.verdict, pin.yields)})"
+    return f"{text}. Safety factor {factor}. {verdict}"
+
+
+def drawing_caption(shape: PinShape, units: Units, zoned: bool = True) -> str:
+    """What the drawing of a pin shows. zoned: with excluded zones."""
+    zones = (
+        " Numbered red rings: stress singularities, filled where one governs; red stripes: the "
+        "excluded zones about them."
+    )
+    weight = "" if shape.weight is None else f", weight {engineering(shape.weight)} {units.force}"
+    return (
+        f"Profile, lengths and diameters (⌀ outer / bore) in {units.length}. Blue: bearing bands; "
+        f"hatched: clamped; grey: free.{zones * zoned} Material {shape.material}{weight}."
+    )

@@ -1,0 +1,186 @@
+"""A drop in a study: through the mechanism, with its clause, and what is refused."""
+
+from __future__ import annotations
+
+import csv
+import json
+import pickle
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pinstress import InputError, load_study, study_from
+from pinstress.analysis.gather import loads_only
+from pinstress.analysis.plan import all_loads
+from pinstress.cli.check import describe
+from pinstress.cli.commands import run_command_line
+from pinstress.study.file import Study
+from tests.conftest import ROOT
+
+SHIPPED = ROOT / "studies" / "drop.toml"
+
+
+def vertical_leg(**case: Any) -> dict[str, Any]:
+    """A telescopic leg, vertical, whose sliding parts have the unsprung mass of the drop."""
+    return {
+        "title": "vertical leg",
+        "units": "m-N-s",
+        "case": {
+            "fall": {
+                "kind": "drop",
+                "mass": 500.0,
+                "unsprung": 30.0,
+                "velocity": 3.0,
+                "lift": 0.5,
+                "body": "piston",
+                "at": "W",
+                "strut": {
+                    "drive": "S",
+                    "stroke": 0.3,
+                    "gas": {"pressure": 8e5, "volume": 0.0015, "area": 4e-3},
+                    "oil": {"density": 860.0, "area": 4e-3, "orifice": 1.2e-4},
+                    "friction": 200.0,
+                },
+                "tyre": {"at": [0.08, 2e4], "exponent": 1.2},
+                **case,
+            }
+        },
+        "mechanism": {
+            "drive": {"slider": "S"},
+            "slider": {"S": {"bodies": ["ground", "piston"], "joints": ["T", "W"]}},
+            "joint": {
+                "T": {"at": [0.0, 0.0], "fixed_in": "ground", "connections": {"T": "brace"}},
+                "W": {"at": [0.0, -1.0], "fixed_in": "piston", "connections": {"W": "wheel"}},
+            },
+            "body": {
+                "piston": {"mass": 20.0, "centre": [0.0, -0.8], "inertia": 1.0},
+                "wheel": {"mass": 10.0, "centre": [0.0, -1.0]},
+                "brace": {"mass": 0.0, "centre": [0.0, 0.0]},
+            },
+        },
+    }
+
+
+def test_inverse_dynamics_in_falling_axes_give_the_force_of_the_strut() -> None:
+    """The mechanism knows nothing of gas and oil: only the ground's force, masses, and motion."""
+    loads = all_loads(study_from(vertical_leg()), ["fall"])["fall"]
+    assert loads.dynamics is not None
+    assert loads.landing is not None
+    strut = loads.landing.at(loads.dynamics.motion.times).forces.along
+    np.testing.assert_allclose(loads.dynamics.drive[:, 0], strut, atol=1e-8 * strut.max())
+    length = loads.dynamics.motion.drives[:, 0]
+    assert 1.0 - length.min() == pytest.approx(loads.landing.peaks["stroke"].value, rel=1e-3)
+
+
+def test_a_drop_can_be_sent_to_another_process() -> None:
+    loads = all_loads(study_from(vertical_leg()), ["fall"])["fall"]
+    sent = pickle.loads(pickle.dumps(loads))
+    times = np.array([0.05, 0.1])
+    np.testing.assert_array_equal(sent.moving.at(times)[0].forces, loads.moving.at(times)[0].forces)  # type: ignore[union-attr]
+
+
+def test_levers_carry_the_energy_of_the_strut() -> None:
+    """Virtual work: the strut of the arm does at the wheel what it does along itself."""
+    loads = all_loads(load_study(SHIPPED), ["landing"])["landing"]
+    assert loads.landing is not None
+    h = loads.landing.at(np.linspace(0.0, 0.6, 4001))
+    moving = np.abs(h.rise_rate) > 1e-6
+    power = h.forces.at_wheel * h.rise_rate
+    np.testing.assert_allclose(
+        power[moving], (h.forces.along * h.forces.speed)[moving], atol=1e-6 * power.max()
+    )
+    way = np.trapezoid(np.maximum(h.forces.speed, 0.0), h.times)
+    assert way == pytest.approx(loads.landing.peaks["stroke"].value, rel=1e-4)
+
+
+@pytest.fixture(scope="module")
+def shipped() -> Study:
+    return load_study(SHIPPED)
+
+
+def test_the_record_states_clause_and_impulse(shipped: Study) -> None:
+    results = loads_only(shipped)
+    (drop,) = results.drops
+    assert "23.473(d)" in drop.clause
+    assert drop.imbalance < 1e-10
+    peak = drop.peaks["vertical"].value
+    assert drop.load_factor == pytest.approx(peak / (550.0 * 9.80665))
+    assert drop.impulse_force * drop.impulse_time == pytest.approx(peak * drop.equal_impulse_time)
+    assert peak >= drop.vertical.max()
+    ground = next(r for r in results.reactions if r.case == "drag")
+    assert "23.479(b)" in ground.note
+    w = ground.forces[0, ground.connections.index("B")]
+    assert np.linalg.norm(w) > peak
+
+
+@pytest.mark.slow
+def test_files_of_a_drop(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert run_command_line(["loads", str(SHIPPED), "--out", str(out)]) == 0
+    rows = list(csv.DictReader((out / "landing.csv").read_text(encoding="utf-8").splitlines()))
+    assert len(rows) == 301
+    assert float(rows[0]["sprung_velocity"]) == pytest.approx(2654.6, abs=0.1)
+    found = json.loads((out / "results.json").read_text(encoding="utf-8"))["drops"][0]
+    assert found["peaks"]["vertical"]["value"] >= max(float(r["vertical"]) for r in rows)
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert 'id="drop"' in page
+    assert "equal" not in found["clause"]
+
+
+def test_side_loads_are_stated_and_not_applied() -> None:
+    table = vertical_leg()
+    table["case"]["side"] = {
+        "kind": "ground", "rule": "23.499-side", "reference": 1000.0, "body": "piston", "at": "W",
+    }  # fmt: skip
+    loads = all_loads(study_from(table), ["side"])["side"]
+    assert "side 1,575.0 N" in loads.note
+    assert loads.dynamics is not None
+    assert loads.dynamics.drive[0, 0] == pytest.approx(2250.0 - 30.0 * 9.80665)
+
+
+@pytest.mark.parametrize(
+    ("case", "code"),
+    [
+        ({"velocity": None}, "no-velocity"),
+        ({"weight": 5000.0}, "give-one"),
+        ({"unsprung": 600.0}, "unsprung-too-large"),
+        ({"tyre": {"deflection": [0, 0.1, 0.05], "force": [0, 1, 2]}}, "not-increasing"),
+        ({"tyre": {"deflection": [0, 0.1], "force": [0, 1, 2]}}, "lengths-differ"),
+        ({"tyre": {}}, "give-one"),
+        ({"at": "nowhere"}, "unknown-joint"),
+        ({"rule": "23.473", "velocity": None}, "no-wing-loading"),
+    ],
+)
+def test_mistakes_have_codes(case: dict[str, Any], code: str) -> None:
+    given = vertical_leg(**case)
+    fall = given["case"]["fall"]
+    given["case"]["fall"] = {key: value for key, value in fall.items() if value is not None}
+    with pytest.raises(InputError) as caught:
+        describe(study_from(given))
+    assert code in caught.value.codes
+
+
+@pytest.mark.parametrize(
+    ("part", "values", "code"),
+    [
+        ("gas", {"volume": -1.0}, "not-positive"),
+        ("gas", {"volume": 1e-4}, "stroke-exceeds-gas"),
+        ("oil", {"orifice": 0.0}, "not-positive"),
+        ("oil", {"orifice": 1.0}, "orifice-too-large"),
+    ],
+)
+def test_mistakes_of_the_strut(part: str, values: dict[str, float], code: str) -> None:
+    given = vertical_leg()
+    given["case"]["fall"]["strut"][part] |= values
+    with pytest.raises(InputError) as caught:
+        describe(study_from(given))
+    assert code in caught.value.codes
+
+
+def test_a_strut_that_bottoms_is_an_error_of_the_case() -> None:
+    given = vertical_leg(velocity=9.0)
+    with pytest.raises(InputError) as caught:
+        all_loads(study_from(given), ["fall"])
+    assert caught.value.codes == ("strut-bottoms",)

@@ -1,0 +1,181 @@
+"""Margins of safety from a study to the files of a run, and its exit status."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from pinstress import run, study_from
+from pinstress.cli.commands import run_command_line
+from pinstress.study.errors import InputError
+from reports.data.governing import governing, not_made
+
+STUDY: dict[str, Any] = {
+    "title": "A pin in double shear",
+    "units": "mm-N-s",
+    "material": {"steel": {"youngs_modulus": "210 GPa", "poisson_ratio": 0.3}},
+    "analysis": {"model": "beam", "joints": "prescribed", "tolerance": 0.9},
+    "case": {
+        "pull": {
+            "kind": "given",
+            "forces": {"L": [-2500, 0], "M": [5000, 0], "R": [-2500, 0]},
+        }
+    },
+    "pin": {
+        "P": {
+            "material": "steel",
+            "profile": [
+                {"length": 8, "diameter": 16, "connection": "L"},
+                {"length": 1, "diameter": 16},
+                {"length": 15, "diameter": 16, "connection": "M"},
+                {"length": 1, "diameter": 16},
+                {"length": 8, "diameter": 16, "connection": "R"},
+            ],
+        }
+    },
+}
+STRENGTHS = {"yield_strength": "235 MPa", "ultimate_strength": "360 MPa",
+             "shear_strength": "210 MPa", "bearing_strength": "540 MPa"}  # fmt: skip
+
+
+def study(material: dict[str, Any] = STRENGTHS, **analysis: Any) -> dict[str, Any]:
+    """With strengths of the material, and other keys of [analysis]."""
+    of = {"steel": {**STUDY["material"]["steel"], **material}}
+    return {**STUDY, "material": of, "analysis": {**STUDY["analysis"], **analysis}}
+
+
+def test_results_in_the_units_of_the_study() -> None:
+    """On paper: a pin of 16 mm in S235, 8 / 15 / 8 mm with gaps of 1 mm, 5 kN."""
+    found = {(m.margin.method, m.margin.level): m.margin for m in run(study_from(study())).margins}
+    shear = found["EN 1993 shear", "ultimate"]
+    assert shear.demand == pytest.approx(2500.0)
+    assert shear.allowable == pytest.approx(34743.5, rel=1e-5)
+    bending = found["EN 1993 bending", "ultimate"]
+    assert bending.demand == pytest.approx(5000.0 * 35.0 / 8.0)  # N mm
+    assert bending.margin == pytest.approx(141_749.0 / (1.5 * 21_875.0) - 1.0, rel=1e-5)
+    rupture = found["single shear, mean", "ultimate"]
+    assert rupture.margin == pytest.approx(210.0 / (1.5 * 2500.0 / (math.pi * 64.0)) - 1.0)
+
+
+def test_fitting_factor_divides_and_is_not_an_assumption_when_given() -> None:
+    plain = run(study_from(study()))
+    fitted = run(study_from(study(limit_factor=1.0, ultimate_factor=1.5, fitting_factor=1.15)))
+    for before, after in zip(plain.margins, fitted.margins, strict=True):
+        assert after.used == pytest.approx(1.15 * before.used)
+    assert [a for a in plain.assumptions if "ultimate_factor 1.5" in a]
+    assert not [a for a in fitted.assumptions if "factor" in a]
+
+
+def test_the_governing_check_and_those_for_want_of_data() -> None:
+    results = run(study_from(study({"yield_strength": "235 MPa"})))
+    (worst,) = governing(results)
+    made = [m for m in results.margins if not m.margin.needs]
+    assert worst.used == max(m.used for m in made)
+    assert set(not_made(results)) == {
+        f"material.steel.{which}_strength" for which in ("ultimate", "shear", "bearing")
+    }
+    nothing = run(study_from(study({})))
+    assert governing(nothing) == []
+    assert all(m.margin.needs for m in nothing.margins)
+
+
+def test_instants_of_a_table(tmp_path: Path) -> None:
+    """The second instant is largest; the time of a check is its own, in the study's unit."""
+    (tmp_path / "t.csv").write_text(
+        "connection,fx,fy,time\n"
+        + "".join(
+            f"{name},{part * f},0,{t}\n"
+            for t, f in ((0, 100.0), (0.5, 5000.0), (1, 200.0))
+            for name, part in (("L", -0.5), ("M", 1.0), ("R", -0.5))
+        )
+    )
+    swept = {**study(), "case": {"pull": {"kind": "given", "table": "t.csv"}}}
+    found = run(study_from(swept, folder=tmp_path)).margins
+    still = run(study_from(study())).margins
+    assert {m.margin.time for m in found if not m.margin.needs} == {0.5}
+    assert [m.used for m in found] == pytest.approx([m.used for m in still])
+
+
+def test_a_pin_in_two_lugs_of_a_structure_is_a_beam_on_two_supports() -> None:
+    """The lugs left and right are the structure's: half of the force each. Three are too many."""
+    bare = {**STUDY["pin"]["P"], "lug": {"left": {}, "right": {}, "M": {"outer_diameter": 40}}}
+    profile = [dict(segment) for segment in bare["profile"]]
+    for k, name in ((0, "left"), (4, "right")):
+        profile[k] = {"length": 8, "diameter": 16, "name": name}
+    pulled = {"pull": {"kind": "given", "forces": {"M": [5000, 0]}}}
+    changed = {**study(model="auto", joints="foundation"), "case": pulled}
+    results = run(study_from({**changed, "pin": {"P": {**bare, "profile": profile}}}))
+    found = {(m.margin.method, m.margin.level): m.margin for m in results.margins}
+    assert found["EN 1993 bending", "ultimate"].demand == pytest.approx(5000.0 * 35.0 / 8.0)
+    (arms,) = results.arms
+    assert arms.layout == "double shear"
+    assert arms.model == "foundation"
+    assert arms.joint is not None
+    assert arms.joint < arms.concentrated
+    profile.append({"length": 8, "diameter": 16, "name": "third"})
+    three = {**bare, "profile": profile, "lug": {**bare["lug"], "third": {}}}
+    needs = not_made(run(study_from({**changed, "pin": {"P": three}})))
+    assert [key for key in needs if "left, right, third" in key]
+
+
+@pytest.mark.parametrize(
+    ("material", "analysis", "code"),
+    [
+        (
+            {"yield_strength": "400 MPa", "ultimate_strength": "360 MPa"},
+            {},
+            "strengths-out-of-order",
+        ),
+        ({"ultimate_strength": 360, "shear_strength": 361}, {}, "strengths-out-of-order"),
+        ({"ultimate_strength": 0}, {}, "not-positive"),
+        ({}, {"ultimate_factor": 0.9}, "factors-out-of-order"),
+        ({}, {"fitting_factor": 0.9}, "out-of-range"),
+        ({}, {"limit_factor": 0}, "out-of-range"),
+    ],
+)
+def test_bad_input(material: dict[str, Any], analysis: dict[str, Any], code: str) -> None:
+    with pytest.raises(InputError) as caught:
+        study_from(study(material, **analysis))
+    assert caught.value.code == code
+
+
+@pytest.mark.parametrize(
+    ("strength", "required", "strict", "status"),
+    [(235, "", True, 0), (60, "", True, 4), (60, "", False, 0), (235, 9.0, True, 4)],
+)
+def test_exit_status_and_files(
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    strength: float,
+    required: float | str,
+    strict: bool,
+    status: int,
+) -> None:
+    text = (
+        'title = "t"\nunits = "mm-N-s"\n[material.steel]\nyoungs_modulus = "210 GPa"\n'
+        f"poisson_ratio = 0.3\nyield_strength = {strength}\n[analysis]\n"
+        'model = "beam"\njoints = "prescribed"\ntolerance = 0.9\n'
+        + (f"required_safety_factor = {required}\n" if required else "")
+        + '[case.pull]\nkind = "given"\n'
+        "forces = { L = [-2500, 0], M = [5000, 0], R = [-2500, 0] }\n"
+        '[pin.P]\nmaterial = "steel"\nprofile = [{ length = 8, diameter = 16, connection = "L" },'
+        "{ length = 1, diameter = 16 }, "
+        '{ length = 15, diameter = 16, connection = "M" }, { length = 1, diameter = 16 }, '
+        '{ length = 8, diameter = 16, connection = "R" }]\n'
+    )
+    (tmp_path / "s.toml").write_text(text)
+    command = ["run", str(tmp_path / "s.toml"), "--out", str(tmp_path / "out"), "--vtk", "none"]
+    assert run_command_line(command + ["--fail-on-miss"] * strict) == status
+    assert ("Negative margin" in capsys.readouterr().err) == (strict and strength == 60)
+    rows = list(csv.DictReader((tmp_path / "out" / "margins.csv").read_text("utf-8").splitlines()))
+    listed = json.loads((tmp_path / "out" / "results.json").read_text())["margins"]
+    assert [float(r["margin"]) if r["margin"] else None for r in rows] == [
+        m["margin"] for m in listed
+    ]
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert 'id="margins"' in page

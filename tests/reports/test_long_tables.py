@@ -1,0 +1,72 @@
+"""Tables of many rows: Parquet beyond a limit, with the same cells as CSV."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pyarrow import parquet
+
+from reports.data.results import ReactionTable
+from reports.format import parquet as ours
+from reports.format.csv import Cell, write_csv
+from reports.format.parquet import write_parquet
+from reports.tables import table as tables
+from reports.tables.motion import REACTIONS, Instants
+from reports.tables.table import Table
+
+
+@pytest.fixture
+def reactions() -> Instants:
+    """Two cases, one of them without time."""
+    rng = np.random.default_rng(3)
+
+    def table(case: str, times: np.ndarray | None, count: int) -> ReactionTable:
+        forces, moments = rng.standard_normal((2, count, 2, 3))
+        return ReactionTable(
+            case, times, None, ("B", "C"), ("link", "arm"), ("P", "Q"), forces, moments, (), {}, ""
+        )
+
+    return Instants((table("turn", np.linspace(0.0, 1.0, 7), 7), table("rest", None, 1)))
+
+
+def test_rows_are_made_as_they_are_asked_for(reactions: Instants) -> None:
+    rows = list(reactions)
+    assert len(rows) == len(reactions) == 16
+    assert [reactions[k] for k in (0, 13, -1)] == [rows[0], rows[13], rows[-1]]
+    assert reactions[3:9:2] == rows[3:9:2]
+    assert rows[3][:4] == ["turn", pytest.approx(1 / 6), "C", "arm"]
+    with pytest.raises(IndexError):
+        reactions[16]
+
+
+def test_a_long_table_is_parquet_with_the_cells_of_the_csv(
+    reactions: Instants, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    table = Table("reactions", REACTIONS, reactions)
+    assert table.write(tmp_path).name == "reactions.csv"
+    monkeypatch.setattr(tables, "MOST_IN_CSV", 15)
+    monkeypatch.setattr(ours, "AT_ONCE", 5)
+    path = table.write(tmp_path)
+    assert path.name == "reactions.parquet"
+    found = parquet.read_table(path)
+    assert parquet.ParquetFile(path).num_row_groups == 4
+    assert found.column_names == list(REACTIONS)
+    read = csv.DictReader((tmp_path / "reactions.csv").read_text().splitlines())
+    for row, plain in zip(found.to_pylist(), read, strict=True):
+        assert (row["case"], row["connection"]) == (plain["case"], plain["connection"])
+        assert row["fx"] == float(plain["fx"])
+        assert row["time"] == (float(plain["time"]) if plain["time"] else None)
+
+
+def test_cells_that_are_no_numbers(tmp_path: Path) -> None:
+    rows: list[list[Cell]] = [["a", 1.5, None, True], ["=b", float("nan"), None, False]]
+    write_csv(tmp_path / "t.csv", ("n", "x", "y", "ok"), rows)
+    assert (tmp_path / "t.csv").read_text() == "n,x,y,ok\na,1.5,,yes\n'=b,,,no\n"
+    write_parquet(tmp_path / "t.parquet", ("n", "x", "y", "ok"), rows)
+    assert parquet.read_table(tmp_path / "t.parquet").to_pylist() == [
+        {"n": "a", "x": 1.5, "y": None, "ok": True},
+        {"n": "=b", "x": None, "y": None, "ok": False},
+    ]

@@ -1,0 +1,79 @@
+"""The table of margins, and its units."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from fea.strength.margin import RATIO, Margin, PinMargin, not_made
+from reports.data.results import Results, Units
+from reports.tables.margins import (
+    governing_grid,
+    margins_json,
+    margins_table,
+    not_made_words,
+    worst_grid,
+)
+
+CHECKS = (
+    Margin("von Mises", "", "limit", 100e6, 250e6, 1.0),
+    Margin("shear", "", "ultimate", 5000.0, 30000.0, 1.5, "force", at="eye", time=2.0),
+    Margin("bending", "", "ultimate", 27.0, 120.0, 1.5, "moment"),
+    Margin("interaction", "", "ultimate", 0.2, 1.0, 1.5, RATIO),
+    not_made("rupture", "", "ultimate", 1.5, "material.steel.ultimate_strength"),
+)
+
+
+def test_every_row_is_in_the_unit_that_it_names(results: Results) -> None:
+    in_si = replace(results, pins=(), margins=tuple(PinMargin("P", "c", m) for m in CHECKS))
+    value = {"stress": 1e6, "force": 1e3, "moment": 1e3, "time": 1.0, "length": 1.0}
+    rows = margins_json(in_si.in_units(Units("m", "kN", "MPa", "s"), lambda d: value.get(d, 1.0)))
+    shown = [(row["demand"], row["allowable"], row["unit"]) for row in rows]
+    assert shown == [
+        (100.0, 250.0, "MPa"),
+        (5.0, 30.0, "kN"),
+        (0.027, 0.12, "kN m"),
+        (0.2, 1.0, "1"),
+        (None, None, "MPa"),
+    ]
+    assert [row["margin"] for row in rows[:3]] == pytest.approx(
+        [1.5, 30.0 / 7.5 - 1.0, 120.0 / 40.5 - 1.0]
+    )
+    assert rows[4]["margin"] is None
+    assert rows[4]["not_made"] == "needs material.steel.ultimate_strength"
+
+
+def test_the_table_has_the_same_rows_with_a_heading_for_each(results: Results) -> None:
+    made = replace(results, margins=tuple(PinMargin("P", "c", m) for m in CHECKS))
+    table = margins_table(made)
+    assert [dict(zip(table.columns, row, strict=True)) for row in table.rows] == margins_json(made)
+
+
+def test_the_worst_check_of_each_pin_is_first(results: Results) -> None:
+    """Of two pins in two cases; what was not made governs nothing and is named with its check."""
+
+    def used(method: str, demand: float) -> Margin:
+        return Margin(method, "", "limit", demand, 100.0, 1.0)
+
+    margins = (
+        PinMargin("A", "one", used("shear", 10.0)),
+        PinMargin("A", "one", used("bending", 40.0)),
+        PinMargin("B", "one", used("shear", 90.0)),
+        PinMargin("A", "two", used("shear", 50.0)),
+        PinMargin("B", "two", CHECKS[-1]),
+    )
+    made = replace(results, margins=margins)
+    by_case = governing_grid(made)
+    worst = worst_grid(made)
+    assert by_case is not None
+    assert worst is not None
+    assert [row[:4] for row in by_case.body] == [
+        ["B", "one", "shear", "+0.111"],
+        ["A", "two", "shear", "+1.00"],
+        ["A", "one", "bending", "+1.50"],
+    ]
+    assert [row[:3] for row in worst.body] == [["B", "one", "shear"], ["A", "two", "shear"]]
+    (line,) = not_made_words(made)
+    assert "(pin B), for want of material.steel.ultimate_strength: rupture" in line
+    assert worst_grid(replace(results, margins=margins[-1:])) is None

@@ -1,0 +1,41 @@
+"""What the PDF says is what the page says; names of all kinds stay text."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from reports.data.decision import outcome, worst_first
+from reports.data.results import Results, TitleBlock
+from reports.page.paper import document
+from reports.pdf.typeset import shown_plots, typeset
+from reports.plots.all import all_plots
+from reports.tables.safety_factors import shown_rows
+
+EVIL = '#panic("no") $x$ *b* _i_ \\ `c` <a> @b // /* [ ] { }'
+
+
+def test_rows_are_those_of_the_decision_worst_first(results: Results) -> None:
+    found = document(results, {})["factors"]
+    assert found["outcomes"] == [outcome(pin) for pin in worst_first(results)]
+    at = found["head"].index("pin")
+    assert [row[at] for row in found["body"]] == [row["pin"] for row in shown_rows(results)]
+
+
+def test_every_pin_shows_its_stress_and_its_meshes(results: Results) -> None:
+    drawings = {shape.pin: "<svg/>" for shape in results.shapes}
+    content = document(results, drawings)
+    assert [pin["pin"] for pin in content["pins"]] == list(drawings)
+    assert len(shown_plots(content)) == len(drawings) + sum(
+        pin.pin in drawings for pin in results.pins
+    )
+
+
+def test_names_are_not_typesetting(results: Results) -> None:
+    block = TitleBlock(revision=EVIL, date="2026-03-31", prepared=EVIL)
+    evil = replace(results, title=EVIL, assumptions=(EVIL,), title_block=block)
+    svg = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 10 10"><title>x</title></svg>'
+    content = document(evil, {shape.pin: svg for shape in evil.shapes})
+    plots = {k: v for k, v in all_plots(evil).items() if k in shown_plots(content)}
+    once = typeset(content, plots)
+    assert once == typeset(content, plots)
+    assert once.startswith(b"%PDF-")

@@ -1,0 +1,20 @@
+"""What reports.format.packed made of numbers, back."""
+
+from __future__ import annotations
+
+import zlib
+from base64 import b64decode
+
+import numpy as np
+
+from reports.data.results import Floats
+
+
+def unpacked(data: dict[str, str]) -> Floats:
+    """As view_field.js does it."""
+    content = zlib.decompress(b64decode(data["packed"]))
+    kind = np.dtype("<" + data["kind"])
+    flat = np.frombuffer(content, np.uint8).reshape(kind.itemsize, -1).T.copy().view(kind)[:, 0]
+    if kind.kind != "f":
+        flat = np.cumsum(flat, dtype=kind)
+    return flat.astype(np.float64)

@@ -1,0 +1,62 @@
+"""Bodies whose limit loads are known in closed form."""
+
+import math
+
+import numpy as np
+
+from fea.core.material import Material
+from fea.core.pin_loads import PinLoads, UnitLoad
+from fea.plastic.body import Elements, FlowingBody, untied
+from fea.plastic.flow import FlowRule
+from fea.plastic.limit_load import OnMesh, limit_on_mesh
+from fea.plastic.pin_body import acting_at, hexahedral, nodal_forces, pin_body
+from geometry import Pin, Segment
+from geometry.arrays import Floats
+from geometry.mesh.hexahedra import HexSize, hexahedra
+
+YIELD = 250e6
+STEEL = Material("steel", 200e9, 0.3, None, YIELD)
+RULE = FlowRule(STEEL)
+D = 0.02
+
+
+def bar(bore: float = 0.0) -> Pin:
+    """Bands two diameters long at the ends of a bar, four between them; bore in diameters."""
+    ends = (
+        Segment(2 * D, D, bore * D, connection="a"),
+        Segment(2 * D, D, bore * D, connection="b"),
+    )
+    return Pin("bar", (ends[0], Segment(4 * D, D, bore * D), ends[1]))
+
+
+def couples(axis: int) -> PinLoads:
+    """Of 1 N m at both ends of the bar, about y (axis 1) or its own (2)."""
+    moments = np.zeros((1, 2, 3))
+    moments[0, :, axis] = 1.0, -1.0
+    return PinLoads("couples", ("a", "b"), np.zeros((1, 2, 3)), moments)
+
+
+def limit(pin: Pin, loads: PinLoads, fineness: HexSize, clamps: tuple[str, ...] = ()) -> OnMesh:
+    made = pin_body(pin, RULE, clamps, acting_at(loads, 0), fineness)
+    fine = hexahedral(made.mesh.nodes, made.mesh.elements, 3)
+    return limit_on_mesh(made.body, made.forces, fine)
+
+
+def elastic_moment(bore: float = 0.0) -> float:
+    """At which a round bar begins to yield in bending, N m."""
+    return YIELD * math.pi / 32 * D**3 * (1 - bore**4)
+
+
+def cylinder(around: int) -> tuple[FlowingBody, Floats, Elements]:
+    """A quarter of a thick cylinder, 1 and 1.3 m, in plane strain, the forces of 1 Pa from outside,
+    which makes it flow as a pressure inside does, and its elements with more points.
+    """
+    pin = Pin("ring", (Segment(0.2, 2.6, 2.0, connection="a"),))
+    mesh = hexahedra(pin, HexSize(around, 1.0), 1)
+    elements = hexahedral(mesh.nodes, mesh.elements)
+    zero = np.abs(mesh.nodes) < 1e-9
+    zero[:, 2] = True
+    ties = untied(len(mesh.nodes)).without(np.flatnonzero(zero))
+    pressure = ((UnitLoad("a", "pressure", 0, (("a", 1.0),)), 0, 1.0),)
+    forces = ties.matrix.T @ nodal_forces(pin, RULE, mesh, elements, pressure).ravel()
+    return FlowingBody(elements, ties, RULE), forces, hexahedral(mesh.nodes, mesh.elements, 3)
