@@ -14,33 +14,16 @@ from typing import Any
 
 import numpy as np
 
-from loads.friction import MOST_CONTACTS, JammingError, contact_forces
+from loads.forces.acting import Load, balance
+from loads.forces.holding import holding, require_closed
+from loads.friction import MOST_CONTACTS, JammingError, contact_sizes
 from loads.joint_forces import connection_members, slider_couple, slider_members
-from loads.linkage import GROUND, Floats, Linkage, LinkageError, Point, Slider
+from loads.linkage import GROUND, Floats, Linkage, LinkageError, Point, Slider, Turn
 from loads.loop_equations import Complex, cross, number, pairs
 from loads.motion import Motion
 from loads.reactions import Reactions
 
 STANDS = 1e-13  # of the fastest coordinate of the course: a slider this slow is at rest
-
-
-@dataclass(frozen=True)
-class Applied:
-    """A constant force (N) on a body's point (m, as drawn) and a couple (N m) on the body.
-
-    follows: the force turns with the body (given in axes as drawn); otherwise in world axes.
-    """
-
-    body: str
-    at: Point
-    force: Point = (0.0, 0.0)
-    couple: float = 0.0
-    follows: bool = False
-
-    def along(self, motion: Motion) -> Complex:
-        """The force in world axes at every instant, (T,) N."""
-        force = np.full(len(motion), number(self.force))
-        return force * np.exp(1j * motion.angle(self.body)) if self.follows else force
 
 
 @dataclass(frozen=True)
@@ -58,24 +41,35 @@ class SliderForces:
 class Dynamics:
     """Reactions, with the forces of the drives and the loads.
 
-    drive: (T, D) N, positive if it extends a slider, or N m, positive counter-clockwise. needed,
+    actuators: A that hold the linkage, its drives first. drive: (T, A) their forces, N, positive if
+    it extends a slider, or N m, positive counter-clockwise. needed,
     couples: (T, items) forces (complex, N) and couples (N m) that joints and drives bring to each
-    item. applied: the loads. shared: connections whose forces follow the sharing rule.
+    item. applied: the loads. pin_friction: couple (T, C) N m of every pin on the body that turns on
+    it. shared: connections whose forces follow the sharing rule.
     """
 
     reactions: Reactions
+    actuators: tuple[Slider | Turn, ...]
     drive: Floats
     motion: Motion
-    applied: tuple[Applied, ...]
+    applied: tuple[Load, ...]
     sliders: SliderForces
+    pin_friction: Floats
     needed: Complex
     couples: Floats
     shared: tuple[str, ...]
 
     @property
     def power(self) -> Floats:
-        """Power of every drive, (T, D) W."""
-        return self.drive * self.motion.speeds
+        """Power of every actuator, (T, A) W."""
+        return self.drive * self.course[1]
+
+    @property
+    def course(self) -> tuple[Floats, Floats, Floats]:
+        """Position (m or rad) of every actuator and its rates, (T, A) each."""
+        each = [self.motion.coordinate(a) for a in self.actuators]
+        position, speed, rate = (np.stack([c[k] for c in each], axis=1) for k in range(3))
+        return position, speed, rate
 
     def shaking(self, about: Point) -> tuple[Floats, Floats]:
         """Force (T, 2) N and moment (T,) N m about a point (m) of the linkage on its ground."""
@@ -85,15 +79,21 @@ class Dynamics:
 
 
 def motion_reactions(
-    case: str, motion: Motion, applied: Sequence[Applied] = (), timed: bool = True
+    case: str,
+    motion: Motion,
+    applied: Sequence[Load] = (),
+    timed: bool = True,
+    hold: Sequence[str] = (),
+    friction: bool = True,
 ) -> Dynamics:
     """Reactions of a driven motion under gravity, applied loads and friction.
 
-    timed: whether its instants follow each other in time. Raises: LinkageError when connections
-    share forces without a rule, JammingError.
+    timed: whether its instants follow each other in time. hold: names of the sliders and turns that
+    hold the linkage, by default its drives. friction: whether anything rubs. Raises: LinkageError
+    when connections share forces without a rule or the linkage is not held, JammingError.
     """
     loads = tuple(applied)
-    solved = (_Balance(part, loads).dynamics(case, timed) for part in motion.parts)
+    solved = (_Balance(part, loads, hold, friction).dynamics(case, timed) for part in motion.parts)
     # Each part's motion is let go with its matrices, before the next is made.
     parts = [replace(found, motion=motion) for found in solved]
     return parts[0] if len(parts) == 1 else _joined(parts)
@@ -112,11 +112,35 @@ def _joined(parts: Sequence[Any]) -> Any:
     return first
 
 
+@dataclass(frozen=True)
+class _Source:
+    """A slider or connection that rubs. which: its number. coefficient: of friction, or radius (m)
+    of the friction circle. speed: (T,) m/s, with which it slides or turns. f, couples: multipliers,
+    and couples that items need, of one newton (newton metre) of friction.
+    """
+
+    name: str
+    which: int
+    turns: bool
+    coefficient: float
+    speed: Floats
+    f: Floats
+    couples: Floats
+
+    def opposes(self, still: float) -> Floats:
+        """(T,) direction of its friction, 0 where it is slower than `still`, m/s."""
+        return np.where(np.abs(self.speed) > still, -np.sign(self.speed), 0.0)
+
+
 class _Balance:
     """The balance of forces of one motion: linear in what the bodies need."""
 
-    def __init__(self, motion: Motion, applied: tuple[Applied, ...]) -> None:
+    def __init__(
+        self, motion: Motion, applied: tuple[Load, ...], hold: Sequence[str], rubs: bool
+    ) -> None:
         self.motion, self.applied, self.loops = motion, applied, motion.loops
+        self.rubs = rubs
+        self.held = holding(motion, hold)
         self.connections = connection_members(self.loops)
         self.slides = slider_members(self.loops)
         self.shared = motion.found.shared
@@ -124,19 +148,26 @@ class _Balance:
 
     def dynamics(self, case: str, timed: bool) -> Dynamics:
         linkage = self.motion.linkage
-        f = self._multipliers(self._generalised(), self.needed)
-        rubs = [k for k, s in enumerate(linkage.sliders) if s.friction]
+        f = self._multipliers(self._generalised(self.needed, self.couples), self.needed)
         friction = np.zeros((len(f), len(linkage.sliders)))
-        if rubs:
-            friction, f = self._with_friction(f, rubs)
+        on_pins = np.zeros((len(f), len(linkage.connections)))
+        couples = self.couples
+        if self.rubs and (sources := self._sources()):
+            amounts, f = self._with_friction(f, sources)
+            for i, s in enumerate(sources):
+                (on_pins if s.turns else friction)[:, s.which] = amounts[:, i]
+                couples = couples + amounts[:, i, None] * s.couples
         drive = self._drives(f)
-        normal, couple = self._slider_forces(f, self.needed, self.couples)
+        require_closed(self.held, drive)
+        normal, couple = self._slider_forces(f, self.needed, couples)
         return Dynamics(
             reactions=self._reactions(case, f, timed),
+            actuators=self.held.actuators,
             drive=drive,
             motion=self.motion,
             applied=self.applied,
             sliders=SliderForces(normal, couple, friction),
+            pin_friction=on_pins,
             needed=self.needed,
             couples=self.couples,
             shared=self.shared,
@@ -144,41 +175,36 @@ class _Balance:
 
     def _needs(self) -> tuple[Complex, Floats]:
         """m a - weight - applied force, and the couples about the centres, (T, items) each."""
-        motion, linkage = self.motion, self.motion.linkage
-        centres, _, acceleration = motion.centres
-        needed = motion.masses * (acceleration - number(linkage.gravity))
+        motion = self.motion
+        _, _, acceleration = motion.centres
+        needed = motion.masses * (acceleration - number(motion.linkage.gravity))
         couples = motion.inertias * motion.spin_rate
-        for load in self.applied:
-            i = linkage.index[load.body]
-            force = load.along(motion)
-            at, _, _ = motion.point(load.body, load.at)
-            arm = at[:, 0] + 1j * at[:, 1] - centres[:, i]
+        for i, force, couple in balance(motion, self.applied):
             needed[:, i] -= force
-            couples[:, i] -= cross(arm, force) + load.couple
+            couples[:, i] -= couple
         return needed, couples
 
-    def _generalised(self) -> Floats:
+    def _generalised(self, needed: Complex, couples: Floats) -> Floats:
         """What the bodies need as forces along the coordinates, (T, n) N (N m for angles)."""
         loops = self.loops
-        out = loops.along_coordinates(self.motion.pose, self.needed, loops.centres)
+        out = loops.along_coordinates(self.motion.pose, needed, loops.centres)
         for i in range(len(loops.linkage.items)):
             if f := loops.frame[i]:
-                out[:, f - 1] += self.couples[:, i]
+                out[:, f - 1] += couples[:, i]
         return out
 
     def _closing(self, f: Floats) -> Complex:
         return self.loops.closing_forces(f)
 
     def _drives(self, f: Floats) -> Floats:
-        """(T, D) forces and torques of the drives."""
-        D = len(self.loops.linkage.driven)
-        return f[:, f.shape[1] - D :] * [self.loops.drive_scale(k) for k in range(D)]
+        """(T, A) forces and torques of the actuators."""
+        return self.held.forces(f[:, f.shape[1] - self.held.weights.shape[2] :])
 
     def _multipliers(self, generalised: Floats, needed: Complex) -> Floats:
         """Multipliers (T, rows) that balance forces along the coordinates, shared by the given
         rules.
         """
-        factors = self.motion.factors
+        factors = self.held.factors
         f = factors.solve_transposed(generalised / self.loops.scale)
         if not self.shared:
             return f
@@ -202,7 +228,8 @@ class _Balance:
         centres, _, _ = self.motion.centres
         bodies, _, at = loops.closing_ends
         closing_at = loops.place(pose, loops.points(bodies, at))
-        torques = self._drives(f)
+        forces = zip(self.held.actuators, self._drives(f).T, strict=True)
+        torques = [(a, force) for a, force in forces if isinstance(a, Turn)]
         couple = np.stack(
             [
                 slider_couple(
@@ -219,60 +246,84 @@ class _Balance:
         item, at = np.array([index[slider.moving]]), np.array([number(slider.end)])
         return self.loops.place(self.motion.pose, self.loops.points(item, at))[:, 0]
 
-    def _contacts(self, normal: Floats, couple: Floats, rubs: list[int]) -> Floats:
-        """Forces on the pads of the sliders that rub, (T, K)."""
+    def _sources(self) -> list[_Source]:
+        """What rubs: sliders, then connections, each with its unit response."""
+        linkage, motion = self.motion.linkage, self.motion
+        sliders, first = linkage.sliders, self.loops.frames - 1
+        nothing, none = np.zeros_like(self.needed), np.zeros_like(self.couples)
         out = []
-        for k in rubs:
-            bearing = self.loops.linkage.sliders[k].bearing
-            if bearing is None:
-                out.append(normal[:, k])
-            else:
-                out += [normal[:, k] / 2 + couple[:, k] / bearing]
-                out += [normal[:, k] / 2 - couple[:, k] / bearing]
-        return np.stack(out, axis=1)
+        for k, s in enumerate(sliders):
+            if s.friction:
+                push = np.zeros_like(motion.q)
+                push[:, first + k] = -1.0
+                speed = motion.v[:, first + k]
+                f = self._multipliers(push, nothing)
+                out.append(_Source(f"slider {s.name}", k, False, s.friction, speed, f, none))
+        for c, (joint, connection) in enumerate(linkage.connections):
+            if connection.friction:
+                couples = none.copy()
+                couples[:, linkage.index[connection.body]] = -1.0
+                if (carrier := linkage.index[linkage.carrier(joint)]) < couples.shape[1]:
+                    couples[:, carrier] = 1.0
+                f = self._multipliers(self._generalised(nothing, couples), nothing)
+                speed = motion.turning(joint, connection) * linkage.length_scale
+                name = f"pin {joint.name} at {connection.name}"
+                out.append(_Source(name, c, True, connection.friction, speed, f, couples))
+        return out
 
-    def _with_friction(self, f: Floats, rubs: list[int]) -> tuple[Floats, Floats]:
-        """Friction (T, S) and the multipliers with it."""
-        motion, loops = self.motion, self.loops
-        sliders, first = loops.linkage.sliders, loops.frames - 1
-        free = self._contacts(*self._slider_forces(f, self.needed, self.couples), rubs)
-        owner = [k for k in rubs for _ in range(1 if sliders[k].bearing is None else 2)]
+    def _pressed(
+        self, sources: list[_Source], f: Floats, needed: Complex, couples: Floats
+    ) -> list[Complex]:
+        """Of every source its contact forces, (T, contacts): of pads along their normal, of pins in
+        the plane.
+        """
+        slides = [s.which for s in sources if not s.turns]
+        normal, couple = self._slider_forces(f, needed, couples) if slides else (f, f)
+        pins = self.connections.forces(needed, self._closing(f))
+        out = []
+        for s in sources:
+            if s.turns:
+                out.append(pins[:, [s.which]])
+                continue
+            n, bearing = normal[:, s.which], self.loops.linkage.sliders[s.which].bearing
+            pads = [n]
+            if bearing is not None:
+                pads = [n / 2 + sign * couple[:, s.which] / bearing for sign in (1.0, -1.0)]
+            out.append(np.stack(pads, axis=1).astype(complex))
+        return out
+
+    def _with_friction(self, f: Floats, sources: list[_Source]) -> tuple[Floats, Floats]:
+        """Friction forces (couples) of the sources, (T, sources), and the multipliers with them."""
+        nothing = np.zeros_like(self.needed)
+        free = self._pressed(sources, f, self.needed, self.couples)
+        owner = [i for i, contacts in enumerate(free) for _ in range(contacts.shape[1])]
         if len(owner) > MOST_CONTACTS:
             raise LinkageError(
                 f"{len(owner)} contacts have friction; at most {MOST_CONTACTS} can be solved",
                 "too-many-contacts",
             )
-        speed = motion.v[:, first:]
-        slides = np.abs(speed) > STANDS * motion.pace
-        opposes = np.where(slides, -np.sign(speed), 0.0)
-        nothing, none = np.zeros_like(self.needed), np.zeros_like(self.couples)
-        response, contacts = {}, {}
-        for k in rubs:
-            push = np.zeros_like(motion.q)
-            push[:, first + k] = -1.0
-            response[k] = self._multipliers(push, nothing)
-            contacts[k] = self._contacts(*self._slider_forces(response[k], nothing, none), rubs)
-        feedback = np.stack(
-            [-contacts[k] * (sliders[k].friction * opposes[:, k])[:, None] for k in owner], axis=2
-        )
+        amounts = [s.coefficient * s.opposes(STANDS * self.motion.pace) for s in sources]
+        unit = [np.concatenate(self._pressed(sources, s.f, nothing, s.couples), 1) for s in sources]
+        response = np.stack([unit[i] * amounts[i][:, None] for i in owner], axis=2)
         try:
-            n = np.abs(contact_forces(free, feedback))
+            sizes = contact_sizes(np.concatenate(free, axis=1), response)
         except JammingError as error:
-            raise self._named(error, feedback, owner) from None
-        friction = np.zeros((len(f), len(sliders)))
-        for i, k in enumerate(owner):
-            friction[:, k] += sliders[k].friction * opposes[:, k] * n[:, i]
-        for k in rubs:
-            f = f + friction[:, k, None] * response[k]
+            raise self._named(error, response, [sources[i].name for i in owner]) from None
+        friction = np.zeros((len(f), len(sources)))
+        for k, i in enumerate(owner):
+            friction[:, i] += amounts[i] * sizes[:, k]
+        for i, s in enumerate(sources):
+            f = f + friction[:, i, None] * s.f
         return friction, f
 
-    def _named(self, error: JammingError, feedback: Floats, owner: list[int]) -> JammingError:
-        """The same with the sliders named and the time."""
+    def _named(self, error: JammingError, response: Complex, names: list[str]) -> JammingError:
+        """The same with what rubs named and the time."""
         t = int(error.instants[0])
-        grips = np.abs(np.diagonal(feedback[t]))
-        which = self.loops.linkage.sliders[owner[int(grips.argmax())]]
+        grips = np.abs(np.diagonal(response[t]))
         when = f"t = {self.motion.times[t]:.6g} s" if len(self.motion) > 1 else ""
-        return JammingError(error.instants, error.none, error.grip, when, f"slider {which.name}")
+        return JammingError(
+            error.instants, error.none, error.grip, when, names[int(grips.argmax())]
+        )
 
     def _reactions(self, case: str, f: Floats, timed: bool) -> Reactions:
         motion, linkage = self.motion, self.motion.linkage

@@ -6,6 +6,7 @@ items need, less what closures bring to them. No system is solved.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,13 +63,13 @@ def slider_couple(
     couples: Floats,
     closing_at: Complex,
     closing: Complex,
-    torques: Floats,
+    torques: Sequence[tuple[Turn, Floats]],
 ) -> Floats:
     """Couple of the base on the moving body of a slider about points (T,), (T,) N m.
 
     centres, needed, couples: (T, items) places, forces and couples that the items need. closing_at,
-    closing: (T, closures) places and forces. torques: (T, D) of the drives (0 where they slide). A
-    slider that closes a loop of sliders alone is taken to carry no couple.
+    closing: (T, closures) places and forces. torques: (T,) of every turn that is held. A slider
+    that closes a loop of sliders alone is taken to carry no couple.
     """
     edge = next((e for e in loops.tree if e.slides and e.which == which), None)
     out = np.zeros(len(about))
@@ -80,9 +81,8 @@ def slider_couple(
     for k, (body, carrier) in enumerate(zip(*loops.closing_ends[:2], strict=True)):
         side = (body in edge.away) - (carrier in edge.away)
         out -= side * cross(closing_at[:, k] - about, closing[:, k])
-    for k, drive in enumerate(loops.linkage.drives):
-        if isinstance(drive, Turn):
-            index = loops.linkage.index
-            side = (index[drive.body] in edge.away) - (index[drive.base] in edge.away)
-            out -= side * torques[:, k]
+    index = loops.linkage.index
+    for turn, torque in torques:
+        side = (index[turn.body] in edge.away) - (index[turn.base] in edge.away)
+        out -= side * torque
     return out if edge.forward else -out

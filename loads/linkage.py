@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,10 +58,13 @@ class Body:
 
 @dataclass(frozen=True)
 class Connection:
-    """A body that turns on a pin; `name` labels the force between them."""
+    """A body that turns on a pin; `name` labels the force between them. friction: radius of the
+    friction circle, m: r mu / sqrt(1 + mu^2) of a pin of radius r.
+    """
 
     name: str
     body: str
+    friction: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -113,12 +117,15 @@ class Slider:
 
 @dataclass(frozen=True)
 class Turn:
-    """The angle of `body` against `base` as a drive sees it; `drawn`: its value as drawn, rad."""
+    """The angle of `body` against `base` as a drive sees it; `drawn`: its value as drawn, rad.
+    carries: of a stop, the sign of the couples on the body that it can carry.
+    """
 
     name: str
     body: str
     drawn: float
     base: str = GROUND
+    carries: Literal["both", "positive", "negative"] = "both"
 
 
 @dataclass(frozen=True)
@@ -127,6 +134,17 @@ class Sharing:
 
     connections: tuple[str, ...]
     stiffness: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Parallel:
+    """Drives in parallel, one of which moves the others: how they divide the force, by areas under
+    the same pressure or by stiffness (in any unit).
+    """
+
+    members: tuple[str, ...]
+    shares: tuple[float, ...]
+    by: Literal["areas", "stiffness"]
 
 
 @dataclass(frozen=True)
@@ -144,6 +162,7 @@ class Linkage:
     turns: tuple[Turn, ...] = ()
     gravity: Point = (0.0, 0.0)
     sharing: tuple[Sharing, ...] = ()
+    parallel: tuple[Parallel, ...] = ()
 
     def __post_init__(self) -> None:
         if wrong := [LinkageError(*each) for each in _contradictions(self)]:
@@ -153,6 +172,11 @@ class Linkage:
     def connections(self) -> tuple[tuple[Joint, Connection], ...]:
         """Every connection with its joint, in the order of the joints."""
         return tuple((j, c) for j in self.joints for c in j.connections)
+
+    @property
+    def rubs(self) -> bool:
+        """Whether anything has friction."""
+        return any(s.friction for s in self.sliders) or any(c.friction for _, c in self.connections)
 
     @cached_property
     def drives(self) -> tuple[Slider | Turn, ...]:
@@ -230,9 +254,24 @@ def _contradictions(linkage: Linkage) -> Iterator[Contradiction]:
             if name not in names:
                 text = f"sharing: there is no connection {name!r}"
                 yield text, "unknown-connection", ("sharing",)
+    for rule in linkage.parallel:
+        yield from _of_parallel(linkage, rule, coordinates)
     for body in linkage.bodies:
         if body.inertia is None:
             yield from _of_particle(linkage, body)
+
+
+def _of_parallel(linkage: Linkage, rule: Parallel, known: list[str]) -> Iterator[Contradiction]:
+    names, at = ", ".join(rule.members), ("sharing",)
+    for name in rule.members:
+        if name not in known:
+            yield f"sharing: there is no slider or turn {name!r}", "unknown-drive", at
+        if sum(name in other.members for other in linkage.parallel) > 1:
+            yield f"sharing: {name} is in two rules; keep one", "shared-twice", at
+    driven = [name for name in rule.members if name in linkage.driven]
+    if len(driven) != 1:
+        text = f"sharing over {names}: exactly one of them must be driven, not {len(driven)}"
+        yield f"{text}; the others follow it", "one-must-drive", at
 
 
 def _of_joints(linkage: Linkage, bodies: dict[str, Body]) -> Iterator[Contradiction]:
@@ -249,6 +288,9 @@ def _of_joints(linkage: Linkage, bodies: dict[str, Body]) -> Iterator[Contradict
         if joint.fixed_in not in (None, GROUND, *bodies):
             text = f"{what}: there is no body {joint.fixed_in!r}"
             yield text, "unknown-body", (*at, "fixed_in")
+        if joint.fixed_in is None and any(c.friction for c in joint.connections):
+            text = f"{what}: friction needs fixed_in, the body that carries the pin"
+            yield f"{text}; a floating pin may turn with either", "friction-floats", at
         if joint.fixed_in is None and len(joint.connections) < 2:
             text = f"{what}: a floating pin needs at least two connections"
             yield text, "too-few-connections", at

@@ -148,10 +148,13 @@ class Loops:
                 row[f - 1] += sign
         return row
 
+    def unit(self, drive: Slider | Turn) -> float:
+        """Length per unit of a drive: 1 for a slider, m per rad for a turn."""
+        return 1.0 if isinstance(drive, Slider) else self.linkage.length_scale
+
     def drive_scale(self, k: int) -> float:
-        """Length per unit of drive k: 1 for a slider, m per rad for a turn."""
-        slides = isinstance(self.linkage.drives[k], Slider)
-        return 1.0 if slides else self.linkage.length_scale
+        """Length per unit of drive k."""
+        return self.unit(self.linkage.drives[k])
 
     def points(self, items: Ints, drawn: Complex) -> Points:
         """Points of items at their drawn places (N,)."""

@@ -174,5 +174,5 @@ def _undriven(linkage: Linkage, idle: tuple[str, ...]) -> str:
         return ""
     return (
         f". Slider {', '.join(free)} has no drive and so carries no axial force to share; describe "
-        "parallel cylinders as one, whose force is then their sum"
+        "how parallel cylinders share their force by parallel = [...] instead of connections"
     )

@@ -11,13 +11,14 @@ import numpy as np
 from loads.as_drawn import RANK_TOLERANCE
 from loads.drives import Law, StateDrive
 from loads.least_squares import Factors
-from loads.linkage import Floats, Linkage, LinkageError, Point
+from loads.linkage import Connection, Floats, Joint, Linkage, LinkageError, Point, Slider, Turn
 from loads.loop_equations import Complex, Loops, Points, Pose, number, pairs
 from loads.mobility import Mobility, require_determined
 from loads.positions import Path
 from loads.singular_positions import impasse
 
 GRID = 257  # instants at which a course evaluates its drives, in addition to those of their laws
+STANDS = 1e-9  # of the fastest coordinate of the course: a point this slow has no direction
 SAME = 1e-12  # of the whole time: this close to a corner is at it
 
 
@@ -96,10 +97,27 @@ class Motion:
         found = self.follow(self.loops.points(number_of, np.array([number(drawn)])))
         return tuple(pairs(z[:, 0]) for z in found)  # type: ignore[return-value]
 
+    def curvature(self, item: str, drawn: Point) -> Floats:
+        """(T,) 1/m of the path of an item's point, positive to the left; NaN where it stands."""
+        _, v, a = self.point(item, drawn)
+        speed = np.linalg.norm(v, axis=1)
+        speed = np.where(speed > STANDS * self.pace, speed, np.nan)
+        return np.asarray((v[:, 0] * a[:, 1] - v[:, 1] * a[:, 0]) / speed**3)
+
     def joint(self, name: str) -> tuple[Floats, Floats, Floats]:
         """Position, velocity, acceleration (T, 2) of the pin of joint `name`."""
         joint = self.linkage.joint(name)
         return self.point(self.linkage.carrier(joint), joint.at)
+
+    def coordinate(self, of: Slider | Turn) -> tuple[Floats, Floats, Floats]:
+        """Length (m) of a slider or angle (rad) of a turn, with its rates, (T,) each."""
+        row = self.loops.along(of) * self.loops.scale / self.loops.unit(of)
+        return of.drawn + self.q @ row, self.v @ row, self.a @ row
+
+    def turning(self, joint: Joint, connection: Connection) -> Floats:
+        """(T,) rad/s of the body at a connection against what carries its pin."""
+        carrier = self.linkage.carrier(joint)
+        return self.angular_velocity(connection.body) - self.angular_velocity(carrier)
 
     def _angular(self, coordinates: Floats, item: str) -> Floats:
         f = self.loops.frame[self.linkage.index[item]]

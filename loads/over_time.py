@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loads.forces.corners import corners as kinks
 from loads.inverse_dynamics import Dynamics
 from loads.linkage import Floats
 from loads.motion import Course, Motion
@@ -33,12 +34,15 @@ class Extreme:
 @dataclass(frozen=True)
 class Effort:
     """Force (N) or torque (N m) of a drive over a time: the largest magnitude, the mean and the
-    root of the mean square; work (T,) J done up to each sample.
+    root of the mean square; power: largest magnitude, W; stroke: between its extreme positions, m
+    or rad; work (T,) J done up to each sample.
     """
 
     largest: Extreme
     mean: float
     rms: float
+    power: Extreme
+    stroke: float
     work: Floats
 
 
@@ -155,9 +159,11 @@ def over_time(course: Course, solve: Callable[[Floats], Dynamics], samples: Dyna
     peaks = _peaks(d.found, lambda times: solve(times).reactions, [d.forces])
     between = solve(d.found.nodes)
     angles, condition = _postures(course, between.motion.times)
+    positions = np.concatenate([samples.course[0], between.course[0]])
+    strokes = np.ptp(positions, axis=0)
     return OverTime(
         peaks,
-        _efforts(d.found, solve, samples.motion.times, d.effort, d.power),
+        _efforts(d, solve, samples.motion.times, strokes),
         angles,
         condition,
         max(ledger(samples).violation, ledger(between).violation),
@@ -189,7 +195,9 @@ def _dense(course: Course, solve: Callable[[Floats], Dynamics], samples: Dynamic
     asked = np.concatenate([d.motion.times for d in first])
     start, once = np.unique(asked, return_index=True)
     known = np.concatenate([columns(d) for d in first])[once]
-    corners = np.concatenate([course.corners, _reversals(course, start)])
+    corners = np.concatenate(
+        [course.corners, _reversals(course, start), kinks(course, samples.applied, start)]
+    )
     found = resolved(
         start, lambda times: columns(solve(times)), corners, groups=groups.tolist(), known=known
     )
@@ -197,13 +205,10 @@ def _dense(course: Course, solve: Callable[[Floats], Dynamics], samples: Dynamic
 
 
 def _efforts(
-    found: Resolved,
-    solve: Callable[[Floats], Dynamics],
-    samples: Floats,
-    effort: Floats,
-    power: Floats,
+    dense: _Dense, solve: Callable[[Floats], Dynamics], samples: Floats, strokes: Floats
 ) -> tuple[Effort, ...]:
     """From the last columns: the drives' forces or torques over `effort`, powers over `power`."""
+    found, effort, power = dense.found, dense.effort, dense.power
     D = len(effort)
     found = found.quantities(slice(-2 * D, None))
 
@@ -217,27 +222,38 @@ def _efforts(
     mean = np.where(np.abs(mean) > ROUNDING * best, mean, 0.0)
     rms = np.sqrt(found.mean(lambda values: efforts(values) ** 2))
     work = found.integral(samples, lambda values: values[:, -D:] * power)
+    most, at = found.largest(lambda values: np.abs(values[:, -D:] * power))
     return tuple(
-        Effort(Extreme(float(best[k]), float(when[k])), float(mean[k]), float(rms[k]), work[:, k])
+        Effort(
+            Extreme(float(best[k]), float(when[k])),
+            float(mean[k]),
+            float(rms[k]),
+            Extreme(float(most[k]), float(at[k])),
+            float(strokes[k]),
+            work[:, k],
+        )
         for k in range(D)
     )
 
 
 def _reversals(course: Course, samples: Floats) -> Floats:
-    """Times (s) at which a slider with friction reverses: its friction jumps there."""
+    """Times (s) at which a slider or pin with friction reverses: its friction jumps there."""
     linkage = course.loops.linkage
     first = course.loops.frames - 1
-    rubs = [first + k for k, s in enumerate(linkage.sliders) if s.friction]
-    if not rubs or not course.pace:
+    slides = [first + k for k, s in enumerate(linkage.sliders) if s.friction]
+    rubbing = [(j, c) for j, c in linkage.connections if c.friction]
+    if not (slides or rubbing) or not course.pace:
         return np.empty(0)
 
     def speeds(times: Floats) -> Floats:
-        return course.at(times).v[:, rubs] / course.pace
+        motion = course.at(times)
+        spins = [motion.turning(j, c)[:, None] * linkage.length_scale for j, c in rubbing]
+        return np.concatenate([motion.v[:, slides], *spins], axis=1) / course.pace
 
     found = resolved(samples, speeds, course.corners)
     low, high = found.times[:-1], found.times[1:]
     out = []
-    for k in range(len(rubs)):
+    for k in range(len(slides) + len(rubbing)):
         v = found.values[:, k]
         turns = np.flatnonzero(v[:-1] * v[1:] < 0.0)
         a, b, sign = low[turns], high[turns], np.sign(v[turns])

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loads.forces.acting import power
 from loads.inverse_dynamics import Dynamics
 from loads.linkage import Floats
 from loads.loop_equations import number
@@ -32,8 +33,8 @@ def energy(motion: Motion) -> Energy:
 
 @dataclass(frozen=True)
 class Ledger:
-    """Powers put in by drives, gravity, applied loads and friction, and the rate of the kinetic
-    energy, (T,) W each.
+    """Powers put in by drives, gravity, applied loads with springs and dampers, and friction,
+    and the rate of the kinetic energy, (T,) W each.
     """
 
     drives: Floats
@@ -56,23 +57,14 @@ def ledger(dynamics: Dynamics) -> Ledger:
     motion = dynamics.motion
     _, velocity, acceleration = motion.centres
     pull = np.conj(number(motion.linkage.gravity))
+    turns = np.stack([motion.turning(j, c) for j, c in motion.linkage.connections], axis=1)
     slides = motion.v[:, motion.loops.frames - 1 :]
     return Ledger(
         drives=dynamics.power.sum(axis=1),
         gravity=np.real(velocity * pull) @ motion.masses,
-        applied=_applied_power(dynamics),
-        friction=np.sum(dynamics.sliders.friction * slides, axis=1),
+        applied=power(motion, dynamics.applied),
+        friction=np.sum(dynamics.sliders.friction * slides, axis=1)
+        + np.sum(dynamics.pin_friction * turns, axis=1),
         kinetic_rate=np.real(np.conj(velocity) * acceleration) @ motion.masses
         + (motion.spin * motion.spin_rate) @ motion.inertias,
     )
-
-
-def _applied_power(dynamics: Dynamics) -> Floats:
-    motion = dynamics.motion
-    out = np.zeros(len(motion))
-    for load in dynamics.applied:
-        _, velocity, _ = motion.point(load.body, load.at)
-        force = load.along(motion)
-        out += velocity[:, 0] * force.real + velocity[:, 1] * force.imag
-        out += load.couple * motion.angular_velocity(load.body)
-    return out

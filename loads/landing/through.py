@@ -13,7 +13,7 @@ import numpy as np
 
 from loads.coded import LoadsArgumentError
 from loads.drives import ConstantDrive, Law, StateDrive, Values
-from loads.inverse_dynamics import Applied
+from loads.forces.acting import Applied
 from loads.landing.landing import Landing
 from loads.landing.travel import Levered
 from loads.linkage import Floats, Linkage, Point

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from loads import GROUND, Dynamics, Linkage, OverTime, Slider, energy, ledger
+from loads import GROUND, Dynamics, Effort, Linkage, OverTime, Slider, energy, ledger
 from loads.linkage import Floats
 from loads.loop_equations import pairs
 from loads.transmission_angles import transmission_angles
@@ -56,10 +56,9 @@ LEG_SCALARS = ("actuator", "spin_moment", "kinetic_energy")
 def mechanics(study: Study, loads: dict[str, CaseLoads], published: Published) -> dict[str, Any]:
     """The parts of plain.Results that need no stresses."""
     made = {n: c.dynamics for n, c in loads.items() if c.dynamics is not None}
-    timed = {n: d for n, d in made.items() if d.reactions.times is not None}
     return {
         "reactions": tuple(_reactions(study, n, c, published) for n, c in loads.items()),
-        "drive": tuple(t for n, d in timed.items() for t in _drives(study, n, d, loads[n].over)),
+        "drive": tuple(t for n, d in made.items() for t in _drives(study, n, d, loads[n])),
         "motion": tuple(_motion(study, n, d, loads[n].over) for n, d in made.items()),
         "motion_check": motion_check(study, loads, published),
         "published": published_values(study, loads, published),
@@ -69,11 +68,11 @@ def mechanics(study: Study, loads: dict[str, CaseLoads], published: Published) -
 
 
 def _drive_positions(study: Study, dynamics: Dynamics) -> Floats:
-    """(T, D) what is shown as positions: lengths less their offsets, angles in degrees."""
-    shown = np.array(dynamics.motion.drives)
-    for k, drive in enumerate(dynamics.motion.linkage.drives):
-        if isinstance(drive, Slider):
-            shown[:, k] = shown[:, k] - offsets(study)[k]
+    """(T, A) what is shown as positions: lengths less their offsets, angles in degrees."""
+    shown, less = dynamics.course[0], offsets(study)
+    for k, each in enumerate(dynamics.actuators):
+        if isinstance(each, Slider):
+            shown[:, k] = shown[:, k] - less.get(each.name, 0.0)
         else:
             shown[:, k] = np.degrees(shown[:, k])
     return shown
@@ -91,7 +90,7 @@ def position_unit(study: Study, case: CaseLoads) -> str:
     """Of what `drive_position` gives: "deg", or empty for a length."""
     if drive_position(study, case) is None or case.dynamics is None:
         return ""
-    (drive,) = case.dynamics.motion.linkage.drives
+    (drive,) = case.dynamics.actuators
     return "" if isinstance(drive, Slider) else "deg"
 
 
@@ -135,6 +134,7 @@ def _peaks(study: Study, case: CaseLoads) -> tuple[plain.PeakReaction, ...]:
             tuple(found.vector[name].tolist()),
             position[c],
             found.moment[name].value,
+            None if case.frictionless is None else case.frictionless.peaks.force[name].value,
         )
         for c, (name, peak) in enumerate(found.force.items())
     )
@@ -144,35 +144,46 @@ def _pairs(values: Floats) -> tuple[tuple[float, float], ...]:
     return tuple((float(low), float(high)) for low, high in values)
 
 
-def _drives(
-    study: Study, name: str, dynamics: Dynamics, over: OverTime | None
-) -> list[plain.DriveTable]:
+def _drives(study: Study, name: str, dynamics: Dynamics, case: CaseLoads) -> list[plain.DriveTable]:
     motion = dynamics.motion
     stored, shown = energy(motion), _drive_positions(study, dynamics)
-    power, tables = dynamics.power, []
-    assert over is not None
-    for k, (drive, effort) in enumerate(zip(motion.linkage.drives, over.drives, strict=True)):
-        slides = isinstance(drive, Slider)
+    power, (_, speeds, rates) = dynamics.power, dynamics.course
+    tables = []
+    for k, each in enumerate(dynamics.actuators):
+        slides = isinstance(each, Slider)
+        effort = None if case.over is None else case.over.drives[k]
+        free = None if case.frictionless is None else case.frictionless.drives[k].largest.value
         tables.append(
             plain.DriveTable(
                 case=name,
-                name=drive.name,
+                name=each.name,
                 kind="slider" if slides else "rotary",
-                time=motion.times,
+                time=dynamics.reactions.times,
                 position=shown[:, k],
-                velocity=motion.speeds[:, k],
-                acceleration=motion.rates[:, k],
+                velocity=speeds[:, k],
+                acceleration=rates[:, k],
                 force=dynamics.drive[:, k],
                 power=power[:, k],
-                work=effort.work,
+                work=np.zeros(len(motion)) if effort is None else effort.work,
                 kinetic_energy=stored.kinetic,
                 potential_energy=stored.potential - stored.potential[0],
-                effort=plain.DriveEffort(
-                    effort.largest.value, effort.largest.time, effort.mean, effort.rms
-                ),
+                effort=None if effort is None else _effort(effort, slides, free),
             )
         )
     return tables
+
+
+def _effort(found: Effort, slides: bool, frictionless: float | None) -> plain.DriveEffort:
+    return plain.DriveEffort(
+        found.largest.value,
+        found.largest.time,
+        found.mean,
+        found.rms,
+        found.power.value,
+        found.power.time,
+        found.stroke if slides else float(np.degrees(found.stroke)),
+        frictionless,
+    )
 
 
 def _extremes(over: OverTime) -> plain.Extremes:
@@ -234,7 +245,21 @@ def _motion(
         ledger=_ledger(dynamics, over),
         extremes=None if over is None else _extremes(over),
         slider_forces=_slider_forces(dynamics),
+        paths=_paths(study, dynamics),
     )
+
+
+def _paths(study: Study, dynamics: Dynamics) -> dict[str, plain.PointPath]:
+    mechanism, motion = study.table.mechanism, dynamics.motion
+    assert mechanism is not None
+    found = {}
+    for name, point in mechanism.point.items():
+        at = point.at if not isinstance(point.at, str) else motion.linkage.joint(point.at).at
+        position, velocity, _ = motion.point(point.body, at)
+        speed = np.linalg.norm(velocity, axis=1)
+        curvature = motion.curvature(point.body, at)
+        found[name] = plain.PointPath(position, velocity, speed, curvature)
+    return found
 
 
 def _ledger(dynamics: Dynamics, over: OverTime | None) -> plain.PowerLedger:

@@ -120,14 +120,13 @@ def _of_body(row: PublishedRow, dynamics: Dynamics) -> Floats:
 
 
 def _drive(row: PublishedRow, dynamics: Dynamics) -> object:
-    drives = {d.name: d for d in dynamics.motion.linkage.drives}
-    return drives[row.name]
+    return {d.name: d for d in dynamics.actuators}[row.name]
 
 
 def _of_drive(row: PublishedRow, dynamics: Dynamics) -> Floats:
-    k = dynamics.motion.linkage.driven.index(row.name)
-    values = {
-        "drive_velocity": dynamics.motion.speeds,
-        "drive_acceleration": dynamics.motion.rates,
-    }.get(row.quantity, dynamics.drive)
+    k = [a.name for a in dynamics.actuators].index(row.name)
+    _, speeds, rates = dynamics.course
+    values = {"drive_velocity": speeds, "drive_acceleration": rates}.get(
+        row.quantity, dynamics.drive
+    )
     return np.asarray(values[:, k])

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import chain
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from loads import (
     LegDynamics,
     Linkage,
     LinkageError,
+    Load,
     Motion,
     OverTime,
     PeakForces,
@@ -37,6 +39,7 @@ from loads.coded import LoadsArgumentError
 from loads.landing import GROUND_RULES, Landing, pushes
 from loads.landing import laws as landing_laws
 from loads.linkage import Floats
+from pinstress.model.forces import load, springs
 from pinstress.model.landing import (
     drop,
     drop_note,
@@ -93,7 +96,8 @@ class CaseLoads:
     note: how the loads came about. at: reactions at other times (T,) s of the same motion. range:
     over the ranges of an impulse. impulse: of the only one in the case. leg: of a spatial leg.
     solve: the dynamics at other times (T,) s.
-    peaks: the largest forces over the time. over: other results of the whole motion. moving:
+    peaks: the largest forces over the time. over: other results of the whole motion;
+    frictionless: the same if nothing rubbed, where something does. moving:
     what acts on the pins at any time. landing: of a drop.
     """
 
@@ -107,6 +111,7 @@ class CaseLoads:
     solve: Callable[[Floats], Dynamics] | None = None
     peaks: PeakForces | None = None
     over: OverTime | None = None
+    frictionless: OverTime | None = None
     moving: MovingLoads | None = None
     landing: Landing | None = None
 
@@ -164,7 +169,8 @@ def case_loads(
         message = f"case.{name}: {error.message(_shown(study))}"
         raise study.error(message, code=error.code) from None
     except LinkageError as error:
-        raise study.error(f"case.{name}: {error}", code=error.code) from None
+        where = "" if str(error).startswith("case.") else f"case.{name}: "
+        raise study.error(f"{where}{error}", code=error.code) from None
 
 
 def _shown(study: Study) -> Callable[[float, bool], str]:
@@ -225,10 +231,13 @@ class _Moved:
 
     name: str
     course: Course
-    applied: tuple[Applied, ...]
+    applied: tuple[Load, ...]
+
+    friction: bool = True
 
     def solve(self, times: Floats) -> Dynamics:
-        return motion_reactions(self.name, self.course.at(times), self.applied)
+        at = self.course.at(times)
+        return motion_reactions(self.name, at, self.applied, friction=self.friction)
 
     def reactions(self, times: Floats) -> Reactions:
         return self.solve(times).reactions
@@ -242,7 +251,7 @@ def _motion(
 ) -> CaseLoads:
     end = span(study)
     course = Course(mechanism, laws(study), 0.0, end)
-    applied, note = _applied(study, case, mechanism)
+    applied, note = _applied(study, name, case, mechanism)
     moved = _Moved(name, course, applied)
     if not extremes:
         found = moved.solve(np.linspace(0.0, end, case.samples))
@@ -256,6 +265,10 @@ def _over_time(moved: _Moved, samples: int, note: str) -> CaseLoads:
     course = moved.course
     found = moved.solve(np.linspace(course.first, course.last, samples))
     over = over_time(course, moved.solve, found)
+    free = None
+    if course.loops.linkage.rubs:
+        smooth = replace(moved, friction=False).solve
+        free = over_time(course, smooth, smooth(found.motion.times))
     return CaseLoads(
         found.reactions,
         found,
@@ -264,6 +277,7 @@ def _over_time(moved: _Moved, samples: int, note: str) -> CaseLoads:
         solve=moved.solve,
         peaks=over.peaks,
         over=over,
+        frictionless=free,
         moving=MovingLoads(moved.acting, found.motion.times, over.corners),
     )
 
@@ -275,7 +289,8 @@ def _drop(study: Study, name: str, case: DropCase, mechanism: Linkage, extremes:
         return CaseLoads(found.reactions, found)
     landing = fallen(study, name, leg)
     course = Course(mechanism, landing_laws(landing, where), 0.0, leg.duration)
-    moved = _Moved(name, course, pushes(mechanism, landing, where))
+    loads: list[Load] = [*springs(study, mechanism), *pushes(mechanism, landing, where)]
+    moved = _Moved(name, course, tuple(loads))
     return replace(_over_time(moved, case.samples, drop_note(case)), landing=landing)
 
 
@@ -297,49 +312,55 @@ def _on_ground(
         where = place(study, name, case, mechanism)
     applied = ground_load(where, GROUND_RULES[case.rule], reference, mechanism)
     note = ground_note(study, case, reference) if reference else ""
-    found = motion_reactions(name, move(mechanism, drives, np.zeros(1)), (applied,), timed=False)
+    loads: list[Load] = [*springs(study, mechanism), applied]
+    found = motion_reactions(name, move(mechanism, drives, np.zeros(1)), loads, timed=False)
     return CaseLoads(found.reactions, found, note)
 
 
 def _at_instant(
     study: Study, name: str, case: StaticCase | InstantCase, mechanism: Linkage
 ) -> CaseLoads:
-    applied, note = _applied(study, case, mechanism)
+    applied, note = _applied(study, name, case, mechanism)
     drives = [StateDrive(*values) for values in state(study, name, case, mechanism)]
     motion = move(mechanism, drives, np.zeros(1))
-    found = motion_reactions(name, motion, applied, timed=False)
+    hold = (case.hold or ()) if isinstance(case, StaticCase) else ()
+    found = motion_reactions(name, motion, applied, timed=False, hold=hold)
     return CaseLoads(
         found.reactions,
         found,
         note,
         range=_range(study, name, case, motion),
-        impulse=_share(name, case, motion),
+        impulse=_share(study, name, case, motion),
     )
 
 
 def _applied(
-    study: Study, case: MechanismCase, mechanism: Linkage
-) -> tuple[tuple[Applied, ...], str]:
-    """The loads of a case, and how impulses among them came about."""
-    loads = tuple(_load(load, mechanism, _force(load)) for load in case.apply)
-    notes = [_impulse_note(study, load) for load in case.apply if load.impulse is not None]
-    return loads, " ".join(notes)
+    study: Study, name: str, case: MechanismCase, mechanism: Linkage
+) -> tuple[tuple[Load, ...], str]:
+    """The loads of a case with the mechanism's springs, and how impulses among them came about."""
+    made = (_load(study, name, case, k, mechanism) for k in range(len(case.apply)))
+    loads: list[Load] = [*springs(study, mechanism), *chain.from_iterable(made)]
+    notes = [_impulse_note(study, x) for x in case.apply if x.impulse is not None]
+    return tuple(loads), " ".join(notes)
 
 
-def _load(load: ApplyTable, mechanism: Linkage, force: tuple[float, float]) -> Applied:
-    at = load.at
-    if at is None:
-        at = next(b.centre for b in mechanism.bodies if b.name == load.body)
-    elif isinstance(at, str):
-        at = mechanism.joint(at).at
-    return Applied(load.body, at, force, load.couple, load.follows)
-
-
-def _force(load: ApplyTable) -> tuple[float, float]:
-    if load.impulse is None:
-        return load.force or (0.0, 0.0)
-    impulse = load.impulse
-    return _directed(impulse, _size(impulse, impulse.velocity_change, impulse.impulse_time))
+def _load(
+    study: Study,
+    name: str,
+    case: MechanismCase,
+    which: int,
+    mechanism: Linkage,
+    size: float | None = None,
+) -> tuple[Applied, ...]:
+    """One of the loads; size: of its impulse, N, by default as stated."""
+    table = case.apply[which]
+    force = table.force or (0.0, 0.0)
+    if (impulse := table.impulse) is not None:
+        own = _size(impulse, impulse.velocity_change, impulse.impulse_time)
+        force = _directed(impulse.direction, own if size is None else size)
+    elif table.direction is not None:
+        force = _directed(table.direction, 1.0)
+    return load(study, f"case.{name}.apply[{which + 1}]", table, force, mechanism)
 
 
 def _size(impulse: ImpulseTable, velocity: float, time: float) -> float:
@@ -349,8 +370,8 @@ def _size(impulse: ImpulseTable, velocity: float, time: float) -> float:
     return impulse_force(mass, velocity, time, impulse.pulse)
 
 
-def _directed(impulse: ImpulseTable, size: float) -> tuple[float, float]:
-    x, y = np.array(impulse.direction) / np.hypot(*impulse.direction)
+def _directed(direction: tuple[float, float], size: float) -> tuple[float, float]:
+    x, y = np.array(direction) / np.hypot(*direction)
     return float(size * x), float(size * y)
 
 
@@ -370,14 +391,14 @@ def _range(
     study: Study, name: str, case: StaticCase | InstantCase, motion: Motion
 ) -> ImpulseLoads | None:
     """The case again for every pair in the ranges of its impulse."""
-    ranged = [load for load in case.apply if load.impulse and load.impulse.range]
+    ranged = [k for k, x in enumerate(case.apply) if x.impulse and x.impulse.range]
     if not ranged:
         return None
     if len(ranged) > 1:
         raise study.error(
             f"case.{name}: only one impulse of a case may have a range", code="several-ranges"
         )
-    impulse = ranged[0].impulse
+    impulse = case.apply[ranged[0]].impulse
     assert impulse is not None
     assert impulse.range is not None
     times, velocities = (
@@ -388,36 +409,39 @@ def _range(
         times,
         velocities,
         sizes,
-        _of_sizes(name, case, motion, ranged[0], sizes),
+        _of_sizes(study, name, motion, ranged[0], sizes),
         (impulse.impulse_time, impulse.velocity_change),
     )
 
 
-def _share(name: str, case: StaticCase | InstantCase, motion: Motion) -> ImpulseShare | None:
+def _share(
+    study: Study, name: str, case: StaticCase | InstantCase, motion: Motion
+) -> ImpulseShare | None:
     """The case without its impulse and with it, if it has one."""
-    loads = [load for load in case.apply if load.impulse]
-    if len(loads) != 1 or (impulse := loads[0].impulse) is None:
+    which = [k for k, load in enumerate(case.apply) if load.impulse]
+    if len(which) != 1 or (impulse := case.apply[which[0]].impulse) is None:
         return None
     sizes = np.array([0.0, _size(impulse, impulse.velocity_change, impulse.impulse_time)])
-    return ImpulseShare(impulse.impulse_time, _of_sizes(name, case, motion, loads[0], sizes))
+    return ImpulseShare(impulse.impulse_time, _of_sizes(study, name, motion, which[0], sizes))
 
 
-def _of_sizes(
-    name: str,
-    case: StaticCase | InstantCase,
-    motion: Motion,
-    load: ApplyTable,
-    sizes: Floats,
-) -> Reactions:
+def _of_sizes(study: Study, name: str, motion: Motion, which: int, sizes: Floats) -> Reactions:
     """Reactions with an impulse of these sizes (P,) N, an instant each."""
-    impulse, mechanism = load.impulse, motion.linkage
-    assert impulse is not None
-    others = [_load(x, mechanism, _force(x)) for x in case.apply if x is not load]
+    case, mechanism = study.table.case[name], motion.linkage
+    assert isinstance(case, MechanismCase)
+    hold = (case.hold or ()) if isinstance(case, StaticCase) else ()
+    others: list[Load] = [*springs(study, mechanism)]
+    for k in range(len(case.apply)):
+        others += _load(study, name, case, k, mechanism) if k != which else ()
     found = [
         motion_reactions(
-            name, motion, [*others, _load(load, mechanism, _directed(impulse, size))], False
+            name,
+            motion,
+            [*others, *_load(study, name, case, which, mechanism, size)],
+            timed=False,
+            hold=hold,
         ).reactions
-        for size in sizes
+        for size in sizes.tolist()
     ]
     forces, moments, turn = (
         np.concatenate([getattr(r, key) for r in found]) for key in ("forces", "moments", "turn")

@@ -20,6 +20,7 @@ from loads import (
     Linkage,
     LinkageError,
     LoadsArgumentError,
+    Parallel,
     Sharing,
     Slider,
     TableDrive,
@@ -35,10 +36,14 @@ from pinstress.schema.cases import Coordinates, InstantCase, StaticCase
 from pinstress.schema.landing import AtWheel
 from pinstress.schema.mechanism import (
     BodyTable,
+    JointTable,
     MechanismTable,
     RotaryDrive,
+    SharingTable,
     SliderDrive,
     SliderTable,
+    StopTable,
+    drive_name,
 )
 from pinstress.schema.units import to_si
 from pinstress.study.errors import InputError, Wrong
@@ -110,17 +115,22 @@ def _assembled(study: Study, mechanism: MechanismTable, at: dict[str, Point], g:
             Joint(
                 name,
                 at[name],
-                tuple(Connection(c, body) for c, body in j.connections.items()),
+                tuple(Connection(c, body, _circle(j)) for c, body in j.connections.items()),
                 j.fixed_in,
                 _pin_mass(study, name, j.weight, g) if j.fixed_in is None else 0.0,
             )
             for name, j in mechanism.joint.items()
         ),
         sliders=sliders,
-        turns=turns,
+        turns=(*turns, *(_stop(*item) for item in mechanism.stop.items())),
         driven=tuple(drive_name(d) for d in mechanism.drive),
         gravity=mechanism.gravity,
-        sharing=tuple(Sharing(tuple(s.connections), tuple(s.stiffness)) for s in mechanism.sharing),
+        sharing=tuple(
+            Sharing(tuple(s.connections), tuple(s.stiffness or ()))
+            for s in mechanism.sharing
+            if s.connections is not None
+        ),
+        parallel=tuple(_parallel(s) for s in mechanism.sharing if s.parallel is not None),
     )
 
 
@@ -130,9 +140,21 @@ def _mechanism(study: Study) -> MechanismTable:
     return study.table.mechanism
 
 
-def drive_name(drive: AnyDriveTable) -> str:
-    """The name of a drive: its slider, or its own name or that of the body it turns."""
-    return drive.slider if isinstance(drive, SliderDrive) else drive.name or drive.body
+def _circle(joint: JointTable) -> float:
+    """Radius of the friction circle, m."""
+    mu = joint.friction or 0.0
+    return 0.5 * (joint.diameter or 0.0) * mu / math.hypot(1.0, mu)
+
+
+def _stop(name: str, stop: StopTable) -> Turn:
+    base, body = stop.bodies
+    return Turn(name, body, 0.0, base, stop.carries)
+
+
+def _parallel(rule: SharingTable) -> Parallel:
+    by_area = rule.areas is not None
+    shares = rule.areas if rule.areas is not None else rule.stiffness or []
+    return Parallel(tuple(rule.parallel or ()), tuple(shares), "areas" if by_area else "stiffness")
 
 
 def _slider(mechanism: MechanismTable, name: str, s: SliderTable, at: dict[str, Point]) -> Slider:
@@ -233,10 +255,10 @@ def laws(study: Study) -> tuple[Law, ...]:
     return tuple(_law(study, d) for d in _mechanism(study).drive)
 
 
-def offsets(study: Study) -> tuple[float, ...]:
-    """The offset subtracted from each drive's length to display its position, m."""
+def offsets(study: Study) -> dict[str, float]:
+    """The offset subtracted from each driven slider's length to display its position, m."""
     drives = _mechanism(study).drive
-    return tuple(getattr(d, "position_offset", 0.0) for d in drives)
+    return {d.slider: d.position_offset for d in drives if isinstance(d, SliderDrive)}
 
 
 def _law(study: Study, drive: AnyDriveTable) -> Law:

@@ -2,12 +2,15 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Discriminator, Field, PlainValidator, Tag, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
 from loads.coded import LoadsArgumentError
+from pinstress.schema.forces import ForceLawTable
 from pinstress.schema.types import (
+    NOT_NEGATIVE,
     POSITIVE,
     Acceleration,
+    Coordinate,
     Duration,
     Force,
     JointOrPoint,
@@ -16,6 +19,7 @@ from pinstress.schema.types import (
     Number,
     StrictTable,
     Switch,
+    Time,
     Velocity,
     Weight,
     Whole,
@@ -136,24 +140,41 @@ class ApplyTable(StrictTable):
     mass."""
     force: tuple[Force, Force] | None = None
     """Force in world axes, in the drawn position."""
+    force_law: ForceLawTable | None = None
+    """Force along `direction` by a table, instead of `force`."""
+    direction: tuple[Number, Number] | None = None
+    """Direction of the force of `force_law` in the drawn position; a vector of any length except
+    0."""
     couple: Moment = 0.0
     """Couple, positive counter-clockwise."""
+    couple_law: ForceLawTable | None = None
+    """Couple by a table, instead of `couple`."""
     follows: Switch = False
     """Whether the force rotates with the body; otherwise its direction is constant in world
     axes."""
     impulse: ImpulseTable | None = None
     """A force estimated from an impulse, instead of `force`."""
+    begin: Annotated[Time, NOT_NEGATIVE] | None = None
+    """Time from which the load acts, in a motion. Default: from its start."""
+    end: Annotated[Time, POSITIVE] | None = None
+    """Time until which it acts. Default: to the end of the motion."""
 
     @model_validator(mode="after")
     def _one_force(self) -> "ApplyTable":
-        if self.force is not None and self.impulse is not None:
+        forces = sum(x is not None for x in (self.force, self.impulse, self.force_law))
+        couples = bool(self.couple) + (self.couple_law is not None)
+        if forces > 1 or couples > 1 or not forces + couples:
             raise LoadsArgumentError(
-                "give either force = [fx, fy] or impulse = { ... }", "give-one"
+                "give one of force = [fx, fy], impulse = { ... } and force_law = { ... }, or one "
+                "of couple and couple_law = { ... }, or one of each",
+                "give-one",
             )
-        if self.force is None and self.impulse is None and not self.couple:
+        if (self.force_law is None) != (self.direction is None) or self.direction == (0.0, 0.0):
             raise LoadsArgumentError(
-                "give force = [fx, fy], impulse = { ... } or couple", "give-one"
+                "force_law and direction = [x, y], not zero, must be given together", "give-both"
             )
+        if self.end is not None and self.end <= (self.begin or 0.0):
+            raise LoadsArgumentError("end must be later than begin", "out-of-range")
         return self
 
 
@@ -173,14 +194,6 @@ class MotionCase(MechanismCase):
     """Number of equally spaced instants."""
 
 
-def _coordinate(value: object) -> float | str:
-    if isinstance(value, bool) or not isinstance(value, int | float | str):
-        raise LoadsArgumentError('must be a number or a text like "45 deg"', "not-a-number")
-    return value
-
-
-# Of a drive: a length, or an angle with its unit.
-Coordinate = Annotated[float | str, PlainValidator(_coordinate, json_schema_input_type=float | str)]
 Coordinates = Annotated[
     Annotated[Coordinate, Tag("<one>")] | Annotated[dict[str, Coordinate], Tag("<by drive>")],
     Discriminator(lambda value: "<by drive>" if isinstance(value, dict) else "<one>"),
@@ -195,6 +208,9 @@ class StaticCase(MechanismCase):
     position: Coordinates | None = None
     """Position of the drive, a length or an angle with its unit; for several drives, a table by
     drive. Default: as drawn."""
+    hold: Annotated[list[str], Field(min_length=1)] | None = None
+    """Names of the drives, sliders and stops that hold the mechanism in this case. Default: the
+    drives."""
 
 
 class InstantCase(MechanismCase):

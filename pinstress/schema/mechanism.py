@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
 from loads.coded import LoadsArgumentError
+from pinstress.schema.forces import LineSpringTable, TorsionSpringTable, require_one
 from pinstress.schema.types import (
     NOT_NEGATIVE,
     POSITIVE,
@@ -77,6 +78,17 @@ class JointTable(StrictTable):
     """The body that carries the pin, or "ground". Default: none, a floating pin."""
     weight: Weight | None = None
     """Weight of a floating pin. Default: the weight of its profile."""
+    friction: Annotated[Number, Field(ge=0.0, le=10.0)] | None = None
+    """Coefficient of Coulomb friction between the pin and the bodies that turn on it; needs
+    `diameter` and `fixed_in`."""
+    diameter: PositiveLength | None = None
+    """Diameter of the pin, for friction."""
+
+    @model_validator(mode="after")
+    def _with_diameter(self) -> "JointTable":
+        if (self.friction is None) != (self.diameter is None):
+            raise LoadsArgumentError("friction and diameter must be given together", "give-both")
+        return self
 
 
 class BarTable(StrictTable):
@@ -247,19 +259,60 @@ AnyDrive = Annotated[
 ]
 
 
-class SharingTable(StrictTable):
-    """How redundant connections share their load, as springs in parallel."""
+def drive_name(drive: SliderDrive | RotaryDrive) -> str:
+    """The name of a drive: its slider, or its own name or that of the body it turns."""
+    return drive.slider if isinstance(drive, SliderDrive) else drive.name or drive.body
 
-    connections: Annotated[list[str], Field(min_length=1)]
-    """The redundant connections."""
-    stiffness: Annotated[list[Annotated[Number, Field(ge=1e-18, le=1e18)]], Field(min_length=1)]
-    """Stiffness of each connection; only the ratios matter."""
+
+Ratios = Annotated[list[Annotated[Number, Field(ge=1e-18, le=1e18)]], Field(min_length=1)]
+
+
+class SharingTable(StrictTable):
+    """How redundant connections share their load, as springs in parallel; or how drives in parallel
+    (two lift cylinders), of which one is driven, share their force.
+    """
+
+    connections: Annotated[list[str], Field(min_length=1)] | None = None
+    """The redundant connections. Give either `connections` or `parallel`."""
+    parallel: Annotated[list[str], Field(min_length=2)] | None = None
+    """Drives, sliders or stops in parallel; exactly one of them is driven."""
+    stiffness: Ratios | None = None
+    """Stiffness of each; only the ratios matter."""
+    areas: Ratios | None = None
+    """Piston area of each of the `parallel`, under the same pressure; only the ratios matter. Equal
+    areas: equal forces."""
 
     @model_validator(mode="after")
-    def _same_length(self) -> "SharingTable":
-        if len(self.connections) != len(self.stiffness):
-            raise LoadsArgumentError("give one stiffness for each connection", "lengths-differ")
+    def _one_rule(self) -> "SharingTable":
+        require_one("either connections or parallel", self.connections, self.parallel)
+        if self.connections is not None and self.areas is not None:
+            raise LoadsArgumentError("areas is for parallel drives only", "key-not-applicable")
+        require_one("stiffness (of parallel drives: or areas)", self.stiffness, self.areas)
+        names = self.connections or self.parallel or []
+        if len(names) != len(self.stiffness or self.areas or []):
+            raise LoadsArgumentError("give one number for each name", "lengths-differ")
         return self
+
+
+class PointTable(StrictTable):
+    """A point whose path is written to paths.csv and drawn in the animation (a coupler curve)."""
+
+    body: str
+    """The body to which it belongs."""
+    at: JointOrPoint
+    """A joint, or [x, y] as drawn."""
+
+
+class StopTable(StrictTable):
+    """A stop or lock, which can keep a body from turning against another in cases whose `hold`
+    names it.
+    """
+
+    bodies: tuple[str, str]
+    """[base, body]; the base may be "ground"."""
+    carries: Literal["both", "positive", "negative"] = "both"
+    """Couples on the body, counter-clockwise positive, that it can carry: "both" for a lock, one
+    sign for a stop, which opens under the other."""
 
 
 class MechanismTable(StrictTable):
@@ -278,6 +331,14 @@ class MechanismTable(StrictTable):
     """Sliders by name."""
     drive: Annotated[list[AnyDrive], Field(min_length=1)]
     """One table, or several `[[mechanism.drive]]`: as many as there are degrees of freedom."""
+    point: dict[str, PointTable] = {}
+    """Points whose paths are of interest, by name."""
+    stop: dict[str, StopTable] = {}
+    """Stops and locks by name."""
+    spring: dict[str, LineSpringTable] = {}
+    """Springs and dampers by name; they act in all cases."""
+    torsion_spring: dict[str, TorsionSpringTable] = {}
+    """Torsion springs and dampers by name; they act in all cases."""
     sharing: list[SharingTable] = []
     """Redundant connections, and how they share their load."""
 

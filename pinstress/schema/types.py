@@ -19,6 +19,7 @@ from pydantic import (
     Discriminator,
     Field,
     GetJsonSchemaHandler,
+    PlainValidator,
     Tag,
     ValidationError,
     model_validator,
@@ -181,8 +182,12 @@ Angle = Annotated[float, Quantity("angle")]
 Moment = Annotated[float, Quantity("moment")]
 Time = Annotated[float, Quantity("time")]
 Name = Annotated[str, AfterValidator(usable_name)]
+Stiffness = Annotated[Annotated[float, Quantity("stiffness")], NOT_NEGATIVE]
+Damping = Annotated[Annotated[float, Quantity("damping")], NOT_NEGATIVE]
+TorsionalStiffness = Annotated[Annotated[float, Quantity("torsional stiffness")], NOT_NEGATIVE]
+TorsionalDamping = Annotated[Annotated[float, Quantity("torsional damping")], NOT_NEGATIVE]
 Point = tuple[Length, Length]
-TiltStiffness = Annotated[Annotated[float, Quantity("tilt stiffness")], POSITIVE]
+TiltStiffness = Annotated[Annotated[float, Quantity("torsional stiffness")], POSITIVE]
 
 JointOrPoint = Annotated[
     Annotated[str, Tag("<joint>")] | Annotated[Point, Tag("<point>")],
@@ -194,6 +199,17 @@ LimitLoads = Annotated[
     | Annotated[list[Name], Tag("<pins>")],
     Discriminator(lambda value: "<pins>" if isinstance(value, list) else "<way>"),
 ]
+
+
+def _coordinate(value: object) -> float | str:
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        raise LoadsArgumentError('must be a number or a text like "45 deg"', "not-a-number")
+    return value
+
+
+# A number or a text with a unit, whose dimension depends on what it is of.
+Coordinate = Annotated[float | str, PlainValidator(_coordinate, json_schema_input_type=float | str)]
+
 
 TILTS = ("guided", "free")
 Tilt = Annotated[

@@ -7,10 +7,15 @@ from functools import partial
 
 from fea.fatigue.flight import flight
 from geometry.coded import ArgumentError
-from pinstress.schema.cases import GivenCase, LegCase, MotionCase
+from pinstress.schema.cases import ApplyTable, GivenCase, LegCase, MotionCase, StaticCase
 from pinstress.schema.fatigue import FatigueTable
 from pinstress.schema.landing import AtWheel, DropCase, GroundCase
-from pinstress.schema.mechanism import MechanismTable, RotaryDrive, SliderDrive
+from pinstress.schema.mechanism import (
+    MechanismTable,
+    RotaryDrive,
+    SliderDrive,
+    drive_name,
+)
 from pinstress.schema.pins import MaterialTable
 from pinstress.schema.shown import near, shown
 from pinstress.schema.tables import StudyTable
@@ -151,6 +156,13 @@ def named_joints(mechanism: MechanismTable) -> Iterator[tuple[str, str]]:
     for i, drive in enumerate(mechanism.drive, 1):
         for joint in () if isinstance(drive, SliderDrive) else _lines(drive):
             yield f"drive[{i}].line" if len(mechanism.drive) > 1 else "drive.line", joint
+    for name, point in mechanism.point.items():
+        if isinstance(point.at, str):
+            yield f"point.{name}.at", point.at
+    for name, spring in mechanism.spring.items():
+        for end in spring.joints or ():
+            if isinstance(end, str):
+                yield f"spring.{name}.joints", end
 
 
 def _lines(drive: RotaryDrive) -> tuple[str, ...]:
@@ -174,11 +186,36 @@ def _of_mechanism(mechanism: MechanismTable) -> Iterator[Wrong]:
             continue
         yield from _known(f"{where}.body", "body", drive.body, bodies)
         yield from _known(f"{where}.against", "body", drive.against, bodies)
+    for name, spring in mechanism.spring.items():
+        where = f"mechanism.spring.{name}"
+        if spring.slider is not None:
+            yield from _known(f"{where}.slider", "slider", spring.slider, mechanism.slider)
+        yield from _two_bodies(where, spring.bodies, bodies)
+    for name, point in mechanism.point.items():
+        yield from _known(f"mechanism.point.{name}.body", "body", point.body, mechanism.body)
+    for name, stop in mechanism.stop.items():
+        yield from _two_bodies(f"mechanism.stop.{name}", stop.bodies, bodies)
+    for name, torsion in mechanism.torsion_spring.items():
+        yield from _two_bodies(f"mechanism.torsion_spring.{name}", torsion.bodies, bodies)
+
+
+def _two_bodies(
+    where: str, pair: tuple[str, str] | None, bodies: Mapping[str, object]
+) -> Iterator[Wrong]:
+    for body in pair or ():
+        yield from _known(f"{where}.bodies", "body", body, bodies)
+    if pair is not None and pair[0] == pair[1]:
+        text = f"{where}.bodies: {shown(pair[0])} twice; name two different bodies"
+        yield Wrong(text, code="same-body")
 
 
 def _of_its_cases(table: StudyTable, mechanism: MechanismTable) -> Iterator[Wrong]:
     moves = all(d.moves for d in mechanism.drive)
+    holders = dict.fromkeys([*map(drive_name, mechanism.drive), *mechanism.slider, *mechanism.stop])
     for name, case in table.case.items():
+        for each in (case.hold or ()) if isinstance(case, StaticCase) else ():
+            what = "drive, slider or stop"
+            yield from _known(f"case.{name}.hold", what, each, holders)
         if isinstance(case, MotionCase) and not moves:
             yield Wrong(
                 f"case.{name}: a motion needs start, end and duration in [mechanism.drive]",
@@ -189,12 +226,39 @@ def _of_its_cases(table: StudyTable, mechanism: MechanismTable) -> Iterator[Wron
             yield from _known(f"{where}.body", "body", load.body, mechanism.body)
             if isinstance(load.at, str):
                 yield from _known(f"{where}.at", "joint", load.at, mechanism.joint)
+            yield from _of_laws(where, load, mechanism, isinstance(case, MotionCase))
         if isinstance(case, AtWheel):
             yield from _of_wheel(f"case.{name}", case, table, mechanism)
     if (check := table.motion_check) is not None:
         for field in ("joint", "pivot"):
             where = f"motion_check.{field}"
             yield from _known(where, "joint", getattr(check, field), mechanism.joint)
+
+
+def _of_laws(
+    where: str, load: ApplyTable, mechanism: MechanismTable, moves: bool
+) -> Iterator[Wrong]:
+    """Arguments of the tables of a load, and its switches."""
+    positions = {**mechanism.slider, **dict.fromkeys(map(drive_name, mechanism.drive))}
+    timed = [key for key in ("begin", "end") if getattr(load, key) is not None]
+    for key in ("force_law", "couple_law"):
+        law = getattr(load, key)
+        if law is None:
+            continue
+        here = f"{where}.{key}"
+        if law.position_of is not None:
+            what = "drive or slider"
+            yield from _known(f"{here}.position_of", what, law.position_of, positions)
+        for joint in law.length_between or ():
+            yield from _known(f"{here}.length_between", "joint", joint, mechanism.joint)
+        if law.position_of is None and law.length_between is None:
+            timed.append(key)
+    if timed and not moves:
+        yield Wrong(
+            f'{where}.{timed[0]}: depends on time, which only a case of kind "motion" has; for a '
+            "table of another argument give position_of or length_between",
+            code="needs-motion",
+        )
 
 
 def _of_wheel(

@@ -65,6 +65,7 @@ class Scene:
         motion = self.motion
         single = [b for b, joints in enumerate(motion.links) if len(joints) < 2]
         parts = [motion.joint_position, motion.centre[:, single], *motion.slides.values()]
+        parts += [p.position for p in motion.paths.values()]
         return np.concatenate([p.reshape(-1, 2) for p in parts])
 
     @cached_property
@@ -123,6 +124,11 @@ class Scene:
     def track(self, joint: str) -> Floats:
         """(F, 2) of a joint."""
         return self.joints[:, self.motion.joints.index(joint)]
+
+    @cached_property
+    def curves(self) -> dict[str, Floats]:
+        """(F, 2) of the paths of named points."""
+        return {name: self.view(p.position[self.instants]) for name, p in self.motion.paths.items()}
 
     def named_between(self, body: str) -> list[int] | None:
         """The two joints of a body between which its name is furthest from any joint; None where

@@ -34,7 +34,8 @@ def shown_position(position_unit: str) -> dict[str, str]:
 @dataclass(frozen=True)
 class PeakReaction:
     """A connection's largest force over the time of a motion, between the instants too: its size,
-    when, its components and the drive's position then; and the largest moment.
+    when, its components and the drive's position then; and the largest moment. frictionless: the
+    largest force if nothing rubbed, where something does.
     """
 
     connection: str
@@ -43,6 +44,7 @@ class PeakReaction:
     components: tuple[Force, Force, Force] = (0.0, 0.0, 0.0)
     position: DrivePosition | None = None
     moment: Annotated[float, "moment"] = 0.0
+    frictionless: Force | None = None
 
 
 @dataclass(frozen=True)
@@ -102,12 +104,19 @@ class ReactionTable:
 
 @dataclass(frozen=True)
 class DriveEffort:
-    """Force or torque of a drive over a time: largest magnitude and when, mean, and RMS."""
+    """Force or torque of a drive over a time: largest magnitude and when, mean, and RMS; largest
+    magnitude of its power and when; stroke: between its extreme positions. frictionless: the
+    largest if nothing rubbed, where something does.
+    """
 
     largest: Force
     time: Time
     mean: Force
     rms: Force
+    power: Annotated[float, "power"]
+    power_time: Time
+    stroke: Annotated[float, "length"]
+    frictionless: Force | None = None
 
 
 @dataclass(frozen=True)
@@ -115,11 +124,11 @@ class DriveTable:
     """One drive along a motion, all (T,): a slider's length and force, or (kind "rotary") an angle
     in degrees with its rates in rad and the torque. Energies and work in force x length; the
     energies are the whole linkage's. effort: of the force over the time, between the instants too;
-    None: of the instants alone.
+    None: of the instants alone. time: None for a case at one instant.
     """
 
     case: str
-    time: Times
+    time: Times | None
     position: Lengths
     velocity: Velocities
     acceleration: Accelerations
@@ -143,10 +152,22 @@ class DriveTable:
         return self.effort.largest if self.effort else float(np.abs(self.force).max())
 
     @property
+    def largest_power(self) -> float:
+        """Largest magnitude of the power."""
+        return self.effort.power if self.effort else float(np.abs(self.power).max())
+
+    @property
+    def stroke(self) -> float:
+        """Between the extreme positions."""
+        return self.effort.stroke if self.effort else float(np.ptp(self.position))
+
+    @property
     def mean(self) -> float:
         """Mean force or torque over the time; what is only rounding is zero."""
         if self.effort:
             return self.effort.mean
+        if self.time is None:
+            return float(self.force[0])
         mean = float(np.trapezoid(self.force, self.time) / np.ptp(self.time))
         return mean if abs(mean) > 1e-12 * float(np.abs(self.force).max()) else 0.0
 
@@ -155,6 +176,8 @@ class DriveTable:
         """Root of the mean square of the force or torque over the time."""
         if self.effort:
             return self.effort.rms
+        if self.time is None:
+            return float(np.abs(self.force[0]))
         return float(np.sqrt(np.trapezoid(self.force**2, self.time) / np.ptp(self.time)))
 
 
@@ -192,6 +215,18 @@ class GuideForces:
 
 
 @dataclass(frozen=True)
+class PointPath:
+    """Of a point: position and velocity (T, 2), speed (T,), and curvature (T,) of its path,
+    positive where it bends to the left of the way it goes; NaN where it stands still.
+    """
+
+    position: Lengths
+    velocity: Velocities
+    speed: Velocities
+    curvature: Annotated[Floats, "length^-1"]
+
+
+@dataclass(frozen=True)
 class LinkageMotion:
     """How a linkage moves in one case: T instants (one, without time, when it is at rest).
 
@@ -204,8 +239,8 @@ class LinkageMotion:
     ReactionTable. transmission: by link and joint, (T,) degrees, 90 is best, 0 is a dead point.
     condition: (T,) of the loop equations. shaking_force (T, 2), shaking_moment (T,): of the linkage
     on its ground, the moment about the joint `shaking_about`. slider_forces: by slider
-    of the base on the moving body. extremes: over the time, between the instants too; None: of the
-    instants alone.
+    of the base on the moving body. paths: of named points. extremes: over the time, between the
+    instants too; None: of the instants alone.
     """
 
     case: str
@@ -232,6 +267,7 @@ class LinkageMotion:
     shaking_about: str
     ledger: PowerLedger
     slider_forces: dict[str, GuideForces] = field(default_factory=dict)
+    paths: dict[str, PointPath] = field(default_factory=dict)
     extremes: Extremes | None = None
 
     @property

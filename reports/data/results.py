@@ -45,6 +45,7 @@ from reports.data.mechanics import (
     LinkageMotion,
     MotionCheck,
     PeakReaction,
+    PointPath,
     PowerLedger,
     PublishedValue,
     ReactionTable,
@@ -56,8 +57,9 @@ __all__ = [
     "BandLoad", "BeamCheck", "Change", "Dimensioned", "DriveEffort", "DriveTable", "DropPeak",
     "DropRecord", "Extremes", "Fatigue", "Field", "Floats", "GoverningLoad", "GuideForces",
     "HandCheck", "LandingRange", "LegTable", "LinkageMotion", "MotionCheck", "PeakReaction",
-    "PinResult", "PinShape", "PowerLedger", "Provenance", "PublishedValue", "ReactionTable",
-    "Refinement", "Results", "SingularZone", "Still", "Surface", "TitleBlock", "Units", "Volume",
+    "PinResult", "PinShape", "PointPath", "PowerLedger", "Provenance", "PublishedValue",
+    "ReactionTable", "Refinement", "Results", "SingularZone", "Still", "Surface", "TitleBlock",
+    "Units", "Volume",
 ]  # fmt: skip
 
 

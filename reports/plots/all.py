@@ -37,7 +37,8 @@ def _mechanics(results: Results) -> Iterator[Plot]:
             for pin in dict.fromkeys(table.pins):
                 yield reaction_plot(table, pin, units, at.get(pin))
     for drive in results.drive:
-        yield drive_plot(drive, units)
+        if drive.time is not None:
+            yield drive_plot(drive, units)
     for drop in results.drops:
         yield from drop_plots(drop, units)
     for motion in results.motion:

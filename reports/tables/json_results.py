@@ -61,7 +61,12 @@ def _loads(results: Results, table: ReactionTable) -> dict[str, Any]:
         "note": table.note,
         "shared": list(table.shared),
         "largest_forces": [
-            {"connection": p.connection, "force": finite(p.force), "time": finite(p.time)}
+            {
+                "connection": p.connection,
+                "force": finite(p.force),
+                "time": finite(p.time),
+                "frictionless": finite(p.frictionless),
+            }
             for p in table.largest
         ],
         "drives": [
@@ -71,6 +76,10 @@ def _loads(results: Results, table: ReactionTable) -> dict[str, Any]:
                 "largest": finite(d.largest),
                 "mean": finite(d.mean),
                 "rms": finite(d.rms),
+                "largest_power": finite(d.largest_power),
+                "stroke": finite(d.stroke),
+                "frictionless": finite(d.effort.frictionless) if d.effort else None,
+                "position": finite(d.position[0]) if d.time is None else None,
             }
             for d in results.drive
             if d.case == table.case

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
+
 from reports.data.results import LinkageMotion, Results
 from reports.format.csv import Cell
 from reports.tables.table import Table
 
 BODIES = ("x", "y", "angle_deg", "vx", "vy", "omega", "ax", "ay", "alpha")
 JOINTS = ("x", "y", "vx", "vy", "ax", "ay")
+PATHS = ("x", "y", "vx", "vy", "speed", "curvature")
 CHECKS = (
     "shaking_fx",
     "shaking_fy",
@@ -24,7 +27,10 @@ CHECKS = (
 
 
 def linkage_tables(results: Results) -> list[Table]:
-    """Motion, joints, transmission, linkage and sliders of all cases."""
+    """Motion, joints, transmission, linkage, sliders and, where points are named, paths of all
+    cases.
+    """
+    paths = [("paths", ("case", "time", "point", *PATHS), _paths)]
     return [
         Table.of(name, columns, (row for m in results.motion for row in rows(m)))
         for name, columns, rows in (
@@ -33,6 +39,7 @@ def linkage_tables(results: Results) -> list[Table]:
             ("transmission", ("case", "time", "link", "degrees"), _transmission),
             ("linkage", ("case", "time", *CHECKS), _checks),
             ("sliders", ("case", "time", "slider", "normal", "couple", "friction"), _sliders),
+            *(paths if any(m.paths for m in results.motion) else ()),
         )
     ]
 
@@ -73,6 +80,14 @@ def _sliders(m: LinkageMotion) -> Iterator[list[Cell]]:
                 slider,
                 *map(float, (forces.normal[t], forces.couple[t], forces.friction[t])),
             ]
+
+
+def _paths(m: LinkageMotion) -> Iterator[list[Cell]]:
+    for t, head in _instants(m):
+        for name, p in m.paths.items():
+            at, along = p.position[t], p.velocity[t]
+            bend = float(p.curvature[t]) if np.isfinite(p.curvature[t]) else None
+            yield [*head, name, *map(float, (*at, *along, p.speed[t])), bend]
 
 
 def _checks(m: LinkageMotion) -> Iterator[list[Cell]]:

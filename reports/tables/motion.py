@@ -9,7 +9,15 @@ from typing import overload
 
 import numpy as np
 
-from reports.data.results import BeamCheck, Floats, LegTable, MotionCheck, ReactionTable, Results
+from reports.data.results import (
+    BeamCheck,
+    DriveTable,
+    Floats,
+    LegTable,
+    MotionCheck,
+    ReactionTable,
+    Results,
+)
 from reports.format.csv import Cell
 from reports.tables.table import Table
 
@@ -96,20 +104,21 @@ class Instants(Sequence[Sequence[Cell]]):
 
 
 def drive_table(results: Results) -> Table:
-    """The drive along every motion, with the case in the first column."""
+    """The drives in every case, with the case in the first column."""
     rows: Iterator[list[Cell]] = (
-        [
-            table.case,
-            *(float(getattr(table, name)[t]) for name in DRIVE),
-            table.name,
-            table.kind,
-        ]
+        [table.case, *_drive_values(table, t), table.name, table.kind]
         for table in results.drive
-        for t in range(len(table.time))
+        for t in range(len(table.force))
     )
     turning = any(table.kind != "slider" for table in results.drive)
     mixed = ("position", "velocity", "acceleration", "force") if turning else ()
     return Table.of("drive", ("case", *DRIVE, "drive", "kind"), rows, mixed)
+
+
+def _drive_values(table: DriveTable, t: int) -> list[Cell]:
+    """Of one instant; without time there is no work."""
+    absent = ("time", "work") if table.time is None else ()
+    return [None if name in absent else float(getattr(table, name)[t]) for name in DRIVE]
 
 
 def beam_check_table(check: BeamCheck) -> Table:

@@ -52,10 +52,25 @@ def remarks(results: Results) -> list[str]:
         if d.kind == "rotary":
             unit = f"{unit} {results.units.length}"
         what = "torque" if d.kind == "rotary" else "force"
+        length = results.units.length
+        where = "deg" if d.kind == "rotary" else length
+        power = f"{results.units.force} {length}/{results.units.time}"
+        if d.time is None:
+            lines.append(
+                f"{d.case}: drive {d.name}, {what} {engineering(d.force[0])} {unit}, power "
+                f"{engineering(d.power[0])} {power}, position {engineering(d.position[0])} {where}"
+            )
+            continue
         lines.append(
             f"{d.case}: drive {d.name}, maximum {what} {engineering(d.largest)} {unit}, mean "
-            f"{engineering(d.mean)}, RMS {engineering(d.rms)}"
+            f"{engineering(d.mean)}, RMS {engineering(d.rms)}; maximum power "
+            f"{engineering(d.largest_power)} {power}, stroke {engineering(d.stroke)} {where}"
         )
+        if d.effort and d.effort.frictionless is not None:
+            lines.append(
+                f"{d.case}: drive {d.name} without friction, maximum {what} "
+                f"{engineering(d.effort.frictionless)} {unit}"
+            )
     for m in results.motion:
         at_rest = m.time is None and not m.ledger.drives.any()
         lines.append(

@@ -69,26 +69,36 @@ def _forces(table: ReactionTable, drives: list[DriveTable], results: Results) ->
     if at_drive:
         unit = "°" if drives[0].kind == "rotary" else units.length
         head.append(f"drive {drives[0].name} [{unit}]")
+    rubs = any(peak.frictionless is not None for peak in table.largest)
+    head += [f"without friction [{units.force}]"] * rubs
     body = []
     for c, peak in enumerate(table.largest):
         row = [peak.connection, table.bodies[c], table.pins[c], engineering(peak.force)]
         row += [engineering(peak.time)] * moving + [engineering(peak.position)] * at_drive
+        row += [engineering(peak.frictionless)] * rubs
         body.append(row)
     return Grid(head, body, [name not in NAMES for name in head])
 
 
 def _drives(drives: list[DriveTable], results: Results) -> Grid:
-    force, length = results.units.force, results.units.length
-    body = [
-        [
-            d.name,
-            f"torque [{force}·{length}]" if d.kind == "rotary" else f"force [{force}]",
-            *(engineering(x) for x in (d.mean, d.rms, d.largest)),
-        ]
-        for d in drives
-    ]
-    head = ["drive", "quantity", "mean", "RMS", "maximum"]
-    return Grid(head, body, [False, False, True, True, True])
+    force, length, time = results.units.force, results.units.length, results.units.time
+    moving = drives[0].time is not None
+    head = ["drive", "quantity"]
+    head += ["mean", "RMS", "maximum", "stroke"] if moving else ["value", "position"]
+    head.append(f"power [{force}·{length}/{time}]")
+    body = []
+    for d in drives:
+        rotary = d.kind == "rotary"
+        unit = "°" if rotary else length
+        row = [d.name, f"torque [{force}·{length}]" if rotary else f"force [{force}]"]
+        if moving:
+            row += [engineering(x) for x in (d.mean, d.rms, d.largest)]
+            row += [f"{engineering(d.stroke)} {unit}", engineering(d.largest_power)]
+        else:
+            row += [engineering(d.force[0]), f"{engineering(d.position[0])} {unit}"]
+            row.append(engineering(d.power[0]))
+        body.append(row)
+    return Grid(head, body, [False] * 2 + [True] * (len(head) - 2))
 
 
 def _checks(motion: LinkageMotion, results: Results) -> list[str]:

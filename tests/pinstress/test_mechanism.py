@@ -343,7 +343,10 @@ def test_the_torque_of_ten_turns_is_that_of_all_the_time(tmp_path: Path, samples
     assert drive.rms == pytest.approx(1.62 / np.sqrt(2.0), rel=1e-9)
     assert drive.work[-1] == pytest.approx(0.0, abs=1e-9)
     (line,) = (x for x in remarks(results) if "drive" in x)
-    assert line == "turn: drive crank, maximum torque 1.620 N m, mean 0, RMS 1.146"
+    assert line == (
+        "turn: drive crank, maximum torque 1.620 N m, mean 0, RMS 1.146; maximum power 10.18 N m/s,"
+        " stroke 3,600 deg"
+    )
     peak = next(p for p in results.reactions[0].largest if p.connection == "P")
     assert peak.force == pytest.approx(0.5 * (10.0 + 0.324 * (2.0 * np.pi) ** 2), rel=1e-9)
     assert peak.time is not None

@@ -13,7 +13,10 @@ from pinstress.cli.commands import run_command_line
 from tests.conftest import ROOT
 
 STUDIES = ROOT / "studies"
-MECHANISMS = ["grenier2008", "bowman2019", "matrix_four_bar", "slider_crank", "excavator"]
+MECHANISMS = [
+    *("grenier2008", "bowman2019", "matrix_four_bar", "slider_crank", "excavator"),
+    *("crane", "engine", "hood", "main_gear", "pump_jack", "scissor_lift", "bucket"),
+]
 
 
 @pytest.mark.slow
@@ -64,10 +67,18 @@ def test_loads_alone(tmp_path: Path, study: str, capsys: pytest.CaptureFixture[s
     assert found["pins"] == []
     for case in found["loads"]:
         assert case["power_violation"] < 1e-9
-    for name in ("motion.csv", "joints.csv", "transmission.csv", "linkage.csv"):
+    for name in ("motion.csv", "joints.csv", "linkage.csv"):
         assert len((out / name).read_text().splitlines()) > 1
-    if study != "matrix_four_bar":  # which has instants only
-        assert (out / "drive.csv").is_file()
+    angles = (out / "transmission.csv").read_text().splitlines()[1:]
+    assert bool(angles) == (study not in ("crane", "hood", "scissor_lift"))  # no two-joint links
+    drives = list(csv.DictReader((out / "drive.csv").read_text().splitlines()))
+    for case in found["loads"]:
+        mine = [r for r in drives if r["case"] == case["case"]]
+        assert {r["drive"] for r in mine} == {d["drive"] for d in case["drives"]} != set()
+        for d in case["drives"]:
+            assert d["largest"] * (1 + 1e-9) >= max(
+                abs(float(r["force"])) for r in mine if r["drive"] == d["drive"]
+            )
 
 
 def test_the_leg_in_space(tmp_path: Path) -> None:

@@ -115,7 +115,7 @@ def test_a_singularity_has_the_units_of_its_exponent() -> None:
 def test_a_drive_has_a_force_or_a_torque(kind: str, length: float, force: float) -> None:
     one = np.ones(2)
     drive = DriveTable("m", one, one, one, one, one, one, one, one, one, "d", kind)
-    found = in_units(replace(drive, effort=DriveEffort(1.0, 1.0, 1.0, 1.0)), MILLIMETRES.factor)
+    found = in_units(replace(drive, effort=DriveEffort(*[1.0] * 7)), MILLIMETRES.factor)
     assert found.position == pytest.approx(length)
     assert found.velocity == pytest.approx(length)
     assert found.force == pytest.approx(force)

@@ -155,7 +155,7 @@ def moving(results: Results, tmp_path_factory: pytest.TempPathFactory) -> Path:
     motion = replace(results.motion[0], case=case)
     (directory / animation_name(case)).write_text(ANIMATION, encoding="utf-8")
     drives = tuple(replace(results.drive[0], name=name, kind="rotary") for name in ("a.b", "c"))
-    legs = (leg(results.drive[0].time),)
+    legs = (leg(np.asarray(results.drive[0].time)),)
     table = replace(results.reactions[0], position_unit="deg")
     pins = tuple(replace(pin, position_unit="deg") for pin in results.pins)
     found = replace(results, motion=(motion,), legs=legs, drive=drives, reactions=(table,))

@@ -28,7 +28,8 @@ DIGITS = 1e-5  # relative: six are written
 
 @pytest.fixture(scope="module")
 def plots(results: Results) -> dict[str, Plot]:
-    legs, landing = (leg(results.drive[0].time),), (ranged("A"), ranged("B", "singular", 2.0))
+    legs = (leg(np.asarray(results.drive[0].time)),)
+    landing = (ranged("A"), ranged("B", "singular", 2.0))
     return all_plots(replace(results, legs=legs, landing=landing))
 
 

@@ -1,0 +1,53 @@
+"""Times at which forces are not smooth: where a measure passes a row of its table."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from loads.forces.acting import Kinks, Load
+from loads.linkage import Floats
+from loads.motion import Course
+from loads.refine import Resolved, resolved
+
+STEPS = 60  # of bisection: to the last digit
+
+
+def corners(course: Course, loads: Sequence[Load], samples: Floats) -> Floats:
+    """Times (s) of a course at which any of the loads has a kink or a jump. samples: (T,) s."""
+    kinks = [k for load in loads for k in load.kinks]
+    switches = [t for load in loads for t in load.switches]
+    if not kinks:
+        return np.array(switches)
+
+    def measured(times: Floats) -> Floats:
+        motion = course.at(times)
+        return np.stack([k.measure(motion)[k.rate] for k in kinks], axis=1)
+
+    found = resolved(samples, measured, np.array([*course.corners, *switches]))
+    passed = [_passed(found, j, kink) for j, kink in enumerate(kinks)]
+    return np.unique(np.concatenate([switches, *passed]))
+
+
+def _touches(off: Floats) -> np.ndarray:
+    """Where values are zero, without those inside a rest at zero."""
+    at = off == 0.0
+    rests = np.concatenate([[True], at[:-1]]) & np.concatenate([at[1:], [True]])
+    return np.asarray(at & ~rests)
+
+
+def _passed(found: Resolved, j: int, kink: Kinks) -> Floats:
+    """Times at which column j passes the knots of a curve."""
+    x = found.values[:, j]
+    out = [found.times[:0]]
+    for level in kink.curve.knots(float(x.min()), float(x.max())):
+        off = x - level
+        turns = np.flatnonzero(off[:-1] * off[1:] < 0.0)
+        low, high, sign = found.times[turns], found.times[turns + 1], np.sign(off[turns])
+        for _ in range(STEPS if len(turns) else 0):
+            middle = 0.5 * (low + high)
+            same = np.sign(found.interpolate(middle)[:, j] - level) == sign
+            low, high = np.where(same, middle, low), np.where(same, high, middle)
+        out += [0.5 * (low + high), found.times[_touches(off)]]
+    return np.concatenate(out)

@@ -1,0 +1,127 @@
+"""A quantity by a table: between its rows linear, or cubic without new extremes.
+
+The cubic is that of Fritsch and Carlson, SIAM J. Numer. Anal. 17 (1980) 238, with the weighted
+harmonic mean of Fritsch and Butland as slopes: monotone where the rows are.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+from loads.linkage import Floats, LinkageError
+
+Interpolation = Literal["linear", "monotone"]
+Outside = Literal["error", "hold", "repeat"]
+
+AT_END = 1e-9  # of the range: this little outside a table is its end
+
+
+@dataclass(frozen=True)
+class ForceTable:
+    """x, y: rows (N,), N >= 2, x rising, SI. outside: what holds beyond the rows: an error, the
+    value of the last one, or the table again ("repeat", with the range of x as its period).
+    name, unit: of x in messages, unit with its SI value.
+
+    Raises: LinkageError for fewer rows, x that does not rise, or a repeated table with a jump.
+    """
+
+    x: tuple[float, ...]
+    y: tuple[float, ...]
+    interpolation: Interpolation = "linear"
+    outside: Outside = "error"
+    name: str = "the table"
+    unit: tuple[str, float] = ("", 1.0)
+
+    def __post_init__(self) -> None:
+        if len(self.x) < 2:
+            raise LinkageError(f"{self.name} needs at least 2 rows", "too-few-rows")
+        falling = np.flatnonzero(np.diff(self.x) <= 0.0)
+        if len(falling):
+            k = int(falling[0])
+            raise LinkageError(
+                f"{self.name}: the first column must increase from row to row; row {k + 2} is "
+                f"{self._shown(self.x[k + 1])} after {self._shown(self.x[k])}",
+                "table-not-increasing",
+            )
+        if self.outside == "repeat" and self.y[0] != self.y[-1]:
+            raise LinkageError(
+                f"{self.name}: a table that repeats must end with the value of its first row",
+                "table-not-periodic",
+            )
+
+    def __call__(self, at: Floats) -> Floats:
+        """Values at (T,). Raises: LinkageError outside the table."""
+        low, high = self.x[0], self.x[-1]
+        if self.outside == "repeat":
+            at = low + np.mod(at - low, high - low)
+        elif self.outside == "error":
+            self._require_inside(at)
+        at = np.clip(at, low, high)
+        if self.interpolation == "linear":
+            return np.interp(at, self.x, self.y)
+        k = np.clip(np.searchsorted(self.x, at, side="right") - 1, 0, len(self.x) - 2)
+        x, y, slopes = np.array(self.x), np.array(self.y), self._slopes
+        h = x[k + 1] - x[k]
+        s = (at - x[k]) / h
+        rise, start, end = y[k + 1] - y[k], slopes[k] * h, slopes[k + 1] * h
+        bend = (3.0 * rise - 2.0 * start - end) + s * (start + end - 2.0 * rise)
+        return np.asarray(y[k] + s * (start + s * bend))
+
+    def knots(self, low: float, high: float) -> Floats:
+        """The rows' x between two values, at which the curve has kinks."""
+        x = np.array(self.x)
+        if self.outside == "repeat":
+            period = x[-1] - x[0]
+            first, last = np.floor((np.array([low, high]) - x[0]) / period)
+            x = (x[:-1] + period * np.arange(first, last + 1.0)[:, None]).ravel()
+        return x[(x > low) & (x < high)]
+
+    def _require_inside(self, at: Floats) -> None:
+        low, high = self.x[0], self.x[-1]
+        off = np.maximum(low - at, at - high)
+        k = int(off.argmax())
+        if off[k] > AT_END * (high - low):
+            raise LinkageError(
+                f"{self.name} goes from {self._shown(low)} to {self._shown(high)}, but "
+                f"{self._shown(float(at[k]))} occurs; extend it, or give outside = "
+                '"hold" (its last value) or "repeat"',
+                "outside-table",
+            )
+
+    def _shown(self, value: float) -> str:
+        unit, factor = self.unit
+        return f"{value / factor:.6g} {unit}".rstrip()
+
+    @cached_property
+    def _slopes(self) -> Floats:
+        """(N,) at the rows; where the table repeats, its ends are neighbours."""
+        x, y = np.array(self.x), np.array(self.y)
+        h, rise = np.diff(x), np.diff(y)
+        d = rise / h
+        if self.outside == "repeat":
+            inner = _harmonic(np.append(h[-1], h), np.append(d[-1], d))
+            return np.append(inner, inner[0])
+        if len(d) == 1:
+            return np.array([d[0], d[0]])
+        ends = _end_slope(h[0], h[1], d[0], d[1]), _end_slope(h[-1], h[-2], d[-1], d[-2])
+        return np.concatenate([ends[:1], _harmonic(h, d), ends[1:]])
+
+
+def _harmonic(h: Floats, d: Floats) -> Floats:
+    """Slopes between neighbouring pieces of widths h and slopes d; zero at an extreme."""
+    w1, w2 = 2.0 * h[1:] + h[:-1], h[1:] + 2.0 * h[:-1]
+    same = d[:-1] * d[1:] > 0.0
+    safe = [np.where(same, part, 1.0) for part in (d[:-1], d[1:])]
+    return np.where(same, (w1 + w2) / (w1 / safe[0] + w2 / safe[1]), 0.0)
+
+
+def _end_slope(h0: float, h1: float, d0: float, d1: float) -> float:
+    """Of a parabola through three rows, limited such that nothing overshoots."""
+    slope = ((2.0 * h0 + h1) * d0 - h0 * d1) / (h0 + h1)
+    if slope * d0 <= 0.0:
+        return 0.0
+    return 3.0 * d0 if d0 * d1 <= 0.0 and abs(slope) > 3.0 * abs(d0) else slope

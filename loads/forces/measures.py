@@ -1,0 +1,60 @@
+"""What a force can depend on: time, a drive's or slider's position, a distance of two points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from loads.linkage import Floats, Point, Slider, Turn
+from loads.loop_equations import number
+from loads.motion import Motion
+
+
+class Measure(Protocol):
+    """A value and its rate, (T,) each, at every instant of a motion; SI."""
+
+    def __call__(self, motion: Motion) -> tuple[Floats, Floats]: ...
+
+
+@dataclass(frozen=True)
+class Clock:
+    """Time, s."""
+
+    def __call__(self, motion: Motion) -> tuple[Floats, Floats]:
+        """Values and rates."""
+        return motion.times, np.ones(len(motion))
+
+
+@dataclass(frozen=True)
+class Position:
+    """Length (m) of a slider, or angle (rad) of a turn."""
+
+    of: Slider | Turn
+
+    def __call__(self, motion: Motion) -> tuple[Floats, Floats]:
+        """Values and rates."""
+        value, rate, _ = motion.coordinate(self.of)
+        return value, rate
+
+
+@dataclass(frozen=True)
+class Distance:
+    """Of two points (m, as drawn), each of an item or the ground, m."""
+
+    items: tuple[str, str]
+    points: tuple[Point, Point]
+
+    def line(self, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
+        """From the first point to the second, and its rate, (T,) complex."""
+        index = np.array([motion.linkage.index[item] for item in self.items])
+        drawn = np.array([number(p) for p in self.points])
+        place, velocity, _ = motion.follow(motion.loops.points(index, drawn))
+        return place[:, 1] - place[:, 0], velocity[:, 1] - velocity[:, 0]
+
+    def __call__(self, motion: Motion) -> tuple[Floats, Floats]:
+        """Values and rates."""
+        line, rate = self.line(motion)
+        length = np.abs(line)
+        return length, np.real(np.conj(line) * rate) / np.where(length > 0.0, length, 1.0)

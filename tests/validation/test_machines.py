@@ -1,0 +1,411 @@
+"""The machines that ship, each against closed forms, virtual work or energy."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.interpolate import PchipInterpolator
+
+from pinstress.model.cases import CaseLoads, case_loads
+from pinstress.model.linkage import linkage
+from pinstress.study.file import Study, load_study
+from pinstress.study.in_python import changed_study
+from tests.conftest import ROOT
+from tests.support.mechanisms import circles
+
+G = 9.80665
+Place = complex
+STUDIES = ROOT / "studies"
+
+
+def solved(study: Study) -> dict[str, CaseLoads]:
+    mechanism = linkage(study)
+    return {name: case_loads(study, name, mechanism) for name in study.table.case}
+
+
+@cache
+def machine(name: str) -> dict[str, CaseLoads]:
+    return solved(load_study(STUDIES / f"{name}.toml"))
+
+
+def drive(case: CaseLoads) -> Any:
+    assert case.dynamics is not None
+    return case.dynamics.drive
+
+
+def force(case: CaseLoads, connection: str, at: int = 0) -> complex:
+    """On the body, by its pin."""
+    x, y, _ = case.reactions.force(connection)[at]
+    return complex(-x, -y)
+
+
+def cross(a: complex, b: complex) -> float:
+    return a.real * b.imag - a.imag * b.real
+
+
+def slope(of: Callable[[float], float], at: float, h: float = 1e-5) -> float:
+    return (8 * (of(at + h) - of(at - h)) - (of(at + 2 * h) - of(at - 2 * h))) / (12 * h)
+
+
+# --- engine: closed form of the slider-crank, torque from the rate of the energy -----------------
+
+R, L, SPEED = 0.043, 0.145, 2 * math.pi * 50.0
+PIN = 7850.0 * 0.25 * math.pi * (0.022**2 - 0.012**2) * 0.06  # kg
+
+
+def gas(angle: Any) -> Any:
+    """Between the rows by scipy's cubic, over three periods so that 0 is no end."""
+    rows = list(csv.DictReader((STUDIES / "engine/gas_force.csv").read_text().splitlines()))
+    x = np.array([float(r["position_deg"]) for r in rows])
+    y = np.array([float(r["force"]) for r in rows])
+    x3 = np.concatenate([x[:-1] - 720.0, x[:-1], x + 720.0])
+    return PchipInterpolator(x3, np.concatenate([y[:-1], y[:-1], y]))(np.degrees(angle))
+
+
+def gudgeon(angle: Any) -> Any:
+    return R * np.cos(angle) + np.sqrt(L**2 - (R * np.sin(angle)) ** 2)
+
+
+def engine_energy(angle: Any) -> Any:
+    """Kinetic, at constant speed, less that of the crank, which is constant."""
+    h = 1e-4
+
+    def rate(of: Callable[[Any], Any]) -> Any:
+        return (8 * (of(angle + h) - of(angle - h)) - (of(angle + 2 * h) - of(angle - 2 * h))) / (
+            12 * h
+        )
+
+    def centre(a: Any) -> Any:
+        rod = gudgeon(a) - R * np.exp(1j * a)
+        along, across = CENTRE
+        return R * np.exp(1j * a) + rod / L * (along + 1j * across)
+
+    def tilt(a: Any) -> Any:
+        return np.arcsin(-R * np.sin(a) / L)
+
+    return SPEED**2 * (
+        0.5 * (0.36 + PIN) * rate(gudgeon) ** 2
+        + 0.275 * np.abs(rate(centre)) ** 2
+        + 0.0011 * rate(tilt) ** 2
+    )
+
+
+def _rod_centre() -> tuple[float, float]:
+    """The stated centre of the rod in its own axes, from A to C as drawn."""
+    a = R * np.exp(1j * math.radians(30.0))
+    own = (complex(0.080258, 0.01505) - a) / (0.180636268 - a) * L
+    return float(own.real), float(own.imag)
+
+
+CENTRE = _rod_centre()
+
+
+def engine_torque(angle: Any) -> Any:
+    h = 1e-3
+    kinetic = engine_energy
+    ke = (
+        8 * (kinetic(angle + h) - kinetic(angle - h))
+        - (kinetic(angle + 2 * h) - kinetic(angle - 2 * h))
+    ) / (12 * h)
+    dx = -R * np.sin(angle) - R**2 * np.sin(angle) * np.cos(angle) / np.sqrt(
+        L**2 - (R * np.sin(angle)) ** 2
+    )
+    return ke + gas(angle) * dx
+
+
+def test_the_torque_of_the_engine() -> None:
+    """Against the rate of the kinetic energy and the gas force, at the samples and at its peak."""
+    case = machine("engine")["two_turns"]
+    assert case.dynamics is not None
+    assert case.over is not None
+    angle = case.dynamics.motion.drives[:, 0]
+    torque = drive(case)[:, 0]
+    np.testing.assert_allclose(torque, engine_torque(angle), atol=1e-5 * np.abs(torque).max())
+    dense = engine_torque(np.linspace(0.0, 4.0 * math.pi, 200_001))
+    assert case.over.drives[0].largest.value == pytest.approx(np.abs(dense).max(), rel=1e-5)
+    assert case.over.drives[0].mean == pytest.approx(dense[:-1].mean(), rel=1e-5)
+    assert case.over.violation < 1e-12
+    assert len(case.over.peaks.unresolved) == 0
+
+
+def test_the_force_of_the_piston_is_gas_less_inertia() -> None:
+    case = machine("engine")["two_turns"]
+    assert case.dynamics is not None
+    angle = case.dynamics.motion.drives[:, 0]
+    h = 1e-4
+    a = SPEED**2 * (gudgeon(angle + h) - 2 * gudgeon(angle) + gudgeon(angle - h)) / h**2
+    along = case.reactions.force("C2")[:, 0]
+    np.testing.assert_allclose(along, -gas(angle) - 0.36 * a, atol=0.02)
+
+
+# --- cylinders on a body that turns about the origin: virtual work -------------------------------
+
+
+def cylinder(foot: complex, eye: complex, *bodies: tuple[float, complex, bool]) -> Any:
+    """Its length and the potential energy of its bodies (mass, centre as drawn, whether it is part
+    of the rod), by the angle of the body that carries the eye.
+    """
+    drawn = (eye - foot) / abs(eye - foot)
+
+    def at(turn: float) -> tuple[float, float]:
+        line = eye * np.exp(1j * turn) - foot
+        spun = line / abs(line) / drawn
+        height = 0.0
+        for mass, centre, rod in bodies:
+            origin, pivot = (eye, eye * np.exp(1j * turn)) if rod else (foot, foot)
+            height += mass * (pivot + (centre - origin) * spun).imag
+        return abs(line), G * height
+
+    return at
+
+
+FRONT = cylinder(0.5 - 1.1j, 1.1 + 0.2j, (45.0, 0.65 - 0.775j, False), (25.0, 0.95 - 0.125j, True))
+REAR = cylinder(0.35 - 1j, 0.85 + 0.2j, (45.0, 0.475 - 0.7j, False), (25.0, 0.725 - 0.1j, True))
+
+
+def crane_energy(turn: float) -> float:
+    boom, tip = ((z * np.exp(1j * turn)).imag for z in (2.0 + 0.48j, 4.2 + 0.9j))
+    return float(FRONT(turn)[1] + REAR(turn)[1] + 420.0 * G * boom + (40.0 * G + 19613.0) * tip)
+
+
+def raised_to(length: float) -> float:
+    """The angle of the boom at which the front cylinder has a length."""
+    low, high = -0.1, 1.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if FRONT(middle)[0] < length else (low, middle)
+    return low
+
+
+def test_the_cylinders_of_the_crane_share_the_work() -> None:
+    lift = slope(crane_energy, 0.0)
+    arms = [slope(lambda t: FRONT(t)[0], 0.0), slope(lambda t: REAR(t)[0], 0.0)]
+    both = lift / sum(arms)
+    assert drive(machine("crane")["both"]) == pytest.approx(np.array([[both, both]]), rel=1e-8)
+    assert drive(machine("crane")["burst"]) == pytest.approx(np.array([[lift / arms[1]]]), rel=1e-8)
+
+
+def test_the_work_of_the_cylinders_of_the_crane_raises_the_load() -> None:
+    """At rest at both ends: the sum of both works is the change of the potential energy."""
+    case = machine("crane")["raise"]
+    assert case.over is not None
+    start, end = raised_to(1.43178), raised_to(1.8)
+    raised = crane_energy(end) - crane_energy(start)
+    work = [effort.work[-1] for effort in case.over.drives]
+    assert sum(work) == pytest.approx(raised, rel=1e-6)
+    assert case.over.drives[1].stroke == pytest.approx(REAR(end)[0] - REAR(start)[0], rel=1e-6)
+
+
+# --- hood: virtual work with the gas force -------------------------------------------------------
+
+STRUT = cylinder(
+    0.78 - 0.1j, 0.25 + 0.013j, (0.9, 0.6397 - 0.0701j, False), (0.5, 0.3868 - 0.0162j, True)
+)
+SPRING = PchipInterpolator([0.535, 0.59, 0.64, 0.69, 0.745], [680, 630, 590, 556, 524])
+
+
+def hood_energy(turn: float) -> float:
+    return float(
+        STRUT(turn)[1]
+        + 22.0 * G * ((0.48 + 0.03j) * np.exp(1j * turn)).imag
+        + 0.6 * G * math.sin(turn)
+    )
+
+
+def test_the_hand_on_the_hood() -> None:
+    for name, angle in (("closed", 0.0), ("ajar", math.radians(25.0))):
+        length, _ = STRUT(angle)
+        moment = slope(hood_energy, angle) - SPRING(length) * slope(lambda t: STRUT(t)[0], angle)
+        assert drive(machine("hood")[name])[0, 0] == pytest.approx(moment, rel=1e-8)
+
+
+def test_the_work_of_the_hand_on_the_hood() -> None:
+    """Weight, gas and damper take it; the damper's part from the drive's own cycloid."""
+    case = machine("hood")["open"]
+    assert case.over is not None
+    end = math.radians(60.0)
+    gas_work = SPRING.integrate(STRUT(0.0)[0], STRUT(end)[0])
+    times = np.linspace(0.0, 3.0, 20_001)
+    angles = end * (times / 3.0 - np.sin(2 * math.pi * times / 3.0) / (2 * math.pi))
+    lengths = np.array([STRUT(a)[0] for a in angles])
+    lost = 300.0 * np.trapezoid(np.gradient(lengths, times, edge_order=2) ** 2, times)
+    raised = hood_energy(end) - hood_energy(0.0)
+    assert case.over.drives[0].work[-1] == pytest.approx(raised - gas_work + lost, abs=1e-5)
+
+
+# --- main gear: forces by hand, without weights --------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def weightless() -> dict[str, CaseLoads]:
+    study = load_study(STUDIES / "main_gear.toml")
+    return solved(changed_study(study, {"mechanism.gravity": [0.0, 0.0]}))
+
+
+B, K, C = 1.25 + 0.05j, 0.6632 - 0.5294j, 0.12 - 1.15j
+GROUND_LOCK, M, W = 0.2263 - 0.118j, 0.4379 - 0.331j, -2.2j
+LOAD = 40e3 + 90e3j
+
+
+def test_driven_the_actuator_carries_the_load(weightless: dict[str, CaseLoads]) -> None:
+    foot, eye = -0.75 + 0.05j, -0.1 - 0.55j
+    arm = cross(eye, (eye - foot) / abs(eye - foot))
+    case = weightless["driven"]
+    assert drive(case)[0, 0] == pytest.approx(-cross(W, LOAD) / arm, rel=1e-7)
+    assert abs(force(case, "C")) < 1e-6 * abs(force(case, "E"))
+
+
+def test_locked_the_brace_carries_the_load(weightless: dict[str, CaseLoads]) -> None:
+    """Brace arms are two-force members; the chain of lock links carries a force along GK, and the
+    downlock its moment at M.
+    """
+    case = weightless["locked"]
+    lower = (K - C) / abs(K - C)
+    size = -cross(W, LOAD) / cross(C, lower)
+    assert force(case, "C") == pytest.approx(-size * lower, rel=1e-6)
+    upper, lock = (B - K) / abs(B - K), (GROUND_LOCK - K) / abs(GROUND_LOCK - K)
+    system = np.array([[upper.real, lock.real], [upper.imag, lock.imag]])
+    in_upper, in_lock = np.linalg.solve(system, [(size * lower).real, (size * lower).imag])
+    assert abs(force(case, "B")) == pytest.approx(abs(in_upper), rel=1e-6)
+    assert abs(force(case, "G")) == pytest.approx(abs(in_lock), rel=1e-6)
+    couple = cross(M - GROUND_LOCK, in_lock * lock)
+    assert abs(drive(case)[0, 0]) == pytest.approx(abs(couple), rel=1e-6)
+    assert abs(force(case, "E")) < 1e-6 * abs(force(case, "C"))
+
+
+# --- pump jack: energy, and the curvature of paths from their points -----------------------------
+
+
+SHAFT, SADDLE = -2.0 + 0j, 0.5 + 4j
+A0, B0 = SHAFT + 0.9, circles(SHAFT + 0.9, 3.9, SADDLE, 2.5, 1.0)
+
+
+def jack(angle: float) -> dict[str, complex]:
+    """Centres of mass and points, with the turns of pitman and beam as unit numbers."""
+    a = SHAFT + 0.9 * np.exp(1j * angle)
+    b = circles(a, 3.9, SADDLE, 2.5, 1.0)
+    pitman, beam = (b - a) / (B0 - A0), (b - SADDLE) / (B0 - SADDLE)
+    return {
+        "crank": SHAFT + 0.75 * np.exp(1j * angle),
+        "pitman": 0.5 * (a + b),
+        "beam": SADDLE + (0.9 + 4.05j - SADDLE) * beam,
+        "head": SADDLE + 3.0 * beam,
+        "middle": a + (-1.475 + 1.921j - A0) * pitman,
+        "pitman turn": pitman,
+        "beam turn": beam,
+    }
+
+
+def jack_torque(angle: float) -> float:
+    """d(kinetic + potential)/d(angle) less the power of the rod load."""
+    speed = 2.0 * math.pi / 6.0
+    bar = 7850.0 * 0.16 * 0.12 * 3.9
+    bodies = (("crank", 4600.0), ("pitman", bar), ("beam", 1900.0))
+    turns = (("pitman turn", bar * (3.9**2 + 0.16**2) / 12.0), ("beam turn", 4200.0))
+
+    def energy(at: float) -> float:
+        out = 0.0
+        for key, mass in bodies:
+            rate = jack_rate(key, at)
+            out += 0.5 * mass * (speed * abs(rate)) ** 2 + mass * G * jack(at)[key].imag
+        for key, inertia in turns:
+            out += 0.5 * inertia * (speed * abs(jack_rate(key, at))) ** 2
+        return out
+
+    rows = ([0, 80, 105, 265, 290, 360], [22e3, 24e3, 42e3, 46e3, 25e3, 22e3])
+    load = np.interp(math.degrees(angle) % 360.0, *rows)
+    return slope(energy, angle, 1e-3) + load * jack_rate("head", angle).imag
+
+
+def jack_rate(key: str, at: float) -> complex:
+    return _rate(lambda t: jack(t)[key], at)
+
+
+def _rate(of: Callable[[float], complex], at: float, h: float = 1e-3) -> complex:
+    return (8 * (of(at + h) - of(at - h)) - (of(at + 2 * h) - of(at - 2 * h))) / (12 * h)
+
+
+def test_the_torque_of_the_pump_jack() -> None:
+    case = machine("pump_jack")["stroke"]
+    assert case.dynamics is not None
+    angles = case.dynamics.motion.drives[:, 0]
+    expected = [jack_torque(a) for a in angles[::6]]
+    found = drive(case)[::6, 0]
+    np.testing.assert_allclose(found, expected, atol=1e-6 * np.abs(found).max())
+
+
+def test_the_corners_of_the_rod_load_are_instants() -> None:
+    """The drive turns uniformly: the knots of the table are at known times."""
+    case = machine("pump_jack")["stroke"]
+    assert case.over is not None
+    expected = 6.0 / 360.0 * np.array([80.0, 105.0, 265.0, 290.0])
+    np.testing.assert_allclose(np.sort(case.over.corners), expected, atol=1e-8)
+
+
+def test_the_curvature_of_paths() -> None:
+    """The horsehead goes on a circle of 3 m; the coupler curve is differentiated by its points."""
+    case = machine("pump_jack")["stroke"]
+    assert case.dynamics is not None
+    motion = case.dynamics.motion
+    head = motion.curvature("beam", (3.5, 4.0))
+    np.testing.assert_allclose(np.abs(head), 1.0 / 3.0, rtol=1e-9)
+    assert len(np.unique(np.sign(head))) == 2
+    found = motion.curvature("pitman", (-1.475, 1.921))
+    for k in (0, 17, 50, 101):
+        t = motion.drives[k, 0]
+        first = jack_rate("middle", t)
+        second = _rate(lambda s: jack_rate("middle", s), t)
+        assert found[k] == pytest.approx(cross(first, second) / abs(first) ** 3, rel=1e-6)
+
+
+# --- scissor lift and bucket: virtual work -------------------------------------------------------
+
+
+def test_the_cylinder_of_the_scissor_lift() -> None:
+    """The platform is at h = sqrt(4 - x^2), the middles of the arms at half of it."""
+    x = 1.93649167
+    lifted = 24.0 * G + 60.0 * G + 2.0 * G + 5000.0  # per metre of h
+    h = math.sqrt(4.0 - x * x)
+    assert drive(machine("scissor_lift")["lowest"])[0, 0] == pytest.approx(
+        -lifted * x / h, rel=1e-6
+    )
+    over = machine("scissor_lift")["raise"].over
+    assert over is not None
+    gained = lifted * (math.sqrt(4.0 - 1.2**2) - h)
+    assert over.drives[0].work[-1] == pytest.approx(gained, rel=1e-7)
+
+
+def test_the_work_of_the_bucket_cylinder() -> None:
+    """It raises the weights and overcomes the digging curve along the path of the tip."""
+    case = machine("bucket")["dig"]
+    assert case.over is not None
+    y, w = -0.1 + 0.42j, -0.4 + 2.2j
+    x0 = y + 0.6 * np.exp(1j * math.radians(10.0))
+    z0 = circles(x0, 0.6, 0j, 0.45, 1.0)
+    rows = ([1.8, 1.88, 2.0, 2.15, 2.24, 2.3], [0.0, 35e3, 70e3, 95e3, 60e3, 0.0])
+
+    def at(length: float) -> tuple[complex, float]:
+        """The bucket's turn as a unit number, and the potential energy."""
+        x = circles(w, length, y, 0.6, 1.0)
+        z = circles(x, 0.6, 0j, 0.45, 1.0)
+        bucket, axis = z / z0, (x - w) / (x0 - w) * abs(x0 - w) / length
+        barrel = w + (-0.2 + 1.8j - w) * axis
+        rod = x + (0.3 + 0.9j - x0) * axis
+        middles = 35.0 * (x + y) / 2 + 50.0 * (x + z) / 2 + 95.0 * barrel + 55.0 * rod
+        return bucket, G * (650.0 * ((0.4 - 0.7j) * bucket) + middles).imag
+
+    lengths = np.linspace(1.82, 2.29, 8001)
+    turns = np.array([at(s)[0] for s in lengths])
+    sizes = PchipInterpolator(*rows)(lengths)
+    force = sizes * (0.9 + 0.43j) / abs(0.9 + 0.43j) * turns
+    steps = np.gradient((-0.1 - 1.45j) * turns, lengths, edge_order=2)
+    digging = np.trapezoid(np.real(np.conj(force) * steps), lengths)
+    raised = at(2.29)[1] - at(1.82)[1]
+    assert -digging > 5e4
+    assert case.over.drives[0].work[-1] == pytest.approx(raised - digging, rel=1e-6)
