@@ -8,6 +8,7 @@ from fea.core.peak import Refinement
 from reports.data.results import PinResult, Units
 from reports.format.file_names import plot_name
 from reports.plots.spec import FORMAT, Plot, Spec, clipped, headed, level, rows
+from reports.plots.theme import dashes
 
 HEADING, ENERGY = "maximum: deviation [%]", "strain energy: deviation [%]"
 
@@ -77,6 +78,7 @@ def _panel(field: str, heading: str, value: tuple[str, str], names: list[str]) -
                   "scale": {"type": "log", "nice": False}, "axis": ticks},
             "y": {"field": field, "type": "quantitative", "title": None},
             "color": key | {"scale": {"domain": names}},
+            "strokeDash": key | {"scale": {"domain": names, "range": dashes(len(names))}},
             "tooltip": [
                 {"field": "row", "type": "nominal", "title": "row"},
                 {"field": "x", "type": "quantitative", "title": "unknowns", "format": ","},
@@ -85,7 +87,7 @@ def _panel(field: str, heading: str, value: tuple[str, str], names: list[str]) -
             ],
         },
     }  # fmt: skip
-    return {"title": heading, "height": 110, "layer": [level(0.0, style="zero"), lines]}
+    return {"title": heading, "height": 85, "layer": [level(0.0, style="zero"), lines]}
 
 
 def _text(label: str, pin: PinResult) -> str:
