@@ -84,5 +84,6 @@ def _solid_result(problem: Problem, rung: Rung) -> MeshResult:
     fields = solution.fields
     top = envelope(fields, problem.loads, solution.outside)
     return MeshResult(
-        fields.space.unknowns, top.maximum, top.instant, top.location, (), top.scatter
-    )
+        fields.space.unknowns, top.maximum, top.instant, top.location, scatter=top.scatter,
+        energy=fields.energy,
+    )  # fmt: skip

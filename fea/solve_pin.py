@@ -270,7 +270,9 @@ def _refined(
         case, s = _at_crest(job, mesh, case, seen[case.case])
         peak = judge(s, mesh.singularities, asked.tolerance, notes.get(case.case, NOTHING))
         instant = s.results[-1].instant
-        peak = _because(replace(peak, governing=case.at(np.array([instant]))), why(s))
+        governing = case.at(np.array([instant]))
+        peak = replace(peak, governing=governing, history=s.under(governing))
+        peak = _because(peak, why(s))
         out[case.case] = Solution(peak, mesh.answers[case.case], case, instant)
     return out
 

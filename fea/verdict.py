@@ -17,6 +17,7 @@ from fea.core.peak import (
     Verdict,
     discretisation_error,
 )
+from fea.core.pin_loads import PinLoads
 from fea.singular.singularities import Singularity
 
 LEAST_ORDER = {"harmonic": 1.0}  # meshes of sections have nodes on the edges of excluded zones
@@ -56,6 +57,13 @@ class Seen:
         return tuple(
             Refinement(result.unknowns, result.maximum, spent)
             for result, spent in zip(self.results, self.seconds, strict=True)
+        )
+
+    def under(self, loads: PinLoads) -> tuple[Refinement, ...]:
+        """The history with the strain energy of each mesh under loads, of one instant."""
+        return tuple(
+            replace(step, strain_energy=result.energy.of(loads) if result.energy else None)
+            for step, result in zip(self.history, self.results, strict=True)
         )
 
     @property

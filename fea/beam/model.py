@@ -15,7 +15,7 @@ from fea.beam.stress import BeamStress, beam_stress
 from fea.core.material import Material
 from fea.core.mesh_result import MeshResult
 from fea.core.peak import ErrorParts, Note, Peak, Refinement
-from fea.core.pin_loads import AnyLoads, PinLoads
+from fea.core.pin_loads import Amounts, AnyLoads, PinLoads
 from fea.core.solution import Picture
 from fea.singular.singularities import Singularity, outside
 from fea.verdict import accuracy
@@ -70,6 +70,14 @@ class BeamAnswer:
         """None: a beam has no field over its surface."""
         return None
 
+    @property
+    def strain_energy(self) -> float:
+        """Of the loads that have a resultant, at the instant of the largest stress, J."""
+        coefficients = self.case.coefficients()
+        felt = {unit: coefficients[unit] for unit in self._beam.loads}
+        amounts = Amounts(self.case.case, felt, len(self.case))
+        return self._beam.energy.of(amounts, self.estimate.instant)
+
     def peak(self, tolerance: float, seconds: float, note: Note, rise: float = 0.0) -> Peak:
         """The peak with the beam's own error; where it has none, an error of the whole value. rise:
         by how much the maximum may be higher between instants, Pa.
@@ -98,7 +106,7 @@ class BeamAnswer:
             max_von_mises=found.maximum,
             error_estimate=error,
             location=(r * math.cos(found.theta), r * math.sin(found.theta), z),
-            history=(Refinement(0, found.maximum, seconds),),
+            history=(Refinement(0, found.maximum, seconds, self.strain_energy),),
             parts=parts,
             reasons=own.codes,
         )

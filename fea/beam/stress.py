@@ -18,6 +18,7 @@ from fea.beam.stress_concentration import Notch, notches
 from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, stepped_beam
 from fea.core.material import Material
 from fea.core.pin_loads import UnitLoad
+from fea.core.strain_energy import StrainEnergy
 from geometry import Pin
 from geometry.arrays import Floats
 
@@ -43,6 +44,13 @@ class BeamStress:
     def loads(self) -> tuple[UnitLoad, ...]:
         """Of the K columns."""
         return self.forces.loads
+
+    @property
+    def energy(self) -> StrainEnergy:
+        """Of the beam under these loads, without what notches add."""
+        work = self.forces.work(self.material)
+        units = tuple((load, phase) for phase in (0, 1) for load in self.loads)
+        return StrainEnergy(units, np.asarray(np.kron(np.eye(2), work), np.float64))
 
 
 def beam_stress(

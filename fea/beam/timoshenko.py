@@ -74,6 +74,14 @@ class InternalForces:
         cells = np.searchsorted(self.stations[1:-1], z, side="right")
         return self.inside(cells, z)
 
+    def work(self, material: Material) -> Floats:
+        """Of each load on the deflection by each of them, (K, K) J: the clamps' none."""
+        cells = np.array(self.free)
+        lengths = np.diff(self.stations)[cells]
+        soft = np.array([compliances(self.sections[c], material) for c in cells])
+        found = _at_gauss(lengths, self.coefficients[cells])
+        return _products(lengths, soft, found, found)
+
 
 def stepped_beam(
     pin: Pin, material: Material, loads: tuple[UnitLoad, ...], clamps: tuple[str, ...] = ()
@@ -145,18 +153,27 @@ def _span(span: Span, lengths: Floats, soft: Floats, q: Floats) -> Floats:
         return loaded
     unit = _march(lengths, np.zeros((*q.shape[:3], 4)), np.eye(4))
     if span.right:
-        s = lengths[:, None] * 0.5 * (1.0 + _GAUSS)  # (C, G)
-        powers = s[..., None] ** np.arange(4)
-        m, f = (np.einsum("cgp,cpqk->cgqk", powers, x) for x in (unit, loaded))
-        scaled = np.einsum("c,g,cq,cgqi->cgqi", lengths / 2.0, _WEIGHT, soft, m)
-        flexibility = np.einsum("cgqi,cgqj->ij", scaled, m)
-        start = np.linalg.solve(flexibility, -np.einsum("cgqi,cgqk->ik", scaled, f))
+        m, f = (_at_gauss(lengths, x) for x in (unit, loaded))
+        flexibility, moved = (_products(lengths, soft, m, x) for x in (m, f))
+        start = np.asarray(np.linalg.solve(flexibility, -moved), np.float64)
     else:
         powers = lengths[-1] ** np.arange(4)
         ends = (np.einsum("p,pqk->qk", powers, x[-1]) for x in (unit, loaded))
         at_end, wanted = ends
         start = np.linalg.solve(at_end, -wanted)
     return _march(lengths, q, start)
+
+
+def _at_gauss(lengths: Floats, coefficients: Floats) -> Floats:
+    """Internal forces (C, G, 4, K) at the Gauss points of cells, of coefficients (C, 4, 4, K)."""
+    s = lengths[:, None] * 0.5 * (1.0 + _GAUSS)
+    return np.asarray(np.einsum("cgp,cpqk->cgqk", s[..., None] ** np.arange(4), coefficients))
+
+
+def _products(lengths: Floats, soft: Floats, one: Floats, other: Floats) -> Floats:
+    """Integrals (I, K) of internal forces (C, G, 4, I) on the strains by others, (C, G, 4, K)."""
+    scaled = np.einsum("c,g,cq,cgqi->cgqi", lengths / 2.0, _WEIGHT, soft, one)
+    return np.asarray(np.einsum("cgqi,cgqk->ik", scaled, other))
 
 
 def _march(lengths: Floats, q: Floats, start: Floats) -> Floats:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated
+
+from fea.core.strain_energy import StrainEnergy
 
 Point = tuple[float, float, float]
 
@@ -56,7 +58,7 @@ class MeshResult:
     much it may be higher between two instants, Pa. high: points (r, z) of a section, m, where a
     finer mesh may find the maximum. quiet: fillets, as numbers of corners, where none will
     (fea.harmonic.quiet_corners). interval: the maximum if half and twice the distance is left out
-    of what governs, Pa; None where nothing in them does.
+    of what governs, Pa; None where nothing in them does. energy: under any of the case's loads.
     """
 
     unknowns: int
@@ -70,6 +72,7 @@ class MeshResult:
     quiet: tuple[int, ...] = ()
     between: float = 0.0
     interval: tuple[float, float] | None = None
+    energy: StrainEnergy | None = field(default=None, compare=False)
 
     @property
     def governed(self) -> tuple[AtSingularity, ...]:

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from fea.core.dimensions import Length, Point, Stress
+from fea.core.dimensions import Energy, Length, Point, Stress
 from fea.core.mesh_result import Strength
 from fea.core.pin_loads import PinLoads
 
@@ -29,11 +29,14 @@ NOTHING = Note()
 
 @dataclass(frozen=True)
 class Refinement:
-    """One mesh of the sequence: unknowns, maximum (Pa), and solution time (s)."""
+    """One mesh of the sequence: unknowns, maximum (Pa), solution time (s), and strain energy (J) of
+    the pin under the loads that govern on the last mesh, None where the model gives none.
+    """
 
     dofs: int
     max_von_mises: Stress
     seconds: float
+    strain_energy: Energy | None = None
 
 
 @dataclass(frozen=True)

@@ -234,6 +234,7 @@ def harmonic_result(
         left_out=_left_out(around, loads, top),
         high=_high(around, fields.points, among, top),
         quiet=solution.quiet,
+        energy=fields.energy,
     )
     return replace(result, interval=interval(fields, around, mine)) if result.governed else result
 

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
+import scipy.sparse as sp
 
 from fea.core.pin_loads import UnitLoad
+from fea.core.strain_energy import StrainEnergy
 from fea.singular.singularities import Singularity, outside
 from geometry.arrays import Floats, Ints, Mask
 
@@ -21,7 +24,9 @@ class MeridianFields:
     in m, of the first D points: r and z as cos psi, theta as sin psi. skin: how many of the points,
     the first ones, follow the outline counter-clockwise. unknowns: of the system that was solved.
     triangles: (M, 3) of points, which fill the section, if the model has such. unread: points whose
-    stress is too rough to look for a maximum among (fea.harmonic.pressure_edge).
+    stress is too rough to look for a maximum among (fea.harmonic.pressure_edge). forces: (3 D, K)
+    of those D points along r, theta and z, N, that did the work of the loads, integrated about the
+    axis.
     """
 
     points: Floats
@@ -32,6 +37,7 @@ class MeridianFields:
     unknowns: int
     triangles: Ints = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int64))
     unread: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    forces: sp.csc_matrix | None = None
 
     def joined(self, other: MeridianFields) -> MeridianFields:
         """With other loads' fields on the same points."""
@@ -40,7 +46,22 @@ class MeridianFields:
             for name in ("stress", "displacement")
         )
         loads = self.loads + other.loads
-        return replace(self, loads=loads, stress=stress, displacement=displacement)
+        both = self.forces, other.forces
+        forces = sp.hstack(both, format="csc") if both[0] is not None else None  # type: ignore
+        return replace(self, loads=loads, stress=stress, displacement=displacement, forces=forces)
+
+    @cached_property
+    def energy(self) -> StrainEnergy | None:
+        """Of the pin under these loads; None where their forces are not known."""
+        if self.forces is None:
+            return None
+        n, work = np.array([load.n for load in self.loads]), np.zeros((len(self.loads),) * 2)
+        moved = self.displacement.reshape(self.forces.shape)
+        for one in np.unique(n):
+            here = np.flatnonzero(n == one)
+            work[np.ix_(here, here)] = self.forces[:, here].T @ moved[:, here]
+        units = tuple((load, phase) for phase in (0, 1) for load in self.loads)
+        return StrainEnergy(units, np.asarray(np.kron(np.eye(2), work), np.float64))
 
     def outside(self, singularities: Iterable[Singularity]) -> Mask:
         """Which of the points may have the maximum: read, and in none of the singularities."""

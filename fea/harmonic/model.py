@@ -151,10 +151,12 @@ class HarmonicModel(HarmonicBody):
         read = reading(self.space, self.outline, self.material, self.clamps, extra, ends)
         harmonics = np.array([load.n for load in loads])
         u = np.zeros((len(self.space.nodes), 3, len(loads)))
+        applied = np.zeros_like(u)
         tractions = np.zeros((*self.outline.nodes.shape, 3, len(loads)))
         for n in sorted(set(harmonics.tolist())):
             here = np.flatnonzero(harmonics == n)
             forces, tractions[..., here] = self._applied(n, [loads[k] for k in here])
+            applied[:, :, here] = _polar(forces) * [[0.5], [0.5], [1.0]]
             u[:, :, here] = _polar(self.displace(n, forces))
         displacement, stress = read.of(harmonics, u, tractions)
         return MeridianFields(
@@ -166,6 +168,7 @@ class HarmonicModel(HarmonicBody):
             self.space.unknowns,
             read.triangles,
             unread(read.jumps, read.points, read.skin),
+            read.at_points(applied),
         )
 
     def _applied(self, n: int, loads: list[UnitLoad]) -> tuple[Floats, Floats]:

@@ -63,13 +63,28 @@ class Reading:
         return np.concatenate(displacements), np.concatenate(stresses)
 
     @property
-    def triangles(self) -> Ints:
-        """(M, 3) of the points, which fill the section."""
-        row = np.zeros(len(self.space.nodes), dtype=np.int64)  # of every node that is a corner
+    def rows(self) -> Ints:
+        """(N,) which of the points is at each node."""
+        row = np.zeros(len(self.space.nodes), dtype=np.int64)
         row[self.inner] = self.skin + np.arange(len(self.inner))
         first = len(AT) * np.arange(len(self.outline.nodes))
-        row[self.outline.nodes[:, 1]], row[self.outline.nodes[:, 0]] = first + len(AT) - 1, first
-        return np.asarray(row[self.space.elements[:, :3]])
+        for node, at in ((2, len(AT) // 2), (1, len(AT) - 1), (0, 0)):
+            row[self.outline.nodes[:, node]] = first + at
+        return row
+
+    def at_points(self, forces: Floats) -> sp.csc_matrix:
+        """Forces (N, 3, K) on the nodes as forces (3 D, K) on the points that have a
+        displacement.
+        """
+        rows = (3 * self.rows[:, None] + np.arange(3)).ravel()
+        found = sp.coo_matrix(forces.reshape(len(rows), -1))
+        count = 3 * (self.skin + len(self.inner))
+        return sp.csc_matrix((found.data, (rows[found.row], found.col)), (count, found.shape[1]))
+
+    @property
+    def triangles(self) -> Ints:
+        """(M, 3) of the points, which fill the section."""
+        return np.asarray(self.rows[self.space.elements[:, :3]])
 
 
 def reading(

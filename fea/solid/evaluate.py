@@ -154,6 +154,7 @@ def solid_result(
             for p, (value, at), s in zip(solution.singularities, top.inside, exponents, strict=True)
         ),
         scatter=top.scatter,
+        energy=fields.energy,
     )
     if not result.singular:
         return result

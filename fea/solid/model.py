@@ -17,6 +17,7 @@ import scipy.sparse as sp
 from fea.core.linear_solver import SolveError, factorize
 from fea.core.material import Material
 from fea.core.pin_loads import AnyLoads, PinLoads, require_solved
+from fea.core.strain_energy import StrainEnergy
 from fea.singular.probes import interpolation
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import SurfaceMesh, clamped_nodes, resultants, surface
@@ -63,6 +64,12 @@ class UnitFields:
         inside = there @ self.stress.reshape(len(self.stress), -1)
         shape = len(self.extra), *self.stress.shape[1:]
         return np.concatenate([self.stress[self.surface.nodes], inside.reshape(shape)])
+
+    @cached_property
+    def energy(self) -> StrainEnergy:
+        """Of the pin under these loads."""
+        forces, moved = (x.reshape(-1, len(self.loads)) for x in (self.forces, self.displacement))
+        return StrainEnergy(self.loads, forces.T @ moved)
 
     def coefficients(self, loads: AnyLoads) -> Floats:
         """How much of each unit load acts at each instant, (T, L).

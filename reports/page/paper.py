@@ -16,6 +16,8 @@ from reports.format.grid import Grid
 from reports.format.words import headline
 from reports.page.joint import joint_part
 from reports.tables.changes import INTRODUCTION, change_notes, changes_grid
+from reports.tables.fatigue import fatigue_grid, fatigue_sentence
+from reports.tables.margins import governing_grid, not_made_words
 from reports.tables.published import published_maxima
 from reports.tables.safety_factors import TEXTS, reading, shown, shown_columns, shown_rows
 from reports.text.loads_summary import load_parts
@@ -40,7 +42,9 @@ def document(results: Results, drawings: dict[str, str]) -> Content:
         "units": asdict(results.units),
         "factors": _factors(results),
         "reading": reading(shown_columns(shown_rows(results), results)),
+        "margins": _margins(results),
         "changes": _changes(results),
+        "fatigue": _fatigue(results),
         "maxima": None if maxima is None else asdict(maxima),
         "published_source": results.published_source,
         "pins": [_pin(results, name, drawings) for name in drawings],
@@ -64,6 +68,19 @@ def _factors(results: Results) -> Content | None:
     body = [[shown(name, row) for name in columns] for row in rows]
     grid = Grid(list(columns.values()), body, [name not in TEXTS for name in columns])
     return asdict(grid) | {"outcomes": [outcome(pin) for pin in worst_first(results)]}
+
+
+def _margins(results: Results) -> Content | None:
+    grid = governing_grid(results)
+    return None if grid is None else {"grid": asdict(grid), "notes": not_made_words(results)}
+
+
+def _fatigue(results: Results) -> Content | None:
+    if results.fatigue is None:
+        return None
+    grid, notes = fatigue_grid(results), results.fatigue.left_out
+    said = fatigue_sentence(results.fatigue)
+    return {"sentence": said, "grid": grid and asdict(grid), "notes": notes}
 
 
 def _changes(results: Results) -> Content | None:

@@ -1,23 +1,25 @@
-"""Plots of the maximum stress on each mesh, as its deviation from that on the finest."""
+"""Plots of the maximum stress and the strain energy on each mesh, as deviations from the finest."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
+from fea.core.peak import Refinement
 from reports.data.results import PinResult, Units
 from reports.format.file_names import plot_name
 from reports.plots.spec import FORMAT, Plot, Spec, clipped, headed, level, rows
+from reports.plots.theme import dashes
 
-HEADING = "deviation [%]"
+HEADING, ENERGY = "maximum: deviation [%]", "strain energy: deviation [%]"
 
 
 def refinement_plot(case: str, pins: Sequence[PinResult], units: Units) -> Plot:
-    """Every pin's maximum on its meshes in one case."""
+    """Every pin's maximum and strain energy on its meshes in one case."""
     return _plot(plot_name("refinement", case), case, pins, [pin.pin for pin in pins], units)
 
 
 def pin_refinement_plot(pin: str, cases: Sequence[PinResult], units: Units) -> Plot:
-    """One pin's maximum on its meshes in every case."""
+    """One pin's maximum and strain energy on its meshes in every case."""
     name, labels = plot_name("refinement-pin", pin), [clipped(case.case) for case in cases]
     return _plot(name, f"Pin {pin}", cases, labels, units)
 
@@ -26,40 +28,66 @@ def _plot(
     name: str, title: str, pins: Sequence[PinResult], labels: Sequence[str], units: Units
 ) -> Plot:
     steps = [
-        {"x": step.dofs, "y": 100.0 * (step.max_von_mises / pin.history[-1].max_von_mises - 1.0),
-         "value": step.max_von_mises, "row": _text(label, pin)}
-        for label, pin in zip(labels, pins, strict=True) for step in pin.history
+        {"x": step.dofs, "value": step.max_von_mises, "y": off, "energy": step.strain_energy,
+         "e": energy_off, "row": _text(label, pin)}
+        for label, pin in zip(labels, pins, strict=True)
+        for step, off, energy_off in zip(pin.history, *_deviations(pin.history), strict=True)
     ]  # fmt: skip
     names = list(dict.fromkeys(_text(*both) for both in zip(labels, pins, strict=True)))
+    stress, energy = f"maximum [{units.stress}]", f"strain energy [{units.force} {units.length}]"
+    panels = [_panel("y", HEADING, ("value", stress), names)]
+    known = any(step["e"] is not None for step in steps)
+    if known:
+        panels.append(_panel("e", ENERGY, ("energy", energy), names))
+    else:
+        steps = [{k: v for k, v in step.items() if k not in ("e", "energy")} for step in steps]
+    panels[-1]["layer"][1]["encoding"]["x"]["title"] = "unknowns, logarithmic"
     title = f"{title}: mesh refinement of the maximum von Mises stress"
-    return Plot(name, f"{title}, as its deviation from that on the finest mesh", {
+    title += " and of the strain energy" if known else ""
+    columns = ["unknowns", stress, HEADING, energy, ENERGY][: 5 if known else 3]
+    return Plot(name, f"{title}, as deviations from the finest mesh", {
         "title": headed(title),
-        "usermeta": {"columns": ["unknowns", HEADING, f"maximum [{units.stress}]", "row"]},
+        "usermeta": {"columns": [*columns, "row"]},
         "data": rows(steps),
-        "height": 170,
-        "layer": [level(0.0, style="zero"), _lines(names, units)],
+        "vconcat": panels,
     })  # fmt: skip
 
 
-def _lines(names: list[str], units: Units) -> Spec:
+def _deviations(history: Sequence[Refinement]) -> tuple[list[float], list[float | None]]:
+    """Of the maximum and of the strain energy from those of the last mesh, per cent."""
+    last = history[-1]
+    stress = [100.0 * (step.max_von_mises / last.max_von_mises - 1.0) for step in history]
+    energy = [
+        100.0 * (step.strain_energy / last.strain_energy - 1.0)
+        if step.strain_energy is not None and last.strain_energy
+        else None
+        for step in history
+    ]
+    return stress, energy
+
+
+def _panel(field: str, heading: str, value: tuple[str, str], names: list[str]) -> Spec:
+    """value: a field with its title, shown under the pointer."""
     key = {"field": "row", "type": "nominal", "sort": None, "title": None}
-    ticks = {"tickCount": 6, "format": "~s"}
-    return {
+    ticks = {"format": "~s", "labelOverlap": "greedy", "labelFlush": True, "labelSeparation": 8}
+    column, title = value
+    lines = {
         "mark": {"type": "line", "point": {"size": 40, "filled": True}},
         "encoding": {
-            "x": {"field": "x", "type": "quantitative", "title": "unknowns, logarithmic",
+            "x": {"field": "x", "type": "quantitative", "title": None,
                   "scale": {"type": "log", "nice": False}, "axis": ticks},
-            "y": {"field": "y", "type": "quantitative", "title": HEADING},
+            "y": {"field": field, "type": "quantitative", "title": None},
             "color": key | {"scale": {"domain": names}},
+            "strokeDash": key | {"scale": {"domain": names, "range": dashes(len(names))}},
             "tooltip": [
                 {"field": "row", "type": "nominal", "title": "row"},
                 {"field": "x", "type": "quantitative", "title": "unknowns", "format": ","},
-                {"field": "value", "type": "quantitative", "title": f"maximum [{units.stress}]",
-                 "format": FORMAT},
-                {"field": "y", "type": "quantitative", "title": HEADING, "format": ".3~f"},
+                {"field": column, "type": "quantitative", "title": title, "format": FORMAT},
+                {"field": field, "type": "quantitative", "title": heading, "format": ".3~f"},
             ],
         },
     }  # fmt: skip
+    return {"title": heading, "height": 85, "layer": [level(0.0, style="zero"), lines]}
 
 
 def _text(label: str, pin: PinResult) -> str:

@@ -130,6 +130,7 @@ def _pin(pin: PinResult) -> dict[str, Any]:
                 "dofs": int(step.dofs),
                 "max_von_mises": finite(step.max_von_mises),
                 "seconds": finite(step.seconds),
+                "strain_energy": finite(step.strain_energy),
             }
             for step in pin.history
         ],

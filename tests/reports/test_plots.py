@@ -116,6 +116,19 @@ def test_refinement_is_the_deviation_from_the_finest_mesh(results: Results) -> N
     assert [row["y"] for row in rows] == pytest.approx(expected, rel=DIGITS, abs=1e-12)
     assert rows[-1]["y"] == 0.0
     assert {row["row"] for row in rows} == {"retract, unconverged"}
+    assert len(plot.spec["vconcat"]) == 1  # no strain energy
+
+
+def test_refinement_has_the_strain_energy(results: Results) -> None:
+    pin = results.pins[3]
+    steps = [
+        replace(s, strain_energy=e) for s, e in zip(pin.history, (9.0, 9.9, 10.0), strict=True)
+    ]
+    spec = pin_refinement_plot("D", [replace(pin, history=tuple(steps))], results.units).spec
+    rows = spec["data"]["values"]
+    assert [row["e"] for row in rows] == pytest.approx([-10.0, -1.0, 0.0], rel=DIGITS)
+    assert len(spec["vconcat"]) == 2
+    assert len(spec["usermeta"]["columns"]) == len(rows[0])
 
 
 def test_the_beam_check_has_its_curves(results: Results, plots: dict[str, Plot]) -> None:
