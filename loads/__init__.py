@@ -48,7 +48,7 @@ from loads.refine import Resolved, resolved
 from loads.singular_positions import Impasse
 from loads.spatial_leg import Contact, LegDynamics, LegMotion, SpatialLeg, leg_dynamics
 from loads.tables.csv_table import TableError, read_table
-from loads.tables.force_table import Layout
+from loads.tables.force_table import Layout, table_cases
 from loads.tables.regular_file import MB, FileError, read_regular, require_regular
 
 __all__ = [
@@ -120,4 +120,5 @@ __all__ = [
     "require_possible",
     "require_regular",
     "resolved",
+    "table_cases",
 ]

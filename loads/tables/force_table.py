@@ -36,6 +36,23 @@ class Layout:
     step: float | None = None
 
 
+def table_cases(path: Path, columns: Mapping[str, str | int]) -> list[str]:
+    """The names in a table's column `case`, in their order. columns: as of a Layout. Raises:
+    TableError.
+    """
+    names = dict[str, None]()
+    at = str(columns.get("case", "case"))
+    for row in read_table(path, (at,), free=True, numbered=_numbered(columns)):
+        if not row.cells[at]:
+            raise TableError(f"{row.where}: the case has no name", "no-such-case")
+        names[row.cells[at]] = None
+    return list(names)
+
+
+def _numbered(columns: Mapping[str, str | int]) -> bool:
+    return bool(columns) and all(isinstance(c, int) for c in columns.values())
+
+
 @dataclass(frozen=True)
 class GivenForce:
     """Force and moment on one connection, N and N m; time: s, or None."""
@@ -58,12 +75,11 @@ class _Column:
 
 def read_forces(path: Path, layout: Layout, unit: Unit, known: set[str]) -> Iterator[GivenForce]:
     """Rows of a table. Raises: TableError."""
-    numbered = bool(layout.columns) and all(isinstance(c, int) for c in layout.columns.values())
     names = {label: name for name, label in _labels(layout.labels)}
     count: dict[str, int] = {}
     columns: list[_Column] | None = None
     cases, found = set[str](), False
-    for row in read_table(path, (), free=True, numbered=numbered):
+    for row in read_table(path, (), free=True, numbered=_numbered(layout.columns)):
         if columns is None:
             columns = _columns(path, list(row.cells), layout, unit)
         text = {c.meaning: row.cells[c.header] for c in columns if c.connection is None}

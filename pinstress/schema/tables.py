@@ -12,7 +12,7 @@ from pinstress.schema.landing import DropCase, GroundCase
 from pinstress.schema.leg import SpatialLegTable
 from pinstress.schema.mechanism import MechanismTable
 from pinstress.schema.pins import MaterialTable, PinTable
-from pinstress.schema.types import LimitLoads, Name, Number, PositiveLength, StrictTable
+from pinstress.schema.types import CaseName, LimitLoads, Name, Number, PositiveLength, StrictTable
 
 
 class AnalysisTable(StrictTable):
@@ -129,7 +129,7 @@ class StudyTable(StrictTable):
     """Pins by name; without pins only `pinstress loads` can be used."""
     case: Annotated[
         dict[
-            Name,
+            CaseName,
             Annotated[
                 GivenCase | MotionCase | StaticCase | InstantCase | LegCase | DropCase | GroundCase,
                 Field(discriminator="kind"),
@@ -137,7 +137,8 @@ class StudyTable(StrictTable):
         ],
         Field(min_length=1),
     ]
-    """Load cases by name; each is run for the pins that it loads."""
+    """Load cases by name; each is run for the pins that it loads. A name with a *, of kind "given",
+    stands for every name in the column `case` of its table, which replaces the *."""
     mechanism: MechanismTable | None = None
     """The linkage, for cases of kind "motion", "static", "instant", "drop" and "ground"."""
     spatial_leg: SpatialLegTable | None = None

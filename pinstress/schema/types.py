@@ -186,6 +186,15 @@ Stiffness = Annotated[Annotated[float, Quantity("stiffness")], NOT_NEGATIVE]
 Damping = Annotated[Annotated[float, Quantity("damping")], NOT_NEGATIVE]
 TorsionalStiffness = Annotated[Annotated[float, Quantity("torsional stiffness")], NOT_NEGATIVE]
 TorsionalDamping = Annotated[Annotated[float, Quantity("torsional damping")], NOT_NEGATIVE]
+ANY = "*"  # in a section's name, for every case of its table
+
+
+def _usable_section(name: str) -> str:
+    usable_name(name.replace(ANY, "case"))
+    return name
+
+
+CaseName = Annotated[str, AfterValidator(_usable_section)]
 Point = tuple[Length, Length]
 TiltStiffness = Annotated[Annotated[float, Quantity("torsional stiffness")], POSITIVE]
 

@@ -17,6 +17,7 @@ from pinstress.schema.shown import LISTED, cut, in_toml, shown
 from pinstress.schema.tables import StudyTable
 from pinstress.schema.types import KINDS
 from pinstress.schema.units import SYSTEMS, UnitSystem
+from pinstress.study.cases_of_tables import with_cases_of_tables
 from pinstress.study.errors import InputError, Wrong, study_error
 from pinstress.study.file_names import same_files
 from pinstress.study.limits import too_many
@@ -156,6 +157,7 @@ def parse_study(path: Path, text: str, located: bool = True) -> Study:
         table = StudyTable.model_validate(raw, context={"system": system})
     except ValidationError as error:
         raise study_error(path, lines, wrong + explain(error)) from None
+    table = with_cases_of_tables(table, path.parent, wrong)
     wrong += cross_references(table)
     doubtful = questions(table, raw, system)
     if beyond := list(too_many(table)):

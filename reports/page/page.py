@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from reports.animation.player_data import script_json
+from reports.data.envelope import in_detail
 from reports.data.results import PinShape, Results
 from reports.format.file_names import drive_names, plot_name
 from reports.format.numbers import DASH, engineering, like, ratio, short
@@ -23,6 +24,7 @@ from reports.plots.reactions import WITHOUT
 from reports.plots.spec import Plot
 from reports.plots.theme import on_page, style_sheet
 from reports.tables.drop import drop_words, impulse_grid, peak_grid
+from reports.tables.envelope import READING, cell_text, heat, matrix
 from reports.tables.fatigue import fatigue_grid, fatigue_sentence, worst_points
 from reports.tables.hand_checks import HAND_CHECKS
 from reports.tables.landing import NOTE, landing_blocks
@@ -62,6 +64,7 @@ def render(results: Results, directory: Path) -> str:
         factor=factor_range,
     )
     template = templates.get_template("report.html.j2")
+    everything, results = results, in_detail(results)
     drawings: dict[str, str] = {s.pin: Markup(_drawing(s, results)) for s in results.shapes}
     printed = {s.pin: _drawing(s, results, ON_PAPER) for s in results.shapes}
     parts = pin_parts(results, drawings)
@@ -73,16 +76,16 @@ def render(results: Results, directory: Path) -> str:
     return template.render(
         results=results,
         units=results.units,
-        headline=headline(results),
-        summary=summary(results),
-        timings=timings(results),
+        headline=headline(everything),
+        summary=summary(everything),
+        timings=timings(everything),
         program=f"pinstress {results.versions.get('pinstress', '')}",
         beyond=BEYOND,
         verdict_words=verdict_words,
         hand_checks=HAND_CHECKS,
         landing_note=NOTE,
         method=METHOD,
-        paper=deflated(script_json(document(results, printed)).encode()),
+        paper=deflated(script_json(document(everything, printed)).encode()),
         plot=plot,
         without=WITHOUT,
         embedded=lambda shown: script_json(shown.spec),
@@ -111,6 +114,10 @@ def render(results: Results, directory: Path) -> str:
         margins_reading=READING_MARGINS,
         arms=arms_grid(results),
         arms_reading=READING_ARMS,
+        envelope=matrix(everything),
+        envelope_reading=READING,
+        heat=heat,
+        cell_text=cell_text,
         **factor_parts(results),
     )
 

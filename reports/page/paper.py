@@ -10,6 +10,7 @@ from typing import Any
 
 from reports.data.changes import command
 from reports.data.decision import outcome, worst_first
+from reports.data.envelope import in_detail
 from reports.data.results import PinResult, Provenance, Results
 from reports.format.file_names import plot_name
 from reports.format.grid import Grid
@@ -30,6 +31,7 @@ Content = dict[str, Any]
 
 def document(results: Results, drawings: dict[str, str]) -> Content:
     """The content of report.typ. drawings: of the pins, as SVG."""
+    everything, results = results, in_detail(results)
     maxima = published_maxima(results)
     return {
         "title": results.title,
@@ -37,8 +39,8 @@ def document(results: Results, drawings: dict[str, str]) -> Content:
         "sha256": results.study_sha256,
         "versions": dict(sorted(results.versions.items())),
         "block": asdict(results.title_block),
-        "headline": headline(results),
-        "summary": summary(results),
+        "headline": headline(everything),
+        "summary": summary(everything),
         "units": asdict(results.units),
         "factors": _factors(results),
         "reading": reading(shown_columns(shown_rows(results), results)),

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from reports.data.results import Results
 from reports.tables.calculix import opinion_tables
 from reports.tables.drop import drop_table
+from reports.tables.envelope import envelope_table
 from reports.tables.fatigue import fatigue_tables
 from reports.tables.hand_checks import hand_check_rows
 from reports.tables.joint import joint_tables
@@ -51,6 +52,7 @@ def stress_tables(results: Results) -> list[Table]:
     """Tables that need stresses, without empty ones; safety factors first."""
     check = results.beam_check
     rest = [
+        envelope_table(results),
         margins_table(results),
         arms_table(results),
         hand_check_rows(results),

@@ -173,6 +173,22 @@ def test_joint_forces_of_mbdyn(tmp_path: Path) -> None:
     assert found.moments[:, 0, 2].tolist() == [-3.0 * (k + 0.5) for k in range(3)]
 
 
+def test_applied_forces_of_mbdyn(tmp_path: Path) -> None:
+    """A row of a .frc for a force on a node: label, node, force and point, in global axes (MBDyn,
+    mbdyn/struct/strforce.cc: ConservativeForce::Output). A couple has fewer cells: refused.
+    """
+    rows = ""
+    for step in range(2):
+        for label in (3, 9):
+            rows += f"{label:8d} {70 + label} {step}.5 {-label:e} 0. 8.0e+0 9.0e+0 7.0e+0\n"
+    mapping = {"connection": 1, "fx": 3, "fy": 4, "fz": 5}
+    found = read(tmp_path, rows, columns=mapping, labels={"B": 9}, step=0.1)
+    assert found.connections == ("B",)
+    assert found.force("B").tolist() == [[1.0, -18.0, 0.0], [3.0, -18.0, 0.0]]
+    with raises(TableError, "cell-count", "line 5: 5 cells"):
+        read(tmp_path, rows + "4 71 0. 0. 1.\n", columns=mapping, labels={"B": 9}, step=0.1)
+
+
 def test_a_sensor_file_of_exudyn(tmp_path: Path) -> None:
     """Comments, then time and components separated by commas (Exudyn user documentation)."""
     head = "#Exudyn sensor output file\n#sensor type = Object\n#\n"

@@ -1,0 +1,73 @@
+"""Every pin in every case: which case governs a pin, and what a report of many cases shows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from reports.data.decision import limit, outcome, utilisation, worst_first
+from reports.data.mechanics import PeakReaction
+from reports.data.results import PinResult, Results
+
+MOST_DETAILED = 8  # cases; of more, a report shows only the governing one of each pin in detail
+
+
+@dataclass(frozen=True)
+class EnvelopeCell:
+    """A pin in a case: the largest force and moment of each of its connections, the utilisation (of
+    a range the upper end, None without one), and whether the case governs the pin.
+    """
+
+    result: PinResult
+    outcome: str
+    used: float | None
+    governs: bool
+    largest: tuple[PeakReaction, ...]
+
+
+def governing_cases(results: Results) -> dict[str, str]:
+    """The worst case of every pin."""
+    return {row.pin: row.case for row in reversed(worst_first(results))}
+
+
+def envelope(results: Results) -> list[EnvelopeCell]:
+    """Of every pin in every case in which it was solved."""
+    governs, required = governing_cases(results), limit(results)
+    largest: dict[tuple[str, str], list[PeakReaction]] = {}
+    for table in results.reactions:
+        for pin, peak in zip(table.pins, table.largest, strict=True):
+            largest.setdefault((pin, table.case), []).append(peak)
+    return [
+        EnvelopeCell(
+            row,
+            outcome(row),
+            None if (used := utilisation(row, required)) is None else used[1],
+            governs[row.pin] == row.case,
+            tuple(largest.get((row.pin, row.case), ())),
+        )
+        for row in results.pins
+    ]
+
+
+def case_names(results: Results) -> list[str]:
+    """The cases in which pins were solved."""
+    return list(dict.fromkeys(row.case for row in results.pins))
+
+
+def in_detail(results: Results) -> Results:
+    """What is shown in detail: all, or of many cases the governing one of each pin."""
+    if len(case_names(results)) <= MOST_DETAILED:
+        return results
+    governs = governing_cases(results)
+    cases = set(governs.values())
+    return replace(
+        results,
+        pins=tuple(x for x in results.pins if governs[x.pin] == x.case),
+        margins=tuple(x for x in results.margins if governs.get(x.pin) == x.case or not x.case),
+        arms=tuple(x for x in results.arms if governs.get(x.pin) == x.case),
+        landing=tuple(x for x in results.landing if governs.get(x.pin) == x.case),
+        reactions=tuple(x for x in results.reactions if x.case in cases),
+        surfaces=tuple(
+            replace(x, cases=tuple(c for c in x.cases if governs.get(x.pin) == c.case))
+            for x in results.surfaces
+        ),
+    )

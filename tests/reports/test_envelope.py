@@ -1,0 +1,103 @@
+"""Cases by pins: what governs, and what a report of many cases leaves out."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from math import inf
+from pathlib import Path
+
+import pytest
+
+from reports.data.envelope import MOST_DETAILED, governing_cases, in_detail
+from reports.data.results import Results
+from reports.format.numbers import DASH
+from reports.page.page import render
+from reports.page.paper import document
+from reports.tables.envelope import cell_text, envelope_table, heat, matrix
+
+
+def of_cases(results: Results, count: int) -> Results:
+    """Two pins; the factor of the first falls with the cases, that of the other rises."""
+    first = results.pins[0]
+    static = next(t for t in results.reactions if t.times is None)
+    made = replace(first, verdict="converged", singular_at=(), safety_factor_interval=None)
+    return replace(
+        results,
+        pins=tuple(
+            replace(
+                made,
+                pin=pin,
+                case=f"gust {k}",
+                safety_factor=factor,
+                meets_required=factor >= 1.5,
+                joint=None,
+                second_opinion=None,
+            )
+            for k in range(count)
+            for pin, factor in ((static.pins[0], 20.0 / (k + 1)), ("P", 1.0 + k))
+        ),
+        reactions=tuple(replace(static, case=f"gust {k}", published={}) for k in range(count)),
+        shapes=(),
+        surfaces=(),
+        changes=(),
+        landing=(),
+        margins=(),
+        arms=(),
+        drops=(),
+        required_safety_factor=1.5,
+    )
+
+
+def test_the_least_factor_governs_each_pin(results: Results) -> None:
+    made = of_cases(results, 50)
+    a = made.reactions[0].pins[0]
+    assert governing_cases(made) == {a: "gust 49", "P": "gust 0"}
+    table = envelope_table(made)
+    rows = [dict(zip(table.columns, row, strict=True)) for row in table.rows]
+    assert {(r["pin"], r["case"]) for r in rows if r["governs"] == "yes"} >= {(a, "gust 49")}
+    largest = {p.connection: p.force for p in made.reactions[0].largest}
+    for row in rows:
+        assert row["force"] == largest.get(str(row["connection"]))
+    worst = next(r for r in rows if (r["pin"], r["case"]) == (a, "gust 49"))
+    assert worst["utilisation_high"] == pytest.approx(1.5 / 0.4)
+    assert worst["outcome"] == "fails"
+    assert {r["pin"] for r in rows} == {a, "P"}  # also a pin without a reaction
+
+
+def test_many_cases_are_a_matrix_and_the_governing_ones(results: Results, tmp_path: Path) -> None:
+    made = of_cases(results, 50)
+    page = render(made, tmp_path)
+    found = page[page.index('id="envelope"') :]
+    found = found[: found.index("</section>")]
+    assert found.count('scope="row"') == 50
+    assert len(re.findall(r"<td class=[^>]* governs", found)) == 2
+    factors = page[page.index('id="factors"') : page.index('id="envelope"')]
+    assert factors.count("<tr>") == 3  # a heading, and a row for each pin
+    assert "safety_factors.csv" in found
+    printed = document(made, {})
+    assert len(printed["factors"]["body"]) == 2
+    assert [each["case"] for each in printed["loads"]] == ["gust 0", "gust 49"]
+
+
+def test_few_cases_are_shown_in_full(results: Results) -> None:
+    few = of_cases(results, MOST_DETAILED)
+    assert in_detail(few) is few
+    shown = matrix(few)
+    assert shown is not None
+    assert not shown.note
+    assert matrix(of_cases(results, 1)) is None
+    assert len(in_detail(of_cases(results, MOST_DETAILED + 1)).pins) == 2
+
+
+def test_a_cell_without_a_number_is_a_dash_and_an_endless_one_is_full(results: Results) -> None:
+    made = of_cases(results, 2)
+    one = replace(made.pins[0], safety_factor=None, verdict="rigid", meets_required=None)
+    two = replace(made.pins[1], safety_factor_interval=(0.0, 3.0))
+    found = matrix(replace(made, pins=(one, two, *made.pins[2:])))
+    assert found is not None
+    (_, (first, second)), *_ = found.rows
+    assert first is not None
+    assert second is not None
+    assert (cell_text(first), heat(first)) == (DASH, 0.0)
+    assert (second.used, cell_text(second), heat(second)) == (inf, "∞", 100.0)
