@@ -8,6 +8,7 @@ import pytest
 
 from fea.strength.margin import RATIO, Margin, PinMargin, not_made
 from reports.data.results import Results, Units
+from reports.page.paper import document
 from reports.tables.margins import (
     governing_grid,
     margins_json,
@@ -48,6 +49,14 @@ def test_the_table_has_the_same_rows_with_a_heading_for_each(results: Results) -
     made = replace(results, margins=tuple(PinMargin("P", "c", m) for m in CHECKS))
     table = margins_table(made)
     assert [dict(zip(table.columns, row, strict=True)) for row in table.rows] == margins_json(made)
+
+
+def test_the_pdf_has_the_governing_margins(results: Results) -> None:
+    made = replace(results, margins=tuple(PinMargin("P", "c", m) for m in CHECKS))
+    grid, found = governing_grid(made), document(made, {})["margins"]
+    assert grid is not None
+    assert found["grid"]["body"] == grid.body
+    assert document(replace(results, margins=()), {})["margins"] is None
 
 
 def test_the_worst_check_of_each_pin_is_first(results: Results) -> None:
