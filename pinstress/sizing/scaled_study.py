@@ -96,12 +96,23 @@ def moved(text: str, old: Path, new: Path) -> str:
 
 def _files(document: Any) -> Iterator[tuple[Any, str]]:
     """The tables that name a file, each with the key that does."""
-    drives = document.get("mechanism", {}).get("drive", [])
-    named = [(table, "geometry") for table in document.get("pin", {}).values()]
-    named += [(table, "table") for table in document.get("case", {}).values()]
-    named += [(table, "table") for table in (drives if isinstance(drives, list) else [drives])]
-    named += [(document.get("published", {}), key) for key in FILES]
-    return ((table, key) for table, key in named if key in table)
+    yield from ((pin, "geometry") for pin in document.get("pin", {}).values() if "geometry" in pin)
+    published = document.get("published", {})
+    yield from ((published, key) for key in FILES if key in published)
+    for part in ("case", "mechanism"):
+        yield from ((table, "table") for table in _with_a_table(document.get(part, {})))
+
+
+def _with_a_table(node: Any) -> Iterator[Any]:
+    """Of cases, drives, laws of forces and springs those that name a table."""
+    if isinstance(node, list):
+        for entry in node:
+            yield from _with_a_table(entry)
+    elif isinstance(node, dict):
+        if "table" in node and isinstance(_value(node["table"]), str):
+            yield node
+        for entry in node.values():
+            yield from _with_a_table(entry)
 
 
 def _plain(node: Any) -> list[Any]:

@@ -27,7 +27,7 @@ def with_cases_of_tables(table: StudyTable, folder: Path, wrong: list[Wrong]) ->
         key = f"case.{section}"
         if section.count(ANY) > 1 or not isinstance(case, GivenCase) or case.table is None:
             text = f'{key}: a name with a * needs kind = "given", a table, and no other *'
-            wrong.append(Wrong(text, code="no-table"))
+            wrong.append(Wrong(text, code="unusable-name"))
         elif case.table_case is not None:
             text = f"{key}.table_case: the name with a * already stands for every case of the table"
             wrong.append(Wrong(text, code="give-one"))

@@ -65,10 +65,10 @@ def test_the_command_line_selects_among_them(tmp_path: Path) -> None:
         ("*", TABLE.replace("case", "name"), "", "missing-column"),
         ("*", TABLE.replace("taxi", ""), "", "no-such-case"),
         ("*", TABLE.replace("taxi", "a/b"), "", "unusable-name"),
-        ("* *", TABLE, "", "no-table"),
+        ("* *", TABLE, "", "unusable-name"),
         ("*", TABLE, '\n[case.taxi]\nkind = "given"\nforces = { B = [1, 2] }\n', "duplicate-case"),
-        ("*", TABLE, '\n[case."x*"]\nkind = "given"\nforces = { B = [1, 2] }\n', "no-table"),
-        ("*", TABLE, '\n[case."x*"]\nkind = "static"\n', "no-table"),
+        ("*", TABLE, '\n[case."x*"]\nkind = "given"\nforces = { B = [1, 2] }\n', "unusable-name"),
+        ("*", TABLE, '\n[case."x*"]\nkind = "static"\n', "unusable-name"),
         (
             "*",
             TABLE,
