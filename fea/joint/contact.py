@@ -35,7 +35,10 @@ from fea.core.pin_loads import Floats
 Mask = NDArray[np.bool_]
 
 MOST_STEPS = 60
+LARGER, LARGEST = 16.0, 1e12  # times the loads, where contact does not settle under them
+SMALLER, LEAST = 2.0, 1.01  # factors by which they become smaller again
 BALANCE = 1e-9  # of the largest force
+ROUND_OFF = 1e-12  # of the forces that would close the gaps
 CLOSE = 1e-12  # of the largest pressure or gap: what is round-off
 SOFT = 1e-13  # of the stiffness of the cells: holds a lug that has lost all contact
 WAVES = 40  # times the sectors: harmonics of the half-plane that are summed
@@ -124,7 +127,7 @@ def rotation(angle: float) -> Floats:
 class _Answer:
     """What the cells of one active set answer: forces (U,) N and gaps (U,) m without rigid motions,
     how much each rigid motion takes off the forces and adds to the gaps, (U, Y), and the equations
-    (Y, Y), (Y,) of the motions but for what equilibrium asks.
+    (Y, Y), (Y,) of the motions but for what equilibrium asks; motions: (U, Y), of the gap.
     """
 
     force: Floats
@@ -133,12 +136,17 @@ class _Answer:
     moving: Floats
     system: Floats
     right: Floats
+    motions: Floats
 
     def under(self, asked: Floats) -> tuple[Floats, Floats, Floats]:
         """Forces, gaps and rigid motions."""
-        found = np.linalg.lstsq(self.system, self.right - asked)[0]  # what moves nothing is zero
-        motion = np.asarray(found, dtype=np.float64)
-        return self.force - self.yielding @ motion, self.gap + self.moving @ motion, motion
+        motion, lost = np.zeros(len(asked)), self.right - asked
+        for _ in range(2):  # once more for round-off: forces are small where gaps are large
+            # what moves nothing is zero
+            motion += np.asarray(np.linalg.lstsq(self.system, lost)[0], dtype=np.float64)
+            force = self.force - self.yielding @ motion
+            lost = self.motions.T @ force - asked
+        return force, self.gap + self.moving @ motion, motion
 
 
 class ContactProblem:
@@ -228,14 +236,23 @@ class ContactProblem:
         Raises: SolveError where the active set does not settle.
         """
         asked = self._asked(np.asarray(forces, dtype=float), couple)
-        active = self._facing(forces) if start is None else start.ravel().copy()
+        facing = self._facing(forces)
+        found = self._settled(asked, facing if start is None else start.ravel().copy())
+        found = found or self._from_larger(asked, facing)
+        if found is None:
+            raise SolveError(f"contact does not settle in {MOST_STEPS} steps", "contact-unsettled")
+        return found
+
+    def _settled(self, asked: Floats, active: Mask) -> Pressed | None:
+        """From a set of cells in contact; None where the sets do not settle."""
         seen: set[bytes] = set()
         for step in range(1, MOST_STEPS + 1):
-            force, gap, motion = self._answer(active).under(asked)
+            answer = self._answer(active)
+            force, gap, motion = answer.under(asked)
             wrong_force = active & (force < -CLOSE * np.abs(force).max(initial=0.0))
             wrong_gap = ~active & (gap < -CLOSE * np.abs(gap).max(initial=0.0))
             if not (wrong_force | wrong_gap).any():
-                self._require_balance(force, asked)
+                self._require_balance(force, asked, answer)
                 return self._found(force, gap, motion, step)
             key = active.tobytes()
             if key in seen:  # it goes in circles: one cell at a time, the first that is wrong
@@ -244,7 +261,25 @@ class ContactProblem:
             else:
                 active = (active & ~wrong_force) | wrong_gap
             seen.add(key)
-        raise SolveError(f"contact does not settle in {MOST_STEPS} steps", "contact-unsettled")
+        return None
+
+    def _from_larger(self, asked: Floats, facing: Mask) -> Pressed | None:
+        """From loads so many times larger that contact settles, down to the given ones: with small
+        loads and large gaps few cells touch, far from the first guess.
+        """
+        times, found = 1.0, None
+        while found is None and times < LARGEST:
+            times *= LARGER
+            found = self._settled(times * asked, facing.copy())
+        factor = SMALLER
+        while found is not None and times > 1.0 and factor > LEAST:
+            less = max(1.0, times / factor)
+            closer = self._settled(less * asked, found.active.ravel().copy())
+            if closer is None:
+                factor = math.sqrt(factor)
+            else:
+                times, found = less, closer
+        return found if times == 1.0 else None
 
     def _answer(self, active: Mask) -> _Answer:
         """Of given cells in contact."""
@@ -270,7 +305,7 @@ class ContactProblem:
         gap = self._open + C.T @ force[rows]
         moving = G - C.T @ yielding[rows]
         gap[rows], moving[rows] = 0.0, 0.0
-        return _Answer(force, yielding, gap, moving, system, right)
+        return _Answer(force, yielding, gap, moving, system, right, G)
 
     def _asked(self, forces: Floats, couple: tuple[float, float]) -> Floats:
         """What the cells' forces must add up to on each of the rigid motions, (Y,): they push the
@@ -283,14 +318,21 @@ class ContactProblem:
         out[2 * count : 2 * count + 2] = my, -mx
         return out
 
-    def _require_balance(self, force: Floats, asked: Floats) -> None:
+    def _require_balance(self, force: Floats, asked: Floats, answer: _Answer) -> None:
         """Raises: SolveError where the cells' forces are not what equilibrium asks."""
         arm = np.sqrt(np.diag(self._scale))  # of each motion
-        lost = np.abs(self._motions.T @ force - asked) / np.where(arm > 0.0, arm, 1.0)
-        if lost.max(initial=0.0) > BALANCE * np.abs(asked).max(initial=force.max(initial=0.0)):
+        each = np.abs(self._motions.T @ force - asked) / np.where(arm > 0.0, arm, 1.0)
+        lost = each.max(initial=0.0)
+        if lost <= BALANCE * np.abs(asked).max(initial=force.max(initial=0.0)):
+            return
+        if lost <= ROUND_OFF * np.abs(answer.force).max():
             raise SolveError(
-                "the links leave a couple on the pin that no lug reacts", "couple-not-reacted"
+                "the loads are so small for the clearance that contact is lost in round-off",
+                "loads-too-small",
             )
+        raise SolveError(
+            "the links leave a couple on the pin that no lug reacts", "couple-not-reacted"
+        )
 
     def _facing(self, forces: Floats) -> Mask:
         """The cells that face the load of their band."""

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.joint.lugs.lug import Bushing, Lug
@@ -82,6 +83,34 @@ def test_huge_clearance_is_in_equilibrium() -> None:
     found = clevis(replace(ANY, clearance=0.1 * D)).solve(pull())
     require_conditions(found)
     assert (np.degrees(found.contact_angle) < 20.0).all()
+
+
+@pytest.mark.parametrize("size", [500.0, 50.0, 5.0])
+def test_loads_that_hardly_close_the_clearance_settle(size: float) -> None:
+    """Few cells of four lugs touch then, far from where the forces point."""
+    over, names = Segment(0.002, D), "ABCD"
+    lengths = 0.01, 0.02, 0.02, 0.01
+    lugs = [Segment(t, D, connection=n) for n, t in zip(names, lengths, strict=True)]
+    parts = [x for lug in lugs for x in (lug, Segment(0.001, D))]
+    pin = Pin("P", (over, *parts, over))
+    loose = [replace(ANY, connection=n, clearance=4e-5) for n in names]
+    model = JointModel(pin, STEEL, loose, Cells(6, 24, 6))
+    middles = model.contact.bands.middles
+    unbalanced = np.stack([np.ones(4), middles - middles.mean()])
+    forces = np.random.default_rng(7).normal(size=(4, 3)) * [1.0, 1.0, 0.0]
+    forces -= np.linalg.pinv(unbalanced) @ unbalanced @ forces
+    (found,) = model.pressed(PinLoads("few", tuple(names), size * forces[None]))
+    assert found.active.any()
+    assert not (found.pressure[~found.active]).any()
+    (larger,) = model.pressed(PinLoads("more", tuple(names), 2.0 * size * forces[None]))
+    assert larger.active.sum() >= found.active.sum()
+
+
+def test_loads_lost_in_round_off_say_so() -> None:
+    model = clevis(replace(ANY, clearance=1e-3))
+    with pytest.raises(SolveError) as refused:
+        model.pressed(pull(1e-12 * SHARE))
+    assert refused.value.code == "loads-too-small"
 
 
 def test_a_lug_without_load() -> None:
