@@ -9,6 +9,7 @@ the maximum stands.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -88,6 +89,30 @@ def with_crest(answer: Answer, loads: PinLoads, between: Between) -> PinLoads:
             value, best = top, here.at(np.array([i]))
         low, high = near[max(i - 1, 0)], near[min(i + 1, POINTS - 1)]
     return loads.merged(best)
+
+
+def knots(loads: PinLoads, straight: float, fewest: int) -> Ints:
+    """Instants, by their numbers, between which loads at the others are off their chord by at most
+    so much of the largest one; so many intervals at least.
+    """
+    times, count = _times(loads), len(loads)
+    vectors = [
+        x.reshape(count, -1) / (np.abs(x).max(initial=0.0) or 1.0)
+        for x in (loads.forces, loads.moments, loads.body)
+    ]
+    values = np.concatenate(vectors, axis=1)
+    kept = set(np.linspace(0, count - 1, min(count, fewest + 1)).round().astype(int).tolist())
+    left = list(itertools.pairwise(sorted(kept)))
+    while left:
+        a, b = left.pop()
+        inner = np.arange(a + 1, b)
+        part = ((times[inner] - times[a]) / (times[b] - times[a]))[:, None]
+        off = np.abs(values[inner] - (1.0 - part) * values[a] - part * values[b]).max(axis=1)
+        if off.max(initial=0.0) > straight:
+            k = a + 1 + int(off.argmax())
+            kept.add(k)
+            left += [(a, k), (k, b)]
+    return np.array(sorted(kept))
 
 
 def _times(loads: PinLoads) -> Floats:

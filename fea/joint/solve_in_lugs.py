@@ -20,7 +20,7 @@ from fea.asked import Asked
 from fea.core.equilibrium import out_of_balance
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
-from fea.core.over_time import Between
+from fea.core.over_time import Between, knots
 from fea.core.peak import Note, Peak, decides
 from fea.core.pin_loads import Floats, PinLoads
 from fea.harmonic.evaluate import HarmonicAnswer, harmonic_solution
@@ -39,6 +39,8 @@ from geometry import Pin
 
 SETS = Cells(), Cells(12, 48, 16)  # until one is fine enough
 MAY = 0.8  # of the largest on the first mesh: from there on an instant may govern on finer ones
+STRAIGHT = 0.01  # of the largest load: what an instant left out to begin with may be off its chord
+FEWEST = 16  # intervals to begin with
 MOST_CELLS = 6000  # a dense matrix of them takes 300 MB
 CONTACT = Note("contact, harmonic: the pin is held by its lugs", ("contact",))
 
@@ -107,7 +109,15 @@ def _enough(peak: Peak, material: Material, asked: Asked) -> bool:
     strength, required = material.yield_strength, asked.required
     if asked.goal == "value" or strength is None or required is None:
         return True
-    return peak.verdict == "singular" or decides(peak, strength / required) is not None
+    return peak.verdict == "singular" or not _cells_matter(peak, strength / required)
+
+
+def _cells_matter(peak: Peak, limit: float) -> bool:
+    """Whether a limit (Pa) is within the error, and would not be if cells had none."""
+    if peak.interval is None or peak.parts is None or decides(peak, limit) is not None:
+        return decides(peak, limit) is None
+    low, high = peak.interval
+    return not low + peak.parts.cells <= limit < high - peak.parts.cells
 
 
 def _count(model: JointModel, cells: Cells) -> int:
@@ -223,7 +233,7 @@ class _Contact:
             self.model.pin,
             self.given.material,
             (),
-            tuple(self.press(case) for case in live),
+            tuple(self.press(self.instants[case.case]) for case in live),
             replace(asked, model="harmonic", because=CONTACT),
             progress,
             {case: between(links) for case, links in self.given.between.items()},
@@ -250,15 +260,30 @@ class _Contact:
         joint = joint_result(contact, known.range(peak.max_von_mises or 0.0))
         (pressed,) = contact.contact
         pressure = CellPressure(contact.bands, pressed.pressure, pressed.angle)
-        found = replace(solution, peak=peak)
+        found = replace(_at_all_samples(solution, self.press(case)), peak=peak)
         return LugSolution(found, joint, self.press, pressure, self.model.pin)
 
 
 def _instants(case: PinLoads, between: Between | None) -> PinLoads:
-    """Those of a case, and of a motion also those amid each two."""
+    """Those of a case; of a motion those between which its loads go straight, and those amid each
+    two. More are added where the maximum may be between them (fea.core.over_time).
+    """
     if between is None or case.times is None or len(case) < 2:
         return case
+    case = case.at(knots(case, STRAIGHT, FEWEST))
+    assert case.times is not None
     return case.merged(between(0.5 * (case.times[1:] + case.times[:-1])))
+
+
+def _at_all_samples(solution: Solution, samples: PinLoads) -> Solution:
+    """With the loads at the instants of a case among those that were solved."""
+    if samples.times is None:
+        return solution
+    loads = samples.merged(solution.loads)
+    assert loads.times is not None
+    assert solution.loads.times is not None
+    instant = int(np.searchsorted(loads.times, solution.loads.times[solution.instant]))
+    return replace(solution, loads=loads, instant=instant)
 
 
 def _named(model: JointModel, peak: Peak) -> Peak:

@@ -35,6 +35,7 @@ from fea.singular.lug_edge import lug_edge_exponent
 from geometry import Pin
 
 SAME = 1e-13  # relative: loads that differ by no more are the same
+SAME_SIZE = 12  # digits to which lugs of the same size agree
 LARGEST = 1.0 - 1e-6  # of the largest: a force that is as good as it
 WAVES = 4  # times the sectors: harmonics in which neighbouring rings feel each other
 
@@ -123,10 +124,14 @@ class JointModel:
         self.rings = tuple(name for c, ends in self.ends.items() for name in rings(c, ends))
         self.of_pin = pin_flexibility(self.pin, self.rings, material, cells.across, cells.highest)
         self.of_lugs = np.zeros_like(self.of_pin)
+        equal: dict[tuple[object, ...], Floats] = {}
         for own, lug, ends in self._by_lug():
             eye = annulus(pin, lug.connection, lug.outer_diameter, ends)
-            found = lug_flexibility(eye, lug, cells.across, cells.highest)
-            self.of_lugs[:, own, own] = found
+            size = np.round(np.append(ends, eye.segments[0].bore) / lug.outer_diameter, SAME_SIZE)
+            key = (lug.outer_diameter, lug.material, lug.bushing, size.tobytes())
+            if key not in equal:
+                equal[key] = lug_flexibility(eye, lug, cells.across, cells.highest)
+            self.of_lugs[:, own, own] = equal[key]
 
     def _by_lug(self) -> Iterator[tuple[slice, Lug, Floats]]:
         """Which rings are its, each lug, and their ends along its band."""

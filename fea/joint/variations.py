@@ -7,6 +7,7 @@ act on one mesh, the first: its error is in all maxima alike, so that their rati
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -18,6 +19,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.harmonic.evaluate import HarmonicAnswer, harmonic_result, harmonic_solution
 from fea.joint.coarser_cells import on_coarser_cells
+from fea.joint.contact import ContactProblem
 from fea.joint.lugs.changes import changes
 from fea.joint.pressure_loads import NEGLIGIBLE, Patterns, stacked
 from fea.joint.records import JointRange, Variation
@@ -26,7 +28,7 @@ from fea.solve_pin import singularities_of
 
 CELLS = 0.5  # of the tolerance: what the cells may take
 APART = 0.25  # of half the interval of a maximum that depends on the excluded distance: the same
-FIRST = 1.2  # by which factor the first mesh may be wrong
+ROUGHLY = 1e-2  # of the largest amplitude: what a pattern must add to that of a changed joint
 
 
 @dataclass(frozen=True)
@@ -50,8 +52,7 @@ class Comparison:
         apart = APART * (high - low) / 2.0 / self.largest
         if self.cells <= max(CELLS * asked.tolerance, apart * (asked.goal == "value")):
             return True
-        factor = FIRST * (1.0 + self.cells)
-        return decided(asked, material, low / factor, high * factor)
+        return decided(asked, material, low / (1.0 + self.cells), high * (1.0 + self.cells))
 
     def range(self, largest: float) -> JointRange:
         """Over the joint, of a maximum in Pa."""
@@ -71,47 +72,64 @@ def compare(
     model: JointModel, at: Sequence[JointContact], asked: Asked, known: Patterns | None = None
 ) -> tuple[Comparison, ...]:
     """Joints in contact, each at one instant. known: patterns of the pressures on them."""
-    found: list[Floats] = []
-    links: list[PinLoads] = []
-    names: list[list[Variation]] = []
-    for contact in at:
-        here = contact.loads.links
-        waves = [model.waves(contact.contact), _on_coarser_cells(model, contact)]
-        over = []
-        for change in changes(model.whole, model.lugs):
-            try:
-                other = model.varied(change.lugs, change.softness)
-                waves.append(model.waves(other.pressed(here)))
-            except SolveError:
-                continue  # a lug that is free to tilt may leave a couple on the pin
-            over.append(Variation(change.what, change.value, 1.0, change.length))
-        found += waves
-        links += [here] * len(waves)
-        names.append(over)
-    if not found:
+    if not at:
         return ()
-    patterns = model.patterns([(waves, NEGLIGIBLE) for waves in found], known)
-    each = [patterns.loads(waves, here) for waves, here in zip(found, links, strict=True)]
-    loads = stacked(each)
+    exact = _on_both_cells(model, at)
+    over, varied = _varied(model, at)
+    parts = [(waves, NEGLIGIBLE) for both in exact for waves in both]
+    parts += [(waves, ROUGHLY) for waves in itertools.chain(*varied)]
+    patterns = model.patterns(parts, known)
+    each = [
+        [patterns.loads(waves, contact.loads.links) for waves in (*both, *others)]
+        for contact, both, others in zip(at, exact, varied, strict=True)
+    ]
+    loads = stacked(list(itertools.chain(*each)))
     singular = singularities_of(model.pin, model.material, (), (loads,), asked.distance)
     section = harmonic_solution(
         model.pin, model.material, (), (loads,), singular, 0, 1.0, (), model.first
     )
     maxima, out = HarmonicAnswer(section, singular).maxima(loads), []
-    for contact, over in zip(at, names, strict=True):
+    for contact, names, own in zip(at, over, each, strict=True):
         first = float(maxima[0]) or 1.0  # nothing loads the pin
-        (_, coarse, *others), maxima = np.split(maxima, [len(over) + 2])
+        (_, coarse, *others), maxima = np.split(maxima, [len(own)])
+        like = float(coarse) or 1.0  # on the same cells as the others
         ratios = tuple(
-            replace(x, max_von_mises=float(y / first)) for x, y in zip(over, others, strict=True)
+            replace(x, max_von_mises=float(y) / like) for x, y in zip(names, others, strict=True)
         )
         cells = abs(float(coarse) / first - 1.0) if coarse else 0.0
-        interval = harmonic_result(section, singular, each.pop(0)).interval or (first, first)
-        del each[: len(over) + 1]
+        interval = harmonic_result(section, singular, own[0]).interval or (first, first)
         out.append(Comparison(first, interval, cells, contact.loads.links, ratios))
     return tuple(out)
 
 
-def _on_coarser_cells(model: JointModel, contact: JointContact) -> Floats:
+def _on_both_cells(model: JointModel, at: Sequence[JointContact]) -> list[tuple[Floats, Floats]]:
+    """The harmonics of each contact, and of the same on cells twice as large."""
     problem, belongs = on_coarser_cells(model)
-    found = model.pressed(contact.loads.links, problem)
+    out = []
+    for contact in at:
+        coarse = _coarse(model, contact.loads.links, problem, belongs)
+        out.append((model.waves(contact.contact), coarse))
+    return out
+
+
+def _coarse(model: JointModel, links: PinLoads, problem: ContactProblem, belongs: Floats) -> Floats:
+    found = model.pressed(links, problem)
     return model.waves([replace(x, pressure=belongs @ x.pressure) for x in found])
+
+
+def _varied(
+    model: JointModel, at: Sequence[JointContact]
+) -> tuple[list[list[Variation]], list[list[Floats]]]:
+    """Of each contact, what is changed of the joint, and the harmonics of contact then."""
+    names: list[list[Variation]] = [[] for _ in at]
+    found: list[list[Floats]] = [[] for _ in at]
+    for change in changes(model.whole, model.lugs):
+        other = model.varied(change.lugs, change.softness)
+        cells = on_coarser_cells(other)
+        for contact, over, waves in zip(at, names, found, strict=True):
+            try:
+                waves.append(_coarse(other, contact.loads.links, *cells))
+            except SolveError:
+                continue  # a lug that is free to tilt may leave a couple on the pin
+            over.append(Variation(change.what, change.value, 1.0, change.length))
+    return names, found

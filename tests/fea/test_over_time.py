@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from fea.core.material import Material
+from fea.core.over_time import knots, rise_between
 from fea.core.pin_loads import Distribution, Floats, PinLoads, off_chord
 from fea.solve_pin import Asked, Model, solve_pin
 from geometry import Pin, Segment
@@ -77,8 +78,6 @@ def test_what_is_told_of_the_time_is_a_bound(steel: Material) -> None:
     """On few instants, without more of them: what lies between is less than the bound, and the
     bound no more than six times as much.
     """
-    from fea.core.over_time import rise_between
-
     (found,) = solve_pin(BAR, steel, (), (loads_at(np.array([CREST])),), Asked())
     assert found.answer is not None
     for count in (7, 12, 25):
@@ -157,3 +156,15 @@ def test_a_jump_needs_no_instants(steel: Material) -> None:
     assert len(found.loads) < 200
     assert found.peak.parts is not None
     assert found.peak.parts.time <= 1.1 * 0.001 * (found.peak.max_von_mises or 0.0)
+
+
+def test_knots_are_where_loads_bend() -> None:
+    """Two straight courses and a jump between samples are kept; so is an interval's share."""
+    times = np.linspace(0.0, 1.0, 101)
+    bent = np.where(times < 0.37, times, 0.37) + 3.0 * (times > 0.805)
+    forces = bent[:, None, None] * [[[1.0, -2.0, 0.0]]]
+    kept = knots(PinLoads("bent", ("A",), forces, times=times), 0.01, 4)
+    assert set(kept.tolist()) >= {0, 25, 37, 50, 75, 80, 81, 100}
+    assert len(kept) <= 9
+    rebuilt = np.interp(times, times[kept], bent[kept])
+    assert np.abs(rebuilt - bent).max() <= 0.01 * bent.max()
