@@ -9,12 +9,12 @@ the maximum stands.
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
+from fea.core.chords import needed
 from fea.core.pin_loads import Amounts, PinLoads, off_chord
 from fea.core.solution import Answer
 from geometry.arrays import Floats, Ints
@@ -101,18 +101,9 @@ def knots(loads: PinLoads, straight: float, fewest: int) -> Ints:
         for x in (loads.forces, loads.moments, loads.body)
     ]
     values = np.concatenate(vectors, axis=1)
-    kept = set(np.linspace(0, count - 1, min(count, fewest + 1)).round().astype(int).tolist())
-    left = list(itertools.pairwise(sorted(kept)))
-    while left:
-        a, b = left.pop()
-        inner = np.arange(a + 1, b)
-        part = ((times[inner] - times[a]) / (times[b] - times[a]))[:, None]
-        off = np.abs(values[inner] - (1.0 - part) * values[a] - part * values[b]).max(axis=1)
-        if off.max(initial=0.0) > straight:
-            k = a + 1 + int(off.argmax())
-            kept.add(k)
-            left += [(a, k), (k, b)]
-    return np.array(sorted(kept))
+    kept = np.zeros(count, dtype=bool)
+    kept[np.linspace(0, count - 1, min(count, fewest + 1)).round().astype(np.int64)] = True
+    return np.flatnonzero(needed(times, values, np.full_like(values, straight), kept))
 
 
 def _times(loads: PinLoads) -> Floats:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from fea.core import memory
-from fea.core.cgroup import free_in_groups
+from fea.core.memory import free_in_groups
 
 MB = 2**20
 UNLIMITED = 9223372036854771712  # what the first version says when there is no limit
