@@ -26,7 +26,7 @@ def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]
     Raises: InputError for impossible lugs, and for a pin that lugs cannot support.
     """
     table, joints = study.table.pin[pin.name], study.table.analysis.joints
-    if joints == "prescribed" or (joints == "auto" and not table.lug):
+    if joints == "prescribed" or (not table.lug and (joints == "auto" or clamps)):
         return ()
     at = f"pin.{pin.name}" + ".lug" * bool(table.lug)
     instead = 'or set analysis.joints = "prescribed"'

@@ -241,6 +241,32 @@ def test_auto_takes_foundations_where_bending_governs() -> None:
     assert solved(lugs, pin, Asked(tolerance=0.3)).solution.peak.model == "foundation"
 
 
+STRONG = replace(STEEL, yield_strength=1e9)
+
+
+def decided(required: float, edges: float = 3e-4) -> LugSolution:
+    """The clevis of about 300 MPa, with rounded or sharp edges of its lugs."""
+    pin, lugs = usual()
+    rounded = tuple(replace(lug, edge_radius=edges) for lug in lugs)
+    asked = Asked(goal="decide", required=required)
+    (found,) = solve_joints(InLugs(pin, STRONG, rounded, (PULL,)), asked)
+    return found
+
+
+def test_auto_takes_foundations_where_they_show_that_a_pin_is_safe() -> None:
+    peak = decided(1.5).solution.peak
+    assert (peak.model, "foundation-decides" in peak.reasons) == ("foundation", True)
+    assert (peak.max_von_mises or 0.0) + (peak.error_estimate or 0.0) < 1e9 / 1.5
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("required", "edges"), [(3.0, 3e-4), (10.0, 3e-4), (1.5, 0.0)])
+def test_auto_takes_contact_for_what_is_close_or_fails_or_is_singular(
+    required: float, edges: float
+) -> None:
+    assert decided(required, edges).solution.peak.model == "harmonic"
+
+
 @pytest.mark.slow
 def test_auto_takes_contact_for_more_than_foundations_can() -> None:
     """The clevis, though its error is within the tolerance, is pressed too hard."""

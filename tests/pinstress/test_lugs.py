@@ -192,6 +192,13 @@ def test_a_clamped_segment_is_a_lug_of_the_structure(tmp_path: Path) -> None:
     assert {lug.connection for lug in found.lugs} == {"L", "M", "R", "gap"}
 
 
+def test_a_clamped_pin_stays_clamped_where_all_others_are_in_contact(tmp_path: Path) -> None:
+    path = study(tmp_path, 'clamp = ["L", "gap"]', 'joints = "contact"')
+    (task,) = prepare(load_study(path)).tasks
+    assert task.clamps == ("L", "gap")
+    assert task.lugs == ()
+
+
 def test_given_lugs_of_a_prescribed_pin_are_those_of_its_range(tmp_path: Path) -> None:
     found = around(tmp_path, "lug.M = { outer_diameter = 60 }", 'joints = "prescribed"')
     assert not found.assumed

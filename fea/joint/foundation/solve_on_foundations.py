@@ -1,4 +1,5 @@
-"""Pins in their lugs by beams on foundations, for all cases and instants; and when that is enough.
+"""Pins in their lugs by beams on foundations, for all cases and instants; and when that is enough:
+where its error is within the tolerance, or leaves no doubt that the required factor is reached.
 
 A maximum has the error of the model alone (fea.joint.foundation.bounds), which is at least a tenth.
 """
@@ -13,10 +14,11 @@ from typing import Literal
 
 import numpy as np
 
-from fea.asked import Asked
+from fea.asked import DECIDED, Asked
 from fea.beam.error_model import PLAIN
 from fea.beam.maximum import Highest
 from fea.core.linear_solver import SolveError
+from fea.core.material import Material
 from fea.core.over_time import rise_between, through_time
 from fea.core.peak import ErrorParts, Note, Peak, Refinement
 from fea.core.pin_loads import Amounts, AnyLoads, Floats, PinLoads, UnitLoad
@@ -29,6 +31,7 @@ from fea.joint.foundation.variations import FoundationRange
 from fea.joint.lugs.fit import beyond_foundations
 from fea.joint.records import BandContact, JointRange, JointResult
 from fea.joint.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
+from fea.singular.singularities import find_singularities
 from fea.solve_pin import Solution
 from fea.verdict import accuracy
 
@@ -37,6 +40,7 @@ Progress = Callable[[str], None]
 
 REQUESTED = Note("foundation: requested", ("requested",))
 ENOUGH = Note("foundation: its error is within the tolerance", ("foundation-within-tolerance",))
+DECIDES = Note(f"foundation: {DECIDED}", ("foundation-decides",))
 LEAVES_OUT = (
     "A beam on foundations leaves out local stress at lugs and shoulders; the error includes its "
     "measured effect, but not the peaks at the edges of lugs."
@@ -59,6 +63,12 @@ def solve_joints(
     elif joints == "auto" and _may_be_enough(given, asked):
         tried = _on_foundations(given, asked, ENOUGH, progress)
         found = {case: solution for case, solution in tried.items() if _enough(solution)}
+        if _bounded_everywhere(given, asked):
+            found |= {
+                case: _because(solution)
+                for case, solution in tried.items()
+                if case not in found and _is_safe(solution.solution.peak, given.material, asked)
+            }
     left = tuple(case for case in given.cases if case.case not in found)
     if left:
         contact = solve_in_lugs(replace(given, cases=left), asked, progress)
@@ -67,8 +77,34 @@ def solve_joints(
 
 
 def _may_be_enough(given: InLugs, asked: Asked) -> bool:
-    least = PLAIN + PLAIN_ERROR
-    return asked.model == "auto" and asked.tolerance >= least and not beyond_foundations(given.lugs)
+    known = given.material.yield_strength is not None and asked.required is not None
+    may = asked.tolerance >= PLAIN + PLAIN_ERROR or (asked.goal == "decide" and known)
+    return asked.model == "auto" and may and not beyond_foundations(given.lugs)
+
+
+def _bounded_everywhere(given: InLugs, asked: Asked) -> bool:
+    """Whether no sharp corner of the pin or edge of a lug makes its stress singular."""
+    nu = given.material.poisson_ratio
+    rounded = all(lug.edge_radius > 0.0 for lug in given.lugs)
+    return rounded and not find_singularities(given.pin, (), (), nu, asked.distance)
+
+
+def _is_safe(peak: Peak, material: Material, asked: Asked) -> bool:
+    """Whether the required factor is reached whatever contact does. Of a pin that fails it matters
+    by how much.
+    """
+    value, error = peak.max_von_mises, peak.error_estimate
+    strength, required = material.yield_strength, asked.required
+    if asked.goal != "decide" or strength is None or required is None:
+        return False
+    return value is not None and error is not None and value + error < strength / required
+
+
+def _because(found: LugSolution) -> LugSolution:
+    peak = found.solution.peak
+    reasons = tuple(code for code in peak.reasons if code not in ENOUGH.codes) + DECIDES.codes
+    peak = replace(peak, why=DECIDES.text, reasons=reasons)
+    return replace(found, solution=replace(found.solution, peak=peak))
 
 
 def _enough(found: LugSolution) -> bool:
