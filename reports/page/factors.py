@@ -9,17 +9,17 @@ from reports.data.changes import command
 from reports.data.decision import limit, outcome, utilisation, worst_first
 from reports.data.results import PinResult, Results
 from reports.format.words import MEANING, RESULTS
-from reports.tables.changes import (
+from reports.tables.published import published_maxima
+from reports.tables.strength.changes import (
     DIMENSIONS,
     INTRODUCTION,
     change_notes,
     changes_grid,
     sensitivities_grid,
 )
-from reports.tables.limit_load import INTRODUCTION as PAST_YIELD
-from reports.tables.limit_load import LEFT_OUT, limit_grid, limit_notes
-from reports.tables.published import published_maxima
-from reports.tables.safety_factors import (
+from reports.tables.strength.limit_load import INTRODUCTION as PAST_YIELD
+from reports.tables.strength.limit_load import LEFT_OUT, limit_grid, limit_notes
+from reports.tables.strength.safety_factors import (
     TEXTS,
     reading,
     safety_factor_row,

@@ -20,23 +20,23 @@ from reports.page.paper import document
 from reports.page.pin_drawing import WIDTH, draw_pin
 from reports.page.pins import pin_parts, reaction_tables
 from reports.plots.all import all_plots
-from reports.plots.reactions import WITHOUT
+from reports.plots.loads.reactions import WITHOUT
 from reports.plots.spec import Plot
 from reports.plots.theme import on_page, style_sheet
-from reports.tables.drop import drop_words, impulse_grid, peak_grid
-from reports.tables.envelope import READING, cell_text, heat, matrix
-from reports.tables.fatigue import fatigue_grid, fatigue_sentence, worst_points
-from reports.tables.hand_checks import HAND_CHECKS
-from reports.tables.landing import NOTE, landing_blocks
-from reports.tables.margins import (
+from reports.tables.loads.drop import drop_words, impulse_grid, peak_grid
+from reports.tables.published import published_reactions
+from reports.tables.strength.envelope import READING, cell_text, heat, matrix
+from reports.tables.strength.fatigue import fatigue_grid, fatigue_sentence, worst_points
+from reports.tables.strength.hand_checks import HAND_CHECKS
+from reports.tables.strength.landing import NOTE, landing_blocks
+from reports.tables.strength.margins import (
     READING_ARMS,
     READING_MARGINS,
     arms_grid,
     governing_grid,
     not_made_words,
 )
-from reports.tables.published import published_reactions
-from reports.tables.singular_zones import circles, pin_zones
+from reports.tables.stress.singular_zones import circles, pin_zones
 from reports.text.method import METHOD
 from reports.text.summary import summary
 

@@ -12,9 +12,9 @@ from reports.page.joint import JointPart, joint_part
 from reports.page.loads import loads_at
 from reports.page.second_opinion import OpinionPart, opinion_part
 from reports.page.viewer import PinView, pin_views
-from reports.tables.hand_checks import hand_check_table
-from reports.tables.margins import margins_grid
-from reports.tables.singular_zones import Zone, pin_zones, zone_table
+from reports.tables.strength.hand_checks import hand_check_table
+from reports.tables.strength.margins import margins_grid
+from reports.tables.stress.singular_zones import Zone, pin_zones, zone_table
 from reports.text.pin_sentence import drawing_caption, pin_sentence
 
 ZONE_NUMBERS = ("zone", "exponent")

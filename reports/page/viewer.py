@@ -12,7 +12,7 @@ from markupsafe import Markup
 from reports.animation.player_data import script_json
 from reports.data.results import Floats, PinResult, PinShape, Results
 from reports.data.surface import HalfSection, LoadCourse, Surface, SurfaceCase
-from reports.format.camera import View
+from reports.format.drawing.camera import View
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering
 from reports.format.packed import packed

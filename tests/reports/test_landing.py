@@ -10,9 +10,9 @@ import pytest
 
 from reports.data.results import PublishedValue, Results
 from reports.page.page import write_page
-from reports.plots.landing import landing_plot
-from reports.tables.landing import landing_table, landing_tables, write_landing
+from reports.plots.strength.landing import landing_plot
 from reports.tables.published import published_values_table, write_published_values
+from reports.tables.strength.landing import landing_table, landing_tables, write_landing
 from tests.support.made_up_run import ranged
 
 

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from reports.data.results import LandingRange, Results
-from reports.format import markdown
-from reports.format.csv import Cell
+from reports.format.files import markdown
+from reports.format.files.csv import Cell
 from reports.format.numbers import engineering, short
 from reports.tables.table import Table
 
