@@ -2,7 +2,7 @@
 
 const plots = [...document.querySelectorAll("figure.plot")];
 
-let libraries = null; // until they are inflated; one script
+let libraries = null, specs = null; // until they are inflated
 
 const startLibraries = () => {
   if (window.vega) return;
@@ -11,7 +11,7 @@ const startLibraries = () => {
   document.head.append(script);
 };
 
-const specOf = (figure) => JSON.parse(figure.querySelector("script").textContent);
+const specOf = (figure) => structuredClone(specs[figure.dataset.plot][1]);
 
 const cells = (text) => text.split("\n").map((line) => line.split(","));
 
@@ -103,8 +103,10 @@ const nearby = new IntersectionObserver((seen) => {
   }
 }, { rootMargin: "400px" });
 if (plots.length && !old) {
-  inflated(document.getElementById("libraries").textContent).then((bytes) => {
-    libraries = new TextDecoder().decode(bytes);
+  const text = async (name) => new TextDecoder().decode(await inflated(document.getElementById(name).textContent));
+  Promise.all([text("libraries"), text("plots")]).then(([scripts, drawings]) => {
+    libraries = scripts;
+    specs = JSON.parse(drawings);
     plots.forEach((figure) => nearby.observe(figure));
   });
 }
