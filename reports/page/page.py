@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from jinja2 import Template
 
 ON_PAPER = 420.0  # width of a pin's drawing, of half a page
+AT_ONCE = 20  # pins; the parts of pages of more are made when they are opened
 
 
 def write_page(results: Results, directory: Path) -> Path:
@@ -64,6 +65,7 @@ def render(results: Results, directory: Path) -> str:
         limits=limit_part(shown),
         fatigue=fatigue_part(shown),
         pins=pins,
+        deferred=len(pins) > AT_ONCE,
         anchors={part.pin: part.anchor for part in pins},
         plot=plot,
         motion=motion_parts(shown, plot, directory),
