@@ -16,7 +16,7 @@ from pinstress.analysis.gather import loads_only
 from pinstress.model.spatial_leg import dynamics, instants
 from pinstress.schema.cases import LegCase
 from reports.data.results import Results
-from reports.format import markdown
+from reports.format.files import markdown
 from reports.format.numbers import engineering, ratio
 from reports.tables.published import published_reactions, published_table
 

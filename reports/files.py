@@ -9,11 +9,11 @@ from reports.animation.page import write_animations
 from reports.data.results import Results
 from reports.page.page import write_page
 from reports.tables.all import load_tables, sheets, stress_tables
-from reports.tables.hand_checks import write_hand_checks
 from reports.tables.json_results import write_json
-from reports.tables.landing import write_landing
 from reports.tables.published import write_published_reactions, write_published_values
-from reports.tables.safety_factors import write_safety_factors
+from reports.tables.strength.hand_checks import write_hand_checks
+from reports.tables.strength.landing import write_landing
+from reports.tables.strength.safety_factors import write_safety_factors
 from reports.tables.table import Table
 from reports.tables.workbook import write_workbook
 from reports.text.loads_summary import write_loads_summary

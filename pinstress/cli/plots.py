@@ -2,13 +2,7 @@
 
 from __future__ import annotations
 
-import json
-import re
 import shutil
-import zlib
-from base64 import b64decode
-from collections.abc import Iterator
-from html import unescape
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -19,20 +13,14 @@ from pinstress.cli import manifest
 from pinstress.processes.pool import preload
 from pinstress.study.errors import InputError
 from pinstress.study.file_names import field_name
+from reports.page.scripts import document_of, plots_of
 from reports.pdf.typeset import shown_plots, write_pdf
 from reports.plots.draw import draw
-from reports.plots.spec import Plot
 from reports.vtk.read_back import LARGEST, open_results
 from reports.vtk.renderer import renderer_problem
 
 FOLDER, PAGE, PDF = "plots", "report.html", "report.pdf"
 PAINTERS = ("pyvista.plotting",)
-FIGURE = re.compile(
-    r"<figcaption>([^<]*)</figcaption>\n"
-    r'<details class="values" hidden><summary>Values</summary></details>\n'
-    r'<script type="application/json" data-plot="([\w.%~-]+)">(.*?)</script>'
-)
-PAPER = re.compile(r'<script type="text/plain" id="paper">([\w+/=]+)</script>')
 
 
 def plots(directory: Path, quiet: bool = False) -> None:
@@ -71,24 +59,18 @@ def require_results(directory: Path) -> set[str]:
     return known
 
 
-def plots_of(page: str) -> Iterator[Plot]:
-    """What a page draws, with its captions."""
-    for caption, name, spec in FIGURE.findall(page):
-        yield Plot(name, unescape(caption), json.loads(spec))
-
-
 def draw_folder(directory: Path, into: Path, quiet: bool = False) -> list[Path]:
     """Draw what the report of a folder shows, and its pins by their fields; returns the files.
 
     Raises: InputError.
     """
     try:
-        page = read_regular(directory / PAGE, LARGEST).decode("utf-8")
+        drawn = list(plots_of(read_regular(directory / PAGE, LARGEST).decode("utf-8")))
         opened = open_results(directory)
     except (OSError, ValueError, FileError):
         text = f"{directory}: no report.html and results.json to draw from"
         raise InputError(text, code="no-results") from None
-    paths = draw(plots_of(page), into)
+    paths = draw(drawn, into)
     rows = [row for row in opened.content["pins"] if (directory / "vtk").is_dir()]
     problem = renderer_problem() if rows else None
     if problem is not None and not quiet:
@@ -129,10 +111,11 @@ def print_folder(directory: Path) -> None:
     problem = f"{directory}: no report.html of this version of pinstress to print; run it again"
     try:
         page = read_regular(directory / PAGE, LARGEST).decode("utf-8")
-        (packed,) = PAPER.findall(page)
-        content = json.loads(zlib.decompress(b64decode(packed)))
-    except (OSError, ValueError, FileError, zlib.error):
-        raise InputError(problem, code="no-results") from None
+        content = document_of(page)
+    except (OSError, ValueError, FileError):
+        content = None
+    if content is None:
+        raise InputError(problem, code="no-results")
     wanted = set(shown_plots(content))
     plots = {plot.name: plot for plot in plots_of(page) if plot.name in wanted}
     write_pdf(content, plots, directory / PDF)

@@ -7,12 +7,13 @@ from pathlib import Path
 
 from reports.animation.force_table import Shown, arrows, key, rows
 from reports.animation.frames import frames, nice
-from reports.animation.player_data import player_data, script_json, speeds
+from reports.animation.player_data import player_data, speeds
 from reports.animation.scene import Scene, clipped
 from reports.animation.strip_chart import Strip, strip
 from reports.data.results import DriveTable, LinkageMotion, ReactionTable, Results, Units
 from reports.format.file_names import animation_name
 from reports.format.numbers import short
+from reports.format.script_json import script_json
 from reports.format.template import environment
 
 BAR = 0.2  # of the linkage's size, about: the bar that shows a length

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
 import numpy as np
-from markupsafe import Markup
 
 from reports.animation.frames import nice
 from reports.animation.scene import LONGEST, Scene
@@ -15,12 +13,6 @@ from reports.format.numbers import short
 
 SECONDS = 6.0  # that a motion takes to play, about
 WATCHABLE = (2.0, 12.0)  # seconds that need no other speed
-
-
-def script_json(data: object) -> Markup:
-    """JSON that is safe inside a script element."""
-    text = json.dumps(data, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
-    return Markup(text.translate({ord(c): f"\\u{ord(c):04x}" for c in "<>&'"}))
 
 
 def player_data(scene: Scene, drives: list[DriveTable], units: Units) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from reports.animation.frames import WIDTH, Viewport
 from reports.data.results import Floats, LinkageMotion, ReactionTable
-from reports.format.svg_labels import label_offsets
+from reports.format.drawing.svg_labels import label_offsets
 
 LONGEST = 120.0  # arrow
 COLOURS = 10  # in animation.css

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,8 +13,11 @@ TEMPLATES = Path(__file__).parents[1] / "templates"
 VENDOR = TEMPLATES / "vendor"  # scripts of others
 
 
+@cache
 def environment() -> Environment:
-    """The environment of all templates; without jinja's import at start-up."""
+    """The environment of all templates, each of which is compiled once; without jinja's import at
+    start-up.
+    """
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
     return Environment(

@@ -7,9 +7,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import hypot
 
-from reports.format.spread import rows
-from reports.format.svg import line, text, wide
-from reports.tables.singular_zones import Zone
+from reports.format.drawing.spread import rows
+from reports.format.drawing.svg import line, text, wide
+from reports.tables.stress.singular_zones import Zone
 
 RED = "#a8211b"
 RING = 4.0  # radius

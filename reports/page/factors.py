@@ -8,18 +8,18 @@ from typing import Any
 from reports.data.changes import command
 from reports.data.decision import limit, outcome, utilisation, worst_first
 from reports.data.results import PinResult, Results
-from reports.format.words import MEANING, RESULTS
-from reports.tables.changes import (
+from reports.format.words import RESULTS
+from reports.tables.published import published_maxima
+from reports.tables.strength.changes import (
     DIMENSIONS,
     INTRODUCTION,
     change_notes,
     changes_grid,
     sensitivities_grid,
 )
-from reports.tables.limit_load import INTRODUCTION as PAST_YIELD
-from reports.tables.limit_load import LEFT_OUT, limit_grid, limit_notes
-from reports.tables.published import published_maxima
-from reports.tables.safety_factors import (
+from reports.tables.strength.limit_load import INTRODUCTION as PAST_YIELD
+from reports.tables.strength.limit_load import LEFT_OUT, limit_grid, limit_notes
+from reports.tables.strength.safety_factors import (
     TEXTS,
     reading,
     safety_factor_row,
@@ -50,8 +50,8 @@ class FactorRow:
     bar: Bar | None
 
 
-def factor_parts(results: Results) -> dict[str, Any]:
-    """What the template of the safety factors takes."""
+def factor_part(results: Results) -> dict[str, Any]:
+    """The table of safety factors, and how to read it."""
     rows = shown_rows(results)
     columns = shown_columns(rows, results)
     for name in ("verdict", "model"):  # the result says what matters, each pin's section the rest
@@ -71,18 +71,34 @@ def factor_parts(results: Results) -> dict[str, Any]:
             for pin, row in zip(worst_first(results), rows, strict=True)
         ],
         "explained": RESULTS,
-        "meaning": MEANING,
         "maxima": published_maxima(results),
-        "changes": changes_grid(results),
+    }
+
+
+def change_part(results: Results) -> dict[str, Any] | None:
+    """What to change; None where nothing has to be."""
+    if not results.changes:
+        return None
+    return {
+        "grid": changes_grid(results),
+        "introduction": INTRODUCTION,
+        "notes": change_notes(results),
+        "command": command(results.changes, results.study, results.required_safety_factor),
         "sensitivities": sensitivities_grid(results),
         "sensitivities_introduction": DIMENSIONS,
-        "limits": limit_grid(results),
-        "limit_introduction": PAST_YIELD,
-        "limit_notes": limit_notes(results),
-        "limit_left_out": LEFT_OUT,
-        "change_introduction": INTRODUCTION,
-        "change_notes": change_notes(results),
-        "size_command": command(results.changes, results.study, results.required_safety_factor),
+    }
+
+
+def limit_part(results: Results) -> dict[str, Any] | None:
+    """Past yield; None where no limit load was computed."""
+    grid = limit_grid(results)
+    if grid is None:
+        return None
+    return {
+        "grid": grid,
+        "introduction": PAST_YIELD,
+        "notes": limit_notes(results),
+        "left_out": LEFT_OUT,
     }
 
 

@@ -1,14 +1,83 @@
-"""The loads on one pin in one case, and the timings, for the page."""
+"""Loads and timings on the page."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Any
+
 import numpy as np
 
-from reports.data.results import PinResult, Results, Units
+from reports.data.results import PinResult, ReactionTable, Results, Units
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, components, engineering
+from reports.plots.loads.reactions import WITHOUT
+from reports.tables.loads.drop import drop_words, impulse_grid, peak_grid
+from reports.tables.published import published_reactions
+from reports.tables.strength.landing import NOTE, landing_blocks
 
 TIMINGS = (True, True, True, False, False, False)
+
+
+@dataclass(frozen=True)
+class DropPart:
+    """A drop: the clause that requires it, sentences, tables of its largest values."""
+
+    case: str
+    clause: str
+    words: list[str]
+    grids: list[Grid]
+
+
+@dataclass(frozen=True)
+class ReactionRow:
+    """A connection's maximum force with its components and time, and its maximum moment."""
+
+    connection: str
+    body: str
+    pin: str
+    shared: bool
+    largest: float
+    components: tuple[float, float, float]
+    time: float | None
+    moment: float
+
+
+def load_part(results: Results) -> dict[str, Any]:
+    """Reactions, drops and landings of all cases."""
+    return {
+        "published": published_reactions(results),
+        "timed": any(v.time is not None for v in results.published),
+        "reactions": [(table, _rows(table)) for table in results.reactions],
+        "without": WITHOUT,
+        "drops": [
+            DropPart(
+                d.case,
+                d.clause,
+                drop_words(d, results),
+                [peak_grid(d, results), impulse_grid(d, results)],
+            )
+            for d in results.drops
+        ],
+        "landing": landing_blocks(results),
+        "landed": list(dict.fromkeys(r.case for r in results.landing)),
+        "landing_note": NOTE,
+    }
+
+
+def _rows(table: ReactionTable) -> list[ReactionRow]:
+    return [
+        ReactionRow(
+            connection=table.connections[c],
+            body=table.bodies[c],
+            pin=table.pins[c],
+            shared=table.connections[c] in table.shared,
+            largest=peak.force,
+            components=peak.components,
+            time=peak.time,
+            moment=peak.moment,
+        )
+        for c, peak in enumerate(table.largest)
+    ]
 
 
 def loads_at(pin: PinResult, units: Units) -> Grid | None:

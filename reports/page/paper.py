@@ -16,11 +16,11 @@ from reports.format.file_names import plot_name
 from reports.format.grid import Grid
 from reports.format.words import headline
 from reports.page.joint import joint_part
-from reports.tables.changes import INTRODUCTION, change_notes, changes_grid
-from reports.tables.fatigue import fatigue_grid, fatigue_sentence
-from reports.tables.margins import governing_grid, not_made_words
 from reports.tables.published import published_maxima
-from reports.tables.safety_factors import TEXTS, reading, shown, shown_columns, shown_rows
+from reports.tables.strength.changes import INTRODUCTION, change_notes, changes_grid
+from reports.tables.strength.fatigue import fatigue_grid, fatigue_sentence
+from reports.tables.strength.margins import governing_grid, not_made_words
+from reports.tables.strength.safety_factors import TEXTS, reading, shown, shown_columns, shown_rows
 from reports.text.loads_summary import load_parts
 from reports.text.method import METHOD
 from reports.text.pin_sentence import drawing_caption, pin_sentence

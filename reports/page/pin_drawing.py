@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from html import escape
 
 from reports.data.results import PinShape, Units
+from reports.format.drawing.spread import rows
+from reports.format.drawing.svg import INK, line, text, wide
 from reports.format.numbers import short
-from reports.format.spread import rows
-from reports.format.svg import INK, line, text, wide
 from reports.page.drawing_zones import STRIPES, ZoneMarks
-from reports.tables.singular_zones import Zone
+from reports.tables.stress.singular_zones import Zone
 
 WIDTH, MARGIN, TALLEST = 760.0, 45.0, 150.0
 LINE = 14.0  # height of the text

@@ -5,16 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from reports.data.decision import outcome
-from reports.data.results import PinResult, ReactionTable, Results, Units
+from reports.data.results import PinResult, Results, Units
 from reports.format.grid import Grid
 from reports.format.numbers import ratio
 from reports.page.joint import JointPart, joint_part
 from reports.page.loads import loads_at
 from reports.page.second_opinion import OpinionPart, opinion_part
 from reports.page.viewer import PinView, pin_views
-from reports.tables.hand_checks import hand_check_table
-from reports.tables.margins import margins_grid
-from reports.tables.singular_zones import Zone, pin_zones, zone_table
+from reports.tables.strength.hand_checks import hand_check_table
+from reports.tables.strength.margins import margins_grid
+from reports.tables.stress.singular_zones import Zone, pin_zones, zone_table
 from reports.text.pin_sentence import drawing_caption, pin_sentence
 
 ZONE_NUMBERS = ("zone", "exponent")
@@ -94,40 +94,3 @@ def _zones(zones: list[Zone], units: Units) -> Grid | None:
         return None
     head, body = zone_table(zones, units.length, units.stress)
     return Grid(head, body, [name in ZONE_NUMBERS or "[" in name for name in head])
-
-
-@dataclass(frozen=True)
-class ReactionRow:
-    """A connection's maximum force with its components and time, and its maximum moment."""
-
-    connection: str
-    body: str
-    pin: str
-    shared: bool
-    largest: float
-    components: tuple[float, float, float]
-    time: float | None
-    moment: float
-
-
-def reaction_tables(results: Results) -> list[tuple[ReactionTable, list[ReactionRow]]]:
-    """For each case every connection at the instant of its maximum force."""
-    return [(table, _rows(table)) for table in results.reactions]
-
-
-def _rows(table: ReactionTable) -> list[ReactionRow]:
-    rows = []
-    for c, peak in enumerate(table.largest):
-        rows.append(
-            ReactionRow(
-                connection=table.connections[c],
-                body=table.bodies[c],
-                pin=table.pins[c],
-                shared=table.connections[c] in table.shared,
-                largest=peak.force,
-                components=peak.components,
-                time=peak.time,
-                moment=peak.moment,
-            )
-        )
-    return rows

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
-from reports.animation.player_data import script_json
 from reports.data.results import Floats, PinResult, PinShape, Results
 from reports.data.surface import HalfSection, LoadCourse, Surface, SurfaceCase
-from reports.format.camera import View
+from reports.format.drawing.camera import View
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering
 from reports.format.packed import packed
 from reports.format.ranges import error_words, factor_range
+from reports.format.script_json import script_json
 from reports.format.words import verdict_words
 
 SECTORS = 72  # of a body of revolution

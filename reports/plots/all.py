@@ -5,21 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from reports.data.results import PinResult, ReactionTable, Results
-from reports.plots.checks import beam_plots, motion_plot
-from reports.plots.drive import drive_plot
-from reports.plots.drop import drop_plots
-from reports.plots.fatigue import collective_plot, history_plot
-from reports.plots.joint import joint_plot
-from reports.plots.landing import landing_plot
-from reports.plots.leg import leg_plots
-from reports.plots.limit_load import limit_plot
-from reports.plots.linkage import linkage_plot
-from reports.plots.motion import motion_plots
-from reports.plots.reactions import bars, reaction_plot
-from reports.plots.refinement import pin_refinement_plot, refinement_plot
+from reports.plots.loads.drive import drive_plot
+from reports.plots.loads.drop import drop_plots
+from reports.plots.loads.leg import leg_plots
+from reports.plots.loads.linkage import linkage_plot
+from reports.plots.loads.motion import motion_plots
+from reports.plots.loads.motion_check import motion_plot
+from reports.plots.loads.reactions import bars, reaction_plot
 from reports.plots.spec import Plot
-from reports.plots.surface import surface_plot
-from reports.tables.fatigue import worst_points
+from reports.plots.strength.fatigue import collective_plot, history_plot
+from reports.plots.strength.landing import landing_plot
+from reports.plots.strength.limit_load import limit_plot
+from reports.plots.stress.beam_check import beam_plots
+from reports.plots.stress.joint import joint_plot
+from reports.plots.stress.refinement import pin_refinement_plot, refinement_plot
+from reports.plots.stress.surface import surface_plot
+from reports.tables.strength.fatigue import worst_points
 
 
 def all_plots(results: Results) -> dict[str, Plot]:
@@ -92,7 +93,7 @@ def _fatigue(results: Results) -> Iterator[Plot]:
 
 
 def governing(results: Results, table: ReactionTable) -> dict[str, float]:
-    """Position on a motion's axis (reports.plots.reactions.along) of each pin's maximum stress."""
+    """Where on a motion's axis (plots.loads.reactions.along) each pin's maximum stress is."""
     rows = (p for p in results.pins if p.case == table.case)
     at = {p.pin: p.time if table.position is None else p.position for p in rows}
     return {pin: x for pin, x in at.items() if x is not None}

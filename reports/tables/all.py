@@ -5,17 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from reports.data.results import Results
-from reports.tables.calculix import opinion_tables
-from reports.tables.drop import drop_table
-from reports.tables.envelope import envelope_table
-from reports.tables.fatigue import fatigue_tables
-from reports.tables.hand_checks import hand_check_rows
-from reports.tables.joint import joint_tables
-from reports.tables.landing import landing_table
-from reports.tables.limit_load import limit_load_table
-from reports.tables.linkage import linkage_tables
-from reports.tables.margins import arms_table, margins_table
-from reports.tables.motion import (
+from reports.tables.loads.drop import drop_table
+from reports.tables.loads.linkage import linkage_tables
+from reports.tables.loads.motion import (
     beam_check_table,
     drive_table,
     leg_table,
@@ -24,8 +16,16 @@ from reports.tables.motion import (
     reactions_table,
 )
 from reports.tables.published import published_reactions_table, published_values_table
-from reports.tables.safety_factors import safety_factors_table
-from reports.tables.singular_zones import zones_table
+from reports.tables.strength.envelope import envelope_table
+from reports.tables.strength.fatigue import fatigue_tables
+from reports.tables.strength.hand_checks import hand_check_rows
+from reports.tables.strength.landing import landing_table
+from reports.tables.strength.limit_load import limit_load_table
+from reports.tables.strength.margins import arms_table, margins_table
+from reports.tables.strength.safety_factors import safety_factors_table
+from reports.tables.stress.calculix import opinion_tables
+from reports.tables.stress.joint import joint_tables
+from reports.tables.stress.singular_zones import zones_table
 from reports.tables.table import Table
 
 # Long tables of the motion, seldom read in a spreadsheet, are left out of the workbook.

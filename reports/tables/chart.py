@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from reports.data.chart import NAME, Chart
-from reports.format.csv import write_csv
+from reports.format.files.csv import write_csv
 
 COLUMNS = (
     "model", "element", "dofs", "seconds", "peak_memory_mb", "max_von_mises", "relative_error",

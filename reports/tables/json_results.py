@@ -17,11 +17,11 @@ from reports.data.results import (
     SingularZone,
 )
 from reports.format.numbers import finite
-from reports.tables.calculix import opinion_json
-from reports.tables.fatigue import fatigue_json
-from reports.tables.joint import joint_json
-from reports.tables.limit_load import limit_load_json
-from reports.tables.margins import margins_json
+from reports.tables.strength.fatigue import fatigue_json
+from reports.tables.strength.limit_load import limit_load_json
+from reports.tables.strength.margins import margins_json
+from reports.tables.stress.calculix import opinion_json
+from reports.tables.stress.joint import joint_json
 
 SCHEMA = "pinstress-results/1"
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from reports.data.results import PublishedValue, ReactionTable, Results
-from reports.format import markdown
+from reports.format.files import markdown
 from reports.format.grid import Grid
 from reports.format.numbers import engineering, ratio
 from reports.format.ranges import factor_range

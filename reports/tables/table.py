@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from reports.data.results import Units
-from reports.format.csv import Cell, write_csv
-from reports.format.parquet import write_parquet
+from reports.format.files.csv import Cell, write_csv
+from reports.format.files.parquet import write_parquet
 
 MOST_IN_CSV = 1_000_000  # rows; a sheet of a spreadsheet has 1,048,576
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from reports.data.results import Results
-from reports.format.csv import Cell, harmless
+from reports.format.files.csv import Cell, harmless
 from reports.format.words import MEANING, READING
 from reports.tables.table import Table
 

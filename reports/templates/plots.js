@@ -1,8 +1,6 @@
 // Plots are drawn from their data when they come into view; the libraries start with the first.
 
-const plots = [...document.querySelectorAll("figure.plot")];
-
-let libraries = null; // until they are inflated; one script
+let libraries = null, specs = null; // until they are inflated
 
 const startLibraries = () => {
   if (window.vega) return;
@@ -11,7 +9,7 @@ const startLibraries = () => {
   document.head.append(script);
 };
 
-const specOf = (figure) => JSON.parse(figure.querySelector("script").textContent);
+const specOf = (figure) => structuredClone(specs[figure.dataset.plot][1]);
 
 const cells = (text) => text.split("\n").map((line) => line.split(","));
 
@@ -90,11 +88,6 @@ const fillValues = (details) => {
   details.append(link, box);
 };
 
-for (const figure of plots) {
-  const details = figure.querySelector(".values");
-  details.hidden = false;
-  details.addEventListener("toggle", () => fillValues(details));
-}
 const nearby = new IntersectionObserver((seen) => {
   for (const { isIntersecting, target } of seen) {
     if (!isIntersecting) continue;
@@ -102,13 +95,23 @@ const nearby = new IntersectionObserver((seen) => {
     drawPlot(target);
   }
 }, { rootMargin: "400px" });
-if (plots.length && !old) {
-  inflated(document.getElementById("libraries").textContent).then((bytes) => {
-    libraries = new TextDecoder().decode(bytes);
-    plots.forEach((figure) => nearby.observe(figure));
+const showPlots = (root) => {
+  for (const figure of root.querySelectorAll("figure.plot")) {
+    const details = figure.querySelector(".values");
+    details.hidden = false;
+    details.addEventListener("toggle", () => fillValues(details));
+    nearby.observe(figure);
+  }
+};
+const text = async (name) => new TextDecoder().decode(await inflated(document.getElementById(name).textContent));
+if (!old) {
+  Promise.all([text("libraries"), text("plots")]).then(([scripts, drawings]) => {
+    libraries = scripts;
+    specs = JSON.parse(drawings);
+    start(showPlots);
   });
 }
 // On paper all that is open is drawn.
 addEventListener("beforeprint", () => {
-  if (libraries) plots.filter((figure) => figure.offsetParent).forEach(drawPlot);
+  if (libraries) [...document.querySelectorAll("figure.plot")].filter((figure) => figure.offsetParent).forEach(drawPlot);
 });

@@ -35,6 +35,20 @@ const sortable = (table) => {
 
 document.querySelectorAll("table.sortable").forEach(sortable);
 
+// What makes a part of the page work, once it is there: functions of its element.
+const starters = [];
+const start = (starter) => {
+  starters.push(starter);
+  starter(document);
+};
+// A part of a long page is text until it is opened.
+const fill = (part) => {
+  const text = part.querySelector(":scope > noscript");
+  if (!text) return;
+  text.outerHTML = text.textContent;
+  starters.forEach((starter) => starter(part));
+};
+
 // Folded parts open for links that lead into them, and all at once.
 const folds = [...document.querySelectorAll("details.fold")];
 const unfold = document.getElementById("unfold");
@@ -43,26 +57,34 @@ const named = () => { unfold.textContent = folded() ? "Open all parts" : "Close 
 const reveal = () => {
   const target = location.hash && document.getElementById(decodeURIComponent(location.hash.slice(1)));
   if (!target) return;
-  for (let part = target.closest("details"); part; part = part.parentElement.closest("details")) part.open = true;
+  for (let part = target.closest("details"); part; part = part.parentElement.closest("details")) {
+    part.open = true;
+    fill(part);
+  }
   target.scrollIntoView();
 };
 unfold.addEventListener("click", () => {
   const open = folded();
-  for (const part of folds) part.open = open;
+  for (const part of folds) {
+    part.open = open;
+    if (open) fill(part);
+  }
   named();
 });
-folds.forEach((part) => part.addEventListener("toggle", named));
+folds.forEach((part) => part.addEventListener("toggle", () => {
+  if (part.open) fill(part);
+  named();
+}));
 addEventListener("hashchange", reveal);
 document.querySelector(".tools").hidden = false;
 named();
 reveal();
 
 const shade = document.getElementById("shade");
-const frames = [...document.querySelectorAll("iframe")];
 const dark = () => (document.documentElement.style.colorScheme || (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light")) === "dark";
 const shaded = () => {
   shade.textContent = dark() ? "Light" : "Dark";
-  for (const frame of frames) {
+  for (const frame of document.querySelectorAll("iframe")) {
     const inner = frame.contentDocument?.documentElement;
     if (inner) inner.style.colorScheme = document.documentElement.style.colorScheme;
   }
@@ -77,7 +99,9 @@ const framed = (frame) => {
   shaded();
   new ResizeObserver(() => fit(frame)).observe(frame.contentDocument.documentElement);
 };
-for (const frame of old ? [] : frames) {
-  frame.addEventListener("load", () => framed(frame));
-  inflated(frame.dataset.packed).then((bytes) => { frame.srcdoc = new TextDecoder().decode(bytes); });
-}
+start((root) => {
+  for (const frame of old ? [] : root.querySelectorAll("iframe")) {
+    frame.addEventListener("load", () => framed(frame));
+    inflated(frame.dataset.packed).then((bytes) => { frame.srcdoc = new TextDecoder().decode(bytes); });
+  }
+});

@@ -392,29 +392,33 @@ const startView = (root, paint, data) => {
   paintNow();
 };
 
-const startViews = () => {
-  const views = [...document.querySelectorAll("[data-view]")];
-  const paint = views.length && !old ? painter() : null;
+// Each is unpacked when its part is opened, so that it can be printed, and started when it is seen.
+const paint = document.querySelector("section.viewed") && !old ? painter() : null;
+document.documentElement.classList.toggle("live", Boolean(paint));
+const waiting = new Map();
+const startWaiting = (view) => {
+  const data = waiting.get(view);
+  if (waiting.delete(view)) startView(view, paint, data);
+};
+const watcher = new IntersectionObserver((seen) => {
+  for (const { isIntersecting, target } of seen) if (isIntersecting) startWaiting(target);
+}, { rootMargin: "300px" });
+let last = Promise.resolve(); // one after another: a page of many pins stays quick
+const unpack = (view) => {
+  last = last.then(async () => {
+    waiting.set(view, await unpacked(JSON.parse(view.querySelector("script").textContent)));
+    watcher.observe(view);
+  });
+};
+start((root) => {
   if (!paint) {
-    document.querySelectorAll("[data-unseen]").forEach((text) => { text.hidden = false; });
+    root.querySelectorAll("[data-unseen]").forEach((text) => { text.hidden = false; });
     return;
   }
-  document.documentElement.classList.add("live");
-  const waiting = new Map(), begin = (view) => {
-    const data = waiting.get(view);
-    if (waiting.delete(view)) startView(view, paint, data);
-  };
-  const watcher = new IntersectionObserver((seen) => {
-    for (const { isIntersecting, target } of seen) if (isIntersecting) begin(target);
-  }, { rootMargin: "300px" });
-  // One after another: a page of many pins stays quick, and can be printed at any time.
-  const unpackAll = async () => {
-    for (const view of views) {
-      waiting.set(view, await unpacked(JSON.parse(view.querySelector("script").textContent)));
-      watcher.observe(view);
-    }
-  };
-  unpackAll();
-  addEventListener("beforeprint", () => [...waiting.keys()].forEach(begin));
-};
-startViews();
+  for (const view of root.querySelectorAll("[data-view]")) {
+    const part = view.closest("details");
+    if (part.open) unpack(view);
+    else part.addEventListener("toggle", () => unpack(view), { once: true });
+  }
+});
+addEventListener("beforeprint", () => [...waiting.keys()].forEach(startWaiting));

@@ -6,7 +6,7 @@ from html import escape
 
 from reports.data.results import Results
 from reports.format.words import headline
-from reports.tables.safety_factors import TEXTS, shown, shown_columns, shown_rows
+from reports.tables.strength.safety_factors import TEXTS, shown, shown_columns, shown_rows
 from reports.text.summary import summary
 
 HEAD = '<th style="text-align:{0}">{1}</th>'

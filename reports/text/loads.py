@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from reports.data.results import ReactionTable, Results
 from reports.format.numbers import DASH, engineering, short
-from reports.tables.drop import drop_words
+from reports.tables.loads.drop import drop_words
 
 if TYPE_CHECKING:
     from rich.console import Console

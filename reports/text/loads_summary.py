@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from reports.data.results import DriveTable, LinkageMotion, ReactionTable, Results
-from reports.format import markdown
+from reports.format.files import markdown
 from reports.format.grid import Grid
 from reports.format.numbers import engineering, short
-from reports.tables.drop import drop_words, impulse_grid, peak_grid
+from reports.tables.loads.drop import drop_words, impulse_grid, peak_grid
 from reports.text.loads import unresolved
 
 NAMES = ("connection", "body", "pin")

@@ -12,11 +12,11 @@ from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering, short
 from reports.format.ranges import factor_range, joint_range, margin_range, utilisation_range
 from reports.format.words import headline, result_words
-from reports.tables.changes import change_notes, changes_grid, sensitivities_grid
-from reports.tables.fatigue import fatigue_sentence
-from reports.tables.limit_load import limit_grid
-from reports.tables.margins import not_made_briefly, worst_grid
 from reports.tables.published import published_maxima
+from reports.tables.strength.changes import change_notes, changes_grid, sensitivities_grid
+from reports.tables.strength.fatigue import fatigue_sentence
+from reports.tables.strength.limit_load import limit_grid
+from reports.tables.strength.margins import not_made_briefly, worst_grid
 from reports.text.fitted_table import Column, fitted_table
 from reports.text.summary import summary
 

@@ -16,7 +16,7 @@ from fea.checks.opinions import (
 )
 from reports.data.results import Results, Units
 from reports.format.numbers import DASH, engineering
-from reports.tables.calculix import opinions_of
+from reports.tables.stress.calculix import opinions_of
 from reports.text.chart_summary import percent
 
 if TYPE_CHECKING:

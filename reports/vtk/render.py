@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from reports.data.results import Field, Floats, Units
-from reports.format.camera import VIEW_ANGLE, View
+from reports.format.drawing.camera import VIEW_ANGLE, View
 from reports.format.numbers import engineering
 from reports.vtk.writer import TYPES
 

@@ -51,7 +51,7 @@ def _program(name: str) -> str:
 @pytest.fixture(scope="session")
 def gear_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of the landing gear's run, as the command writes it."""
-    return _run(STUDIES / "grenier2008.toml", tmp_path_factory.mktemp("gear") / "out")
+    return run(STUDIES / "grenier2008.toml", tmp_path_factory.mktemp("gear") / "out")
 
 
 @pytest.fixture(scope="session")
@@ -73,7 +73,7 @@ def odd_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
         text = text.replace(old, new)
     study = directory / "odd.toml"
     study.write_text(text, encoding="utf-8")
-    return _run(study, directory / "out", "--no-pictures")
+    return run(study, directory / "out", "--no-pictures")
 
 
 @pytest.fixture(scope="session")
@@ -90,14 +90,15 @@ def clevis_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     ]
     table = "\n".join(["connection,fx,fy,time", *rows])
     (directory / "loads.csv").write_text(table + "\n", encoding="utf-8")
-    return _run(study, directory / "out", "--no-pictures")
+    return run(study, directory / "out", "--no-pictures")
 
 
 def _quoted(text: str) -> str:
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
-def _run(study: Path, out: Path, *options: str) -> Path:
+def run(study: Path, out: Path, *options: str) -> Path:
+    """The folder of a study's run, as the command writes it."""
     command = [sys.executable, "-m", "pinstress", "run", str(study), "--out", str(out), *options]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True)

@@ -36,8 +36,7 @@ def page(browser: Any, gear_run: Path) -> Any:
 def figure(page: Any, name: str) -> Any:
     """A plot, scrolled to and drawn."""
     unfold(page)
-    found = page.find_element("css selector", f'script[data-plot="{name}"]')
-    found = found.find_element("xpath", "..")
+    found = page.find_element("css selector", f'figure[data-plot="{name}"]')
     page.execute_script(BACK, found)
     wait(page, lambda: found.find_elements("css selector", ".drawn svg"))
     return found

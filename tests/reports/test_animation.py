@@ -18,8 +18,8 @@ from reports.animation.page import render_animation, write_animations
 from reports.animation.player_data import speeds
 from reports.animation.strip_chart import ticks
 from reports.data.results import Results, Units
+from reports.format.drawing.svg_labels import label_offsets
 from reports.format.fixed_decimals import Fixed
-from reports.format.svg_labels import label_offsets
 from tests.support.four_bar_results import COUPLER, CRANK, ROCKER, chain, four_bar, linkage
 
 EVIL = "</script><i onload='x'>&quot;\"\\u003c{{ 1 }}<!--"

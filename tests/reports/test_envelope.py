@@ -14,7 +14,7 @@ from reports.data.results import Results
 from reports.format.numbers import DASH
 from reports.page.page import render
 from reports.page.paper import document
-from reports.tables.envelope import cell_text, envelope_table, heat, matrix
+from reports.tables.strength.envelope import cell_text, envelope_table, heat, matrix
 
 
 def of_cases(results: Results, count: int) -> Results:

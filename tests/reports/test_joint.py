@@ -24,9 +24,9 @@ from reports.format.words import JOINT
 from reports.page.viewer import pin_views
 from reports.plots.all import all_plots
 from reports.plots.draw import draw
-from reports.plots.joint import joint_plot
-from reports.tables.joint import joint_json, joint_tables
-from reports.tables.safety_factors import shown_columns, shown_rows, write_safety_factors
+from reports.plots.stress.joint import joint_plot
+from reports.tables.strength.safety_factors import shown_columns, shown_rows, write_safety_factors
+from reports.tables.stress.joint import joint_json, joint_tables
 from reports.text.safety_factors import print_safety_factors
 from reports.text.summary import summary
 from reports.vtk.fields import point_data, surface

@@ -10,9 +10,9 @@ import pytest
 
 from reports.data.results import PublishedValue, Results
 from reports.page.page import write_page
-from reports.plots.landing import landing_plot
-from reports.tables.landing import landing_table, landing_tables, write_landing
+from reports.plots.strength.landing import landing_plot
 from reports.tables.published import published_values_table, write_published_values
+from reports.tables.strength.landing import landing_table, landing_tables, write_landing
 from tests.support.made_up_run import ranged
 
 
@@ -36,7 +36,7 @@ def test_the_page_has_the_tables(results: Results, tmp_path: Path) -> None:
     few = replace(results, landing=(ranged("<A>"),), motion=(), reactions=(), pins=(), drive=())
     text = write_page(few, tmp_path).read_text(encoding="utf-8")
     assert 'id="landing"' in text
-    assert "<td>&lt;A&gt;</td>" in text
+    assert ">&lt;A&gt;</td>" in text
 
 
 def test_nothing_is_written_without_ranges(results: Results, tmp_path: Path) -> None:

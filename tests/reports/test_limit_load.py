@@ -8,9 +8,9 @@ import pytest
 from fea.plastic.records import LimitLoad, LoadCurve, PlasticMesh
 from pinstress.cache.serialise import pack, unpack
 from reports.data.results import Results
-from reports.plots.limit_load import limit_plot
+from reports.plots.strength.limit_load import limit_plot
 from reports.tables.json_results import to_json
-from reports.tables.limit_load import limit_grid, limit_load_table, limit_word
+from reports.tables.strength.limit_load import limit_grid, limit_load_table, limit_word
 
 CURVE = LoadCurve(
     np.array([0.0, 0.5, 0.9]), np.array([0.0, 1e-3, 4e-3]), np.array([0.0, 0.0, 2.5e-3])

@@ -10,11 +10,11 @@ import pytest
 from pyarrow import parquet
 
 from reports.data.results import ReactionTable
-from reports.format import parquet as ours
-from reports.format.csv import Cell, write_csv
-from reports.format.parquet import write_parquet
+from reports.format.files import parquet as ours
+from reports.format.files.csv import Cell, write_csv
+from reports.format.files.parquet import write_parquet
 from reports.tables import table as tables
-from reports.tables.motion import REACTIONS, Instants
+from reports.tables.loads.motion import REACTIONS, Instants
 from reports.tables.table import Table
 
 

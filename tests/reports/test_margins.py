@@ -9,7 +9,7 @@ import pytest
 from fea.strength.margin import RATIO, Margin, PinMargin, not_made
 from reports.data.results import Results, Units
 from reports.page.paper import document
-from reports.tables.margins import (
+from reports.tables.strength.margins import (
     governing_grid,
     margins_json,
     margins_table,

@@ -4,9 +4,9 @@ import math
 
 import pytest
 
+from reports.format.drawing.spread import rows
 from reports.format.file_names import plot_name
 from reports.format.numbers import engineering, like, ratio, short
-from reports.format.spread import rows
 
 
 @pytest.mark.parametrize(

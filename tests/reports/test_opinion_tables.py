@@ -13,7 +13,7 @@ from fea.checks.opinions import BandOpinion, ContactOpinion, Opinion
 from reports.data.results import Results
 from reports.page.page import render
 from reports.page.second_opinion import opinion_part
-from reports.tables.calculix import opinion_json, opinion_tables
+from reports.tables.stress.calculix import opinion_json, opinion_tables
 from reports.text.second_opinion import print_second_opinion, sentences
 from tests.reports import test_workbook
 from tests.support.made_up_joint import make_joint

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import json
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -9,12 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pinstress.cli.plots import FIGURE
 from reports.data.results import PinShape, Results, Units
 from reports.files import write_reports
 from reports.format.file_names import animation_name, plot_name
-from reports.page.page import write_page
+from reports.page.page import AT_ONCE, render, write_page
 from reports.page.pin_drawing import draw_pin
+from reports.page.scripts import plots_of
 from reports.plots.all import all_plots
 from tests.support.html_page import EVIL, parse
 from tests.support.made_up_run import leg
@@ -73,15 +72,15 @@ def test_anchors_lead_somewhere(written: Path) -> None:
 
 def specs(page: Path) -> dict[str, Any]:
     """The plots of a page by their names."""
-    found = [(n, spec) for _, n, spec in FIGURE.findall(page.read_text(encoding="utf-8"))]
-    assert len(found) == len(dict(found))
-    return {name: json.loads(spec) for name, spec in found}
+    return {plot.name: plot.spec for plot in plots_of(page.read_text(encoding="utf-8"))}
 
 
 def test_page_has_every_plot_as_it_is_drawn_into_files(small: Results, written: Path) -> None:
     expected = {name: plot.spec for name, plot in all_plots(small).items()}
     assert len(expected) == 15  # 8 of them are the refinements of single pins
     assert specs(written) == expected
+    shown = re.findall(r'data-plot="([^"]+)"', written.read_text(encoding="utf-8"))
+    assert sorted(shown) == sorted(expected)
 
 
 def test_every_plot_is_described(written: Path) -> None:
@@ -128,10 +127,7 @@ def test_names_are_shown_and_not_run(small: Results, written: Path, tmp_path: Pa
         versions={EVIL: EVIL},
     )
     page = parse(write_reports(odd, tmp_path))
-    # besides those of the plots
-    scripts = [t.count("script") - len(specs(p)) for t, p in (
-        (page.tags, tmp_path / "report.html"), (parse(written).tags, written))]  # fmt: skip
-    assert scripts[0] == scripts[1]
+    assert page.tags.count("script") == parse(written).tags.count("script")
     assert "i" not in page.tags
     assert EVIL in page.text
 
@@ -210,3 +206,14 @@ def test_drawing_has_dimensions_and_labels(results: Results) -> None:
 
 def test_drawing_of_nothing_is_empty(results: Results) -> None:
     assert draw_pin(PinShape("A", (), "steel", None), results.units) == ""
+
+
+def test_folded_parts_of_many_pins_are_text_to_scripts(small: Results, tmp_path: Path) -> None:
+    """Each in a noscript element, next to that of the message on disabled scripts."""
+    first = small.pins[0]
+    pins = tuple(replace(first, pin=f"{EVIL}{k}") for k in range(AT_ONCE + 1))
+    many = replace(small, pins=pins, shapes=(), surfaces=())
+    page = render(many, tmp_path)
+    assert page.count("<noscript>") == page.count('<details class="fold"') + 1 > AT_ONCE
+    assert not re.search(r"<noscript>(?:(?!</noscript>).)*<noscript>", page, re.S)
+    assert render(replace(many, pins=pins[:AT_ONCE]), tmp_path).count("<noscript>") == 1

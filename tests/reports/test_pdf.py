@@ -9,7 +9,7 @@ from reports.data.results import Results, TitleBlock
 from reports.page.paper import document
 from reports.pdf.typeset import shown_plots, typeset
 from reports.plots.all import all_plots
-from reports.tables.safety_factors import shown_rows
+from reports.tables.strength.safety_factors import shown_rows
 
 EVIL = '#panic("no") $x$ *b* _i_ \\ `c` <a> @b // /* [ ] { }'
 

@@ -13,9 +13,9 @@ import pytest
 
 from reports.data.results import LinkageMotion, Results
 from reports.plots.draw import draw
-from reports.plots.drive import drive_plot
-from reports.plots.linkage import linkage_plot
-from reports.plots.motion import motion_plots
+from reports.plots.loads.drive import drive_plot
+from reports.plots.loads.linkage import linkage_plot
+from reports.plots.loads.motion import motion_plots
 from reports.plots.spec import Plot
 
 ODD = ("$x_1^2$", "<b>&", "a.b/../c", "_hidden", "µ " + 60 * "long ")

@@ -17,9 +17,9 @@ from reports.data.results import Floats, Results
 from reports.plots import spec as parts
 from reports.plots.all import all_plots
 from reports.plots.draw import draw
-from reports.plots.reactions import along, bars, reaction_plot
-from reports.plots.refinement import pin_refinement_plot
+from reports.plots.loads.reactions import along, bars, reaction_plot
 from reports.plots.spec import Abscissa, Panel, Plot, Spec, clipped, curves, still
+from reports.plots.stress.refinement import pin_refinement_plot
 from reports.plots.theme import COLOURS, DASHES, SERIES, dashes, on_page, on_paper
 from tests.support.made_up_run import leg, ranged
 

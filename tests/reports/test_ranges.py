@@ -15,8 +15,8 @@ from reports.data.results import PinResult, Results, SingularZone
 from reports.format.ranges import error_range, error_words, factor_range
 from reports.format.words import headline
 from reports.tables.json_results import to_json
-from reports.tables.safety_factors import safety_factors_table, write_safety_factors
-from reports.tables.singular_zones import zones_table
+from reports.tables.strength.safety_factors import safety_factors_table, write_safety_factors
+from reports.tables.stress.singular_zones import zones_table
 from reports.text.html import safety_factors_html
 from reports.text.safety_factors import print_safety_factors
 

@@ -11,16 +11,16 @@ import pytest
 from rich.console import Console
 
 from reports.data.results import Results
-from reports.format.csv import cell, harmless
+from reports.format.files.csv import cell, harmless
 from reports.tables.json_results import to_json, write_json
-from reports.tables.motion import (
+from reports.tables.loads.motion import (
     beam_check_table,
     drive_table,
     motion_check_table,
     reactions_table,
 )
 from reports.tables.published import published_reactions_table, write_published_reactions
-from reports.tables.safety_factors import (
+from reports.tables.strength.safety_factors import (
     safety_factor_rows,
     safety_factors_table,
     write_safety_factors,

@@ -15,10 +15,10 @@ from fea.core.peak import Verdict
 from reports.data.decision import outcome
 from reports.data.results import Results
 from reports.format.words import MEANING, RESULTS, verdict_words
-from reports.plots.landing import landing_plot
+from reports.plots.strength.landing import landing_plot
 from reports.tables.json_results import to_json
-from reports.tables.landing import landing_table, write_landing
-from reports.tables.safety_factors import safety_factors_table, write_safety_factors
+from reports.tables.strength.landing import landing_table, write_landing
+from reports.tables.strength.safety_factors import safety_factors_table, write_safety_factors
 from reports.text.fitted_table import Column, fitted_table, fitting
 from reports.text.safety_factors import print_safety_factors
 from reports.text.summary import summary

@@ -126,8 +126,8 @@ def test_the_renderer_that_works_is_kept(monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 def test_importing_reports_loads_nothing_heavy() -> None:
-    names = "data.results tables.json_results tables.safety_factors text.safety_factors vtk.fields"
-    names += " page.page files format.file_names"
+    names = "data.results tables.json_results tables.strength.safety_factors text.safety_factors"
+    names += " vtk.fields page.page files format.file_names"
     code = (
         "import sys; from importlib import import_module; "
         f"[import_module('reports.' + n) for n in '{names}'.split()]; "

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import hypot
 
 from reports.data.results import Results, SingularZone
-from reports.format.csv import Cell
+from reports.format.files.csv import Cell
 from reports.format.numbers import DASH, engineering
 from reports.tables.table import Table
 

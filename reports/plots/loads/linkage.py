@@ -7,9 +7,9 @@ from itertools import chain
 import numpy as np
 
 from reports.data.results import Floats, LinkageMotion, Units
+from reports.format.drawing.svg_labels import label_offsets
 from reports.format.file_names import plot_name
 from reports.format.numbers import short
-from reports.format.svg_labels import label_offsets
 from reports.plots.spec import Plot, Spec, clipped, headed, rows
 
 BETWEEN = 5  # positions between the first and the last

@@ -18,7 +18,7 @@ from reports.data.results import (
     ReactionTable,
     Results,
 )
-from reports.format.csv import Cell
+from reports.format.files.csv import Cell
 from reports.tables.table import Table
 
 REACTIONS = ("case", "time", "connection", "body", "fx", "fy", "fz", "mx", "my", "mz")

@@ -9,7 +9,7 @@ from typing import Any
 
 from fea.checks.opinions import Opinion
 from reports.data.results import Results
-from reports.format.csv import Cell
+from reports.format.files.csv import Cell
 from reports.format.numbers import finite
 from reports.tables.table import Table
 

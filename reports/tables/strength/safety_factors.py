@@ -7,7 +7,7 @@ from pathlib import Path
 
 from reports.data.decision import limit, outcome, worst_first
 from reports.data.results import PinResult, Results
-from reports.format import markdown
+from reports.format.files import markdown
 from reports.format.numbers import DASH, engineering, finite, ratio, short
 from reports.format.ranges import (
     error_range,
@@ -17,8 +17,8 @@ from reports.format.ranges import (
     utilisation_range,
 )
 from reports.format.words import JOINT, MEANING, READING, headline, result_words, verdict_words
-from reports.tables.joint import lugs_word
 from reports.tables.published import published_maxima
+from reports.tables.stress.joint import lugs_word
 from reports.tables.table import Table
 
 Row = dict[str, str | float | None]

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from reports.data.results import LinkageMotion, Results
-from reports.format.csv import Cell
+from reports.format.files.csv import Cell
 from reports.tables.table import Table
 
 BODIES = ("x", "y", "angle_deg", "vx", "vy", "omega", "ax", "ay", "alpha")

@@ -7,7 +7,7 @@ from typing import Any
 
 from fea.fatigue.records import PointFatigue
 from reports.data.results import Fatigue, Results
-from reports.format.csv import Cell
+from reports.format.files.csv import Cell
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering, finite
 from reports.tables.table import Table

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, islice
 from pathlib import Path
 
-from reports.format.csv import Cell
+from reports.format.files.csv import Cell
 
 AT_ONCE = 100_000  # rows of a group
 

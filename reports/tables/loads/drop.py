@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from reports.data.drop import DropRecord
 from reports.data.results import Results
-from reports.format.csv import Cell
+from reports.format.files.csv import Cell
 from reports.format.grid import Grid
 from reports.format.numbers import engineering
 from reports.tables.table import Table

@@ -1,4 +1,4 @@
-"""Plots of the checks: a cantilever against beam theory, a joint against its closed form."""
+"""Plots of a cantilever against beam theory."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from fea.checks.records import WINDOW
-from reports.data.results import BeamCheck, MotionCheck, Units
+from reports.data.results import BeamCheck, Units
 from reports.format.file_names import plot_name
 from reports.format.numbers import engineering, short
-from reports.plots.spec import Abscissa, Panel, Plot, Spec, bands, curves, points
+from reports.plots.spec import Abscissa, Panel, Plot, Spec, bands, curves
 
 HEADROOM = 1.25  # over the beam's peak; higher values are cut off
 
@@ -67,32 +67,3 @@ def _cut_off(check: BeamCheck, units: Units) -> str:
         f"; the peak of the finite elements, {engineering(float(solid[worst]))} {units.stress} at "
         f"z = {short(float(check.z[worst]))} {units.length}, is cut off"
     )
-
-
-def motion_plot(check: MotionCheck, units: Units) -> Plot:
-    """A joint's speed and acceleration with their closed form and published points."""
-    speed = f"{units.length}/{units.time}"
-    panels = [
-        Panel(heading, {"linkage": ours, "closed form": exact}, over=_published(check, column))
-        for column, (heading, ours, exact) in enumerate(
-            (
-                (f"speed [{speed}]", check.speed, check.closed_form_speed),
-                (f"acceleration [{speed}²]", check.acceleration, check.closed_form_acceleration),
-            ),
-            start=1,
-        )
-    ]
-    title = f"{check.case}: speed and acceleration of joint {check.joint}"
-    caption = title + ("; diamonds: published" if check.published else "")
-    spec = curves(title, Abscissa(f"time [{units.time}]", check.time), panels)
-    return Plot(plot_name("motion-check"), caption, spec)
-
-
-def _published(check: MotionCheck, column: int) -> tuple[Spec, ...]:
-    if not check.published:
-        return ()
-    rows = [
-        {"x": row[0], "y": row[column], "text": f"published {short(row[column])}"}
-        for row in check.published
-    ]
-    return (points(rows, "published", "diamond"),)

@@ -7,7 +7,7 @@ from math import inf
 
 from reports.data.envelope import MOST_DETAILED, EnvelopeCell, case_names, envelope
 from reports.data.results import Results
-from reports.format.csv import Cell
+from reports.format.files.csv import Cell
 from reports.format.numbers import DASH, finite
 from reports.tables.table import Table
 

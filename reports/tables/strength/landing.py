@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from reports.data.results import LandingRange, Results
-from reports.format import markdown
-from reports.format.csv import Cell
+from reports.format.files import markdown
+from reports.format.files.csv import Cell
+from reports.format.grid import Grid
 from reports.format.numbers import engineering, short
 from reports.tables.table import Table
 
@@ -44,15 +45,14 @@ def write_landing(results: Results, directory: Path) -> None:
 def landing_tables(results: Results) -> str:
     """Markdown tables by case and velocity change: a row per pin, a column per impulse time."""
     parts = []
-    for title, head, body in landing_blocks(results):
+    for title, grid in landing_blocks(results):
         parts.append(f"## {markdown.escaped(title)}")
-        columns = (False, False, *[True] * (len(head) - 2))
-        parts.append(markdown.table(tuple(head), body, columns))
+        parts.append(markdown.table(grid.head, grid.body, grid.numeric))
     return "\n\n".join(parts)
 
 
-def landing_blocks(results: Results) -> list[tuple[str, list[str], list[list[str]]]]:
-    """(title, head, rows) by case and velocity change: a row per pin, a column per impulse time."""
+def landing_blocks(results: Results) -> list[tuple[str, Grid]]:
+    """Titles and tables by case and velocity change: a row per pin, a column per impulse time."""
     units, blocks = results.units, []
     for case in dict.fromkeys(r.case for r in results.landing):
         members = [r for r in results.landing if r.case == case]
@@ -62,7 +62,7 @@ def landing_blocks(results: Results) -> list[tuple[str, list[str], list[list[str
             head += [f"{short(members[0].impulse_time[i])} {units.time}" for i in here]
             body = [[r.pin, r.verdict, *(_shown(r, _factors(r)[i]) for i in here)] for r in members]
             title = f"{case}, velocity change {short(speed)} {units.length}/{units.time}"
-            blocks.append((title, head, body))
+            blocks.append((title, Grid(head, body, [False, False, *[True] * len(here)])))
     return blocks
 
 

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from reports.data.results import HandCheck, PinResult, Results, Units
-from reports.format import markdown
-from reports.format.csv import Cell
+from reports.format.files import markdown
+from reports.format.files.csv import Cell
 from reports.format.numbers import DASH, components, engineering, short
 from reports.format.ranges import factor_range
 from reports.format.words import verdict_words

@@ -7,7 +7,7 @@ from typing import Any
 
 from fea.joint.records import JointRange, JointResult
 from reports.data.results import PinResult, Results
-from reports.format.csv import Cell
+from reports.format.files.csv import Cell
 from reports.format.numbers import finite
 from reports.tables.table import Table
 

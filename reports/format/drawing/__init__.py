@@ -1,0 +1,1 @@
+"""Lines, labels and cameras of drawings."""

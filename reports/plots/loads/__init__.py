@@ -1,0 +1,1 @@
+"""Plots of the loads over a motion or a drop."""

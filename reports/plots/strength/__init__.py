@@ -1,0 +1,1 @@
+"""Plots of safety factors, fatigue and limit load."""

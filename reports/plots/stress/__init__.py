@@ -1,0 +1,1 @@
+"""Plots of stress along pins and over meshes."""

@@ -1,0 +1,1 @@
+"""Tables of stress: contact with lugs, singularities, CalculiX."""

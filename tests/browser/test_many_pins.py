@@ -1,0 +1,88 @@
+"""The report of many pins: what is folded is made when it is opened."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from benchmarks.page import many_pins
+from reports.page.page import AT_ONCE
+from tests.browser.conftest import run
+from tests.support.browser_page import errors, opened, view, wait
+
+pytestmark = pytest.mark.browser
+
+PINS = AT_ONCE + 2
+NODES_OF_A_PIN = 170  # drawing, headings, rows of the tables that are not folded
+NODES_OF_THE_REST = 600
+NODES = "return document.querySelectorAll('*').length;"
+FIGURES = "return document.querySelectorAll('figure.plot').length;"
+VIEWS = "return document.querySelectorAll('[data-view]').length;"
+
+
+@pytest.fixture(scope="module")
+def many_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("many")
+    study = folder / "many.toml"
+    study.write_text(many_pins(PINS), encoding="utf-8")
+    return run(study, folder / "out", "--vtk", "none")
+
+
+@pytest.fixture
+def page(browser: Any, many_run: Path) -> Any:
+    opened(browser, many_run)
+    return browser
+
+
+def test_folded_parts_are_text_at_first(page: Any) -> None:
+    assert page.execute_script(NODES) < PINS * NODES_OF_A_PIN + NODES_OF_THE_REST
+    assert page.execute_script(FIGURES) == page.execute_script(VIEWS) == 0
+    assert page.execute_script("return typeof window.vega;") == "undefined"
+    assert errors(page) == []
+
+
+def test_a_pin_that_is_opened_is_made_alone(page: Any) -> None:
+    section = page.find_elements("css selector", "section.pin")[-1]
+    for part in section.find_elements("css selector", "details.fold > summary"):
+        page.execute_script("arguments[0].click();", part)
+    for made, shown in (("figure.plot", ".drawn svg"), ("[data-view]", "[data-is=told]")):
+        within = wait(page, partial(section.find_elements, "css selector", made))[0]
+        page.execute_script("arguments[0].scrollIntoView();", within)
+        wait(page, partial(_text, within, shown))
+    assert page.execute_script(VIEWS) == 1
+    figures = section.find_elements("css selector", "figure.plot")
+    assert page.execute_script(FIGURES) == len(figures) == 3  # two cases, and refinement
+    assert errors(page) == []
+
+
+def _text(within: Any, selector: str) -> str:
+    return "".join(found.text for found in within.find_elements("css selector", selector))
+
+
+def test_all_parts_can_be_opened_at_once(page: Any) -> None:
+    page.find_element("id", "unfold").click()
+    assert page.execute_script(VIEWS) == PINS
+    assert page.execute_script(FIGURES) == 3 * PINS + 4  # bars and refinement of each case
+    assert not page.find_elements("css selector", "details > noscript")
+    assert view(page, "P000").is_displayed()
+    assert errors(page) == []
+
+
+def test_a_link_makes_what_it_leads_to(page: Any) -> None:
+    page.execute_script("document.querySelector('nav a[href=\"#reactions\"]').click();")
+    wait(page, lambda: page.find_elements("css selector", "#reactions tbody tr"))
+
+
+def test_without_scripts_the_parts_open_too(page: Any, many_run: Path) -> None:
+    page.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": True})
+    try:
+        opened(page, many_run)
+        summary = page.find_elements("css selector", "section.pin details.fold > summary")[1]
+        summary.click()
+        table = summary.find_element("xpath", "..//table")
+        assert table.is_displayed()
+    finally:
+        page.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": False})
