@@ -25,6 +25,7 @@ from pinstress.schema.tables import ReportTable
 from pinstress.strength.checked import Checked, checked, factor_assumption
 from pinstress.study.choices import select
 from pinstress.study.file import Study
+from pinstress.study.inputs import inputs
 from pinstress.study.published_tables import Published, read_published
 from reports.data import results as plain
 from reports.data.changes import Change
@@ -125,6 +126,7 @@ def _results(
         ),
         versions={name: version(name) for name in PACKAGES},
         study_text=study.text,
+        inputs=inputs(study),
         title_block=_title_block(table.report),
     )
 

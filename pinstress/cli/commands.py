@@ -10,7 +10,16 @@ from typing import TYPE_CHECKING
 
 import click
 
-from pinstress.cli.more_commands import completion, init, pdf_of, plots, schema, size, view
+from pinstress.cli.more_commands import (
+    compare_runs,
+    completion,
+    init,
+    pdf_of,
+    plots,
+    schema,
+    size,
+    view,
+)
 from pinstress.cli.shared import example, names, read_study
 from pinstress.processes import interrupts
 from pinstress.processes.environment import settle_surroundings
@@ -324,5 +333,5 @@ def check(study: Path) -> int:
     return NOT_REACHED if unheld else REACHED
 
 
-for _command in (init, pdf_of, plots, schema, size, view, completion):
+for _command in (compare_runs, init, pdf_of, plots, schema, size, view, completion):
     commands.add_command(_command)

@@ -85,6 +85,32 @@ def pdf_of(results: Path) -> None:
 
 
 @click.command(
+    "compare",
+    short_help="Show what differs between two runs.",
+    help=example("pinstress compare out/before out/after --out out/comparison")
+    + "\nPrint which inputs of two runs differ, and which maxima, safety factors, margins and "
+    "forces changed: beyond their errors, or within. A and B are folders that `pinstress run` "
+    "wrote; units may differ.",
+)
+@click.argument("first", metavar="A", type=click.Path(path_type=Path))
+@click.argument("second", metavar="B", type=click.Path(path_type=Path))
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    help="Also write comparison.html and comparison.md into this folder.",
+)
+@click.option(
+    "--pictures",
+    is_flag=True,
+    help="With --out: also draw the pins that changed most, side by side (slower).",
+)
+def compare_runs(first: Path, second: Path, out: Path | None, pictures: bool) -> None:
+    from pinstress.cli.compare import compare
+
+    compare(first, second, out, pictures)
+
+
+@click.command(
     short_help="Show a pin of an earlier run in a 3D window.",
     help=example("pinstress view out/grenier2008 --pin B --case landing")
     + "\nShow the von Mises stress of a pin of an earlier run at its governing instant, in a "

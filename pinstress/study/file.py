@@ -140,7 +140,7 @@ def parse_study(path: Path, text: str, located: bool = True) -> Study:
     lines = text if located else ""
     provenance: list[Sourced] = []
     long: list[Wrong] = []
-    raw = _unwrap(read_toml(path, text), "", provenance, long)
+    raw = unwrapped(read_toml(path, text), "", provenance, long)
     if long:
         raise study_error(path, lines, long)
     wrong = [
@@ -184,7 +184,7 @@ def _written(value: Any) -> str:
     return cut(value) if isinstance(value, str) else in_toml(value)
 
 
-def _unwrap(node: Any, key: str, found: list[Sourced], long: list[Wrong]) -> Any:
+def unwrapped(node: Any, key: str, found: list[Sourced], long: list[Wrong]) -> Any:
     """The same tree without provenance and notes, which go to `found`; of { value, provenance,
     note } the value remains. long: where keys go that are too long.
     """
@@ -196,7 +196,7 @@ def _unwrap(node: Any, key: str, found: list[Sourced], long: list[Wrong]) -> Any
                 )
             )
             return []
-        return [_unwrap(v, f"{key}[{i}]", found, long) for i, v in enumerate(node, 1)]
+        return [unwrapped(v, f"{key}[{i}]", found, long) for i, v in enumerate(node, 1)]
     if not isinstance(node, dict):
         return node
     if isinstance(node.get("provenance"), str):
@@ -211,4 +211,4 @@ def _unwrap(node: Any, key: str, found: list[Sourced], long: list[Wrong]) -> Any
         for k in node if len(k) > LONGEST_KEY
     ]  # fmt: skip
     inner = {k: f"{key}.{k}" if key else k for k in node if len(k) <= LONGEST_KEY}
-    return {k: _unwrap(node[k], place, found, long) for k, place in inner.items()}
+    return {k: unwrapped(node[k], place, found, long) for k, place in inner.items()}

@@ -243,6 +243,7 @@ class Results:
     assumptions: tuple[str, ...] = ()
     versions: dict[str, str] = field(default_factory=dict)
     study_text: str = ""
+    inputs: dict[str, str] = field(default_factory=dict)
     title_block: TitleBlock = field(default_factory=TitleBlock)
 
     def __getitem__(self, row: tuple[str, str]) -> PinResult:

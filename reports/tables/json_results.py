@@ -44,6 +44,7 @@ def to_json(results: Results) -> dict[str, Any]:
         "loads": [_loads(results, table) for table in results.reactions],
         "drops": [_drop(d) for d in results.drops],
         "provenance": [asdict(entry) for entry in results.provenance],
+        "inputs": results.inputs,
     }
 
 

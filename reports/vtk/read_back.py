@@ -87,6 +87,7 @@ def open_results(directory: Path) -> Opened:
         content = json.loads(read_regular(directory / "results.json", LARGEST))
     except FileError as error:
         raise ValueError(f"its results.json {error}") from None
-    if not str(content.get("schema", "")).startswith("pinstress-results/"):
+    schema = content.get("schema") if isinstance(content, dict) else None
+    if not str(schema).startswith("pinstress-results/"):
         raise ValueError("its results.json was not written by pinstress")
     return Opened(directory, content)

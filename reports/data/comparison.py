@@ -1,0 +1,214 @@
+"""Two runs compared, from their results.json: which inputs differ, which results changed, and
+whether by more than their errors.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from reports.data.decision import FAILS, NOT_DECIDED, YIELDS
+
+SAME = 1e-9  # relative: what differs by less has not changed
+DECISION = "decision changed"
+BEYOND = "changed beyond the errors"
+WITHIN = "within the errors"
+UNCHANGED = "unchanged"
+NO_NUMBER = "not solved"
+ONLY = "only in A", "only in B"
+KINDS = DECISION, BEYOND, *ONLY, NO_NUMBER, WITHIN, UNCHANGED  # in the order of the table
+
+
+@dataclass(frozen=True)
+class Side:
+    """A pin in a case of one of the runs: the maximum and its range by its error, in the units of
+    the first run, the safety factor, and what was decided. None where there is no number.
+    """
+
+    maximum: float | None
+    low: float | None
+    high: float | None
+    factor: float | None
+    outcome: str
+    model: str
+
+
+@dataclass(frozen=True)
+class RowPair:
+    """A pin in a case of both runs, None where it is not in one."""
+
+    pin: str
+    case: str
+    first: Side | None
+    second: Side | None
+
+    @property
+    def kind(self) -> str:
+        """One of KINDS."""
+        a, b = self.first, self.second
+        if a is None or b is None:
+            return ONLY[a is None]
+        if a.outcome != b.outcome:
+            return DECISION
+        if a.maximum is None or b.maximum is None:
+            return UNCHANGED if a.maximum == b.maximum else NO_NUMBER
+        if _same(a.maximum, b.maximum):
+            return UNCHANGED
+        apart = _above(a.low, b.high) or _above(b.low, a.high)
+        return BEYOND if apart else WITHIN
+
+    @property
+    def change(self) -> float | None:
+        """Of the maximum, relative to the first run's."""
+        a, b = self.first, self.second
+        if a is None or b is None or not a.maximum or b.maximum is None:
+            return None
+        return b.maximum / a.maximum - 1.0
+
+
+@dataclass(frozen=True)
+class ValuePair:
+    """Something else that differs, by its names; None where it is not in a run."""
+
+    names: tuple[str, ...]
+    first: Any
+    second: Any
+
+    @property
+    def change(self) -> float | None:
+        """Relative to the first, of numbers."""
+        if not self.first or self.second is None:
+            return None
+        return float(self.second) / float(self.first) - 1.0
+
+
+@dataclass(frozen=True)
+class RunComparison:
+    """folders, titles and stress and force units of both; forces in those of the first. inputs:
+    values that differ by key, None without those of a run, which an earlier version wrote. forces:
+    largest ones by case and connection. margins: of each pin the check that governs, and its
+    margin.
+    """
+
+    folders: tuple[str, str]
+    titles: tuple[str, str]
+    stress: str
+    force: str
+    rows: tuple[RowPair, ...]
+    inputs: tuple[ValuePair, ...] | None
+    forces: tuple[ValuePair, ...]
+    margins: tuple[ValuePair, ...]
+    versions: tuple[ValuePair, ...]
+
+    def count(self, kind: str) -> int:
+        """How many rows are of a kind."""
+        return sum(row.kind == kind for row in self.rows)
+
+
+def compared(
+    first: Mapping[str, Any],
+    second: Mapping[str, Any],
+    folders: tuple[str, str],
+    units: tuple[float, float] = (1.0, 1.0),
+) -> RunComparison:
+    """Of what two results.json contain. units: stress and force of the second, in the first's."""
+    stress, force = units
+    both = first, second
+    a, b = ({(p["pin"], p["case"]): p for p in run["pins"]} for run in both)
+    rows = [
+        RowPair(*row, _side(a.get(row), 1.0), _side(b.get(row), stress))
+        for row in dict.fromkeys((*a, *b))
+    ]
+    known = all("inputs" in run for run in both)
+    return RunComparison(
+        folders=folders,
+        titles=(first["title"], second["title"]),
+        stress=first["units"]["stress"],
+        force=first["units"]["force"],
+        rows=tuple(sorted(rows, key=_place)),
+        inputs=_of_keys(first, second, "inputs") if known else None,
+        forces=_by_change(_differing(_forces(first, 1.0), _forces(second, force))),
+        margins=_differing(_margins(first), _margins(second)),
+        versions=_of_keys(first, second, "versions"),
+    )
+
+
+def _side(row: Mapping[str, Any] | None, unit: float) -> Side | None:
+    if row is None:
+        return None
+    value, error = row["max_von_mises"], row["error_estimate"]
+    low, high = row.get("max_von_mises_interval") or (None, None)
+    if low is None and value is not None and error is not None:
+        low, high = value - error, value + error
+    value, low, high = (None if x is None else x * unit for x in (value, low, high))
+    return Side(value, low, high, row["safety_factor"], row["outcome"], row["model"])
+
+
+def _same(a: float, b: float) -> bool:
+    return math.isclose(a, b, rel_tol=SAME)
+
+
+def _above(low: float | None, high: float | None) -> bool:
+    return low is not None and high is not None and low > high
+
+
+def _place(row: RowPair) -> tuple[int, bool, float]:
+    """The most important first."""
+    change = row.change
+    worse = row.second is not None and row.second.outcome in (FAILS, YIELDS, NOT_DECIDED)
+    size = 0.0 if change is None else -abs(math.log(max(1.0 + change, 1e-300)))
+    return KINDS.index(row.kind), not worse, size
+
+
+def _of_keys(
+    first: Mapping[str, Any], second: Mapping[str, Any], part: str
+) -> tuple[ValuePair, ...]:
+    return _differing(_by_key(first[part]), _by_key(second[part]))
+
+
+def _by_key(values: Mapping[str, Any]) -> dict[tuple[str, ...], Any]:
+    return {(key,): value for key, value in values.items()}
+
+
+def _differing(
+    first: Mapping[tuple[str, ...], Any], second: Mapping[tuple[str, ...], Any]
+) -> tuple[ValuePair, ...]:
+    pairs = (
+        ValuePair(names, first.get(names), second.get(names))
+        for names in dict.fromkeys((*first, *second))
+    )
+    return tuple(pair for pair in pairs if not _equal(pair.first, pair.second))
+
+
+def _equal(a: Any, b: Any) -> bool:
+    numbers = isinstance(a, float) and isinstance(b, float)
+    return _same(a, b) if numbers else bool(a == b)
+
+
+def _by_change(pairs: Iterable[ValuePair]) -> tuple[ValuePair, ...]:
+    def size(pair: ValuePair) -> float:
+        return math.inf if pair.change is None else abs(pair.change)
+
+    return tuple(sorted(pairs, key=size, reverse=True))
+
+
+def _forces(run: Mapping[str, Any], unit: float) -> dict[tuple[str, ...], float]:
+    return {
+        (table["case"], force["connection"]): float(force["force"]) * unit
+        for table in run["loads"]
+        for force in table["largest_forces"]
+        if force["force"] is not None
+    }
+
+
+def _margins(run: Mapping[str, Any]) -> dict[tuple[str, ...], tuple[float, str]]:
+    """By pin, the least margin and its check; to six digits, which round-off does not change."""
+    least: dict[tuple[str, ...], tuple[float, str]] = {}
+    for row in run.get("margins", ()):
+        if row["margin"] is None:
+            continue
+        here = float(f"{row['margin']:.6g}"), f"{row['method']}, {row['case']}"
+        least[(row["pin"],)] = min(here, least.get((row["pin"],), here))
+    return least

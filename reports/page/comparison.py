@@ -1,0 +1,50 @@
+"""comparison.html: two runs side by side, in one offline file."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from dataclasses import dataclass
+from pathlib import Path
+
+from reports.data.comparison import RunComparison
+from reports.format.template import environment
+from reports.plots.comparison import comparison_plot
+from reports.plots.draw import svg
+from reports.plots.theme import on_paper
+from reports.text.comparison import headline, sections
+
+
+@dataclass(frozen=True)
+class PicturePair:
+    """Of a pin in a case, what both runs show of it: PNG files, None where there is none."""
+
+    title: str
+    files: tuple[Path | None, Path | None]
+
+    @property
+    def shown(self) -> list[str]:
+        """Both as data of the page, empty for none."""
+        return [
+            "" if path is None else b64encode(path.read_bytes()).decode("ascii")
+            for path in self.files
+        ]
+
+
+def write_comparison(
+    found: RunComparison, path: Path, pictures: tuple[PicturePair, ...] = ()
+) -> None:
+    """Write the page."""
+    plot = comparison_plot(found)
+    text = (
+        environment()
+        .get_template("comparison.html.j2")
+        .render(
+            found=found,
+            headline=headline(found),
+            sections=[s for s in sections(found) if s[1].body or s[2]],
+            plot=svg({**plot.spec, "config": on_paper()}) if plot else "",
+            caption=plot.caption if plot else "",
+            pictures=pictures,
+        )
+    )
+    path.write_text(text, encoding="utf-8", newline="\n")

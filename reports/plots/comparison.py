@@ -1,0 +1,44 @@
+"""The maxima of two runs with their errors, row by row."""
+
+from __future__ import annotations
+
+from reports.data.comparison import RunComparison
+from reports.plots.spec import Plot, Spec, clipped, rows
+from reports.tables.comparison import shown
+
+NAME = "comparison"
+MOST = 40  # rows
+
+
+def comparison_plot(found: RunComparison) -> Plot | None:
+    """Points with ranges on a logarithmic axis; None without two numbers to compare."""
+    data: list[Spec] = []
+    for pair in shown(found)[:MOST]:
+        for run, side in zip("AB", (pair.first, pair.second), strict=True):
+            if side is None or not side.maximum:
+                continue
+            ends = side.low or side.maximum, side.high or side.maximum
+            low = max(ends[0], 1e-3 * side.maximum)
+            row = f"{clipped(pair.pin)}, {clipped(pair.case)}"
+            data.append({"row": row, "run": run, "x": side.maximum, "low": low, "high": ends[1]})
+    if not data:
+        return None
+    title = f"maximum von Mises stress [{found.stress}]"
+    x = {"field": "low", "type": "quantitative", "title": title,
+         "scale": {"type": "log", "nice": False, "padding": 15}}  # fmt: skip
+    y = {"field": "row", "type": "nominal", "title": None, "sort": None}
+    beside = {"field": "run", "type": "nominal"}
+    colour = {"field": "run", "type": "nominal", "title": None, "scale": {"domain": ["A", "B"]}}
+    common = {"y": y, "yOffset": beside, "color": colour}
+    spec = {
+        "data": rows(data),
+        "width": 420,
+        "height": {"step": 12},
+        "layer": [
+            {"mark": {"type": "rule", "size": 2}, "encoding": {"x": x, "x2": {"field": "high"},
+                                                               **common}},
+            {"mark": {"type": "point", "filled": True, "size": 45},
+             "encoding": {"x": {**x, "field": "x"}, "shape": colour, **common}},
+        ],
+    }  # fmt: skip
+    return Plot(NAME, "Maxima of both runs with their errors.", spec)

@@ -1,0 +1,99 @@
+"""Tables of two runs side by side."""
+
+from __future__ import annotations
+
+from reports.data.comparison import NO_NUMBER, UNCHANGED, RowPair, RunComparison, Side, ValuePair
+from reports.format.grid import Grid
+from reports.format.numbers import DASH, engineering
+
+MOST = 30  # forces shown
+CHANGES = 3  # digits
+
+
+def rows_grid(found: RunComparison) -> Grid:
+    """Pins and cases, the important changes first; those without any are left out."""
+    head = ["pin", "case", f"max von Mises A [{found.stress}]", "max von Mises B", "change",
+            "factor A", "factor B", "result A", "result B", "change is"]  # fmt: skip
+    body = [
+        [
+            row.pin,
+            row.case,
+            *(_range(side) for side in (row.first, row.second)),
+            _per_cent(row.change),
+            *(DASH if s is None else engineering(s.factor) for s in (row.first, row.second)),
+            *(DASH if s is None else s.outcome for s in (row.first, row.second)),
+            row.kind,
+        ]
+        for row in shown(found)
+    ]
+    return Grid(head, body, [False, False, *[True] * 5, False, False, False])
+
+
+def shown(found: RunComparison) -> list[RowPair]:
+    """Rows with a change."""
+    return [row for row in found.rows if row.kind != UNCHANGED]
+
+
+def inputs_grid(found: RunComparison) -> Grid:
+    """Values that differ, by key."""
+    return Grid(["input", "A", "B"], _texts(found.inputs or ()), [False, False, False])
+
+
+def versions_grid(found: RunComparison) -> Grid:
+    """Programs whose versions differ."""
+    return Grid(["program", "A", "B"], _texts(found.versions), [False, False, False])
+
+
+def forces_grid(found: RunComparison) -> Grid:
+    """Largest forces that differ, the largest changes first."""
+    body = [
+        [*pair.names, engineering(pair.first), engineering(pair.second), _per_cent(pair.change)]
+        for pair in found.forces[:MOST]
+    ]
+    head = ["case", "connection", f"largest force A [{found.force}]", "B", "change"]
+    return Grid(head, body, [False, False, True, True, True])
+
+
+def margins_grid(found: RunComparison) -> Grid:
+    """Least margins of safety that differ."""
+    body = []
+    for pair in found.margins:
+        sides = [pair.first or (None, DASH), pair.second or (None, DASH)]
+        (a, check_a), (b, check_b) = sides
+        body.append([*pair.names, _signed(a), check_a, _signed(b), check_b])
+    head = ["pin", "least margin A", "check A", "least margin B", "check B"]
+    return Grid(head, body, [False, True, False, True, False])
+
+
+def left_out(found: RunComparison) -> str:
+    """How many forces have no room."""
+    more = len(found.forces) - MOST
+    return f"{more} more forces differ by less." if more > 0 else ""
+
+
+def _texts(pairs: tuple[ValuePair, ...]) -> list[list[str]]:
+    return [
+        [*pair.names, *(DASH if x is None else str(x) for x in (pair.first, pair.second))]
+        for pair in pairs
+    ]
+
+
+def _range(side: Side | None) -> str:
+    if side is None:
+        return DASH
+    if side.maximum is None:
+        return NO_NUMBER
+    if side.low is None or side.high is None:
+        return engineering(side.maximum)
+    ends = (engineering(end, CHANGES) for end in (side.low, side.high))
+    return f"{engineering(side.maximum)} ({' to '.join(ends)})"
+
+
+def _per_cent(change: float | None) -> str:
+    return DASH if change is None else f"{100.0 * change:+.3g} %"
+
+
+def _signed(margin: float | None) -> str:
+    if margin is None:
+        return DASH
+    return f"{'+' if margin > 0.0 else ''}{engineering(margin, CHANGES)}"

@@ -1,0 +1,89 @@
+"""Two runs compared, on the terminal and as Markdown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from reports.data.comparison import KINDS, RunComparison
+from reports.format.files import markdown
+from reports.format.grid import Grid
+from reports.tables.comparison import (
+    forces_grid,
+    inputs_grid,
+    left_out,
+    margins_grid,
+    rows_grid,
+    versions_grid,
+)
+from reports.text.fitted_table import Column, fitted_table
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+RANKS = 0, 0, 2, 1, 0, 3, 3, 4, 4, 0  # of the columns of rows: which are left out first
+READING = (
+    "A change is beyond the errors if the ranges of the two maxima, by their errors, do not "
+    "overlap; the range over the joint is not part of them. Similar runs have similar errors, so a "
+    "change within the errors may still be real."
+)
+NO_INPUTS = "One of the runs is of an earlier version, which did not keep the inputs."
+SAME_INPUTS = "The inputs are the same."
+
+
+def headline(found: RunComparison) -> str:
+    """How many rows changed, and how."""
+    counts = [(found.count(kind), kind) for kind in KINDS]
+    said = ", ".join(f"{n} {kind}" for n, kind in counts if n)
+    return f"{len(found.rows)} rows: {said}." if found.rows else "Neither run has pins."
+
+
+def sections(found: RunComparison) -> Iterator[tuple[str, Grid, str]]:
+    """Title, table and remark of all that differs."""
+    remark = NO_INPUTS if found.inputs is None else "" if found.inputs else SAME_INPUTS
+    yield "Inputs that differ", inputs_grid(found), remark
+    yield "Safety factors", rows_grid(found), READING
+    yield "Margins of safety that differ", margins_grid(found), ""
+    yield "Forces that differ", forces_grid(found), left_out(found)
+    yield "Versions that differ", versions_grid(found), ""
+
+
+def print_comparison(found: RunComparison, console: Console) -> None:
+    """What differs, the inputs first."""
+    from rich.text import Text
+
+    for letter, folder, title in zip("AB", found.folders, found.titles, strict=True):
+        console.print(Text(f"{letter}: {folder}, {title}"))
+    for title, grid, remark in sections(found):
+        if not grid.body and not remark:
+            continue
+        console.print(Text(title, "bold"))
+        if grid.body:
+            console.print(fitted_table(_columns(grid), console.width))
+        if remark:
+            console.print(Text(remark))
+    console.print(Text(headline(found), "bold"))
+
+
+def _columns(grid: Grid) -> list[Column]:
+    ranks = RANKS if len(grid.head) == len(RANKS) else (0,) * len(grid.head)
+    cells = zip(*grid.body, strict=True)
+    parts = zip(grid.head, cells, ranks, grid.numeric, strict=True)
+    return [Column(head, each, rank, numeric) for head, each, rank, numeric in parts]
+
+
+def write_markdown(found: RunComparison, path: Path) -> None:
+    """The same as Markdown."""
+    parts = ["# Two runs compared"]
+    for letter, folder, title in zip("AB", found.folders, found.titles, strict=True):
+        parts.append(f"{letter}: {markdown.escaped(folder)}, {markdown.escaped(title)}")
+    parts.append(headline(found))
+    for title, grid, remark in sections(found):
+        if grid.body or remark:
+            parts.append(f"## {title}")
+        if grid.body:
+            parts.append(markdown.table(grid.head, grid.body, grid.numeric))
+        if remark:
+            parts.append(remark)
+    path.write_text("\n\n".join(parts) + "\n", encoding="utf-8", newline="\n")

@@ -1,0 +1,94 @@
+"""`pinstress compare`, and the inputs that runs keep for it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from pinstress import load_study
+from pinstress.cli.commands import run_command_line
+from pinstress.study.inputs import inputs
+from tests.conftest import ROOT
+
+ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()
+
+
+def test_inputs_are_all_values_by_key_and_files_by_hash(tmp_path: Path) -> None:
+    path = tmp_path / "study.toml"
+    path.write_text(
+        'title = "T"\nunits = "mm-N-s"\n[material.m]\nyoungs_modulus = 210000\n'
+        'poisson_ratio = 0.3\nyield_strength = { value = 355, provenance = "assumed" }\n'
+        '[pin.P]\nmaterial = "m"\nclamp = ["start"]\n'
+        "profile = [{ length = 20, diameter = 10 }, "
+        '{ length = 20, diameter = 10, connection = "C" }]\n'
+        '[case.c]\nkind = "given"\ntable = "forces.csv"\n'
+    )
+    table = tmp_path / "forces.csv"
+    table.write_text("connection,fx,fy,fz\nC,100,0,0\n")
+    found = inputs(load_study(path))
+    assert found["material.m.yield_strength"] == "355"
+    assert found["pin.P.profile[2].diameter"] == "10"
+    assert "title" not in found
+    before = found["case.c.table"]
+    assert before.startswith("forces.csv (SHA-256 ")
+    table.write_text("connection,fx,fy,fz\nC,200,0,0\n")
+    assert inputs(load_study(path))["case.c.table"] != before
+
+
+@pytest.fixture(scope="module")
+def folders(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    """Runs of a pin as it ships, and thicker."""
+    base = tmp_path_factory.mktemp("runs")
+    out = []
+    for name, text in (("a", ONE_PIN), ("b", ONE_PIN.replace("diameter = 2.0", "diameter = 2.4"))):
+        assert text != ONE_PIN or name == "a"
+        (base / f"{name}.toml").write_text(text)
+        folder = base / name
+        assert run_command_line(["run", str(base / f"{name}.toml"), "--quiet", "--no-cache",
+                                 "--tolerance", "0.2", "--out", str(folder)]) in (0, 1)  # fmt: skip
+        out.append(folder)
+    return out[0], out[1]
+
+
+def test_two_runs_side_by_side(
+    folders: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    a, b = map(str, folders)
+    assert run_command_line(["compare", a, b, "--out", str(tmp_path / "out")]) == 0
+    said = capsys.readouterr().out
+    assert "diameter" in said
+    assert {p.name for p in (tmp_path / "out").iterdir()} >= {"comparison.html", "comparison.md"}
+    assert run_command_line(["compare", a, b, "--out", str(tmp_path / "out")]) == 0  # replaced
+
+
+def test_a_run_and_itself(folders: tuple[Path, Path], capsys: pytest.CaptureFixture[str]) -> None:
+    assert run_command_line(["compare", str(folders[0]), str(folders[0])]) == 0
+    assert "The inputs are the same." in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("content", [None, "{", "[]", '{"schema": "pinstress-results/1"}', "null"])
+def test_what_is_no_run_is_refused(
+    folders: tuple[Path, Path],
+    content: str | None,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    if content is not None:
+        (tmp_path / "results.json").write_text(content)
+    assert run_command_line(["compare", str(folders[0]), str(tmp_path)]) == 2
+    assert str(tmp_path) in capsys.readouterr().err
+
+
+def test_pictures_need_a_folder(
+    folders: tuple[Path, Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    a, b = map(str, folders)
+    assert run_command_line(["compare", a, b, "--pictures"]) == 2
+    assert "--out" in capsys.readouterr().err
+
+
+def test_results_keep_the_inputs(folders: tuple[Path, Path]) -> None:
+    kept = json.loads((folders[0] / "results.json").read_text())["inputs"]
+    assert kept == inputs(load_study(folders[0].parent / "a.toml"))

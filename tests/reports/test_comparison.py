@@ -1,0 +1,111 @@
+"""Two runs compared: what differs, and whether by more than the errors."""
+
+from __future__ import annotations
+
+import copy
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from reports.data.comparison import (
+    BEYOND,
+    DECISION,
+    ONLY,
+    UNCHANGED,
+    WITHIN,
+    RunComparison,
+    compared,
+)
+from reports.page.comparison import PicturePair, write_comparison
+from reports.plots.comparison import comparison_plot
+from reports.tables.comparison import inputs_grid, rows_grid
+from reports.tables.json_results import to_json
+from reports.text.comparison import headline, write_markdown
+from tests.support.made_up_run import make_results
+
+
+@pytest.fixture(scope="module")
+def run() -> dict[str, Any]:
+    made = make_results()
+    return to_json(replace(made, inputs={"pin.A.fillet": "3", "units": "in-lbf-s"}))
+
+
+def changed(run: dict[str, Any], **row: object) -> dict[str, Any]:
+    other = copy.deepcopy(run)
+    other["pins"][0] |= row
+    return other
+
+
+def compare(a: dict[str, Any], b: dict[str, Any], **more: Any) -> RunComparison:
+    return compared(a, b, ("out/a", "out/b"), **more)
+
+
+def test_the_same_run_has_no_change(run: dict[str, Any]) -> None:
+    found = compare(run, run)
+    assert {row.kind for row in found.rows} == {UNCHANGED}
+    assert (found.inputs, found.forces, found.margins, found.versions) == ((), (), (), ())
+    assert comparison_plot(found) is None
+
+
+def test_a_change_is_beyond_the_errors_or_within(run: dict[str, Any]) -> None:
+    """Ranges of 100 to 120 and of the other maximum with its error."""
+    base = changed(run, max_von_mises=110.0, error_estimate=10.0, max_von_mises_interval=None)
+    for value, error, kind in [(131.0, 10.0, BEYOND), (131.0, 12.0, WITHIN), (98.0, 1.0, BEYOND)]:
+        other = changed(base, max_von_mises=value, error_estimate=error)
+        first = compare(base, other).rows[0]
+        assert first.kind == kind
+        assert first.change == pytest.approx(value / 110.0 - 1.0)
+        assert compare(other, base).rows[0].kind == kind
+    excluded = changed(base, max_von_mises=131.0, max_von_mises_interval=[119.0, 200.0])
+    assert compare(base, excluded).rows[0].kind == WITHIN
+
+
+def test_decisions_and_missing_rows_come_first(run: dict[str, Any]) -> None:
+    other = changed(run, outcome="fails" if run["pins"][0]["outcome"] != "fails" else "safe")
+    other["pins"][3] |= {"pin": "new"}
+    kinds = [row.kind for row in compare(run, other).rows]
+    assert kinds[:3] == [DECISION, ONLY[0], ONLY[1]]
+    assert set(kinds[3:]) == {UNCHANGED}
+
+
+def test_other_units_are_no_change(run: dict[str, Any]) -> None:
+    other, stress, force = copy.deepcopy(run), 6894.757, 4.448222
+    for pin in other["pins"]:
+        for key in ("max_von_mises", "error_estimate"):
+            pin[key] = None if pin[key] is None else pin[key] * stress
+        if pin["max_von_mises_interval"]:
+            pin["max_von_mises_interval"] = [x * stress for x in pin["max_von_mises_interval"]]
+    for table in other["loads"]:
+        for largest in table["largest_forces"]:
+            largest["force"] = None if largest["force"] is None else largest["force"] * force
+    found = compare(run, other, units=(1.0 / stress, 1.0 / force))
+    assert {row.kind for row in found.rows} == {UNCHANGED}
+    assert found.forces == ()
+
+
+def test_inputs_that_differ_by_key(run: dict[str, Any]) -> None:
+    other = copy.deepcopy(run)
+    other["inputs"] = {"pin.A.fillet": "4", "units": "in-lbf-s", "pin.A.weight": "2"}
+    grid = inputs_grid(compare(run, other))
+    assert grid.body == [["pin.A.fillet", "3", "4"], ["pin.A.weight", "–", "2"]]
+    del other["inputs"]
+    assert compare(run, other).inputs is None
+
+
+def test_pages_escape_what_studies_say(run: dict[str, Any], tmp_path: Path) -> None:
+    odd = "<b>|pin*"
+    other = changed(run, pin=odd, max_von_mises=1.0)
+    found = compare(run, other)
+    (tmp_path / "one.png").write_bytes(b"picture")
+    picture = PicturePair(f"Pin {odd}", (tmp_path / "one.png", None))
+    write_comparison(found, tmp_path / "page.html", (picture,))
+    write_markdown(found, tmp_path / "page.md")
+    page = (tmp_path / "page.html").read_text()
+    assert odd not in page
+    assert "&lt;b&gt;|pin*" in page
+    assert page.count("data:image/png") == 1
+    assert "\\|pin\\*" in (tmp_path / "page.md").read_text()
+    assert headline(found) in page
+    assert len(rows_grid(found).body) == 2
