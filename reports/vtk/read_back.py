@@ -90,4 +90,15 @@ def open_results(directory: Path) -> Opened:
     schema = content.get("schema") if isinstance(content, dict) else None
     if not str(schema).startswith("pinstress-results/"):
         raise ValueError("its results.json was not written by pinstress")
-    return Opened(directory, content)
+    return Opened(directory, _printable(content))
+
+
+def _printable(node: Any) -> Any:
+    """Without characters that steer a terminal, which another program may have written."""
+    if isinstance(node, dict):
+        return {_printable(key): _printable(value) for key, value in node.items()}
+    if isinstance(node, list):
+        return [_printable(value) for value in node]
+    if isinstance(node, str):
+        return "".join(c if c.isprintable() or c == "\n" else "\ufffd" for c in node)
+    return node

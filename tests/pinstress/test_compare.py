@@ -81,6 +81,17 @@ def test_what_is_no_run_is_refused(
     assert str(tmp_path) in capsys.readouterr().err
 
 
+def test_a_foreign_folder_does_not_steer_the_terminal(
+    folders: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    content = json.loads((folders[0] / "results.json").read_text())
+    content["title"] = content["pins"][0]["pin"] = "\x1b[2J\x9b31m\u202e"
+    (tmp_path / "results.json").write_text(json.dumps(content))
+    assert run_command_line(["compare", str(folders[0]), str(tmp_path)]) == 0
+    said = capsys.readouterr().out
+    assert not {"\x1b", "\x9b", "\u202e"} & set(said)
+
+
 def test_pictures_need_a_folder(
     folders: tuple[Path, Path], capsys: pytest.CaptureFixture[str]
 ) -> None:
