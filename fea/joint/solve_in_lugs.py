@@ -257,7 +257,8 @@ class _Contact:
         missed = self._patterns.left_out(self.model.waves(contact.contact))
         peak = with_cells(_named(self.model, solution.peak), known.cells + missed, asked)
         peak = replace(peak, governing=links, imbalance=_imbalance(self.model, case))
-        joint = joint_result(contact, known.range(peak.max_von_mises or 0.0))
+        over = known.range(peak.max_von_mises or 0.0)
+        joint = joint_result(contact, over, known.left_out)
         (pressed,) = contact.contact
         pressure = CellPressure(contact.bands, pressed.pressure, pressed.angle)
         found = replace(_at_all_samples(solution, self.press(case)), peak=peak)

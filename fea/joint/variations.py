@@ -35,7 +35,8 @@ ROUGHLY = 1e-2  # of the largest amplitude: what a pattern must add to that of a
 class Comparison:
     """At one instant, on the first mesh. largest: stress, Pa; interval: of it, Pa, where what is
     excluded governs; cells: by how much, relative, it may differ for the cells. links: the loads.
-    over: what is changed of the joint, maxima relative to that of the joint as given.
+    over: what is changed of the joint, maxima relative to that of the joint as given; left_out:
+    what could not be, and why.
     """
 
     largest: float
@@ -43,6 +44,7 @@ class Comparison:
     cells: float
     links: PinLoads
     over: tuple[Variation, ...]
+    left_out: str = ""
 
     def fine(self, material: Material, asked: Asked) -> bool:
         """Whether finer cells would not help: they take little of the tolerance, or of what is
@@ -75,7 +77,7 @@ def compare(
     if not at:
         return ()
     exact = _on_both_cells(model, at)
-    over, varied = _varied(model, at)
+    over, varied, missing = _varied(model, at)
     parts = [(waves, NEGLIGIBLE) for both in exact for waves in both]
     parts += [(waves, ROUGHLY) for waves in itertools.chain(*varied)]
     patterns = model.patterns(parts, known)
@@ -89,7 +91,7 @@ def compare(
         model.pin, model.material, (), (loads,), singular, 0, 1.0, (), model.first
     )
     maxima, out = HarmonicAnswer(section, singular).maxima(loads), []
-    for contact, names, own in zip(at, over, each, strict=True):
+    for contact, names, own, why in zip(at, over, each, missing, strict=True):
         first = float(maxima[0]) or 1.0  # nothing loads the pin
         (_, coarse, *others), maxima = np.split(maxima, [len(own)])
         like = float(coarse) or 1.0  # on the same cells as the others
@@ -98,7 +100,9 @@ def compare(
         )
         cells = abs(float(coarse) / first - 1.0) if coarse else 0.0
         interval = harmonic_result(section, singular, own[0]).interval or (first, first)
-        out.append(Comparison(first, interval, cells, contact.loads.links, ratios))
+        left_out = f"not included: {'; '.join(why)}" if why else ""
+        links = contact.loads.links
+        out.append(Comparison(first, interval, cells, links, ratios, left_out))
     return tuple(out)
 
 
@@ -119,17 +123,22 @@ def _coarse(model: JointModel, links: PinLoads, problem: ContactProblem, belongs
 
 def _varied(
     model: JointModel, at: Sequence[JointContact]
-) -> tuple[list[list[Variation]], list[list[Floats]]]:
-    """Of each contact, what is changed of the joint, and the harmonics of contact then."""
+) -> tuple[list[list[Variation]], list[list[Floats]], list[list[str]]]:
+    """Of each contact, what is changed of the joint, the harmonics of contact then, and what could
+    not be changed: lugs that are free to tilt may leave a couple on the pin, and loads may be lost
+    in a large clearance.
+    """
     names: list[list[Variation]] = [[] for _ in at]
     found: list[list[Floats]] = [[] for _ in at]
+    missing: list[list[str]] = [[] for _ in at]
     for change in changes(model.whole, model.lugs):
         other = model.varied(change.lugs, change.softness)
         cells = on_coarser_cells(other)
-        for contact, over, waves in zip(at, names, found, strict=True):
+        for contact, over, waves, why in zip(at, names, found, missing, strict=True):
             try:
                 waves.append(_coarse(other, contact.loads.links, *cells))
-            except SolveError:
-                continue  # a lug that is free to tilt may leave a couple on the pin
+            except SolveError as error:
+                why.append(f"{change.what} {change.value} ({error})")
+                continue
             over.append(Variation(change.what, change.value, 1.0, change.length))
-    return names, found
+    return names, found, missing

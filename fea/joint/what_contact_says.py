@@ -11,8 +11,8 @@ from fea.joint.solve_joint import JointContact
 STATIONS = 61  # along the pin, besides the ends of rings
 
 
-def joint_result(contact: JointContact, over: JointRange | None) -> JointResult:
-    """Of a contact at a single instant."""
+def joint_result(contact: JointContact, over: JointRange | None, remark: str = "") -> JointResult:
+    """Of a contact at a single instant. remark: what the range leaves out."""
     z = _stations(contact)
     moment = np.linalg.norm(contact.bending_moment(z)[0], axis=1)
     return JointResult(
@@ -21,6 +21,7 @@ def joint_result(contact: JointContact, over: JointRange | None) -> JointResult:
         bending_moment=float(moment.max()),
         bending_moments=tuple(zip(z.tolist(), moment.tolist(), strict=True)),
         range=over,
+        remark=remark,
     )
 
 

@@ -206,6 +206,19 @@ def test_what_cannot_be_in_equilibrium_has_failed_with_the_reason(
     assert said in peak.note
 
 
+def test_the_range_says_what_it_leaves_out() -> None:
+    """Forces whose couple is taken by the tilt of the lugs, which cannot be free then."""
+    along = np.zeros((1, 3, 3))
+    along[0, :, 0] = FORCE * np.array([-0.4, 1.0, -0.6])
+    (found,) = solve_in_lugs(
+        InLugs(PIN, STEEL, LUGS, (PinLoads("pull", ("L", "M", "R"), along),)), QUICK
+    )
+    assert found.joint is not None
+    assert found.joint.range is not None
+    assert ("tilt", "free") not in {(v.what, v.value) for v in found.joint.range.variations}
+    assert found.joint.remark.startswith("not included: tilt free (the links leave a couple")
+
+
 def test_a_softer_joint_is_that_of_softer_lugs() -> None:
     """What the range varies is what a model of its own would have."""
     model = JointModel(PIN, STEEL, LUGS)
