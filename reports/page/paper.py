@@ -10,7 +10,7 @@ from typing import Any
 
 from reports.data.changes import command
 from reports.data.decision import outcome, worst_first
-from reports.data.envelope import in_detail
+from reports.data.envelope import EnvelopeCell, in_detail
 from reports.data.results import PinResult, Provenance, Results
 from reports.format.file_names import plot_name
 from reports.format.grid import Grid
@@ -18,6 +18,7 @@ from reports.format.words import headline
 from reports.page.joint import joint_part
 from reports.tables.published import published_maxima
 from reports.tables.strength.changes import INTRODUCTION, change_notes, changes_grid
+from reports.tables.strength.envelope import READING, cell_text, matrix
 from reports.tables.strength.fatigue import fatigue_grid, fatigue_sentence
 from reports.tables.strength.margins import governing_grid, not_made_words
 from reports.tables.strength.safety_factors import TEXTS, reading, shown, shown_columns, shown_rows
@@ -27,6 +28,7 @@ from reports.text.pin_sentence import drawing_caption, pin_sentence
 from reports.text.summary import summary
 
 Content = dict[str, Any]
+ABREAST = 12  # pins of the matrix of cases
 
 
 def document(results: Results, drawings: dict[str, str]) -> Content:
@@ -44,6 +46,7 @@ def document(results: Results, drawings: dict[str, str]) -> Content:
         "units": asdict(results.units),
         "factors": _factors(results),
         "reading": reading(shown_columns(shown_rows(results), results)),
+        "envelope": _envelope(everything),
         "margins": _margins(results),
         "changes": _changes(results),
         "fatigue": _fatigue(results),
@@ -70,6 +73,25 @@ def _factors(results: Results) -> Content | None:
     body = [[shown(name, row) for name in columns] for row in rows]
     grid = Grid(list(columns.values()), body, [name not in TEXTS for name in columns])
     return asdict(grid) | {"outcomes": [outcome(pin) for pin in worst_first(results)]}
+
+
+def _envelope(results: Results) -> Content | None:
+    """The utilisations of pins in cases, so many pins side by side as the paper is wide for."""
+    found = matrix(results)
+    if found is None:
+        return None
+    blocks = []
+    for first in range(0, len(found.pins), ABREAST):
+        part = slice(first, first + ABREAST)
+        rows = [[case, *map(_used, cells[part])] for case, cells in found.rows]
+        blocks.append({"head": ["case", *found.pins[part]], "body": rows})
+    return {"reading": READING, "note": found.note, "blocks": blocks}
+
+
+def _used(cell: EnvelopeCell | None) -> Content | None:
+    if cell is None:
+        return None
+    return {"text": cell_text(cell), "outcome": cell.outcome, "governs": cell.governs}
 
 
 def _margins(results: Results) -> Content | None:

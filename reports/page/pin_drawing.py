@@ -12,7 +12,7 @@ from reports.format.numbers import short
 from reports.page.drawing_zones import STRIPES, ZoneMarks
 from reports.tables.stress.singular_zones import Zone
 
-WIDTH, MARGIN, TALLEST = 760.0, 45.0, 150.0
+WIDTH, MARGIN, TALLEST = 760.0, 45.0, 0.2  # the last in widths
 LINE = 14.0  # height of the text
 FILLS = {"band": "#9dbbe0", "held": "url(#held)", "plain": "#ececec"}
 
@@ -86,7 +86,7 @@ def _pieces(shape: PinShape, across: float) -> list[_Piece]:
     widest = max((s[1] for s in shape.segments), default=0.0)
     if length <= 0.0 or widest <= 0.0:
         return []
-    scale = min((across - 2 * MARGIN) / length, TALLEST / widest)
+    scale = min((across - 2 * MARGIN) / length, TALLEST * across / widest)
     x = 0.5 * (across - scale * length)
     pieces = []
     for long, diameter, bore, label, kind in shape.segments:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from reports.data.decision import outcome, worst_first
+from reports.data.envelope import governing_cases
 from reports.data.results import Results, TitleBlock
-from reports.page.paper import document
+from reports.page.paper import ABREAST, document
 from reports.pdf.typeset import shown_plots, typeset
 from reports.plots.all import all_plots
 from reports.tables.strength.safety_factors import shown_rows
@@ -28,6 +29,23 @@ def test_every_pin_shows_its_stress_and_its_meshes(results: Results) -> None:
     assert len(shown_plots(content)) == len(drawings) + sum(
         pin.pin in drawings for pin in results.pins
     )
+
+
+def test_every_case_and_pin_is_in_the_matrix_with_those_that_govern(results: Results) -> None:
+    pins = tuple(replace(row, pin=f"{row.pin}{k}") for k in range(ABREAST) for row in results.pins)
+    found = document(replace(results, pins=pins), {})["envelope"]
+    shown = {
+        (pin, row[0]): cell
+        for block in found["blocks"]
+        for row in block["body"]
+        for pin, cell in zip(block["head"][1:], row[1:], strict=True)
+        if cell
+    }
+    assert set(shown) == {(row.pin, row.case) for row in pins}
+    assert {key[0]: key[1] for key, cell in shown.items() if cell["governs"]} == governing_cases(
+        replace(results, pins=pins)
+    )
+    assert max(len(block["head"]) for block in found["blocks"]) == ABREAST + 1
 
 
 def test_names_are_not_typesetting(results: Results) -> None:
