@@ -53,6 +53,16 @@ def case_names(results: Results) -> list[str]:
     return list(dict.fromkeys(row.case for row in results.pins))
 
 
+def elsewhere(results: Results) -> str:
+    """Where the cases are that are not shown in detail; empty if all are."""
+    if len(cases := case_names(results)) <= MOST_DETAILED:
+        return ""
+    return (
+        f"Of the {len(cases)} cases, only the governing one of each pin is shown; the others are "
+        "in envelope.csv, safety_factors.csv, margins.csv and reactions.csv."
+    )
+
+
 def in_detail(results: Results) -> Results:
     """What is shown in detail: all, or of many cases the governing one of each pin."""
     if len(case_names(results)) <= MOST_DETAILED:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from html import escape
 
+from reports.data.envelope import elsewhere, in_detail
 from reports.data.results import Results
 from reports.format.words import headline
 from reports.tables.strength.safety_factors import TEXTS, shown, shown_columns, shown_rows
@@ -15,8 +16,9 @@ CELL = '<td style="text-align:{0}">{1}</td>'
 
 def safety_factors_html(results: Results) -> str:
     """Title, the worst row in a sentence, safety factor table with verdicts, and summary."""
-    rows = shown_rows(results)
-    columns = shown_columns(rows, results)
+    detailed = in_detail(results)
+    rows = shown_rows(detailed)
+    columns = shown_columns(rows, detailed)
     sides = {name: "left" if name in TEXTS else "right" for name in columns}
     head = "".join(HEAD.format(sides[name], escape(text)) for name, text in columns.items())
     body = "".join(
@@ -29,5 +31,5 @@ def safety_factors_html(results: Results) -> str:
         f"<p><b>{escape(results.title)}</b></p>"
         f"<p>{escape(headline(results))}</p>"
         f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
-        f"<p>{escape(summary(results))}</p>"
+        f"<p>{escape(' '.join(filter(None, (elsewhere(results), summary(results)))))}</p>"
     )

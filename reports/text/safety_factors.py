@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from reports.data.changes import command
 from reports.data.decision import BELOW, FAILS, SAFE, YIELDS, limit, outcome, worst_first
+from reports.data.envelope import elsewhere, in_detail
 from reports.data.results import PinResult, Results
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering, short
@@ -36,7 +37,9 @@ def print_safety_factors(results: Results, console: Console, study: str = "") ->
     if results.pins:
         # As Text: a name in square brackets is no markup.
         console.print(Text(headline(results), "bold"))
-        console.print(fitted_table(_columns(results), console.width))
+        console.print(fitted_table(_columns(in_detail(results)), console.width))
+        if rest := elsewhere(results):
+            console.print(Text(rest))
     console.print(Text(summary(results)))
     if grid := worst_grid(results):
         console.print(Text("Margins of safety, the governing check of each pin", "bold"))

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from reports.data.decision import BELOW, FAILS, NOT_DECIDED, SAFE, YIELDS, outcome
 from reports.data.governing import governing
 from reports.data.results import PinResult, Results
 from reports.format.numbers import short
 from reports.format.words import BEYOND, undecided_because
+
+LISTED = 4  # cases of a pin; of more, their number is given
 
 
 def summary(results: Results) -> str:
@@ -49,23 +53,23 @@ def _with_reasons(pins: list[str], results: Results) -> str:
 def _over_joints(results: Results) -> str:
     """The rows on which another joint, as likely, would decide otherwise."""
     limit = 1.0 if results.required_safety_factor is None else results.required_safety_factor
-    rows = [f"{p.pin} ({p.case})" for p in results.pins if _depends_on_joint(p, limit)]
-    return f"The result changes within the range of the joint: {', '.join(rows)}." if rows else ""
+    rows = _listed((p.pin, p.case) for p in results.pins if _depends_on_joint(p, limit))
+    return f"The result changes within the range of the joint: {rows}." if rows else ""
 
 
 def _left_out(results: Results) -> str:
     """The rows whose stress is larger at the rounded edges of lugs, which are excluded."""
-    rows = [
-        f"{p.pin} ({p.case})"
+    rows = _listed(
+        (p.pin, p.case)
         for p in results.pins
         if any(
             zone.kind.endswith("rounded edge of a lug")
             and zone.max_von_mises > (p.max_von_mises or 0.0)
             for zone in p.singular_at
         )
-    ]
+    )
     text = "Larger contact stress at the rounded edges of lugs is local and left out"
-    return f"{text}: {', '.join(rows)}." if rows else ""
+    return f"{text}: {rows}." if rows else ""
 
 
 def _depends_on_joint(pin: PinResult, limit: float) -> bool:
@@ -85,8 +89,22 @@ def _yielding(results: Results) -> str:
 
 
 def _negative(results: Results) -> str:
-    rows = [f"{m.pin} ({m.case})" if m.case else m.pin for m in governing(results) if m.used > 1.0]
-    return f"Negative margins of safety: {', '.join(rows)}." if rows else ""
+    rows = _listed((m.pin, m.case) for m in governing(results) if m.used > 1.0)
+    return f"Negative margins of safety: {rows}." if rows else ""
+
+
+def _listed(rows: Iterable[tuple[str, str]]) -> str:
+    """Pins with their cases in parentheses, of many their number; without any, the pin alone."""
+    cases: dict[str, list[str]] = {}
+    for pin, case in rows:
+        cases.setdefault(pin, []).extend([case] if case else [])
+    return ", ".join(pin + _of_cases(found) for pin, found in cases.items())
+
+
+def _of_cases(cases: list[str]) -> str:
+    if not cases:
+        return ""
+    return f" ({', '.join(cases) if len(cases) <= LISTED else f'{len(cases)} cases'})"
 
 
 def _unknown(results: Results) -> str:

@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from io import StringIO
 from math import inf
 from pathlib import Path
 
 import pytest
+from rich.console import Console
 
 from reports.data.envelope import MOST_DETAILED, governing_cases, in_detail
-from reports.data.results import Results
+from reports.data.results import Results, SingularZone
 from reports.format.numbers import DASH
 from reports.page.page import render
 from reports.page.paper import document
 from reports.tables.strength.envelope import cell_text, envelope_table, heat, matrix
+from reports.tables.strength.safety_factors import write_safety_factors
+from reports.text.html import safety_factors_html
+from reports.text.safety_factors import print_safety_factors
 
 
 def of_cases(results: Results, count: int) -> Results:
@@ -63,6 +68,29 @@ def test_the_least_factor_governs_each_pin(results: Results) -> None:
     assert worst["utilisation_high"] == pytest.approx(1.5 / 0.4)
     assert worst["outcome"] == "fails"
     assert {r["pin"] for r in rows} == {a, "P"}  # also a pin without a reaction
+
+
+def test_many_cases_are_short_on_the_terminal_and_in_files(
+    results: Results, tmp_path: Path
+) -> None:
+    made = of_cases(results, 50)
+    lug = "a rounded edge of a lug"
+    zone = SingularZone((0.0, 0.0, 0.0), lug, ("a", "b"), None, 0.5, 0.1, False, 9e9, "")
+    pins = (replace(p, singular_at=(zone,), published_max_von_mises=None) for p in made.pins)
+    made = replace(made, pins=tuple(pins))
+    shown = StringIO()
+    print_safety_factors(made, Console(file=shown, width=200))
+    assert len(re.findall("gust", shown.getvalue())) == 3  # the headline, and a row for each pin
+    assert "(50 cases)" in shown.getvalue()
+    write_safety_factors(made, tmp_path)
+    written = (tmp_path / "safety_factors.md").read_text(encoding="utf-8")
+    for text in (shown.getvalue(), written, safety_factors_html(made)):
+        assert "safety_factors.csv" in text
+        assert "gust 49" in text
+        assert "gust 25" not in text
+    few = safety_factors_html(of_cases(results, MOST_DETAILED))
+    assert f"gust {MOST_DETAILED - 2}" in few
+    assert "safety_factors.csv" not in few
 
 
 def test_many_cases_are_a_matrix_and_the_governing_ones(results: Results, tmp_path: Path) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import inf
 
-from reports.data.envelope import MOST_DETAILED, EnvelopeCell, case_names, envelope
+from reports.data.envelope import EnvelopeCell, case_names, elsewhere, envelope
 from reports.data.results import Results
 from reports.format.files.csv import Cell
 from reports.format.numbers import DASH, finite
@@ -58,13 +58,8 @@ def matrix(results: Results) -> Matrix | None:
         return None
     cells = {(cell.result.pin, cell.result.case): cell for cell in envelope(results)}
     pins = list(dict.fromkeys(pin for pin, _ in cells))
-    note = ""
-    if len(cases) > MOST_DETAILED:
-        note = (
-            f"Of the {len(cases)} cases, this report shows only the governing one of each pin; "
-            "the others are in envelope.csv, safety_factors.csv, margins.csv and reactions.csv."
-        )
-    return Matrix(pins, [(case, [cells.get((pin, case)) for pin in pins]) for case in cases], note)
+    rows = [(case, [cells.get((pin, case)) for pin in pins]) for case in cases]
+    return Matrix(pins, rows, elsewhere(results))
 
 
 def heat(cell: EnvelopeCell) -> float:

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from reports.data.decision import limit, outcome, worst_first
+from reports.data.envelope import elsewhere, in_detail
 from reports.data.results import PinResult, Results
 from reports.format.files import markdown
 from reports.format.numbers import DASH, engineering, finite, ratio, short
@@ -178,20 +179,23 @@ def safety_factors_table(results: Results) -> Table:
 
 def write_safety_factors(results: Results, directory: Path) -> None:
     """Write safety_factors.md, four digits and the notes."""
-    text = _markdown(results, shown_rows(results))
+    text = _markdown(results)
     (directory / "safety_factors.md").write_text(text, encoding="utf-8")
 
 
-def _markdown(results: Results, rows: list[Row]) -> str:
+def _markdown(everything: Results) -> str:
+    results = in_detail(everything)
+    rows = shown_rows(results)
     columns = shown_columns(rows, results)
     parts = [
         f"# Safety factors: {markdown.escaped(results.title)}",
-        markdown.escaped(headline(results)),
+        markdown.escaped(headline(everything)),
         markdown.table(
             tuple(columns.values()),
             [[shown(name, row) for name in columns] for row in rows],
             [name not in TEXTS for name in columns],
         ),
+        *([rest] if (rest := elsewhere(everything)) else []),
         *reading(columns),
         "\n".join(f"- {name}: {sentence}" for name, sentence in MEANING.items()),
     ]
