@@ -263,11 +263,15 @@ const startView = (root, paint, data) => {
     draw();
   };
   const side = (degrees) => (Math.cos((degrees * Math.PI) / 180 - chosen.start) < 0 ? -1 : 1);
+  const inSection = (z, r) => {
+    const { away } = chosen.section, at = [r * Math.cos(chosen.start), r * Math.sin(chosen.start), z];
+    return hitOf(chosen.section, at.map((c, i) => c + data.size * away[i]), away.map((c) => -c));
+  };
   // radius: of a point in the section, given only if that is open; else the outermost point is taken.
   const place = (z, degrees, radius = null, fields = true) => {
     if (opened() && radius !== null) {
-      const r = side(degrees) * radius, at = [r * Math.cos(chosen.start), r * Math.sin(chosen.start), z];
-      const inner = hitOf(chosen.section, at.map((c, i) => c + data.size * chosen.section.away[i]), chosen.section.away.map((c) => -c));
+      // A point of the surface may miss the section by round-off.
+      const inner = [1, 0.999, 1.001].reduce((found, part) => found ?? inSection(z, side(degrees) * radius * part), null);
       show(inner && { ...inner, inside: true }, fields);
       return;
     }
