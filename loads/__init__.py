@@ -31,7 +31,8 @@ from loads.linkage import (
     Slider,
     Turn,
 )
-from loads.mobility import Mobility, mobility
+from loads.mobility.mobility import Mobility, mobility
+from loads.mobility.singular_positions import Impasse
 from loads.motion import Course, Motion, at_rest, move
 from loads.over_time import (
     Effort,
@@ -45,7 +46,6 @@ from loads.over_time import (
 from loads.power_balance import Energy, Ledger, energy, ledger
 from loads.reactions import Reactions, given_reactions, read_reactions
 from loads.refine import Resolved, resolved
-from loads.singular_positions import Impasse
 from loads.spatial_leg import Contact, LegDynamics, LegMotion, SpatialLeg, leg_dynamics
 from loads.tables.csv_table import TableError, read_table
 from loads.tables.force_table import Layout, table_cases

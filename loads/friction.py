@@ -18,8 +18,8 @@ from itertools import product
 
 import numpy as np
 
-from loads.linkage import Floats, LinkageError
-from loads.loop_equations import Complex, Ints
+from loads.arrays import Complex, Floats, Ints
+from loads.linkage import LinkageError
 
 MOST_CONTACTS = 8  # 256 patterns of signs
 STEPS = 4  # in which friction of pins grows from nothing

@@ -14,12 +14,13 @@ from typing import Any
 
 import numpy as np
 
+from loads.arrays import Complex, Floats
 from loads.forces.acting import Load, balance
 from loads.forces.holding import holding, require_closed
 from loads.friction import MOST_CONTACTS, JammingError, contact_sizes
 from loads.joint_forces import connection_members, slider_couple, slider_members
-from loads.linkage import GROUND, Floats, Linkage, LinkageError, Point, Slider, Turn
-from loads.loop_equations import Complex, cross, number, pairs
+from loads.linkage import GROUND, Linkage, LinkageError, Point, Slider, Turn
+from loads.loop_equations import cross, number, pairs
 from loads.motion import Motion
 from loads.reactions import Reactions
 

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loads.linkage import Floats, Turn
-from loads.loop_equations import Complex, Loops, cross
+from loads.arrays import Complex, Floats
+from loads.linkage import Turn
+from loads.loop_equations import Loops, cross
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from functools import cached_property, reduce
 import numpy as np
 from numpy.typing import NDArray
 
-from loads.linkage import Floats
+from loads.arrays import Floats
 
 Ints = NDArray[np.int64]
 

@@ -8,11 +8,9 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from loads.coded import LoadsError, Place
 
-Floats = NDArray[np.float64]
 Point = tuple[float, float]
 Contradiction = tuple[str, str, Place]  # message, code and place of a LinkageError
 

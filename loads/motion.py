@@ -8,14 +8,15 @@ from functools import cached_property
 
 import numpy as np
 
-from loads.as_drawn import RANK_TOLERANCE
+from loads.arrays import Complex, Floats
 from loads.drives import Law, StateDrive
 from loads.least_squares import Factors
-from loads.linkage import Connection, Floats, Joint, Linkage, LinkageError, Point, Slider, Turn
-from loads.loop_equations import Complex, Loops, Points, Pose, number, pairs
-from loads.mobility import Mobility, require_determined
+from loads.linkage import Connection, Joint, Linkage, LinkageError, Point, Slider, Turn
+from loads.loop_equations import Loops, Points, Pose, number, pairs
+from loads.mobility.as_drawn import RANK_TOLERANCE
+from loads.mobility.mobility import Mobility, require_determined
+from loads.mobility.singular_positions import impasse
 from loads.positions import Path
-from loads.singular_positions import impasse
 
 GRID = 257  # instants at which a course evaluates its drives, in addition to those of their laws
 STANDS = 1e-9  # of the fastest coordinate of the course: a point this slow has no direction

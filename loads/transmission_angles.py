@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from loads.linkage import GROUND, Body, Floats, Joint, Linkage, Slider
-from loads.mobility import is_particle
+from loads.arrays import Floats
+from loads.linkage import GROUND, Body, Joint, Linkage, Slider
+from loads.mobility.mobility import is_particle
 from loads.motion import Motion
 
 STANDS = 1e-9  # of the fastest body: what moves less does not

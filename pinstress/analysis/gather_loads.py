@@ -7,14 +7,15 @@ from typing import Any
 import numpy as np
 
 from loads import GROUND, Dynamics, Effort, Linkage, OverTime, Slider, energy, ledger
-from loads.linkage import Floats
+from loads.arrays import Floats
 from loads.loop_equations import pairs
 from loads.transmission_angles import transmission_angles
 from pinstress.analysis.checks import motion_check
 from pinstress.analysis.gather_drops import drop_record
 from pinstress.analysis.published_quantities import published_values
 from pinstress.model.cases import CaseLoads
-from pinstress.model.linkage import ground_joint, offsets
+from pinstress.model.mechanism.drives import offsets
+from pinstress.model.mechanism.linkage import ground_joint
 from pinstress.study.file import Study
 from pinstress.study.published_tables import Published
 from reports.data import results as plain

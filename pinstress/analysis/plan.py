@@ -12,7 +12,7 @@ from pinstress.analysis import checks
 from pinstress.analysis.gather_fields import Also
 from pinstress.analysis.published_quantities import published_values
 from pinstress.model.cases import CaseLoads, case_loads
-from pinstress.model.linkage import determined, linkage
+from pinstress.model.mechanism.linkage import determined, linkage
 from pinstress.model.pins import pin as pin_of
 from pinstress.model.tasks import Task, tasks
 from pinstress.schema.shown import shown

@@ -9,8 +9,9 @@ from geometry import PinLike
 from loads import Linkage
 from loads.closed_form.four_bar import four_bar
 from pinstress.model.cases import CaseLoads, case_loads
-from pinstress.model.linkage import determined, linkage, span
 from pinstress.model.lugs import lugs
+from pinstress.model.mechanism.drives import span
+from pinstress.model.mechanism.linkage import determined, linkage
 from pinstress.model.pins import lost_shape, weight
 from pinstress.model.pins import pin as pin_of
 from pinstress.model.tasks import Task, tasks

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from benchmarks.scissor import lift
+from loads.arrays import Floats
 from loads.least_squares import Factors, elimination
-from loads.linkage import Floats
 from loads.loop_equations import Loops
 
 

@@ -13,7 +13,7 @@ import pytest
 from scipy.interpolate import PchipInterpolator
 
 from pinstress.model.cases import CaseLoads, case_loads
-from pinstress.model.linkage import linkage
+from pinstress.model.mechanism.linkage import linkage
 from pinstress.study.file import Study, load_study
 from pinstress.study.in_python import changed_study
 from tests.conftest import ROOT

@@ -13,9 +13,10 @@ from typing import Literal
 
 import numpy as np
 
-from loads.linkage import Floats, Linkage, LinkageError, Slider
+from loads.arrays import Floats
+from loads.linkage import Linkage, LinkageError, Slider
 from loads.loop_equations import Loops
-from loads.mobility import moving_bodies, stressed_connections
+from loads.mobility.mobility import moving_bodies, stressed_connections
 
 Kind = Literal["dead point", "change point", "open"]
 CODES: dict[Kind, str] = {

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loads.as_drawn import rank, singular_as_drawn
+from loads.arrays import Floats
 from loads.joint_forces import connection_members
-from loads.linkage import GROUND, Floats, Linkage, LinkageError
+from loads.linkage import GROUND, Linkage, LinkageError
 from loads.loop_equations import Loops, Pose
+from loads.mobility.as_drawn import rank, singular_as_drawn
 
 TAKES_PART = 1e-6  # of the largest part in a null vector
 

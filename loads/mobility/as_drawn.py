@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from loads.linkage import Floats
+from loads.arrays import Floats
 from loads.loop_equations import Loops
 
 Singular = Literal["change point", "dead point"]
