@@ -22,6 +22,7 @@ from functools import cached_property
 import numpy as np
 
 from loads.arrays import Complex, Floats, Ints
+from loads.gears import gap_weights, row
 from loads.least_squares import Factors, Step, elimination
 from loads.linkage import Linkage, Point, Slider, Turn
 from loads.spanning_tree import ROUNDING, ends_of, frames, shortest, spanning_tree
@@ -73,9 +74,10 @@ class Loops:
     """The loop and drive equations of one linkage.
 
     Coordinates q (T, n): angles (rad) of the frames but the ground's, then extensions (m). Rows:
-    two per closure (x, then y, of all closures), then one per drive. The multiplier of a closure
-    is the force of the pin on the body (of the base on the moving body) in N; that of a drive's row
-    is its force, or its torque over the length scale.
+    two per closure (x, then y, of all closures), one per pair of teeth, then one per drive. The
+    multiplier of a closure is the force of the pin on the body (of the base on the moving body) in
+    N; that of teeth the force on the first body along the pitch circle; that of a drive's row is
+    its force, or its torque over the length scale.
     """
 
     def __init__(self, linkage: Linkage) -> None:
@@ -85,11 +87,10 @@ class Loops:
         self._root, self._slid = self._chains()
         self.gaps = self._gaps()
         self._combined = shortest(np.concatenate([self.gaps.turning[1:], self.gaps.sliding]))
-        drives = linkage.drives
-        self.drawn_drives = np.array([d.drawn for d in drives])
-        self._drive_rows = np.zeros((len(drives), self.columns))
-        for k, d in enumerate(drives):
-            self._drive_rows[k] = self.along(d)
+        self.drawn_drives = np.array([d.drawn for d in linkage.drives])
+        fixed = [row(self.linkage, self.frame, t) for t in linkage.teeth]
+        fixed += [self.along(d) for d in linkage.drives]
+        self._fixed_rows = np.array(fixed).reshape(-1, self.columns)
 
     @property
     def columns(self) -> int:
@@ -99,7 +100,12 @@ class Loops:
     @property
     def rows(self) -> int:
         """Number of equations."""
-        return 2 * len(self.closing) + len(self.linkage.driven)
+        return self.guides + len(self.linkage.driven)
+
+    @property
+    def guides(self) -> int:
+        """Number of equations but the drives'."""
+        return 2 * len(self.closing) + len(self.linkage.teeth)
 
     def parts(self, count: int) -> list[slice]:
         """Slices of so many instants that matrices of all instants of one take little memory."""
@@ -211,9 +217,11 @@ class Loops:
     def residual(self, q: Floats, pose: Pose, drives: Floats) -> Floats:
         """Violation of every equation, (T, rows), m; drives (T, D) their values."""
         gap = self.place(pose, self.closures)
-        lag = (q * self.scale) @ self._drive_rows.T
+        lag = (q * self.scale) @ self._fixed_rows.T
         for k in range(drives.shape[1]):
-            lag[:, k] -= self.drive_scale(k) * (drives[:, k] - self.drawn_drives[k])
+            lag[:, len(self.linkage.teeth) + k] -= self.drive_scale(k) * (
+                drives[:, k] - self.drawn_drives[k]
+            )
         return np.concatenate([gap.real, gap.imag, lag], axis=1)
 
     def jacobian(self, pose: Pose) -> Floats:
@@ -234,7 +242,7 @@ class Loops:
             add(k, angles + s, along)
             if frame:
                 add(k, frame - 1, 1j / self.scale[frame - 1] * pose.extension[:, s] * along)
-        J[2 * count :] = self._drive_rows[:, :, None]
+        J[2 * count :] = self._fixed_rows[:, :, None]
         return np.moveaxis(J, -1, 0)
 
     def factors(self, pose: Pose) -> Factors:
@@ -248,20 +256,22 @@ class Loops:
             if f:
                 turns[f - 1] |= slides[s]
         closing = np.concatenate([turns, slides]).T
-        pattern = np.concatenate([closing, closing, self._drive_rows != 0.0])
+        pattern = np.concatenate([closing, closing, self._fixed_rows != 0.0])
         return elimination(pattern)
 
     def drive_side(self, values: Floats) -> Floats:
         """Right-hand side (T, rows) that gives the drives these rates (T, D)."""
         out = np.zeros((len(values), self.rows))
         for k in range(values.shape[1]):
-            out[:, 2 * len(self.closing) + k] = self.drive_scale(k) * values[:, k]
+            out[:, self.guides + k] = self.drive_scale(k) * values[:, k]
         return out
 
     def bend_side(self, pose: Pose, rates: Floats) -> Floats:
-        """(T, rows) what accelerations must make up for; nothing in the drives' rows."""
+        """(T, rows) what accelerations must make up for; nothing in the rows of teeth and drives,
+        which are linear in the coordinates.
+        """
         bend = self.bends(pose, rates, self.closures)
-        nothing = np.zeros((len(rates), len(self.linkage.driven)))
+        nothing = np.zeros((len(rates), len(self._fixed_rows)))
         return -np.concatenate([bend.real, bend.imag, nothing], axis=1)
 
     # --- assembly ---------------------------------------------------------------------------------
@@ -287,18 +297,41 @@ class Loops:
 
     @cached_property
     def closing_ends(self) -> tuple[Ints, Ints, Complex]:
-        """Of every closure the items on which its force acts (the body) and reacts (the carrier),
-        and its drawn place.
+        """Of every closure, then of all teeth, the items on which its force acts (the body) and
+        reacts (the carrier), and its drawn place.
         """
-        ends = np.array([ends_of(self.linkage, *c) for c in self.closing], dtype=np.int64)
-        sliders, connections = self.linkage.sliders, self.linkage.connections
+        linkage, index = self.linkage, self.linkage.index
+        ends = [ends_of(linkage, *c) for c in self.closing]
+        ends += [(index[t.bodies[0]], index[t.bodies[1]]) for t in linkage.teeth]
+        sliders, connections = linkage.sliders, linkage.connections
         at = [number(sliders[k].end if s else connections[k][0].at) for s, k in self.closing]
-        return *ends.reshape(-1, 2).T, np.array(at, dtype=complex)
+        at += [number(t.at) for t in linkage.teeth]
+        acts, reacts = np.array(ends, dtype=np.int64).reshape(-1, 2).T
+        return acts, reacts, np.array(at, dtype=complex)
 
-    def closing_forces(self, f: Floats) -> Complex:
-        """(T, closing) forces at the members that close loops, from multipliers (T, rows)."""
+    @cached_property
+    def closing_points(self) -> Points:
+        """Where the forces at closures and teeth act: a pitch point is fixed in its carrier."""
+        acts, _, at = self.closing_ends
+        carriers = [self.linkage.index[t.carrier] for t in self.linkage.teeth]
+        return self.points(np.array([*acts[: len(self.closing)], *carriers], dtype=np.int64), at)
+
+    def closing_forces(self, pose: Pose, f: Floats, spread: Floats | None = None) -> Complex:
+        """(T, closing and teeth) forces at the members that close loops and at teeth, from
+        multipliers (T, rows). spread: (T, teeth) N by which teeth push each other apart.
+        """
         k = len(self.closing)
-        return np.asarray((f[:, :k] + 1j * f[:, k : 2 * k]) @ self._combined.T)
+        closing = (f[:, :k] + 1j * f[:, k : 2 * k]) @ self._combined.T
+        if not self.linkage.teeth:
+            return np.asarray(closing)
+        frames = [self.frame[self.linkage.index[t.carrier]] for t in self.linkage.teeth]
+        normal = pose.turn[:, frames] * np.array([number(t.normal) for t in self.linkage.teeth])
+        tooth = normal * (1j * f[:, 2 * k : self.guides] - (0.0 if spread is None else spread))
+        return np.concatenate([closing - tooth @ self._gap_weights, tooth], axis=1)
+
+    @cached_property
+    def _gap_weights(self) -> Floats:
+        return gap_weights(self.linkage, self.closing)
 
     @cached_property
     def closures(self) -> Points:
@@ -310,7 +343,8 @@ class Loops:
     def _gaps(self) -> Points:
         """By how much each member that closes a loop leaves it open."""
         body, carrier, at = self.closing_ends
-        gap = self.points(body, at) - self.points(carrier, at)
+        own = slice(len(self.closing))
+        gap = self.points(body[own], at[own]) - self.points(carrier[own], at[own])
         for k, (slides, which) in enumerate(self.closing):
             if slides:
                 gap.sliding[which, k] -= 1.0

@@ -125,9 +125,8 @@ def _reached(linkage: Linkage, end: Joint, blocked: set[str], drivers: tuple[str
         seen.add(body)
         for joint in linkage.joints_on(body):
             queue += _bodies(joint)
-        for s in linkage.sliders:
-            if body in (s.base, s.moving):
-                queue += [s.base, s.moving]
+        pairs = [(s.base, s.moving) for s in linkage.sliders] + [t.bodies for t in linkage.teeth]
+        queue += [other for pair in pairs if body in pair for other in pair]
     return False
 
 

@@ -99,13 +99,15 @@ def impasse(
     """What prevents the motion near coordinates q (n,). opened: coordinates with open loops."""
     if opened is not None:
         pose = loops.pose(opened[None])
-        gap = np.abs(loops.place(pose, loops.gaps)[0])
-        worst = [i for i, g in enumerate(gap) if g > 0.1 * gap.max()]
-        members = [loops.closing[i] for i in worst]
-        names = tuple(
+        lag = loops.residual(opened[None], pose, reached[None])[0, 2 * len(loops.closing) :]
+        teeth = loops.linkage.teeth
+        gap = np.abs([*loops.place(pose, loops.gaps)[0], *lag[: len(teeth)]])
+        members = [
             loops.linkage.sliders[k].name if slides else loops.linkage.connections[k][1].name
-            for slides, k in members
-        )
+            for slides, k in loops.closing
+        ]
+        members += [t.name for t in teeth]
+        names = tuple(n for n, g in zip(members, gap, strict=True) if g > 0.1 * gap.max())
         return Impasse(loops.linkage, "open", reached, wanted, (), names)
     pose = loops.pose(q[None])
     left, _, right = np.linalg.svd(loops.jacobian(pose)[0])
@@ -121,5 +123,5 @@ def impasse(
         reached,
         wanted,
         moving_bodies(loops, pose, motion[None] / loops.scale, SNAPS),
-        stressed_connections(loops, force[:, None]),
+        stressed_connections(loops, pose, force[:, None]),
     )
