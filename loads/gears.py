@@ -21,8 +21,6 @@ import numpy as np
 from loads.arrays import Floats, Ints
 from loads.linkage import Gear, Linkage, LinkageError, Point, Rack, Slider, Teeth
 
-REACHES = 1e-3  # of the distance of the centres: by so much pitch radii may miss each other
-
 
 def gear_pair(
     name: str,
@@ -64,20 +62,6 @@ def rack_and_pinion(
     at = (centre[0] + to_rack[0], centre[1] + to_rack[1])
     normal = (to_rack[0] / radius, to_rack[1] / radius)
     return Teeth(name, sides, carrier, at, normal, pressure_angle)
-
-
-def require_reach(name: str, distance: float, radii: tuple[float, float]) -> None:
-    """Raises: LinkageError where pitch circles of these radii (m; of a ring negative) do not touch
-    with their centres this far apart.
-    """
-    if abs(abs(sum(radii)) - distance) > REACHES * distance:
-        raise LinkageError(
-            f"gear {name}: the pitch circles touch when the centres are {abs(sum(radii)):.6g} m "
-            f"apart, but the joints are {distance:.6g} m apart; correct one of them (gears with "
-            "shifted profiles: give teeth without module)",
-            "gears-apart",
-            ("gear", name),
-        )
 
 
 def row(linkage: Linkage, frame: Ints, teeth: Teeth) -> Floats:

@@ -281,7 +281,7 @@ def _contradictions(linkage: Linkage) -> Iterator[Contradiction]:
     for what, seen in (
         ("body", [b.name for b in linkage.bodies]),
         ("joint", [j.name for j in linkage.joints]),
-        ("connection or gear", names),
+        ("connection or gear" if linkage.teeth else "connection", names),
         ("slider or turn", coordinates),
         ("drive", list(linkage.driven)),
     ):
@@ -293,10 +293,10 @@ def _contradictions(linkage: Linkage) -> Iterator[Contradiction]:
     yield from _of_joints(linkage, bodies)
     yield from _of_sliders(linkage, bodies)
     for teeth in linkage.teeth:
-        for name in teeth.bodies:
-            if name in bodies and bodies[name].inertia is None:
-                text = f"body {name}: it has teeth and so turns; give its inertia (0 is allowed)"
-                yield text, "missing-inertia", ("body", name)
+        for gear in (side.body for side in teeth.sides if isinstance(side, Gear)):
+            if gear in bodies and bodies[gear].inertia is None:
+                text = f"body {gear}: a gear turns; give its inertia (0 is allowed)"
+                yield text, "missing-inertia", ("body", gear)
     for name in linkage.driven:
         if name not in coordinates:
             text = f"drive {name!r}: there is no slider or turn of this name"

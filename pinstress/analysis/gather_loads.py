@@ -9,9 +9,11 @@ import numpy as np
 from loads import GROUND, Dynamics, Effort, Linkage, OverTime, Slider, energy, ledger
 from loads.arrays import Floats
 from loads.loop_equations import pairs
+from loads.mobility.mobility import is_particle
 from loads.transmission_angles import transmission_angles
 from pinstress.analysis.checks import motion_check
 from pinstress.analysis.gather_drops import drop_record
+from pinstress.analysis.gather_teeth import pitch_curves
 from pinstress.analysis.published_quantities import published_values
 from pinstress.model.cases import CaseLoads
 from pinstress.model.mechanism.drives import offsets
@@ -205,6 +207,7 @@ def _motion(
     bodies = [b.name for b in linkage.bodies]
     centre, velocity, acceleration = (pairs(z[:, : len(bodies)]) for z in motion.centres)
     joints = [motion.joint(j.name) for j in linkage.joints]
+    joints += [motion.point(t.carrier, t.at) for t in linkage.teeth]
     at, v, a = (np.stack([j[k] for j in joints], axis=1) for k in range(3))
     about = ground_joint(linkage)
     force, moment = dynamics.shaking(linkage.joint(about).at)
@@ -219,7 +222,7 @@ def _motion(
         angle=np.stack([_direction(dynamics, b) for b in bodies], axis=1),
         angular_velocity=np.stack([motion.angular_velocity(b) for b in bodies], axis=1),
         angular_acceleration=np.stack([motion.angular_acceleration(b) for b in bodies], axis=1),
-        joints=tuple(j.name for j in linkage.joints),
+        joints=(*(j.name for j in linkage.joints), *(t.name for t in linkage.teeth)),
         ground=tuple(
             j.name
             for j in linkage.joints
@@ -234,7 +237,10 @@ def _motion(
             )
             for s in linkage.sliders
         },
-        connections=tuple((c.name, c.body, j.name) for j, c in linkage.connections),
+        connections=(
+            *((c.name, c.body, j.name) for j, c in linkage.connections),
+            *((t.name, t.bodies[0], t.name) for t in linkage.teeth),
+        ),
         transmission={
             f"{link} at {joint}": np.degrees(angle)
             for (link, joint), angle in transmission_angles(motion).items()
@@ -247,6 +253,7 @@ def _motion(
         extremes=None if over is None else _extremes(over),
         slider_forces=_slider_forces(dynamics),
         paths=_paths(study, dynamics),
+        pitch=pitch_curves(motion),
     )
 
 
@@ -313,14 +320,14 @@ def _joints_to_draw(linkage: Linkage, body: str) -> tuple[str, ...]:
 
 def _direction(dynamics: Dynamics, body: str) -> Floats:
     """(T,) degrees from x of the line from the body's first joint to its second, or with fewer
-    joints of the slider it belongs to; NaN for a particle.
+    joints of the slider it belongs to, or else since the drawing; NaN for a particle.
     """
     motion, linkage = dynamics.motion, dynamics.motion.linkage
     joints = linkage.joints_on(body)
     lines = [s.axis for s in linkage.sliders if body in (s.base, s.moving)]
     if len(joints) > 1:
         lines = [(joints[1].at[0] - joints[0].at[0], joints[1].at[1] - joints[0].at[1])]
-    if not lines:
+    if not lines and is_particle(linkage, body):
         return np.full(len(motion), np.nan)
-    x, y = lines[0]
+    x, y = lines[0] if lines else (1.0, 0.0)
     return np.asarray(np.degrees(np.arctan2(y, x) + motion.angle(body)))

@@ -102,7 +102,8 @@ def _mechanism(study: Study, mechanism: Linkage) -> list[str]:
     found = determined(study, mechanism)
     lines = [
         f"mechanism: {len(mechanism.bodies)} bodies, {len(mechanism.joints)} joints, "
-        f"{len(mechanism.connections)} connections, driven by {', '.join(mechanism.driven)}"
+        f"{len(mechanism.connections)} connections{_teeth(mechanism)}, driven by "
+        f"{', '.join(mechanism.driven)}"
     ]
     counted = f"mobility {found.degrees}"
     if found.kutzbach != found.degrees:
@@ -123,6 +124,11 @@ def _mechanism(study: Study, mechanism: Linkage) -> list[str]:
         f"{counted}; {found.redundant} redundant: the forces at {', '.join(found.shared)} follow "
         f"the sharing rule for {rule}",
     ]
+
+
+def _teeth(mechanism: Linkage) -> str:
+    pairs = len(mechanism.teeth)
+    return f", {pairs} pair{'s' * (pairs > 1)} of teeth" if pairs else ""
 
 
 def _words(study: Study, name: str, loads: CaseLoads) -> str:

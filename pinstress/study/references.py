@@ -163,10 +163,15 @@ def named_joints(mechanism: MechanismTable) -> Iterator[tuple[str, str]]:
         for end in spring.joints or ():
             if isinstance(end, str):
                 yield f"spring.{name}.joints", end
+    for name, gear in mechanism.gear.items():
+        for joint in gear.joints:
+            yield f"gear.{name}.joints", joint
+    for name, rack in mechanism.rack.items():
+        yield f"rack.{name}.joint", rack.joint
 
 
 def _lines(drive: RotaryDrive) -> tuple[str, ...]:
-    return drive.line + (drive.against_line or ())
+    return (drive.line or ()) + (drive.against_line or ())
 
 
 def _of_mechanism(mechanism: MechanismTable) -> Iterator[Wrong]:
@@ -195,6 +200,12 @@ def _of_mechanism(mechanism: MechanismTable) -> Iterator[Wrong]:
         yield from _known(f"mechanism.point.{name}.body", "body", point.body, mechanism.body)
     for name, stop in mechanism.stop.items():
         yield from _two_bodies(f"mechanism.stop.{name}", stop.bodies, bodies)
+    for name, gear in mechanism.gear.items():
+        yield from _two_bodies(f"mechanism.gear.{name}", gear.bodies, bodies)
+    for name, rack in mechanism.rack.items():
+        where = f"mechanism.rack.{name}"
+        yield from _known(f"{where}.pinion", "body", rack.pinion, bodies)
+        yield from _known(f"{where}.slider", "slider", rack.slider, mechanism.slider)
     for name, torsion in mechanism.torsion_spring.items():
         yield from _two_bodies(f"mechanism.torsion_spring.{name}", torsion.bodies, bodies)
 

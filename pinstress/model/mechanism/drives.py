@@ -143,6 +143,6 @@ def _coordinate(
         found = to_si(value, DIMENSION[key][0 if slides else 1], study.system)
     except LoadsArgumentError as error:
         raise study.error(f"{where}: {error}", code=error.code) from None
-    if key == "position" and not slides:
+    if key == "position" and isinstance(drive, RotaryDrive) and drive.line is not None:
         found += 2.0 * math.pi * round((default - found) / (2.0 * math.pi))
     return found

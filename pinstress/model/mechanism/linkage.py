@@ -22,13 +22,14 @@ from loads import (
 )
 from loads.mass_properties import flat_bar, round_bar
 from loads.mobility.mobility import Mobility, require_determined
+from pinstress.model.mechanism.drawing import Drawing
 from pinstress.model.mechanism.drives import drive_table, mechanism_of
+from pinstress.model.mechanism.gears import gears, rack
 from pinstress.model.mechanism.joint_layout import LayoutError, Point, places
 from pinstress.model.pins import pin
 from pinstress.schema.mechanism import (
     BodyTable,
     JointTable,
-    MechanismTable,
     RotaryDrive,
     SharingTable,
     SliderTable,
@@ -49,8 +50,12 @@ def linkage(study: Study) -> Linkage:
     g = float(np.hypot(*mechanism.gravity)) or STANDARD_GRAVITY
     try:
         unit, factor = study.system.length, study.system.factor("length")
-        at = places(mechanism, lambda length: f"{length / factor:.6g} {unit}")
-        return _assembled(study, mechanism, at, g)
+
+        def shown(length: float) -> str:
+            return f"{length / factor:.6g} {unit}"
+
+        drawing = Drawing(mechanism, places(mechanism, shown), shown)
+        return _assembled(study, drawing, g)
     except LayoutError as error:
         raise study.error(str(error), code=error.code) from None
     except LinkageError as error:
@@ -74,7 +79,8 @@ def determined(study: Study, mechanism: Linkage) -> Mobility:
         raise study.errors(_wrong(error)) from None
 
 
-def _assembled(study: Study, mechanism: MechanismTable, at: dict[str, Point], g: float) -> Linkage:
+def _assembled(study: Study, drawing: Drawing, g: float) -> Linkage:
+    mechanism = drawing.mechanism
     wrong: list[LinkageError] = []
 
     def each(make: Callable[[A], B], of: Iterable[A]) -> tuple[B, ...]:
@@ -86,10 +92,12 @@ def _assembled(study: Study, mechanism: MechanismTable, at: dict[str, Point], g:
                 wrong.extend(error.each)
         return tuple(made)
 
-    bodies = each(lambda b: _body(mechanism, *b, at, g), mechanism.body.items())
-    sliders = each(lambda s: _slider(mechanism, *s, at), mechanism.slider.items())
+    bodies = each(lambda b: _body(drawing, *b, g), mechanism.body.items())
+    sliders = each(lambda s: _slider(drawing, *s), mechanism.slider.items())
     turning = [d for d in mechanism.drive if isinstance(d, RotaryDrive)]
-    turns = each(lambda d: _turn(study, mechanism, d, at), turning)
+    turns = each(lambda d: _turn(study, drawing, d), turning)
+    meshing = each(lambda g: gears(*g, drawing), mechanism.gear.items())
+    meshing += each(lambda r: rack(*r, drawing, sliders), mechanism.rack.items())
     if wrong:
         raise LinkageError.all(wrong)
     return Linkage(
@@ -97,7 +105,7 @@ def _assembled(study: Study, mechanism: MechanismTable, at: dict[str, Point], g:
         joints=tuple(
             Joint(
                 name,
-                at[name],
+                drawing.at[name],
                 tuple(Connection(c, body, _circle(j)) for c, body in j.connections.items()),
                 j.fixed_in,
                 _pin_mass(study, name, j.weight, g) if j.fixed_in is None else 0.0,
@@ -114,6 +122,7 @@ def _assembled(study: Study, mechanism: MechanismTable, at: dict[str, Point], g:
             if s.connections is not None
         ),
         parallel=tuple(_parallel(s) for s in mechanism.sharing if s.parallel is not None),
+        teeth=meshing,
     )
 
 
@@ -134,50 +143,33 @@ def _parallel(rule: SharingTable) -> Parallel:
     return Parallel(tuple(rule.parallel or ()), tuple(shares), "areas" if by_area else "stiffness")
 
 
-def _slider(mechanism: MechanismTable, name: str, s: SliderTable, at: dict[str, Point]) -> Slider:
-    start, end = (at[p] if isinstance(p, str) else p for p in s.joints)
-    base, moving = s.bodies
+def _slider(drawing: Drawing, name: str, s: SliderTable) -> Slider:
+    start, end = (drawing.at[p] if isinstance(p, str) else p for p in s.joints)
+    right = "list the bodies in the order of their joints, or give the point as [x, y]"
     for body, place in zip(s.bodies, s.joints, strict=True):
-        if isinstance(place, str) and body not in (on := _bodies_at(mechanism, place)):
-            raise LinkageError(
-                f"slider {name}: joint {place} is not on {body} but on {', '.join(on)}; list the "
-                "bodies in the order of their joints, or give the point as [x, y]",
-                "joint-not-on-body",
-                ("slider", name),
-            )
-    return Slider(name, base, moving, start, end, s.direction, s.friction, s.bearing)
+        if isinstance(place, str):
+            drawing.require_on(place, body, ("slider", name), right)
+    return Slider(name, *s.bodies, start, end, s.direction, s.friction, s.bearing)
 
 
-def _bodies_at(mechanism: MechanismTable, joint: str) -> list[str]:
-    """The bodies that a joint joins, the one that carries the pin among them."""
-    j = mechanism.joint[joint]
-    return ([j.fixed_in] if j.fixed_in else []) + list(j.connections.values())
-
-
-def _turn(
-    study: Study, mechanism: MechanismTable, drive: RotaryDrive, at: dict[str, Point]
-) -> Turn:
+def _turn(study: Study, drawing: Drawing, drive: RotaryDrive) -> Turn:
     """The driven angle; of its values a turn apart, the drawn one is nearest to the start."""
-    for body, line in ((drive.body, drive.line), (drive.against, drive.against_line or ())):
+    at, drawn = ("drive", drive_name(drive)), 0.0
+    right = "the line gives its angle; name two of its joints"
+    for body, line, sign in (
+        (drive.body, drive.line, 1.0),
+        (drive.against, drive.against_line, -1.0),
+    ):
+        if line is None:
+            continue
         for joint in line:
-            if body not in _bodies_at(mechanism, joint):
-                raise LinkageError(
-                    f"drive {drive_name(drive)}: joint {joint} is not on {body}, whose angle the "
-                    "line defines; name two of its joints",
-                    "joint-not-on-body",
-                    ("drive", drive_name(drive)),
-                )
-        if len(set(line)) == 1:
-            raise LinkageError(
-                f"drive {drive_name(drive)}: the line needs two different joints",
-                "same-joint",
-                ("drive", drive_name(drive)),
-            )
-    drawn = _direction(drive.line, at)
-    if drive.against_line is not None:
-        drawn -= _direction(drive.against_line, at)
+            drawing.require_on(joint, body, at, right)
+        if line[0] == line[1]:
+            text = f"{' '.join(at)}: the line needs two different joints"
+            raise LinkageError(text, "same-joint", at)
+        drawn += sign * _direction(line, drawing.at)
     start = drive.start if drive.law != "table" else drive_table(study, drive).values[0]
-    if start is not None:
+    if drive.line is not None and start is not None:
         drawn += 2.0 * math.pi * round((start - drawn) / (2.0 * math.pi))
     return Turn(drive_name(drive), drive.body, drawn, drive.against)
 
@@ -187,9 +179,8 @@ def _direction(line: tuple[str, str], at: dict[str, Point]) -> float:
     return math.atan2(y2 - y1, x2 - x1)
 
 
-def _body(
-    mechanism: MechanismTable, name: str, b: BodyTable, at: dict[str, Point], g: float
-) -> Body:
+def _body(drawing: Drawing, name: str, b: BodyTable, g: float) -> Body:
+    at = drawing.at
     if b.bar is not None:
         (x1, y1), (x2, y2) = (at[j] for j in b.bar.joints)
         length = math.hypot(x2 - x1, y2 - y1)
@@ -204,7 +195,7 @@ def _body(
     if centre is None:
         on = [
             at[key]
-            for key, j in mechanism.joint.items()
+            for key, j in drawing.mechanism.joint.items()
             if j.fixed_in == name or name in j.connections.values()
         ]
         if len(on) not in (1, 2):
