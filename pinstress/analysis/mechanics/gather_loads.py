@@ -12,8 +12,9 @@ from loads.loop_equations import pairs
 from loads.mobility.mobility import is_particle
 from loads.transmission_angles import transmission_angles
 from pinstress.analysis.checks import motion_check
-from pinstress.analysis.gather_drops import drop_record
-from pinstress.analysis.gather_teeth import pitch_curves
+from pinstress.analysis.mechanics.gather_drops import drop_record
+from pinstress.analysis.mechanics.gather_sequences import sequence_tables
+from pinstress.analysis.mechanics.gather_teeth import pitch_curves
 from pinstress.analysis.published_quantities import published_values
 from pinstress.model.cases import CaseLoads
 from pinstress.model.mechanism.drives import offsets
@@ -59,7 +60,7 @@ LEG_SCALARS = ("actuator", "spin_moment", "kinetic_energy")
 def mechanics(study: Study, loads: dict[str, CaseLoads], published: Published) -> dict[str, Any]:
     """The parts of plain.Results that need no stresses."""
     made = {n: c.dynamics for n, c in loads.items() if c.dynamics is not None}
-    return {
+    parts = {
         "reactions": tuple(_reactions(study, n, c, published) for n, c in loads.items()),
         "drive": tuple(t for n, d in made.items() for t in _drives(study, n, d, loads[n])),
         "motion": tuple(_motion(study, n, d, loads[n].over) for n, d in made.items()),
@@ -68,6 +69,7 @@ def mechanics(study: Study, loads: dict[str, CaseLoads], published: Published) -
         "drops": tuple(drop_record(study, n, c) for n, c in loads.items() if c.landing),
         "legs": tuple(_leg(study, n, c) for n, c in loads.items() if c.leg is not None),
     }
+    return parts | sequence_tables(study, parts)
 
 
 def _drive_positions(study: Study, dynamics: Dynamics) -> Floats:
