@@ -73,10 +73,12 @@ class Impasse(LinkageError):
 
         bodies, connections = _some(self.bodies), _some(self.connections)
         if self.kind == "open":
+            toothed = bool(self.linkage.teeth)
             return (
                 f"the linkage does not close beyond {at(self.reached)} (requested: "
                 f"{at(self.wanted)}): {connections} do not meet, because the lengths of its "
-                "redundant links are inconsistent; check the coordinates of the joints"
+                f"redundant links{' or the ratios of its gears' * toothed} are inconsistent; check "
+                f"the coordinates of the joints{' and the gears' * toothed}"
             )
         unbounded = f"the forces at {connections} are unbounded"
         if self.kind == "change point":

@@ -19,6 +19,7 @@ from loads import (
     Gear,
     Joint,
     Linkage,
+    LinkageError,
     Rack,
     Sharing,
     Slider,
@@ -362,3 +363,31 @@ def test_batches_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(loop_equations, "AT_ONCE", 7 * course.loops.rows * course.loops.columns)
     parts = motion_reactions("x", course.at(times), (LOAD,))
     assert parts.reactions.forces == pytest.approx(whole.reactions.forces, rel=1e-12, abs=1e-9)
+
+
+def test_gears_that_lock_each_other_are_named() -> None:
+    """Three gears in a triangle, each of which meshes with the other two."""
+    at = {"a": (0.0, 0.0), "b": (0.1, 0.0), "c": (0.05, 0.05 * math.sqrt(3.0))}
+    pairs = (("a", "b"), ("b", "c"), ("c", "a"))
+    teeth = tuple(
+        gear_pair(p + q, (Gear(p, p), Gear(q, q)), GROUND, (at[p], at[q]), (1, 1), ALPHA)
+        for p, q in pairs
+    )
+    linkage = Linkage(
+        tuple(Body(n, 1.0, p, 1e-3) for n, p in at.items()),
+        tuple(ground_joint(n, p, n) for n, p in at.items()),
+        ("a",),
+        turns=(Turn("a", "a", 0.0),),
+        teeth=teeth,
+    )
+    with pytest.raises(LinkageError, match=r"ab, bc, ca do not meet.*gears") as wrong:
+        moved(linkage)
+    assert wrong.value.code == "does-not-close"
+
+
+def test_circles_that_cannot_touch_are_refused() -> None:
+    pair = (Gear("a", "A"), Gear("b", "B"))
+    for centres, radii in ((((0.0, 0.0), (0.0, 0.0)), (1, 2)), (((0, 0), (1, 0)), (2, -2))):
+        with pytest.raises(LinkageError) as wrong:
+            gear_pair("g", pair, GROUND, centres, radii, ALPHA)
+        assert wrong.value.code == "gears-apart"
