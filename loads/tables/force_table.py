@@ -114,7 +114,7 @@ def _rows(path: Path, layout: Layout) -> Iterator[Row]:
     yield from cases[layout.case]
 
 
-@lru_cache(maxsize=1)  # a thousand cases of one table are asked for one after the other
+@lru_cache(maxsize=1)  # the cases of one table follow each other
 def _by_case(path: Path, stamp: int, at: str, numbered: bool) -> dict[str, list[Row]] | None:
     """The rows by the column of the case, `at`; None without it. stamp: of the file."""
     found: dict[str, list[Row]] = {}

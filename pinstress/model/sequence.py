@@ -16,7 +16,7 @@ MOST_INSTANTS = 1_000_000  # of a sequence
 
 
 @dataclass(frozen=True)
-class Step:
+class Occurrence:
     """A case that begins at a time of the sequence and lasts for a duration, s."""
 
     case: str
@@ -24,14 +24,14 @@ class Step:
     duration: float
 
 
-def steps(table: SequenceTable, times: Mapping[str, Floats | None]) -> Iterator[Step]:
+def steps(table: SequenceTable, times: Mapping[str, Floats | None]) -> Iterator[Occurrence]:
     """Every occurrence of every case; times: (T,) s of each, None at rest."""
     begin = 0.0
     for step in table.steps:
         course = times[step.case]
         duration = step.duration or 0.0 if course is None else float(np.ptp(course))
         for _ in range(step.repeat):
-            yield Step(step.case, begin, duration)
+            yield Occurrence(step.case, begin, duration)
             begin += duration
 
 

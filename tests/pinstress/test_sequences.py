@@ -14,6 +14,7 @@ from pinstress.cli.check import describe
 from pinstress.study.errors import InputError
 from pinstress.study.file import load_study
 from reports.data.results import Results
+from reports.format.numbers import engineering
 from tests.conftest import ROOT
 from tests.support.errors import raises
 
@@ -79,7 +80,7 @@ def test_drives_over_the_cycle(found: Results) -> None:
     assert np.isnan(brake.position[:22]).all()
     note = next(t.note for t in found.reactions if t.case == "shift")
     assert "15 s" in note
-    assert f"motor {3.0 * raised:.4g} N mm" in note
+    assert f"motor {engineering(3.0 * raised)} N mm, brake 0 N mm" in note
 
 
 def test_a_linkage_that_jumps_is_named(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 from fea.fatigue.records import CaseHistory, PointHistory
 from loads.arrays import Floats
 from pinstress.model.cases import CaseLoads
-from pinstress.model.sequence import Step, complete, steps
+from pinstress.model.sequence import Occurrence, complete, steps
 from pinstress.study.file import Study
 from reports.data import results as plain
 from reports.format.numbers import engineering
@@ -40,14 +40,16 @@ def _joined(parts: Sequence[Any]) -> Any:
     return first
 
 
-def _course(parts: Mapping[str, T], times: Mapping[str, Floats | None], order: list[Step]) -> T:
+def _course(
+    parts: Mapping[str, T], times: Mapping[str, Floats | None], order: list[Occurrence]
+) -> T:
     """What there is of every step's case; one at rest at its beginning and its end."""
     every = [parts[s.case] for s in order for _ in range(2 if times[s.case] is None else 1)]
     joined: T = _joined(every)
     return joined
 
 
-def _axis(times: Mapping[str, Floats | None], order: list[Step]) -> Floats:
+def _axis(times: Mapping[str, Floats | None], order: list[Occurrence]) -> Floats:
     """(T,) s, to go with `_course`."""
     out = []
     for step in order:
@@ -80,7 +82,7 @@ def sequence_tables(study: Study, parts: dict[str, Any]) -> dict[str, Any]:
 
 
 def _reactions(
-    name: str, tables: Mapping[str, plain.ReactionTable], order: list[Step]
+    name: str, tables: Mapping[str, plain.ReactionTable], order: list[Occurrence]
 ) -> plain.ReactionTable:
     used = {step.case: tables[step.case] for step in order}
     names = dict.fromkeys(c for table in used.values() for c in table.connections)
@@ -129,7 +131,7 @@ def _with_all(
 
 
 def _peak(
-    c: int, tables: Mapping[str, plain.ReactionTable], order: list[Step]
+    c: int, tables: Mapping[str, plain.ReactionTable], order: list[Occurrence]
 ) -> plain.PeakReaction:
     """Of connection number c, where it first occurs."""
     found = [(s, tables[s.case].peaks[c]) for s in order]
@@ -144,8 +146,8 @@ def _peak(
     )
 
 
-def _steps_in_words(order: list[Step]) -> str:
-    runs: list[list[Step]] = []
+def _steps_in_words(order: list[Occurrence]) -> str:
+    runs: list[list[Occurrence]] = []
     for step in order:
         if runs and runs[-1][0].case == step.case and runs[-1][0].duration == step.duration:
             runs[-1].append(step)
@@ -157,13 +159,13 @@ def _steps_in_words(order: list[Step]) -> str:
 
 
 def _motion(
-    name: str, motions: Mapping[str, plain.LinkageMotion], order: list[Step]
+    name: str, motions: Mapping[str, plain.LinkageMotion], order: list[Occurrence]
 ) -> plain.LinkageMotion:
     used = {step.case: motions[step.case] for step in order}
     times = {case: m.time for case, m in used.items()}
     whole = _course(used, times, order)
 
-    def later(step: Step, found: tuple[float, float | None]) -> tuple[float, float]:
+    def later(step: Occurrence, found: tuple[float, float | None]) -> tuple[float, float]:
         value, time = found
         own = 0.0 if time is None else time - _first(times[step.case])
         return value, step.begin + own
@@ -181,7 +183,7 @@ def _motion(
     )
 
 
-def _jumps(motions: Mapping[str, plain.LinkageMotion], order: list[Step]) -> str:
+def _jumps(motions: Mapping[str, plain.LinkageMotion], order: list[Occurrence]) -> str:
     """A sentence on the cases that do not begin where those before them end; empty without any."""
     found: dict[str, None] = {}
     for one, two in pairwise(order):
@@ -196,7 +198,7 @@ def _drive(
     name: str,
     tables: Mapping[str, plain.DriveTable | None],
     times: Mapping[str, Floats | None],
-    order: list[Step],
+    order: list[Occurrence],
 ) -> plain.DriveTable:
     """tables: of the drive by case; None where something else holds, and its force is zero."""
     like = next(t for t in tables.values() if t is not None)
@@ -237,7 +239,7 @@ def _effort(table: plain.DriveTable) -> plain.DriveEffort:
     return plain.DriveEffort(size, 0.0, force, size, table.largest_power, 0.0, 0.0)
 
 
-def _over(efforts: list[tuple[Step, plain.DriveEffort]], stroke: float) -> plain.DriveEffort:
+def _over(efforts: list[tuple[Occurrence, plain.DriveEffort]], stroke: float) -> plain.DriveEffort:
     lasts = np.array([step.duration for step, _ in efforts])
     mean, rms = (np.array([getattr(e, key) for _, e in efforts]) for key in ("mean", "rms"))
     step, most = max(efforts, key=lambda each: each[1].largest)
@@ -269,7 +271,7 @@ def with_sequences(
     )
 
 
-def _sequences(history: PointHistory, orders: dict[str, list[Step]]) -> Iterator[CaseHistory]:
+def _sequences(history: PointHistory, orders: dict[str, list[Occurrence]]) -> Iterator[CaseHistory]:
     have = {case.case: case for case in history.cases}
     for name, order in orders.items():
         if any(step.case in have for step in order):
