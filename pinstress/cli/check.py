@@ -14,6 +14,7 @@ from pinstress.model.mechanism.drives import span
 from pinstress.model.mechanism.linkage import determined, linkage
 from pinstress.model.pins import lost_shape, weight
 from pinstress.model.pins import pin as pin_of
+from pinstress.model.sequence import require_times
 from pinstress.model.tasks import Task, tasks
 from pinstress.schema.cases import GivenCase, LegCase, MotionCase
 from pinstress.schema.landing import DropCase, GroundCase
@@ -44,6 +45,11 @@ def describe(study: Study) -> tuple[str, list[str]]:
             found = wrong.attempt(partial(case_loads, study, name, mechanism, extremes=False))
             loads |= {} if found is None else {name: found}
     lines += [f"case {name}: {_words(study, name, case)}" for name, case in loads.items()]
+    times = {name: case.reactions.times for name, case in loads.items()}
+    wrong.attempt(partial(require_times, study, times))
+    for name, sequence in table.sequence.items():
+        steps = ", ".join(f"{step.repeat} × {step.case}" for step in sequence.steps)
+        lines.append(f"sequence {name}: {steps}")
     pins = {name: wrong.attempt(partial(pin_of, study, name)) for name in table.pin}
     made = [pin for pin in pins.values() if pin is not None]
     lines += [wrong.attempt(partial(_pin, study, pin)) or "" for pin in made]

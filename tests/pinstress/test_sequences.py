@@ -176,3 +176,13 @@ def test_a_sequence_that_is_chosen_brings_its_cases(tmp_path: Path) -> None:
         "lift", "locked", "shift",
     }  # fmt: skip
     assert {t.case for t in loads_only(study, cases=["lift"]).reactions} == {"lift"}
+
+
+def test_check_names_the_steps_and_finds_those_without_a_duration(tmp_path: Path) -> None:
+    assert (
+        "sequence shift: 2 × lift, 1 × locked, 1 × lift" in describe(load_study(hoist(tmp_path)))[0]
+    )
+    path = tmp_path / "bent.toml"
+    path.write_text(SPEC.replace(", duration = 2", ""), encoding="utf-8")
+    with raises(InputError, "give-one", "steps[2]", "give its duration"):
+        describe(load_study(path))
