@@ -28,6 +28,7 @@ from benchmarks import (
     motion_accuracy,
     ngsolve_peer,
     page,
+    peers_drop,
     peers_motion,
     publications,
     recovery,
@@ -70,6 +71,7 @@ TIMES = {
     "calculix": calculix.calculix,
     "ngsolve": ngsolve_peer.ngsolve,
     "peers-motion": peers_motion.peers_motion,
+    "peers-drop": peers_drop.peers_drop,
 }
 ALL = ACCURACY | TIMES
 ABREAST = max(2, cores())  # with 1 they would not be processes

@@ -14,7 +14,8 @@ from loads import Course, Lever, Linkage, Slider, motion_reactions, move, peak_f
 from loads.loop_equations import Loops
 from loads.reactions import Reactions
 from pinstress import load_study
-from pinstress.model import linkage as mechanism
+from pinstress.model.mechanism.drives import laws, span
+from pinstress.model.mechanism.linkage import linkage
 
 Floats = NDArray[np.float64]
 
@@ -28,16 +29,15 @@ STEPS = (20, 40, 80, 160, 320)
 def motion_accuracy() -> str:
     """Peak reactions by samples, and point F by three methods; draws the chart in docs/images."""
     study = load_study(STUDY)
-    linkage, laws = mechanism.linkage(study), mechanism.laws(study)
-    span = mechanism.span(study)
+    mechanism, courses, end = linkage(study), laws(study), span(study)
 
-    course = Course(linkage, laws, 0.0, span)
+    course = Course(mechanism, courses, 0.0, end)
 
     def at(times: Floats) -> Reactions:
         return motion_reactions("retract", course.at(times)).reactions
 
-    peaks = _peaks(at, span)
-    ways = _ways(linkage, laws[0], span)
+    peaks = _peaks(at, end)
+    ways = _ways(mechanism, courses[0], end)
     _chart(peaks, ways)
     return "\n\n".join(
         (

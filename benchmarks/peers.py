@@ -21,9 +21,11 @@ from loads import (
     motion_reactions,
     move,
 )
-from loads.linkage import Floats, Point
+from loads.arrays import Floats
+from loads.linkage import Point
 from pinstress import load_study
-from pinstress.model.linkage import laws, linkage, span
+from pinstress.model.mechanism.drives import laws, span
+from pinstress.model.mechanism.linkage import linkage
 
 STUDY = Path(__file__).parent.parent / "studies" / "grenier2008.toml"
 INCH, POUND = 0.0254, 0.45359237

@@ -12,7 +12,8 @@ import numpy as np
 
 from benchmarks.peers import Case, Code, Found
 from loads import GROUND, Body, Slider, Turn
-from loads.linkage import Floats, Point
+from loads.arrays import Floats
+from loads.linkage import Point
 
 STEPS = (40, 80, 160)
 SPRING = 1e9  # N/m at the first of these, four times that with every halving of the step

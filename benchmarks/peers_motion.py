@@ -17,7 +17,7 @@ from benchmarks.peers import Case, Code, Found, four_bar, landing_gear, ours
 from benchmarks.scissor import HIGH, LOW, SPAN, lift
 from benchmarks.timing import seconds, table
 from loads import CycloidalDrive, mobility
-from loads.linkage import Floats
+from loads.arrays import Floats
 
 MISSING = (
     "exudyn and mujoco are not installed: "

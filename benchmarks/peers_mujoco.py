@@ -17,7 +17,8 @@ from scipy.integrate import solve_ivp
 
 from benchmarks.peers import Case, Code, Found
 from loads import GROUND, Body, Linkage, Turn
-from loads.linkage import Floats, Point
+from loads.arrays import Floats
+from loads.linkage import Point
 
 HARDNESS = 0.9999  # the most that MuJoCo allows
 

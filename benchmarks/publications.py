@@ -13,7 +13,7 @@ from loads import LegDynamics, leg_dynamics
 from loads.spatial_leg import t1, t2
 from pinstress import load_study, run
 from pinstress.analysis.gather import loads_only
-from pinstress.model.spatial_leg import dynamics, instants
+from pinstress.model.mechanism.spatial_leg import dynamics, instants
 from pinstress.schema.cases import LegCase
 from reports.data.results import Results
 from reports.format.files import markdown

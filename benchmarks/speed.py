@@ -20,7 +20,8 @@ from geometry import Pin, Segment
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 from loads import motion_reactions, move
 from pinstress import load_study
-from pinstress.model import linkage as mechanism
+from pinstress.model.mechanism.drives import laws, span
+from pinstress.model.mechanism.linkage import linkage
 
 STUDY = Path(__file__).parent.parent / "studies" / "grenier2008.toml"
 STEEL = Material("steel", 2.0e11, 0.3)
@@ -30,15 +31,15 @@ PIN = Pin("P", (Segment(0.02, 0.03), Segment(0.04, 0.02, connection="B")), fille
 def motion() -> str:
     """Positions to reactions of the landing gear, by number of instants."""
     study = load_study(STUDY)
-    linkage, courses = mechanism.linkage(study), mechanism.laws(study)
+    mechanism, courses = linkage(study), laws(study)
     rows = []
     for n in (21, 201, 2001):
-        times = np.linspace(0.0, mechanism.span(study), n)
-        moved = move(linkage, courses, times)
+        times = np.linspace(0.0, span(study), n)
+        moved = move(mechanism, courses, times)
         rows.append(
             (
                 n,
-                seconds(lambda t=times: move(linkage, courses, t)),  # type: ignore[misc]
+                seconds(lambda t=times: move(mechanism, courses, t)),  # type: ignore[misc]
                 seconds(lambda m=moved: motion_reactions("retract", m)),  # type: ignore[misc]
             )
         )

@@ -17,21 +17,26 @@ from loads.forces.acting import Applied, ForceLaw, Load, Spring, Varying
 from loads.forces.curve import ForceTable
 from loads.forces.measures import Clock, Distance, Measure, Position
 from loads.friction import JammingError
+from loads.gears import gear_pair, rack_and_pinion
 from loads.impulse import impulse_force
 from loads.inverse_dynamics import Dynamics, motion_reactions
 from loads.linkage import (
     GROUND,
     Body,
     Connection,
+    Gear,
     Joint,
     Linkage,
     LinkageError,
     Parallel,
+    Rack,
     Sharing,
     Slider,
+    Teeth,
     Turn,
 )
-from loads.mobility import Mobility, mobility
+from loads.mobility.mobility import Mobility, mobility
+from loads.mobility.singular_positions import Impasse
 from loads.motion import Course, Motion, at_rest, move
 from loads.over_time import (
     Effort,
@@ -45,7 +50,6 @@ from loads.over_time import (
 from loads.power_balance import Energy, Ledger, energy, ledger
 from loads.reactions import Reactions, given_reactions, read_reactions
 from loads.refine import Resolved, resolved
-from loads.singular_positions import Impasse
 from loads.spatial_leg import Contact, LegDynamics, LegMotion, SpatialLeg, leg_dynamics
 from loads.tables.csv_table import TableError, read_table
 from loads.tables.force_table import Layout, table_cases
@@ -71,6 +75,7 @@ __all__ = [
     "FileError",
     "ForceLaw",
     "ForceTable",
+    "Gear",
     "Impasse",
     "JammingError",
     "Joint",
@@ -92,6 +97,7 @@ __all__ = [
     "Parallel",
     "PeakForces",
     "Position",
+    "Rack",
     "Reactions",
     "Resolved",
     "Sharing",
@@ -101,10 +107,12 @@ __all__ = [
     "StateDrive",
     "TableDrive",
     "TableError",
+    "Teeth",
     "Turn",
     "Varying",
     "at_rest",
     "energy",
+    "gear_pair",
     "given_reactions",
     "impulse_force",
     "ledger",
@@ -114,6 +122,7 @@ __all__ = [
     "move",
     "over_time",
     "peak_forces",
+    "rack_and_pinion",
     "read_reactions",
     "read_regular",
     "read_table",

@@ -11,7 +11,8 @@ from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
-from loads.linkage import Floats, LinkageError
+from loads.arrays import Floats
+from loads.linkage import LinkageError
 
 Values = tuple[Floats, Floats, Floats]
 

@@ -18,8 +18,8 @@ from itertools import product
 
 import numpy as np
 
-from loads.linkage import Floats, LinkageError
-from loads.loop_equations import Complex, Ints
+from loads.arrays import Complex, Floats, Ints
+from loads.linkage import LinkageError
 
 MOST_CONTACTS = 8  # 256 patterns of signs
 STEPS = 4  # in which friction of pins grows from nothing
@@ -59,9 +59,11 @@ def contact_sizes(free: Complex, response: Complex) -> Floats:
     """Sizes n (T, K) = |free + response n| of contact forces; complex those of pins, which press in
     any direction, response (T, K, K).
 
-    Raises: JammingError where none or, of real ones, several exist.
+    Raises: JammingError where none or, of real ones up to MOST_CONTACTS, several exist.
     """
-    if not free.imag.any() and not response.imag.any():
+    if not response.any():
+        return np.abs(free)
+    if free.shape[1] <= MOST_CONTACTS and not free.imag.any() and not response.imag.any():
         return np.abs(contact_forces(free.real, -response.real))
     sizes = np.abs(free)
     for part in np.linspace(0.0, 1.0, STEPS + 1)[1:]:

@@ -8,18 +8,19 @@ statics; the linkage's sharing rule does it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
+from loads.arrays import Complex, Floats
 from loads.forces.acting import Load, balance
 from loads.forces.holding import holding, require_closed
 from loads.friction import MOST_CONTACTS, JammingError, contact_sizes
 from loads.joint_forces import connection_members, slider_couple, slider_members
-from loads.linkage import GROUND, Floats, Linkage, LinkageError, Point, Slider, Turn
-from loads.loop_equations import Complex, cross, number, pairs
+from loads.linkage import GROUND, Linkage, LinkageError, Point, Slider, Turn
+from loads.loop_equations import cross, number, pairs
 from loads.motion import Motion
 from loads.reactions import Reactions
 
@@ -114,22 +115,19 @@ def _joined(parts: Sequence[Any]) -> Any:
 
 @dataclass(frozen=True)
 class _Source:
-    """A slider or connection that rubs. which: its number. coefficient: of friction, or radius (m)
-    of the friction circle. speed: (T,) m/s, with which it slides or turns. f, couples: multipliers,
-    and couples that items need, of one newton (newton metre) of friction.
+    """A force (couple) in proportion to the size of a contact force: friction of a slider or a pin,
+    or what pushes teeth apart. which: its number. share: (T,) of the contact force, m of a pin. f,
+    couples, spread: multipliers, couples that items need, and forces between teeth, of one newton
+    (newton metre).
     """
 
     name: str
+    kind: Literal["slider", "pin", "teeth"]
     which: int
-    turns: bool
-    coefficient: float
-    speed: Floats
+    share: Floats
     f: Floats
     couples: Floats
-
-    def opposes(self, still: float) -> Floats:
-        """(T,) direction of its friction, 0 where it is slower than `still`, m/s."""
-        return np.where(np.abs(self.speed) > still, -np.sign(self.speed), 0.0)
+    spread: Floats
 
 
 class _Balance:
@@ -145,23 +143,26 @@ class _Balance:
         self.slides = slider_members(self.loops)
         self.shared = motion.found.shared
         self.needed, self.couples = self._needs()
+        self.nothing, self.none = np.zeros_like(self.needed), np.zeros_like(self.couples)
+        self.apart = np.zeros((len(motion), len(motion.linkage.teeth)))
 
     def dynamics(self, case: str, timed: bool) -> Dynamics:
         linkage = self.motion.linkage
         f = self._multipliers(self._generalised(self.needed, self.couples), self.needed)
-        friction = np.zeros((len(f), len(linkage.sliders)))
-        on_pins = np.zeros((len(f), len(linkage.connections)))
+        sizes = (len(linkage.sliders), len(linkage.connections), len(linkage.teeth))
+        friction, on_pins, spread = (np.zeros((len(f), n)) for n in sizes)
+        of = {"slider": friction, "pin": on_pins, "teeth": spread}
         couples = self.couples
-        if self.rubs and (sources := self._sources()):
-            amounts, f = self._with_friction(f, sources)
+        if sources := self._sources():
+            amounts, f = self._with_contacts(f, sources)
             for i, s in enumerate(sources):
-                (on_pins if s.turns else friction)[:, s.which] = amounts[:, i]
+                of[s.kind][:, s.which] = amounts[:, i]
                 couples = couples + amounts[:, i, None] * s.couples
         drive = self._drives(f)
         require_closed(self.held, drive)
-        normal, couple = self._slider_forces(f, self.needed, couples)
+        normal, couple = self._slider_forces(self._closing(f, spread), f, self.needed, couples)
         return Dynamics(
-            reactions=self._reactions(case, f, timed),
+            reactions=self._reactions(case, self._closing(f, spread), timed),
             actuators=self.held.actuators,
             drive=drive,
             motion=self.motion,
@@ -193,14 +194,16 @@ class _Balance:
                 out[:, f - 1] += couples[:, i]
         return out
 
-    def _closing(self, f: Floats) -> Complex:
-        return self.loops.closing_forces(f)
+    def _closing(self, f: Floats, spread: Floats | None = None) -> Complex:
+        return self.loops.closing_forces(self.motion.pose, f, spread)
 
     def _drives(self, f: Floats) -> Floats:
         """(T, A) forces and torques of the actuators."""
         return self.held.forces(f[:, f.shape[1] - self.held.weights.shape[2] :])
 
-    def _multipliers(self, generalised: Floats, needed: Complex) -> Floats:
+    def _multipliers(
+        self, generalised: Floats, needed: Complex, spread: Floats | None = None
+    ) -> Floats:
         """Multipliers (T, rows) that balance forces along the coordinates, shared by the given
         rules.
         """
@@ -208,26 +211,31 @@ class _Balance:
         f = factors.solve_transposed(generalised / self.loops.scale)
         if not self.shared:
             return f
-        at_connections = self.connections.forces(needed, self._closing(f))
         null = factors.null
         nothing = np.zeros((1, needed.shape[1]), dtype=complex)
         ways = [self._closing(null[:, :, i]) for i in range(null.shape[2])]
-        loose = np.stack([self.connections.forces(nothing, way) for way in ways], axis=2)
-        amounts = _shares(self.loops.linkage, at_connections, loose, self.shared)
+        loose = np.stack([self._everywhere(nothing, way) for way in ways], axis=2)
+        found = self._everywhere(needed, self._closing(f, spread))
+        amounts = _shares(self.loops.linkage, found, loose, self.shared)
         return f + (null @ amounts[..., None])[..., 0]
 
-    def _slider_forces(self, f: Floats, needed: Complex, couples: Floats) -> tuple[Floats, Floats]:
+    def _everywhere(self, needed: Complex, closing: Complex) -> Complex:
+        """(T, connections and teeth) forces on the bodies."""
+        teeth = closing[:, len(self.loops.closing) :]
+        return np.concatenate([self.connections.forces(needed, closing), teeth], axis=1)
+
+    def _slider_forces(
+        self, closing: Complex, f: Floats, needed: Complex, couples: Floats
+    ) -> tuple[Floats, Floats]:
         """Normal force and couple at every slider, (T, S)."""
         loops, pose = self.loops, self.motion.pose
         sliders = loops.linkage.sliders
         if not sliders:
             return np.zeros((len(f), 0)), np.zeros((len(f), 0))
-        closing = self._closing(f)
         force = self.slides.forces(needed, closing)
         normal = np.real(np.conj(1j * pose.axis) * force)
         centres, _, _ = self.motion.centres
-        bodies, _, at = loops.closing_ends
-        closing_at = loops.place(pose, loops.points(bodies, at))
+        closing_at = loops.place(pose, loops.closing_points)
         forces = zip(self.held.actuators, self._drives(f).T, strict=True)
         torques = [(a, force) for a, force in forces if isinstance(a, Turn)]
         couple = np.stack(
@@ -247,74 +255,95 @@ class _Balance:
         return self.loops.place(self.motion.pose, self.loops.points(item, at))[:, 0]
 
     def _sources(self) -> list[_Source]:
-        """What rubs: sliders, then connections, each with its unit response."""
-        linkage, motion = self.motion.linkage, self.motion
-        sliders, first = linkage.sliders, self.loops.frames - 1
-        nothing, none = np.zeros_like(self.needed), np.zeros_like(self.couples)
-        out = []
-        for k, s in enumerate(sliders):
+        """What a contact force brings about in proportion to its size."""
+        rubbing = [*self._rubbing_sliders(), *self._rubbing_pins()] if self.rubs else []
+        return [*rubbing, *self._teeth()]
+
+    def _opposing(self, speed: Floats) -> Floats:
+        """(T,) direction of friction at a speed, m/s: 0 at rest."""
+        return np.where(np.abs(speed) > STANDS * self.motion.pace, -np.sign(speed), 0.0)
+
+    def _rubbing_sliders(self) -> Iterator[_Source]:
+        motion, first = self.motion, self.loops.frames - 1
+        for k, s in enumerate(motion.linkage.sliders):
             if s.friction:
                 push = np.zeros_like(motion.q)
                 push[:, first + k] = -1.0
-                speed = motion.v[:, first + k]
-                f = self._multipliers(push, nothing)
-                out.append(_Source(f"slider {s.name}", k, False, s.friction, speed, f, none))
+                share = s.friction * self._opposing(motion.v[:, first + k])
+                f = self._multipliers(push, self.nothing)
+                yield _Source(f"slider {s.name}", "slider", k, share, f, self.none, self.apart)
+
+    def _rubbing_pins(self) -> Iterator[_Source]:
+        linkage, motion = self.motion.linkage, self.motion
         for c, (joint, connection) in enumerate(linkage.connections):
             if connection.friction:
-                couples = none.copy()
+                couples = self.none.copy()
                 couples[:, linkage.index[connection.body]] = -1.0
                 if (carrier := linkage.index[linkage.carrier(joint)]) < couples.shape[1]:
                     couples[:, carrier] = 1.0
-                f = self._multipliers(self._generalised(nothing, couples), nothing)
+                f = self._multipliers(self._generalised(self.nothing, couples), self.nothing)
                 speed = motion.turning(joint, connection) * linkage.length_scale
+                share = connection.friction * self._opposing(speed)
                 name = f"pin {joint.name} at {connection.name}"
-                out.append(_Source(name, c, True, connection.friction, speed, f, couples))
-        return out
+                yield _Source(name, "pin", c, share, f, couples, self.apart)
+
+    def _teeth(self) -> Iterator[_Source]:
+        for g, teeth in enumerate(self.motion.linkage.teeth):
+            spread = self.apart.copy()
+            spread[:, g] = 1.0
+            f = self._multipliers(np.zeros_like(self.motion.q), self.nothing, spread)
+            share = np.full(len(f), np.tan(teeth.pressure_angle))
+            yield _Source(f"teeth {teeth.name}", "teeth", g, share, f, self.none, spread)
 
     def _pressed(
-        self, sources: list[_Source], f: Floats, needed: Complex, couples: Floats
+        self, sources: list[_Source], f: Floats, needed: Complex, of: _Source | None = None
     ) -> list[Complex]:
         """Of every source its contact forces, (T, contacts): of pads along their normal, of pins in
-        the plane.
+        the plane, of teeth along the pitch circle. of: the source that brings them about, by
+        default what bodies need.
         """
-        slides = [s.which for s in sources if not s.turns]
-        normal, couple = self._slider_forces(f, needed, couples) if slides else (f, f)
-        pins = self.connections.forces(needed, self._closing(f))
+        couples, spread = (of.couples, of.spread) if of else (self.couples, None)
+        closing = self._closing(f, spread)
+        slides = any(s.kind == "slider" for s in sources)
+        normal, couple = self._slider_forces(closing, f, needed, couples) if slides else (f, f)
+        pins = self.connections.forces(needed, closing)
+        tangential = f[:, 2 * len(self.loops.closing) : self.loops.guides]
         out = []
         for s in sources:
-            if s.turns:
+            if s.kind == "pin":
                 out.append(pins[:, [s.which]])
-                continue
-            n, bearing = normal[:, s.which], self.loops.linkage.sliders[s.which].bearing
-            pads = [n]
-            if bearing is not None:
-                pads = [n / 2 + sign * couple[:, s.which] / bearing for sign in (1.0, -1.0)]
-            out.append(np.stack(pads, axis=1).astype(complex))
+            elif s.kind == "teeth":
+                out.append(tangential[:, [s.which]].astype(complex))
+            else:
+                n, bearing = normal[:, s.which], self.loops.linkage.sliders[s.which].bearing
+                pads = [n]
+                if bearing is not None:
+                    pads = [n / 2 + sign * couple[:, s.which] / bearing for sign in (1.0, -1.0)]
+                out.append(np.stack(pads, axis=1).astype(complex))
         return out
 
-    def _with_friction(self, f: Floats, sources: list[_Source]) -> tuple[Floats, Floats]:
-        """Friction forces (couples) of the sources, (T, sources), and the multipliers with them."""
-        nothing = np.zeros_like(self.needed)
-        free = self._pressed(sources, f, self.needed, self.couples)
+    def _with_contacts(self, f: Floats, sources: list[_Source]) -> tuple[Floats, Floats]:
+        """Forces (couples) of the sources, (T, sources), and the multipliers with them."""
+        free = self._pressed(sources, f, self.needed)
         owner = [i for i, contacts in enumerate(free) for _ in range(contacts.shape[1])]
-        if len(owner) > MOST_CONTACTS:
+        rubbing = sum(sources[i].kind != "teeth" for i in owner)
+        if rubbing > MOST_CONTACTS:
             raise LinkageError(
-                f"{len(owner)} contacts have friction; at most {MOST_CONTACTS} can be solved",
+                f"{rubbing} contacts have friction; at most {MOST_CONTACTS} can be solved",
                 "too-many-contacts",
             )
-        amounts = [s.coefficient * s.opposes(STANDS * self.motion.pace) for s in sources]
-        unit = [np.concatenate(self._pressed(sources, s.f, nothing, s.couples), 1) for s in sources]
-        response = np.stack([unit[i] * amounts[i][:, None] for i in owner], axis=2)
+        unit = [np.concatenate(self._pressed(sources, s.f, self.nothing, s), 1) for s in sources]
+        response = np.stack([unit[i] * sources[i].share[:, None] for i in owner], axis=2)
         try:
             sizes = contact_sizes(np.concatenate(free, axis=1), response)
         except JammingError as error:
             raise self._named(error, response, [sources[i].name for i in owner]) from None
-        friction = np.zeros((len(f), len(sources)))
+        amounts = np.zeros((len(f), len(sources)))
         for k, i in enumerate(owner):
-            friction[:, i] += amounts[i] * sizes[:, k]
+            amounts[:, i] += sources[i].share * sizes[:, k]
         for i, s in enumerate(sources):
-            f = f + friction[:, i, None] * s.f
-        return friction, f
+            f = f + amounts[:, i, None] * s.f
+        return amounts, f
 
     def _named(self, error: JammingError, response: Complex, names: list[str]) -> JammingError:
         """The same with what rubs named and the time."""
@@ -325,20 +354,21 @@ class _Balance:
             error.instants, error.none, error.grip, when, names[int(grips.argmax())]
         )
 
-    def _reactions(self, case: str, f: Floats, timed: bool) -> Reactions:
+    def _reactions(self, case: str, closing: Complex, timed: bool) -> Reactions:
         motion, linkage = self.motion, self.motion.linkage
-        on_body = self.connections.forces(self.needed, self._closing(f))
+        on_body = self._everywhere(self.needed, closing)
         on_pin = np.zeros((*on_body.shape, 3))
         on_pin[..., 0], on_pin[..., 1] = -on_body.real, -on_body.imag
         # A pin's own axes turn with what it is fixed in; those of a floating pin are the world's.
-        turn = np.stack(
-            [motion.angle(j.fixed_in or GROUND) for j, _ in linkage.connections], axis=1
-        )
+        own = [j.fixed_in or GROUND for j, _ in linkage.connections]
+        own += [t.carrier for t in linkage.teeth]
+        turn = np.stack([motion.angle(item) for item in own], axis=1)
+        names, bodies = zip(*linkage.forces, strict=True)
         return Reactions(
             case=case,
             times=motion.times if timed else None,
-            connections=tuple(c.name for _, c in linkage.connections),
-            bodies=tuple(c.body for _, c in linkage.connections),
+            connections=names,
+            bodies=bodies,
             forces=on_pin,
             moments=np.zeros_like(on_pin),
             turn=turn,
@@ -347,9 +377,9 @@ class _Balance:
 
 def _shares(linkage: Linkage, forces: Complex, loose: Complex, shared: tuple[str, ...]) -> Floats:
     """Amounts (T, k) of self-equilibrated forces `loose` (T, C, k) that make the sharing
-    connections behave like springs: the sum of force^2 / stiffness over them is least.
+    connections and teeth behave like springs: the sum of force^2 / stiffness over them is least.
     """
-    names = [c.name for _, c in linkage.connections]
+    names = [name for name, _ in linkage.forces]
     open_ = f"rigid-body statics does not determine the forces at {', '.join(shared)}"
     if not linkage.sharing:
         raise LinkageError(

@@ -1,7 +1,7 @@
 """Forces in every connection and slider, from the forces that bodies need and those at closures.
 
 Cutting one member of the tree splits off the items beyond it: the force through it is what these
-items need, less what closures bring to them. No system is solved.
+items need, less what closures and teeth bring to them. No system is solved.
 """
 
 from __future__ import annotations
@@ -11,19 +11,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loads.linkage import Floats, Turn
-from loads.loop_equations import Complex, Loops, cross
+from loads.arrays import Complex, Floats
+from loads.linkage import Turn
+from loads.loop_equations import Loops, cross
 
 
 @dataclass(frozen=True)
 class Members:
-    """Weights (members, items) and (members, closures) of the two contributions."""
+    """Weights (members, items) and (members, closures and teeth) of the two contributions."""
 
     from_items: Floats
     from_closures: Floats
 
     def forces(self, needed: Complex, closing: Complex) -> Complex:
-        """(T, members) N, from (T, items) and (T, closures)."""
+        """(T, members) N, from (T, items) and (T, closures and teeth)."""
         return np.asarray(needed @ self.from_items.T + closing @ self.from_closures.T)
 
 
@@ -40,8 +41,8 @@ def slider_members(loops: Loops) -> Members:
 def _members(loops: Loops, slides: bool, count: int) -> Members:
     linkage = loops.linkage
     needs = np.zeros((count, len(linkage.items)))
-    brings = np.zeros((count, len(loops.closing)))
     bodies, carriers, _ = loops.closing_ends
+    brings = np.zeros((count, len(bodies)))
     for edge in loops.tree:
         if edge.slides is slides:
             sign = 1.0 if edge.forward else -1.0
@@ -68,8 +69,8 @@ def slider_couple(
     """Couple of the base on the moving body of a slider about points (T,), (T,) N m.
 
     centres, needed, couples: (T, items) places, forces and couples that the items need. closing_at,
-    closing: (T, closures) places and forces. torques: (T,) of every turn that is held. A slider
-    that closes a loop of sliders alone is taken to carry no couple.
+    closing: (T, closures and teeth) places and forces. torques: (T,) of every turn that is held. A
+    slider that closes a loop of sliders alone is taken to carry no couple.
     """
     edge = next((e for e in loops.tree if e.slides and e.which == which), None)
     out = np.zeros(len(about))

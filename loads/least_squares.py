@@ -9,15 +9,19 @@ nonzeros are found once, and every operation is done for all systems of the stac
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, reduce
 
 import numpy as np
 from numpy.typing import NDArray
 
-from loads.linkage import Floats
+from loads.arrays import Floats
 
 Ints = NDArray[np.int64]
+
+ROUNDS = 30  # of powers for a condition number
+SETTLED = 1e-6  # relative: changes by less in a round; the error is of that order
 
 
 @dataclass(frozen=True)
@@ -134,6 +138,46 @@ class Factors:
         """(T,) smallest over largest pivot: tiny where J loses rank."""
         pivots = np.abs(self._diagonal)
         return np.asarray(pivots.min(axis=0) / pivots.max(axis=0))
+
+    def _scaled(self, x: Floats) -> Floats:
+        """R^T R x for x (columns, T)."""
+        out = np.zeros_like(x)
+        for step, row in zip(self._steps, self._R, strict=True):
+            out[step.columns] += row * _total(row * x[step.columns])
+        return out
+
+    def _unscaled(self, x: Floats) -> Floats:
+        """(R^T R)^-1 x for x (columns, T), in place."""
+        for step, row in zip(self._steps, self._R, strict=True):
+            x[step.columns[0]] = _over(x[step.columns[0]], row[0])
+            x[step.columns[1:]] -= row[1:] * x[step.columns[0]]
+        for step, row in zip(reversed(self._steps), reversed(self._R), strict=True):
+            column, others = step.columns[0], step.columns[1:]
+            x[column] = _over(x[column] - _total(row[1:] * x[others]), row[0])
+        return x
+
+    def condition(self) -> Floats:
+        """(T,) largest over smallest singular value of J, by powers of R^T R and of its inverse;
+        NaN where these do not settle soon.
+        """
+        largest, smallest = self._power(self._scaled), self._power(self._unscaled)
+        return np.sqrt(largest * smallest)
+
+    def _power(self, apply: Callable[[Floats], Floats]) -> Floats:
+        """(T,) largest eigenvalue of a symmetric operator; NaN where it does not settle."""
+        start = np.random.default_rng(0).standard_normal((self._n, 1))
+        x = np.repeat(start / np.linalg.norm(start), self._diagonal.shape[1], axis=1)
+        before, found = np.zeros(x.shape[1]), np.full(x.shape[1], np.nan)
+        for _ in range(ROUNDS):
+            x = apply(x)
+            size = np.sqrt(_total(x**2))
+            x /= size
+            settled = np.isnan(found) & (np.abs(size - before) <= SETTLED * size)
+            found[settled] = size[settled]  # at once: whatever other systems there are
+            if not np.isnan(found).any():
+                break
+            before = size
+        return found
 
     def turn_to(self, J: Floats) -> Floats:
         """(T,) determinant of another J seen in this one's range: its sign changes where J loses

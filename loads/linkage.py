@@ -8,11 +8,9 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from loads.coded import LoadsError, Place
 
-Floats = NDArray[np.float64]
 Point = tuple[float, float]
 Contradiction = tuple[str, str, Place]  # message, code and place of a LinkageError
 
@@ -129,8 +127,47 @@ class Turn:
 
 
 @dataclass(frozen=True)
+class Gear:
+    """A body with teeth about the joint at which its carrier has it."""
+
+    body: str
+    joint: str
+
+
+@dataclass(frozen=True)
+class Rack:
+    """A body with teeth along the slider that guides it on its carrier, or its carrier on it."""
+
+    body: str
+    slider: str
+
+
+@dataclass(frozen=True)
+class Teeth:
+    """Teeth of two bodies that meet at the pitch point, which is fixed in a third, the carrier.
+
+    at: pitch point as drawn, m. normal: unit vector there as drawn, out of the first body into the
+    second. pressure_angle: rad.
+    """
+
+    name: str
+    sides: tuple[Gear | Rack, Gear | Rack]
+    carrier: str
+    at: Point
+    normal: Point
+    pressure_angle: float
+
+    @property
+    def bodies(self) -> tuple[str, str]:
+        """The two that mesh."""
+        return self.sides[0].body, self.sides[1].body
+
+
+@dataclass(frozen=True)
 class Sharing:
-    """How redundant connections share their load: as springs of these stiffnesses (in any unit)."""
+    """How redundant connections and teeth share their load: as springs of these stiffnesses (in any
+    unit).
+    """
 
     connections: tuple[str, ...]
     stiffness: tuple[float, ...]
@@ -163,6 +200,7 @@ class Linkage:
     gravity: Point = (0.0, 0.0)
     sharing: tuple[Sharing, ...] = ()
     parallel: tuple[Parallel, ...] = ()
+    teeth: tuple[Teeth, ...] = ()
 
     def __post_init__(self) -> None:
         if wrong := [LinkageError(*each) for each in _contradictions(self)]:
@@ -172,6 +210,14 @@ class Linkage:
     def connections(self) -> tuple[tuple[Joint, Connection], ...]:
         """Every connection with its joint, in the order of the joints."""
         return tuple((j, c) for j in self.joints for c in j.connections)
+
+    @cached_property
+    def forces(self) -> tuple[tuple[str, str], ...]:
+        """Names of all forces between bodies, of connections, then of teeth, with the body that
+        exerts each.
+        """
+        teeth = tuple((t.name, t.bodies[0]) for t in self.teeth)
+        return tuple((c.name, c.body) for _, c in self.connections) + teeth
 
     @property
     def rubs(self) -> bool:
@@ -230,11 +276,12 @@ def _contradictions(linkage: Linkage) -> Iterator[Contradiction]:
         yield "the linkage has no joints", "no-joints", ()
     bodies = {b.name: b for b in linkage.bodies}
     names = [c.name for j in linkage.joints for c in j.connections]
+    names += [t.name for t in linkage.teeth]
     coordinates = [s.name for s in linkage.sliders] + [t.name for t in linkage.turns]
     for what, seen in (
         ("body", [b.name for b in linkage.bodies]),
         ("joint", [j.name for j in linkage.joints]),
-        ("connection", names),
+        ("connection or gear" if linkage.teeth else "connection", names),
         ("slider or turn", coordinates),
         ("drive", list(linkage.driven)),
     ):
@@ -245,6 +292,11 @@ def _contradictions(linkage: Linkage) -> Iterator[Contradiction]:
         yield text, "reserved-name", ("body", GROUND)
     yield from _of_joints(linkage, bodies)
     yield from _of_sliders(linkage, bodies)
+    for teeth in linkage.teeth:
+        for gear in (side.body for side in teeth.sides if isinstance(side, Gear)):
+            if gear in bodies and bodies[gear].inertia is None:
+                text = f"body {gear}: a gear turns; give its inertia (0 is allowed)"
+                yield text, "missing-inertia", ("body", gear)
     for name in linkage.driven:
         if name not in coordinates:
             text = f"drive {name!r}: there is no slider or turn of this name"
@@ -252,7 +304,7 @@ def _contradictions(linkage: Linkage) -> Iterator[Contradiction]:
     for share in linkage.sharing:
         for name in share.connections:
             if name not in names:
-                text = f"sharing: there is no connection {name!r}"
+                text = f"sharing: there is no connection, gear or rack {name!r}"
                 yield text, "unknown-connection", ("sharing",)
     for rule in linkage.parallel:
         yield from _of_parallel(linkage, rule, coordinates)

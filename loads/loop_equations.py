@@ -20,17 +20,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loads.arrays import Complex, Floats, Ints
+from loads.gears import gap_weights, row
 from loads.least_squares import Factors, Step, elimination
-from loads.linkage import GROUND, Floats, Linkage, LinkageError, Point, Slider, Turn
+from loads.linkage import Linkage, Point, Slider, Turn
+from loads.spanning_tree import ROUNDING, ends_of, frames, shortest, spanning_tree
 
 AT_ONCE = 2**20  # entries of the matrices of a batch of instants: 8 MB
-
-ROUNDING = 1e-14  # of a length: what is left where equal lengths cancel
-
-Complex = NDArray[np.complex128]
-Ints = NDArray[np.int64]
 
 
 def number(point: Point) -> complex:
@@ -73,40 +70,27 @@ class Pose:
         return Pose(self.turn[chosen], self.axis[chosen], self.extension[chosen])
 
 
-@dataclass(frozen=True)
-class LoopEdge:
-    """A member of the tree: connection or slider number `which`; `away`: the items on the side
-    away from the ground. forward: whether the connection's body (the slider's moving body) is
-    among them.
-    """
-
-    slides: bool
-    which: int
-    away: frozenset[int]
-    forward: bool
-
-
 class Loops:
     """The loop and drive equations of one linkage.
 
     Coordinates q (T, n): angles (rad) of the frames but the ground's, then extensions (m). Rows:
-    two per closure (x, then y, of all closures), then one per drive. The multiplier of a closure
-    is the force of the pin on the body (of the base on the moving body) in N; that of a drive's row
-    is its force, or its torque over the length scale.
+    two per closure (x, then y, of all closures), one per pair of teeth, then one per drive. The
+    multiplier of a closure is the force of the pin on the body (of the base on the moving body) in
+    N; that of teeth the force on the first body along the pitch circle; that of a drive's row is
+    its force, or its torque over the length scale.
     """
 
     def __init__(self, linkage: Linkage) -> None:
         self.linkage = linkage
-        self.frames, self.frame = _frames(linkage)
-        self.tree, self.closing = _tree(linkage)
+        self.frames, self.frame = frames(linkage)
+        self.tree, self.closing = spanning_tree(linkage)
         self._root, self._slid = self._chains()
         self.gaps = self._gaps()
-        self._combined = _shortest(np.concatenate([self.gaps.turning[1:], self.gaps.sliding]))
-        drives = linkage.drives
-        self.drawn_drives = np.array([d.drawn for d in drives])
-        self._drive_rows = np.zeros((len(drives), self.columns))
-        for k, d in enumerate(drives):
-            self._drive_rows[k] = self.along(d)
+        self._combined = shortest(np.concatenate([self.gaps.turning[1:], self.gaps.sliding]))
+        self.drawn_drives = np.array([d.drawn for d in linkage.drives])
+        fixed = [row(self.linkage, self.frame, t) for t in linkage.teeth]
+        fixed += [self.along(d) for d in linkage.drives]
+        self._fixed_rows = np.array(fixed).reshape(-1, self.columns)
 
     @property
     def columns(self) -> int:
@@ -116,7 +100,12 @@ class Loops:
     @property
     def rows(self) -> int:
         """Number of equations."""
-        return 2 * len(self.closing) + len(self.linkage.driven)
+        return self.guides + len(self.linkage.driven)
+
+    @property
+    def guides(self) -> int:
+        """Number of equations but the drives'."""
+        return 2 * len(self.closing) + len(self.linkage.teeth)
 
     def parts(self, count: int) -> list[slice]:
         """Slices of so many instants that matrices of all instants of one take little memory."""
@@ -228,9 +217,11 @@ class Loops:
     def residual(self, q: Floats, pose: Pose, drives: Floats) -> Floats:
         """Violation of every equation, (T, rows), m; drives (T, D) their values."""
         gap = self.place(pose, self.closures)
-        lag = (q * self.scale) @ self._drive_rows.T
+        lag = (q * self.scale) @ self._fixed_rows.T
         for k in range(drives.shape[1]):
-            lag[:, k] -= self.drive_scale(k) * (drives[:, k] - self.drawn_drives[k])
+            lag[:, len(self.linkage.teeth) + k] -= self.drive_scale(k) * (
+                drives[:, k] - self.drawn_drives[k]
+            )
         return np.concatenate([gap.real, gap.imag, lag], axis=1)
 
     def jacobian(self, pose: Pose) -> Floats:
@@ -251,7 +242,7 @@ class Loops:
             add(k, angles + s, along)
             if frame:
                 add(k, frame - 1, 1j / self.scale[frame - 1] * pose.extension[:, s] * along)
-        J[2 * count :] = self._drive_rows[:, :, None]
+        J[2 * count :] = self._fixed_rows[:, :, None]
         return np.moveaxis(J, -1, 0)
 
     def factors(self, pose: Pose) -> Factors:
@@ -265,20 +256,22 @@ class Loops:
             if f:
                 turns[f - 1] |= slides[s]
         closing = np.concatenate([turns, slides]).T
-        pattern = np.concatenate([closing, closing, self._drive_rows != 0.0])
+        pattern = np.concatenate([closing, closing, self._fixed_rows != 0.0])
         return elimination(pattern)
 
     def drive_side(self, values: Floats) -> Floats:
         """Right-hand side (T, rows) that gives the drives these rates (T, D)."""
         out = np.zeros((len(values), self.rows))
         for k in range(values.shape[1]):
-            out[:, 2 * len(self.closing) + k] = self.drive_scale(k) * values[:, k]
+            out[:, self.guides + k] = self.drive_scale(k) * values[:, k]
         return out
 
     def bend_side(self, pose: Pose, rates: Floats) -> Floats:
-        """(T, rows) what accelerations must make up for; nothing in the drives' rows."""
+        """(T, rows) what accelerations must make up for; nothing in the rows of teeth and drives,
+        which are linear in the coordinates.
+        """
         bend = self.bends(pose, rates, self.closures)
-        nothing = np.zeros((len(rates), len(self.linkage.driven)))
+        nothing = np.zeros((len(rates), len(self._fixed_rows)))
         return -np.concatenate([bend.real, bend.imag, nothing], axis=1)
 
     # --- assembly ---------------------------------------------------------------------------------
@@ -291,7 +284,7 @@ class Loops:
         sliding = np.zeros((len(linkage.sliders), count))
         # Edges come from the ground outwards, so each adds to what lies nearer to the ground.
         for edge in self.tree:
-            ends = _ends(linkage, edge.slides, edge.which)
+            ends = ends_of(linkage, edge.slides, edge.which)
             outer, inner = ends if edge.forward else ends[::-1]
             away = list(edge.away)
             if edge.slides:
@@ -304,18 +297,41 @@ class Loops:
 
     @cached_property
     def closing_ends(self) -> tuple[Ints, Ints, Complex]:
-        """Of every closure the items on which its force acts (the body) and reacts (the carrier),
-        and its drawn place.
+        """Of every closure, then of all teeth, the items on which its force acts (the body) and
+        reacts (the carrier), and its drawn place.
         """
-        ends = np.array([_ends(self.linkage, *c) for c in self.closing], dtype=np.int64)
-        sliders, connections = self.linkage.sliders, self.linkage.connections
+        linkage, index = self.linkage, self.linkage.index
+        ends = [ends_of(linkage, *c) for c in self.closing]
+        ends += [(index[t.bodies[0]], index[t.bodies[1]]) for t in linkage.teeth]
+        sliders, connections = linkage.sliders, linkage.connections
         at = [number(sliders[k].end if s else connections[k][0].at) for s, k in self.closing]
-        return *ends.reshape(-1, 2).T, np.array(at, dtype=complex)
+        at += [number(t.at) for t in linkage.teeth]
+        acts, reacts = np.array(ends, dtype=np.int64).reshape(-1, 2).T
+        return acts, reacts, np.array(at, dtype=complex)
 
-    def closing_forces(self, f: Floats) -> Complex:
-        """(T, closing) forces at the members that close loops, from multipliers (T, rows)."""
+    @cached_property
+    def closing_points(self) -> Points:
+        """Where the forces at closures and teeth act: a pitch point is fixed in its carrier."""
+        acts, _, at = self.closing_ends
+        carriers = [self.linkage.index[t.carrier] for t in self.linkage.teeth]
+        return self.points(np.array([*acts[: len(self.closing)], *carriers], dtype=np.int64), at)
+
+    def closing_forces(self, pose: Pose, f: Floats, spread: Floats | None = None) -> Complex:
+        """(T, closing and teeth) forces at the members that close loops and at teeth, from
+        multipliers (T, rows). spread: (T, teeth) N by which teeth push each other apart.
+        """
         k = len(self.closing)
-        return np.asarray((f[:, :k] + 1j * f[:, k : 2 * k]) @ self._combined.T)
+        closing = (f[:, :k] + 1j * f[:, k : 2 * k]) @ self._combined.T
+        if not self.linkage.teeth:
+            return np.asarray(closing)
+        frames = [self.frame[self.linkage.index[t.carrier]] for t in self.linkage.teeth]
+        normal = pose.turn[:, frames] * np.array([number(t.normal) for t in self.linkage.teeth])
+        tooth = normal * (1j * f[:, 2 * k : self.guides] - (0.0 if spread is None else spread))
+        return np.concatenate([closing - tooth @ self._gap_weights, tooth], axis=1)
+
+    @cached_property
+    def _gap_weights(self) -> Floats:
+        return gap_weights(self.linkage, self.closing)
 
     @cached_property
     def closures(self) -> Points:
@@ -327,121 +343,9 @@ class Loops:
     def _gaps(self) -> Points:
         """By how much each member that closes a loop leaves it open."""
         body, carrier, at = self.closing_ends
-        gap = self.points(body, at) - self.points(carrier, at)
+        own = slice(len(self.closing))
+        gap = self.points(body[own], at[own]) - self.points(carrier[own], at[own])
         for k, (slides, which) in enumerate(self.closing):
             if slides:
                 gap.sliding[which, k] -= 1.0
         return gap
-
-
-def _ends(linkage: Linkage, slides: bool, which: int) -> tuple[int, int]:
-    """The items that a slider or connection joins: its (moving) body, and what carries that."""
-    if slides:
-        s = linkage.sliders[which]
-        return linkage.index[s.moving], linkage.index[s.base]
-    joint, c = linkage.connections[which]
-    return linkage.index[c.body], linkage.index[linkage.carrier(joint)]
-
-
-def _frames(linkage: Linkage) -> tuple[int, Ints]:
-    """Number of frames, and the frame of every item: 0 is the ground's.
-
-    Pins and particles have no angle; the ground's frame serves, their chains do not depend on it.
-    """
-    index = linkage.index
-    joined = _Sets(len(index))
-    for s in linkage.sliders:
-        joined.join(index[s.base], index[s.moving])
-    ground = joined.of(index[GROUND])
-    frame = np.zeros(len(index), dtype=np.int64)
-    numbers: dict[int, int] = {ground: 0}
-    for i, item in enumerate(linkage.items):
-        if item.inertia is not None or joined.of(i) == ground:
-            frame[i] = numbers.setdefault(joined.of(i), len(numbers))
-    for i in range(len(linkage.items)):
-        frame[i] = numbers.get(joined.of(i), 0)
-    return len(numbers), frame
-
-
-def _shortest(gaps: Complex) -> Floats:
-    """(K, K) whole numbers by which gaps (n, K) combine to ones with as few nonzeros as sums and
-    differences of two at a time can make: two loops along the same bodies leave the rest.
-    """
-    count = gaps.shape[1]
-    combined, gaps = np.eye(count), gaps.copy()
-    size = np.abs(gaps).max(initial=0.0)
-    better = True
-    while better:
-        better = False
-        for k in np.argsort(-(gaps != 0.0).sum(axis=0), kind="stable"):
-            for sign in (1.0, -1.0):
-                new = gaps[:, k, None] - sign * gaps
-                new[np.abs(new) < ROUNDING * size] = 0.0
-                entries = (new != 0.0).sum(axis=0)
-                entries[k] = len(gaps) + 1
-                j = int(entries.argmin())
-                if entries[j] < (gaps[:, k] != 0.0).sum():
-                    gaps[:, k] = new[:, j]
-                    combined[:, k] -= sign * combined[:, j]
-                    better = True
-    return combined
-
-
-class _Sets:
-    """Disjoint sets of items."""
-
-    def __init__(self, count: int) -> None:
-        self._parent = list(range(count))
-
-    def of(self, i: int) -> int:
-        while self._parent[i] != i:
-            i = self._parent[i]
-        return i
-
-    def join(self, i: int, j: int) -> bool:
-        """Whether they were apart before."""
-        a, b = self.of(i), self.of(j)
-        self._parent[a] = b
-        return a != b
-
-
-def _tree(linkage: Linkage) -> tuple[tuple[LoopEdge, ...], tuple[tuple[bool, int], ...]]:
-    """Edges of a spanning tree, from the ground outwards, and the (slides, which) that close loops.
-
-    Sliders come first: bodies of one frame then hang together, and no loop turns against itself.
-
-    Raises: LinkageError for bodies that nothing joins to the ground.
-    """
-    index = linkage.index
-    members = [(True, k, *_ends(linkage, True, k)) for k in range(len(linkage.sliders))]
-    members += [(False, k, *_ends(linkage, False, k)) for k in range(len(linkage.connections))]
-    joined = _Sets(len(index))
-    inside = [m for m in members if joined.join(m[2], m[3])]
-    closing = tuple((m[0], m[1]) for m in members if m not in inside)
-    ground = index[GROUND]
-    adrift = [
-        item.name for i, item in enumerate(linkage.items) if joined.of(i) != joined.of(ground)
-    ]
-    if adrift:
-        raise LinkageError(
-            f"no connection or slider joins {', '.join(adrift)} to the ground; add one",
-            "not-joined",
-        )
-    neighbours: dict[int, list[tuple[tuple[bool, int, int, int], int]]] = {}
-    for m in inside:
-        neighbours.setdefault(m[2], []).append((m, m[3]))
-        neighbours.setdefault(m[3], []).append((m, m[2]))
-    order: list[tuple[tuple[bool, int, int, int], int, int]] = []
-    seen, queue = {ground}, [ground]
-    for inner in queue:
-        for m, outer in neighbours.get(inner, ()):
-            if outer not in seen:
-                seen.add(outer)
-                queue.append(outer)
-                order.append((m, inner, outer))
-    away: dict[int, set[int]] = {outer: {outer} for _, _, outer in order}
-    for _, inner, outer in reversed(order):
-        if inner != ground:
-            away[inner] |= away[outer]
-    edges = tuple(LoopEdge(m[0], m[1], frozenset(away[o]), m[2] == o) for m, _, o in order)
-    return edges, closing

@@ -8,17 +8,19 @@ from functools import cached_property
 
 import numpy as np
 
-from loads.as_drawn import RANK_TOLERANCE
+from loads.arrays import Complex, Floats
 from loads.drives import Law, StateDrive
 from loads.least_squares import Factors
-from loads.linkage import Connection, Floats, Joint, Linkage, LinkageError, Point, Slider, Turn
-from loads.loop_equations import Complex, Loops, Points, Pose, number, pairs
-from loads.mobility import Mobility, require_determined
+from loads.linkage import Connection, Joint, Linkage, LinkageError, Point, Slider, Turn
+from loads.loop_equations import Loops, Points, Pose, number, pairs
+from loads.mobility.as_drawn import RANK_TOLERANCE
+from loads.mobility.mobility import Mobility, require_determined
+from loads.mobility.singular_positions import impasse
 from loads.positions import Path
-from loads.singular_positions import impasse
 
 GRID = 257  # instants at which a course evaluates its drives, in addition to those of their laws
 STANDS = 1e-9  # of the fastest coordinate of the course: a point this slow has no direction
+DENSE = 30  # coordinates up to which condition numbers come from singular values
 SAME = 1e-12  # of the whole time: this close to a corner is at it
 
 
@@ -158,8 +160,17 @@ class Motion:
     @cached_property
     def condition(self) -> Floats:
         """(T,) condition number of the loop and drive equations."""
-        found = [np.linalg.cond(self.loops.jacobian(part.pose)) for part in self.parts]
-        return np.concatenate(found)
+        return np.concatenate([_condition(part) for part in self.parts])
+
+
+def _condition(part: Motion) -> Floats:
+    """Of small systems by singular values, which of large ones take longer than the motion."""
+    found = np.full(len(part), np.nan)
+    if part.loops.columns > DENSE:
+        found = part.loops.factors(part.pose).condition()
+    unknown = np.flatnonzero(np.isnan(found))
+    found[unknown] = np.linalg.cond(part.loops.jacobian(part.pose[unknown]))
+    return found
 
 
 class Course:

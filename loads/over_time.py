@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loads.arrays import Floats
 from loads.forces.corners import corners as kinks
 from loads.inverse_dynamics import Dynamics
-from loads.linkage import Floats
 from loads.motion import Course, Motion
 from loads.power_balance import ledger
 from loads.reactions import Reactions

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loads.arrays import Floats
 from loads.least_squares import Factors
-from loads.linkage import Floats
 from loads.loop_equations import Loops
-from loads.singular_positions import Impasse, impasse
+from loads.mobility.singular_positions import Impasse, impasse
 
 NEWTON_TOLERANCE = 1e-10  # last correction, of the length scale: the error is its square
 CLOSURE = 1e-11  # largest gap of a closed loop, of the length scale

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loads.arrays import Floats
 from loads.forces.acting import power
 from loads.inverse_dynamics import Dynamics
-from loads.linkage import Floats
 from loads.loop_equations import number
 from loads.motion import Motion
 

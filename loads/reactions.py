@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from loads.linkage import Floats
+from loads.arrays import Floats
 from loads.tables.csv_table import TableError
 from loads.tables.force_table import Layout, Unit, read_forces
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from loads.linkage import Floats
+from loads.arrays import Floats
 
 DEGREE = 8
 TOLERANCE = 1e-6  # of the largest magnitude of a quantity, or of those in its group

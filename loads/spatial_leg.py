@@ -21,8 +21,8 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from loads.arrays import Floats
 from loads.coded import LoadsArgumentError
-from loads.linkage import Floats
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from loads.linkage import GROUND, Body, Floats, Joint, Linkage, Slider
-from loads.mobility import is_particle
+from loads.arrays import Floats
+from loads.linkage import GROUND, Body, Joint, Linkage, Slider
+from loads.mobility.mobility import is_particle
 from loads.motion import Motion
 
 STANDS = 1e-9  # of the fastest body: what moves less does not
@@ -124,9 +125,8 @@ def _reached(linkage: Linkage, end: Joint, blocked: set[str], drivers: tuple[str
         seen.add(body)
         for joint in linkage.joints_on(body):
             queue += _bodies(joint)
-        for s in linkage.sliders:
-            if body in (s.base, s.moving):
-                queue += [s.base, s.moving]
+        pairs = [(s.base, s.moving) for s in linkage.sliders] + [t.bodies for t in linkage.teeth]
+        queue += [other for pair in pairs if body in pair for other in pair]
     return False
 
 

@@ -22,7 +22,7 @@ from fea.core.material import Material
 from geometry import Pin, Segment
 from loads import Linkage
 from pinstress import load_study
-from pinstress.model.linkage import linkage
+from pinstress.model.mechanism.linkage import linkage
 from pinstress.processes.system import portable
 from pinstress.study.file import Study
 from tests.support.process_group import children

@@ -15,7 +15,7 @@ from benchmarks.failures.entry import Entry
 from fea.core.pin_loads import Floats
 from loads import Applied, JammingError, StateDrive, at_rest, motion_reactions, move
 from pinstress.model.cases import case_loads
-from pinstress.model.linkage import linkage
+from pinstress.model.mechanism.linkage import linkage
 from pinstress.study.errors import InputError
 from reports.format.numbers import engineering, ten_to
 

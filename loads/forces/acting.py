@@ -9,10 +9,11 @@ from typing import Protocol
 
 import numpy as np
 
+from loads.arrays import Complex, Floats
 from loads.forces.curve import ForceTable
 from loads.forces.measures import Distance, Measure, Position
-from loads.linkage import Floats, LinkageError, Point, Slider, Turn
-from loads.loop_equations import Complex, cross, number
+from loads.linkage import LinkageError, Point, Slider, Turn
+from loads.loop_equations import cross, number
 from loads.motion import Motion
 
 SAME = 1e-12  # relative: an instant this close to a switch is at it

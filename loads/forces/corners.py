@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from loads.arrays import Floats
 from loads.forces.acting import Kinks, Load
-from loads.linkage import Floats
 from loads.motion import Course
 from loads.refine import Resolved, resolved
 

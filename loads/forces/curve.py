@@ -12,7 +12,8 @@ from typing import Literal
 
 import numpy as np
 
-from loads.linkage import Floats, LinkageError
+from loads.arrays import Floats
+from loads.linkage import LinkageError
 
 Interpolation = Literal["linear", "monotone"]
 Outside = Literal["error", "hold", "repeat"]

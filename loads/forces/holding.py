@@ -12,10 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loads.as_drawn import RANK_TOLERANCE
+from loads.arrays import Floats
 from loads.least_squares import Factors, elimination
-from loads.linkage import Floats, Linkage, LinkageError, Parallel, Slider, Turn
-from loads.mobility import moving_bodies
+from loads.linkage import Linkage, LinkageError, Parallel, Slider, Turn
+from loads.mobility.as_drawn import RANK_TOLERANCE
+from loads.mobility.mobility import moving_bodies
 from loads.motion import Motion
 
 OPENS = 1e-9  # of the largest force: a stop that carries this little of the wrong sign is free

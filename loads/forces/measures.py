@@ -7,7 +7,8 @@ from typing import Protocol
 
 import numpy as np
 
-from loads.linkage import Floats, Point, Slider, Turn
+from loads.arrays import Floats
+from loads.linkage import Point, Slider, Turn
 from loads.loop_equations import number
 from loads.motion import Motion
 

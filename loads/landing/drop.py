@@ -16,12 +16,12 @@ from typing import Any, Literal
 
 import numpy as np
 
+from loads.arrays import Floats
 from loads.coded import LoadsError
 from loads.landing.strut import Strut
 from loads.landing.travel import TELESCOPIC, Levered, Telescopic
 from loads.landing.tyre import Tyre, damped
 from loads.landing.wheel import Wheel
-from loads.linkage import Floats
 
 RTOL = 1e-11
 ATOL = 1e-13  # of the scale of each variable

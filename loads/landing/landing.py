@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from loads.arrays import Floats
 from loads.landing.drop import (
     BEND,
     BENDS,
@@ -29,7 +30,6 @@ from loads.landing.drop import (
     fall,
     forces,
 )
-from loads.linkage import Floats
 from loads.refine import resolved
 
 PEAKS = ("vertical", "along", "stroke", "deflection", "drag", "on_leg", "spring_back")

@@ -11,8 +11,8 @@ from typing import Protocol
 
 import numpy as np
 
+from loads.arrays import Floats
 from loads.coded import LoadsArgumentError
-from loads.linkage import Floats
 
 ALMOST_NO_GAS = 0.98  # of the volume: the most that a full stroke may displace
 

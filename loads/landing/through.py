@@ -11,13 +11,14 @@ from functools import partial
 
 import numpy as np
 
+from loads.arrays import Complex, Floats
 from loads.coded import LoadsArgumentError
 from loads.drives import ConstantDrive, Law, StateDrive, Values
 from loads.forces.acting import Applied
 from loads.landing.landing import Landing
 from loads.landing.travel import Levered
-from loads.linkage import Floats, Linkage, Point
-from loads.loop_equations import Complex, number
+from loads.linkage import Linkage, Point
+from loads.loop_equations import number
 from loads.motion import Course, Motion
 
 POINTS = 65  # strokes at which the rise of the axle is computed

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from loads.arrays import Floats
 from loads.coded import LoadsArgumentError
-from loads.linkage import Floats
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loads.linkage import Floats
+from loads.arrays import Floats
 
 
 @dataclass(frozen=True)

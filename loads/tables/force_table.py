@@ -7,6 +7,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 
 from loads.tables.csv_table import Row, TableError, read_table
@@ -78,15 +79,10 @@ def read_forces(path: Path, layout: Layout, unit: Unit, known: set[str]) -> Iter
     names = {label: name for name, label in _labels(layout.labels)}
     count: dict[str, int] = {}
     columns: list[_Column] | None = None
-    cases, found = set[str](), False
-    for row in read_table(path, (), free=True, numbered=_numbered(layout.columns)):
+    for row in _rows(path, layout):
         if columns is None:
             columns = _columns(path, list(row.cells), layout, unit)
         text = {c.meaning: row.cells[c.header] for c in columns if c.connection is None}
-        if "case" in text and text["case"] != layout.case:
-            cases.add(text["case"])
-            continue
-        found = True
         own = set(row.cells) >= OURS
         for name, own_columns in _by_connection(row, columns, text, names):
             if name not in known and (own or layout.labels):
@@ -100,11 +96,33 @@ def read_forces(path: Path, layout: Layout, unit: Unit, known: set[str]) -> Iter
             time = _time(row, columns, text, layout, count.setdefault(name, 0))
             count[name] += 1
             yield GivenForce(row.where, name, time, _values(row, own_columns))
-    if not found:
+
+
+def _rows(path: Path, layout: Layout) -> Iterator[Row]:
+    """Those of the case, where the table has cases. Raises: TableError where none is."""
+    at, numbered = str(layout.columns.get("case", "case")), _numbered(layout.columns)
+    stamp = path.stat().st_mtime_ns if path.is_file() else 0
+    cases = _by_case(path, stamp, at, numbered)
+    if cases is None:
+        yield from read_table(path, (), free=True, numbered=numbered)
+        return
+    if layout.case not in cases:
         have = ", ".join(sorted(cases)[:6])
         raise TableError(
             f"{path}: no row has the case {layout.case!r}; there are {have}", "no-such-case"
         )
+    yield from cases[layout.case]
+
+
+@lru_cache(maxsize=1)  # the cases of one table follow each other
+def _by_case(path: Path, stamp: int, at: str, numbered: bool) -> dict[str, list[Row]] | None:
+    """The rows by the column of the case, `at`; None without it. stamp: of the file."""
+    found: dict[str, list[Row]] = {}
+    for row in read_table(path, (), free=True, numbered=numbered):
+        if at not in row.cells:
+            return None
+        found.setdefault(row.cells[at], []).append(row)
+    return found or None
 
 
 def _labels(labels: Mapping[str, str | int]) -> Iterator[tuple[str, str]]:

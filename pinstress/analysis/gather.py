@@ -14,16 +14,17 @@ from fea.core.pin_loads import PinLoads
 from fea.joint.records import JointResult
 from fea.solve_pin import Solution
 from pinstress.analysis.gather_fatigue import fatigue_margins, fatigue_of
-from pinstress.analysis.gather_loads import drive_position, mechanics, position_unit
+from pinstress.analysis.mechanics.gather_loads import drive_position, mechanics, position_unit
+from pinstress.analysis.mechanics.gather_sequences import with_sequences
 from pinstress.analysis.plan import Plan, all_loads
 from pinstress.analysis.stored import Solved
 from pinstress.cache.store import PACKAGES
 from pinstress.model.cases import CaseLoads, at_time
 from pinstress.model.pins import outline, weight
+from pinstress.model.sequence import chosen_cases
 from pinstress.model.tasks import Task
 from pinstress.schema.tables import ReportTable
 from pinstress.strength.checked import Checked, checked, factor_assumption
-from pinstress.study.choices import select
 from pinstress.study.file import Study
 from pinstress.study.inputs import inputs
 from pinstress.study.published_tables import Published, read_published
@@ -34,6 +35,9 @@ from reports.data.changes import Change
 def results_of(plan: Plan, found: list[Solved]) -> plain.Results:
     """A plan's results from what was found of its tasks."""
     study = plan.study
+    found = [
+        replace(made, histories=with_sequences(study, plan.loads, made.histories)) for made in found
+    ]
     pins, cases = list(study.table.pin), list(plan.loads)
     rows = [
         (task, peak, joint)
@@ -84,7 +88,7 @@ def _in_study_units(results: plain.Results, study: Study) -> plain.Results:
 def loads_only(study: Study, cases: Iterable[str] | None = None) -> plain.Results:
     """The mechanics of a study without stresses. Raises: InputError for bad input."""
     published = read_published(study)
-    loads = all_loads(study, select(study.table.case, cases, "case"))
+    loads = all_loads(study, chosen_cases(study, cases))
     tolerance = study.table.analysis.tolerance
     return _in_study_units(_results(study, loads, [], None, published, tolerance), study)
 

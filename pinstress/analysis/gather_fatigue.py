@@ -13,6 +13,7 @@ from fea.strength.margin import RATIO, Margin, PinMargin
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import Solved
 from pinstress.model.fatigue import fatigue_material, spectrum
+from pinstress.model.sequence import complete
 from pinstress.schema.fatigue import FatigueTable
 from reports.data.results import Fatigue
 
@@ -89,7 +90,8 @@ def _left_out(plan: Plan, found: list[Solved], table: FatigueTable) -> tuple[str
     pins = dict.fromkeys(task.pin.name for task in plan.tasks)
     data = {pin: _material(plan, pin) for pin in pins}
     without = [p for p, m in data.items() if (m.fkm if needs_fkm else m.curve) is None]
-    missing = [case for case in table.occurrences if case not in plan.loads]
+    there = {*plan.loads, *complete(plan.study, plan.loads)}
+    missing = [case for case in table.occurrences if case not in there]
     apart = [p for p in pins if sum(task.pin.name == p for task in plan.tasks) > 1]
     singular = dict.fromkeys(p.pin for made in found for p in made.peaks if p.verdict == "singular")
     yields = [

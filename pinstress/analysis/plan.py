@@ -12,8 +12,9 @@ from pinstress.analysis import checks
 from pinstress.analysis.gather_fields import Also
 from pinstress.analysis.published_quantities import published_values
 from pinstress.model.cases import CaseLoads, case_loads
-from pinstress.model.linkage import determined, linkage
+from pinstress.model.mechanism.linkage import determined, linkage
 from pinstress.model.pins import pin as pin_of
+from pinstress.model.sequence import chosen_cases, require_times
 from pinstress.model.tasks import Task, tasks
 from pinstress.schema.shown import shown
 from pinstress.study.choices import require_model, require_positive, require_tolerance, select
@@ -30,7 +31,9 @@ def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
     wrong = Errors(study.path)
     found = {name: wrong.attempt(partial(case_loads, study, name, mechanism)) for name in cases}
     wrong.tell()
-    return {name: loads for name, loads in found.items() if loads is not None}
+    loads = {name: loads for name, loads in found.items() if loads is not None}
+    require_times(study, {name: case.reactions.times for name, case in loads.items()})
+    return loads
 
 
 @dataclass(frozen=True)
@@ -76,7 +79,7 @@ def prepare(
             code="not-a-study",
         )
     names = select(study.table.pin, pins, "pin")
-    chosen = select(study.table.case, cases, "case")
+    chosen = chosen_cases(study, cases)
     asked = _asked(study, require_model(model), require_tolerance(tolerance), memory)
     wrong = Errors(study.path)
     published = wrong.attempt(lambda: read_published(study))

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from loads import Dynamics, Slider
-from loads.linkage import Floats
+from loads.arrays import Floats
 from pinstress.model.cases import CaseLoads, at_time
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study

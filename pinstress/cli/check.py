@@ -9,10 +9,12 @@ from geometry import PinLike
 from loads import Linkage
 from loads.closed_form.four_bar import four_bar
 from pinstress.model.cases import CaseLoads, case_loads
-from pinstress.model.linkage import determined, linkage, span
 from pinstress.model.lugs import lugs
+from pinstress.model.mechanism.drives import span
+from pinstress.model.mechanism.linkage import determined, linkage
 from pinstress.model.pins import lost_shape, weight
 from pinstress.model.pins import pin as pin_of
+from pinstress.model.sequence import require_times
 from pinstress.model.tasks import Task, tasks
 from pinstress.schema.cases import GivenCase, LegCase, MotionCase
 from pinstress.schema.landing import DropCase, GroundCase
@@ -43,6 +45,11 @@ def describe(study: Study) -> tuple[str, list[str]]:
             found = wrong.attempt(partial(case_loads, study, name, mechanism, extremes=False))
             loads |= {} if found is None else {name: found}
     lines += [f"case {name}: {_words(study, name, case)}" for name, case in loads.items()]
+    times = {name: case.reactions.times for name, case in loads.items()}
+    wrong.attempt(partial(require_times, study, times))
+    for name, sequence in table.sequence.items():
+        steps = ", ".join(f"{step.repeat} × {step.case}" for step in sequence.steps)
+        lines.append(f"sequence {name}: {steps}")
     pins = {name: wrong.attempt(partial(pin_of, study, name)) for name in table.pin}
     made = [pin for pin in pins.values() if pin is not None]
     lines += [wrong.attempt(partial(_pin, study, pin)) or "" for pin in made]
@@ -101,7 +108,8 @@ def _mechanism(study: Study, mechanism: Linkage) -> list[str]:
     found = determined(study, mechanism)
     lines = [
         f"mechanism: {len(mechanism.bodies)} bodies, {len(mechanism.joints)} joints, "
-        f"{len(mechanism.connections)} connections, driven by {', '.join(mechanism.driven)}"
+        f"{len(mechanism.connections)} connections{_teeth(mechanism)}, driven by "
+        f"{', '.join(mechanism.driven)}"
     ]
     counted = f"mobility {found.degrees}"
     if found.kutzbach != found.degrees:
@@ -122,6 +130,11 @@ def _mechanism(study: Study, mechanism: Linkage) -> list[str]:
         f"{counted}; {found.redundant} redundant: the forces at {', '.join(found.shared)} follow "
         f"the sharing rule for {rule}",
     ]
+
+
+def _teeth(mechanism: Linkage) -> str:
+    pairs = len(mechanism.teeth)
+    return f", {pairs} pair{'s' * (pairs > 1)} of teeth" if pairs else ""
 
 
 def _words(study: Study, name: str, loads: CaseLoads) -> str:

@@ -6,87 +6,48 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import chain
 
 import numpy as np
 
 from loads import (
-    Applied,
     Course,
     Dynamics,
     Impasse,
-    Layout,
     LegDynamics,
     Linkage,
     LinkageError,
     Load,
-    Motion,
     OverTime,
     PeakForces,
     Reactions,
     StateDrive,
     TableError,
-    given_reactions,
-    impulse_force,
     motion_reactions,
     move,
     over_time,
     peak_forces,
-    read_reactions,
     require_possible,
 )
-from loads.coded import LoadsArgumentError
+from loads.arrays import Floats
 from loads.landing import GROUND_RULES, Landing, pushes
 from loads.landing import laws as landing_laws
-from loads.linkage import Floats
-from pinstress.model.forces import load, springs
-from pinstress.model.landing import (
-    drop,
-    drop_note,
-    fallen,
-    ground_load,
-    ground_note,
-    place,
-    still,
+from pinstress.model.given import given_case
+from pinstress.model.impulses import (
+    ImpulseLoads,
+    ImpulseShare,
+    applied_loads,
+    over_range,
+    with_impulse,
 )
-from pinstress.model.linkage import laws, span, state
+from pinstress.model.landing import drop, drop_note, fallen, ground_load, ground_note, place, still
+from pinstress.model.mechanism.drives import laws, span, state
+from pinstress.model.mechanism.forces import springs
+from pinstress.model.mechanism.spatial_leg import AXES, dynamics, hinge_reactions, instants
 from pinstress.model.moving_loads import Acting, MovingLoads, acting
-from pinstress.model.spatial_leg import AXES, dynamics, hinge_reactions, instants
-from pinstress.schema.cases import (
-    ApplyTable,
-    GivenCase,
-    ImpulseTable,
-    InstantCase,
-    LegCase,
-    MechanismCase,
-    MotionCase,
-    StaticCase,
-)
+from pinstress.schema.cases import GivenCase, InstantCase, LegCase, MotionCase, StaticCase
 from pinstress.schema.landing import DropCase, GroundCase
-from pinstress.schema.units import SYSTEMS, to_si
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study
-
-
-@dataclass(frozen=True)
-class ImpulseLoads:
-    """Reactions over pairs of impulse time (s) and velocity change (m/s), an instant each: times
-    and velocities (P,), forces (P,) N. nominal: the case's own pair.
-    """
-
-    times: Floats
-    velocities: Floats
-    forces: Floats
-    reactions: Reactions
-    nominal: tuple[float, float]
-
-
-@dataclass(frozen=True)
-class ImpulseShare:
-    """Reactions without an impulse and with it, two instants; time: of the impulse, s."""
-
-    time: float
-    reactions: Reactions
 
 
 @dataclass(frozen=True)
@@ -152,7 +113,7 @@ def case_loads(
     case = study.table.case[name]
     try:
         if isinstance(case, GivenCase):
-            return CaseLoads(_given(study, name, case))
+            return CaseLoads(given_case(study, name, case))
         if isinstance(case, LegCase):
             return _leg(study, name, case)
         assert mechanism is not None
@@ -180,29 +141,6 @@ def _shown(study: Study) -> Callable[[float, bool], str]:
         return f"{value / factor:.6g} {unit}" if slides else f"{math.degrees(value):.6g} deg"
 
     return show
-
-
-def _given(study: Study, name: str, case: GivenCase) -> Reactions:
-    if case.table is None:
-        forces, moments = (
-            {c: tuple(values) for c, values in (given or {}).items()}
-            for given in (case.forces, case.moments)
-        )
-        return given_reactions(name, forces, moments)
-    known = {c for p in study.table.pin for c in study.connections(p)}
-    layout = Layout(case.table_case or name, case.columns, case.labels, case.time_step)
-    system = SYSTEMS[case.table_units or study.table.units]
-
-    def unit(written: str, dimension: str) -> float:
-        if not written:
-            return system.factor(dimension)
-        try:
-            return to_si(f"1 {written}", dimension, system)
-        except LoadsArgumentError as error:
-            raise TableError(f"{case.table}: {error}", error.code) from None
-
-    found = read_reactions(study.path_to(case.table), layout, unit, known)
-    return replace(found, case=name)
 
 
 def _leg(study: Study, name: str, case: LegCase) -> CaseLoads:
@@ -251,7 +189,7 @@ def _motion(
 ) -> CaseLoads:
     end = span(study)
     course = Course(mechanism, laws(study), 0.0, end)
-    applied, note = _applied(study, name, case, mechanism)
+    applied, note = applied_loads(study, name, case, mechanism)
     moved = _Moved(name, course, applied)
     if not extremes:
         found = moved.solve(np.linspace(0.0, end, case.samples))
@@ -320,7 +258,7 @@ def _on_ground(
 def _at_instant(
     study: Study, name: str, case: StaticCase | InstantCase, mechanism: Linkage
 ) -> CaseLoads:
-    applied, note = _applied(study, name, case, mechanism)
+    applied, note = applied_loads(study, name, case, mechanism)
     drives = [StateDrive(*values) for values in state(study, name, case, mechanism)]
     motion = move(mechanism, drives, np.zeros(1))
     hold = (case.hold or ()) if isinstance(case, StaticCase) else ()
@@ -329,121 +267,6 @@ def _at_instant(
         found.reactions,
         found,
         note,
-        range=_range(study, name, case, motion),
-        impulse=_share(study, name, case, motion),
+        range=over_range(study, name, case, motion),
+        impulse=with_impulse(study, name, case, motion),
     )
-
-
-def _applied(
-    study: Study, name: str, case: MechanismCase, mechanism: Linkage
-) -> tuple[tuple[Load, ...], str]:
-    """The loads of a case with the mechanism's springs, and how impulses among them came about."""
-    made = (_load(study, name, case, k, mechanism) for k in range(len(case.apply)))
-    loads: list[Load] = [*springs(study, mechanism), *chain.from_iterable(made)]
-    notes = [_impulse_note(study, x) for x in case.apply if x.impulse is not None]
-    return tuple(loads), " ".join(notes)
-
-
-def _load(
-    study: Study,
-    name: str,
-    case: MechanismCase,
-    which: int,
-    mechanism: Linkage,
-    size: float | None = None,
-) -> tuple[Applied, ...]:
-    """One of the loads; size: of its impulse, N, by default as stated."""
-    table = case.apply[which]
-    force = table.force or (0.0, 0.0)
-    if (impulse := table.impulse) is not None:
-        own = _size(impulse, impulse.velocity_change, impulse.impulse_time)
-        force = _directed(impulse.direction, own if size is None else size)
-    elif table.direction is not None:
-        force = _directed(table.direction, 1.0)
-    return load(study, f"case.{name}.apply[{which + 1}]", table, force, mechanism)
-
-
-def _size(impulse: ImpulseTable, velocity: float, time: float) -> float:
-    mass = impulse.mass
-    if mass is None:
-        mass = (impulse.weight or 0.0) / impulse.gravity
-    return impulse_force(mass, velocity, time, impulse.pulse)
-
-
-def _directed(direction: tuple[float, float], size: float) -> tuple[float, float]:
-    x, y = np.array(direction) / np.hypot(*direction)
-    return float(size * x), float(size * y)
-
-
-def _impulse_note(study: Study, load: ApplyTable) -> str:
-    impulse = load.impulse
-    assert impulse is not None
-    size = _size(impulse, impulse.velocity_change, impulse.impulse_time)
-    unit, factor = study.system.force, study.system.factor("force")
-    mean = "the mean force" if impulse.pulse == "rectangular" else f"the peak of a {impulse.pulse}"
-    return (
-        f"Impulse estimate on {load.body}: {size / factor:,.1f} {unit}, {mean} over "
-        f"{impulse.impulse_time:g} s."
-    )
-
-
-def _range(
-    study: Study, name: str, case: StaticCase | InstantCase, motion: Motion
-) -> ImpulseLoads | None:
-    """The case again for every pair in the ranges of its impulse."""
-    ranged = [k for k, x in enumerate(case.apply) if x.impulse and x.impulse.range]
-    if not ranged:
-        return None
-    if len(ranged) > 1:
-        raise study.error(
-            f"case.{name}: only one impulse of a case may have a range", code="several-ranges"
-        )
-    impulse = case.apply[ranged[0]].impulse
-    assert impulse is not None
-    assert impulse.range is not None
-    times, velocities = (
-        x.ravel() for x in np.meshgrid(impulse.range.impulse_time, impulse.range.velocity_change)
-    )
-    sizes = np.array([_size(impulse, v, t) for t, v in zip(times, velocities, strict=True)])
-    return ImpulseLoads(
-        times,
-        velocities,
-        sizes,
-        _of_sizes(study, name, motion, ranged[0], sizes),
-        (impulse.impulse_time, impulse.velocity_change),
-    )
-
-
-def _share(
-    study: Study, name: str, case: StaticCase | InstantCase, motion: Motion
-) -> ImpulseShare | None:
-    """The case without its impulse and with it, if it has one."""
-    which = [k for k, load in enumerate(case.apply) if load.impulse]
-    if len(which) != 1 or (impulse := case.apply[which[0]].impulse) is None:
-        return None
-    sizes = np.array([0.0, _size(impulse, impulse.velocity_change, impulse.impulse_time)])
-    return ImpulseShare(impulse.impulse_time, _of_sizes(study, name, motion, which[0], sizes))
-
-
-def _of_sizes(study: Study, name: str, motion: Motion, which: int, sizes: Floats) -> Reactions:
-    """Reactions with an impulse of these sizes (P,) N, an instant each."""
-    case, mechanism = study.table.case[name], motion.linkage
-    assert isinstance(case, MechanismCase)
-    hold = (case.hold or ()) if isinstance(case, StaticCase) else ()
-    others: list[Load] = [*springs(study, mechanism)]
-    for k in range(len(case.apply)):
-        others += _load(study, name, case, k, mechanism) if k != which else ()
-    found = [
-        motion_reactions(
-            name,
-            motion,
-            [*others, *_load(study, name, case, which, mechanism, size)],
-            timed=False,
-            hold=hold,
-        ).reactions
-        for size in sizes.tolist()
-    ]
-    forces, moments, turn = (
-        np.concatenate([getattr(r, key) for r in found]) for key in ("forces", "moments", "turn")
-    )
-    return replace(found[0], forces=forces, moments=moments, turn=turn)

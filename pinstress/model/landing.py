@@ -26,7 +26,8 @@ from loads.landing import (
     travel,
 )
 from loads.landing.requirements import GroundRule
-from pinstress.model.linkage import STANDARD_GRAVITY, state
+from pinstress.model.mechanism.drives import state
+from pinstress.model.mechanism.linkage import STANDARD_GRAVITY
 from pinstress.schema.landing import AtWheel, DropCase, GroundCase, StrutTable, TyreTable
 from pinstress.study.file import Study
 

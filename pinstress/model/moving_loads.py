@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from loads import Dynamics, Reactions, Resolved, resolved
-from loads.linkage import Floats
+from loads.arrays import Floats
 
 Acting = tuple[Reactions, Floats]  # with the accelerations (T, J, 2) m/s^2 of the joints
 

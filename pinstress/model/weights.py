@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from pinstress.model.linkage import STANDARD_GRAVITY
+from pinstress.model.mechanism.linkage import STANDARD_GRAVITY
 from pinstress.model.pins import pin, weight
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study

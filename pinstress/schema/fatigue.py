@@ -59,8 +59,8 @@ class FatigueTable(StrictTable):
     occurrences: Annotated[
         dict[str, Annotated[Number, Field(gt=0.0, le=10_000.0)]], Field(min_length=1)
     ]
-    """By case, how often it occurs per unit, in the order in which cases follow each other. Every
-    case begins and ends at zero load."""
+    """By case or sequence, how often it occurs per unit, in the order in which they follow each
+    other. Each begins and ends at zero load; between the steps of a sequence there is none."""
     life: Annotated[Number, Field(gt=0.0)] | None = None
     """Design life in units. Default: no utilisation."""
     failure_probability: Probability | None = None

@@ -7,6 +7,7 @@ from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
 from loads.coded import LoadsArgumentError
 from pinstress.schema.forces import LineSpringTable, TorsionSpringTable, require_one
+from pinstress.schema.gears import GearTable, RackTable
 from pinstress.schema.types import (
     NOT_NEGATIVE,
     POSITIVE,
@@ -21,6 +22,7 @@ from pinstress.schema.types import (
     Number,
     Point,
     PositiveLength,
+    Side,
     StrictTable,
     Time,
     Weight,
@@ -47,7 +49,7 @@ class Dyad(StrictTable):
     """The two joints."""
     distances: tuple[PositiveLength, PositiveLength]
     """Distances from the first and the second joint."""
-    side: Literal["left", "right"]
+    side: Side
     """Side of the line from the first joint to the second."""
 
 
@@ -223,17 +225,19 @@ MOST_TURNS = 1000  # each is followed in steps of 0.25 rad
 
 class RotaryDrive(LawTable):
     """A drive of a body's angle: the direction of a line between two of its joints,
-    counter-clockwise from x or, for a drive between two bodies, from a line of the other.
+    counter-clockwise from x or, for a drive between two bodies, from a line of the other; without
+    a line what the body has turned since the drawing.
     """
 
     body: str
     """The driven body."""
-    line: tuple[str, str]
-    """Two joints of the body; the angle is that of the line from the first to the second."""
+    line: tuple[str, str] | None = None
+    """Two joints of the body; the angle is that of the line from the first to the second. Default:
+    the angle is zero as drawn."""
     against: str = "ground"
     """The body from which the angle is measured."""
     against_line: tuple[str, str] | None = None
-    """Two joints of that body; required with `against`."""
+    """Two joints of that body; required with `line` and `against`."""
     start: Angle | None = None
     """Angle at the start."""
     end: Angle | None = None
@@ -241,9 +245,10 @@ class RotaryDrive(LawTable):
 
     @model_validator(mode="after")
     def _both(self) -> "RotaryDrive":
-        if (self.against == "ground") != (self.against_line is None):
+        if (self.against == "ground" or self.line is None) != (self.against_line is None):
             raise LoadsArgumentError(
-                "against (a body) and against_line (two of its joints) must be given together",
+                "with a line, against (a body) and against_line (two of its joints) must be given "
+                "together; without one, give no against_line",
                 "give-both",
             )
         if abs((self.end or 0.0) - (self.start or 0.0)) > MOST_TURNS * 2.0 * math.pi:
@@ -273,7 +278,7 @@ class SharingTable(StrictTable):
     """
 
     connections: Annotated[list[str], Field(min_length=1)] | None = None
-    """The redundant connections. Give either `connections` or `parallel`."""
+    """The redundant connections, gears and racks. Give either `connections` or `parallel`."""
     parallel: Annotated[list[str], Field(min_length=2)] | None = None
     """Drives, sliders or stops in parallel; exactly one of them is driven."""
     stiffness: Ratios | None = None
@@ -331,6 +336,10 @@ class MechanismTable(StrictTable):
     """Sliders by name."""
     drive: Annotated[list[AnyDrive], Field(min_length=1)]
     """One table, or several `[[mechanism.drive]]`: as many as there are degrees of freedom."""
+    gear: dict[str, GearTable] = {}
+    """Pairs of gears by name, which is also that of the force between their teeth."""
+    rack: dict[str, RackTable] = {}
+    """Racks with their gears by name, which is also that of the force between their teeth."""
     point: dict[str, PointTable] = {}
     """Points whose paths are of interest, by name."""
     stop: dict[str, StopTable] = {}

@@ -1,9 +1,9 @@
 """The study file's form: every table and key, with its unit, domain and description."""
 
 import datetime
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from loads.coded import LoadsArgumentError
 from pinstress.schema.cases import GivenCase, InstantCase, LegCase, MotionCase, StaticCase
@@ -12,7 +12,17 @@ from pinstress.schema.landing import DropCase, GroundCase
 from pinstress.schema.leg import SpatialLegTable
 from pinstress.schema.mechanism import MechanismTable
 from pinstress.schema.pins import MaterialTable, PinTable
-from pinstress.schema.types import CaseName, LimitLoads, Name, Number, PositiveLength, StrictTable
+from pinstress.schema.sequence import SequenceTable
+from pinstress.schema.shown import shown
+from pinstress.schema.types import (
+    ANY,
+    CaseName,
+    LimitLoads,
+    Name,
+    Number,
+    PositiveLength,
+    StrictTable,
+)
 
 
 class AnalysisTable(StrictTable):
@@ -139,6 +149,8 @@ class StudyTable(StrictTable):
     ]
     """Load cases by name; each is run for the pins that it loads. A name with a *, of kind "given",
     stands for every name in the column `case` of its table, which replaces the *."""
+    sequence: dict[Name, SequenceTable] = {}
+    """Duty cycles by name: cases one after the other."""
     mechanism: MechanismTable | None = None
     """The linkage, for cases of kind "motion", "static", "instant", "drop" and "ground"."""
     spatial_leg: SpatialLegTable | None = None
@@ -157,3 +169,16 @@ class StudyTable(StrictTable):
     """The title block of the report."""
     assumptions: list[str] = []
     """Assumptions, as sentences for the report."""
+
+    @field_validator("case", mode="before")
+    @classmethod
+    def _tables_of_cases(cls, value: Any) -> Any:
+        for name, case in value.items() if isinstance(value, dict) else ():
+            given = isinstance(case, dict) and case.get("kind") == "given" and "table" in case
+            if ANY in str(name) and not given:
+                raise LoadsArgumentError(
+                    f"{shown(name)}: a name with a * stands for every case of a table; give kind = "
+                    '"given" and table = "file.csv"',
+                    "unusable-name",
+                )
+        return value

@@ -162,6 +162,7 @@ def usable_name(name: str) -> str:
 
 Number = Annotated[float, Field(strict=True)]  # else pydantic reads "1" and true as 1.0
 Whole = Annotated[int, Field(strict=True)]
+Side = Literal["left", "right"]
 Switch = Annotated[bool, Field(strict=True)]
 Length = Annotated[float, Quantity("length")]
 Force = Annotated[float, Quantity("force")]

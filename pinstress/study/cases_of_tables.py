@@ -25,9 +25,10 @@ def with_cases_of_tables(table: StudyTable, folder: Path, wrong: list[Wrong]) ->
         if ANY not in section:
             continue
         key = f"case.{section}"
-        if section.count(ANY) > 1 or not isinstance(case, GivenCase) or case.table is None:
-            text = f'{key}: a name with a * needs kind = "given", a table, and no other *'
-            wrong.append(Wrong(text, code="unusable-name"))
+        assert isinstance(case, GivenCase)
+        assert case.table is not None
+        if section.count(ANY) > 1:
+            wrong.append(Wrong(f"{key}: a name needs no second *", code="unusable-name"))
         elif case.table_case is not None:
             text = f"{key}.table_case: the name with a * already stands for every case of the table"
             wrong.append(Wrong(text, code="give-one"))

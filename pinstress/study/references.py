@@ -7,7 +7,14 @@ from functools import partial
 
 from fea.fatigue.flight import flight
 from geometry.coded import ArgumentError
-from pinstress.schema.cases import ApplyTable, GivenCase, LegCase, MotionCase, StaticCase
+from pinstress.schema.cases import (
+    ApplyTable,
+    GivenCase,
+    InstantCase,
+    LegCase,
+    MotionCase,
+    StaticCase,
+)
 from pinstress.schema.fatigue import FatigueTable
 from pinstress.schema.landing import AtWheel, DropCase, GroundCase
 from pinstress.schema.mechanism import (
@@ -50,6 +57,7 @@ def cross_references(table: StudyTable) -> Iterator[Wrong]:
     for pin_name in limited if isinstance(limited, list) else ():
         yield from _known("analysis.limit_load", "pin", pin_name, table.pin)
     yield from _of_cases(table, bears)
+    yield from _of_sequences(table)
     if table.mechanism is not None:
         yield from _of_pins(table, table.mechanism, bears)
         yield from _of_mechanism(table.mechanism)
@@ -87,13 +95,34 @@ def _of_cases(table: StudyTable, bears: dict[str, str]) -> Iterator[Wrong]:
             yield Wrong(f"case.{name}: kind {case.kind!r} needs a [mechanism]", code="no-mechanism")
 
 
+def _of_sequences(table: StudyTable) -> Iterator[Wrong]:
+    for name, sequence in table.sequence.items():
+        if name in table.case:
+            text = f"sequence.{name}: a case has this name too; rename one"
+            yield Wrong(text, code="duplicate-case")
+        for i, step in enumerate(sequence.steps, 1):
+            where = f"sequence.{name}.steps[{i}]"
+            yield from _known(f"{where}.case", "case", step.case, table.case)
+            case = table.case.get(step.case)
+            if isinstance(case, InstantCase):
+                text = f"{where}.case: an instant of a motion does not last; name the motion"
+                yield Wrong(text, code="not-in-sequences")
+            elif isinstance(case, MotionCase | DropCase | LegCase) and step.duration is not None:
+                text = f"{where}.duration: {shown(step.case)} has its own time; remove this"
+                yield Wrong(text, code="key-not-applicable")
+            elif isinstance(case, StaticCase | GroundCase) and step.duration is None:
+                text = f"{where}: {shown(step.case)} is at rest; give its duration"
+                yield Wrong(text, code="missing-key")
+
+
 METHODS = {"signed-von-mises": "fatigue", "critical-plane": "fatigue", "fkm-p-ram": "fkm"}
 
 
 def _of_fatigue(table: StudyTable, fatigue: FatigueTable) -> Iterator[Wrong]:
     """A spectrum of cases that exist, and data for its method in some material of a pin."""
     for case in fatigue.occurrences:
-        yield from _known(f"fatigue.occurrences.{case}", "case", case, table.case)
+        known = {**table.case, **table.sequence}
+        yield from _known(f"fatigue.occurrences.{case}", "case", case, known)
     try:
         flight([*fatigue.occurrences.values()])
     except ArgumentError as error:
@@ -163,10 +192,15 @@ def named_joints(mechanism: MechanismTable) -> Iterator[tuple[str, str]]:
         for end in spring.joints or ():
             if isinstance(end, str):
                 yield f"spring.{name}.joints", end
+    for name, gear in mechanism.gear.items():
+        for joint in gear.joints:
+            yield f"gear.{name}.joints", joint
+    for name, rack in mechanism.rack.items():
+        yield f"rack.{name}.joint", rack.joint
 
 
 def _lines(drive: RotaryDrive) -> tuple[str, ...]:
-    return drive.line + (drive.against_line or ())
+    return (drive.line or ()) + (drive.against_line or ())
 
 
 def _of_mechanism(mechanism: MechanismTable) -> Iterator[Wrong]:
@@ -195,6 +229,12 @@ def _of_mechanism(mechanism: MechanismTable) -> Iterator[Wrong]:
         yield from _known(f"mechanism.point.{name}.body", "body", point.body, mechanism.body)
     for name, stop in mechanism.stop.items():
         yield from _two_bodies(f"mechanism.stop.{name}", stop.bodies, bodies)
+    for name, gear in mechanism.gear.items():
+        yield from _two_bodies(f"mechanism.gear.{name}", gear.bodies, bodies)
+    for name, rack in mechanism.rack.items():
+        where = f"mechanism.rack.{name}"
+        yield from _known(f"{where}.pinion", "body", rack.pinion, bodies)
+        yield from _known(f"{where}.slider", "slider", rack.slider, mechanism.slider)
     for name, torsion in mechanism.torsion_spring.items():
         yield from _two_bodies(f"mechanism.torsion_spring.{name}", torsion.bodies, bodies)
 

@@ -36,6 +36,7 @@ def player_data(scene: Scene, drives: list[DriveTable], units: Units) -> dict[st
             }
             for s in scene.slides
         ],
+        "pitch": [pixels(ends.reshape(-1, 4)) for _, ends, _ in scene.pitch],
         "connections": _connections(scene),
         "drives": [
             {"position": digits(d.position[at]), "force": digits(d.force[at])} for d in drives

@@ -66,6 +66,8 @@ class Scene:
         single = [b for b, joints in enumerate(motion.links) if len(joints) < 2]
         parts = [motion.joint_position, motion.centre[:, single], *motion.slides.values()]
         parts += [p.position for p in motion.paths.values()]
+        box = np.array([[-1.0, -1.0], [1.0, 1.0]])
+        parts += [c.ends[:, :1] + c.radius * box if c.round else c.ends for c in motion.pitch]
         return np.concatenate([p.reshape(-1, 2) for p in parts])
 
     @cached_property
@@ -129,6 +131,18 @@ class Scene:
     def curves(self) -> dict[str, Floats]:
         """(F, 2) of the paths of named points."""
         return {name: self.view(p.position[self.instants]) for name, p in self.motion.paths.items()}
+
+    @cached_property
+    def pitch(self) -> list[tuple[str, Floats, float]]:
+        """Of every pitch circle or line the colour, its ends (F, 2, 2), and its radius or 0."""
+        return [
+            (
+                self.colour(c.body),
+                self.view(c.ends[self.instants]),
+                c.round * c.radius * self.view.scale,
+            )
+            for c in self.motion.pitch
+        ]
 
     def named_between(self, body: str) -> list[int] | None:
         """The two joints of a body between which its name is furthest from any joint; None where

@@ -227,19 +227,37 @@ class PointPath:
 
 
 @dataclass(frozen=True)
+class PitchCurve:
+    """The pitch circle of a gear, or (not round) the pitch line of a rack. ends: (T, 2, 2) the
+    centre and a point of the circle that turns with the gear, or the ends of the line.
+    """
+
+    body: str
+    ends: Lengths
+    round: bool
+
+    @property
+    def radius(self) -> float:
+        """Of the circle; of a line half its length."""
+        size = float(np.linalg.norm(self.ends[0, 1] - self.ends[0, 0]))
+        return size if self.round else 0.5 * size
+
+
+@dataclass(frozen=True)
 class LinkageMotion:
     """How a linkage moves in one case: T instants (one, without time, when it is at rest).
 
     links: for each of B bodies the joints on it, in the order to draw them. centre, velocity,
     acceleration: (T, B, 2) of the centres of mass. angle: (T, B) direction from the body's first
-    joint to its second, degrees counter-clockwise from x, without jumps (NaN for a particle);
-    angular_velocity, angular_acceleration: (T, B) in rad. joints: J names; joint_position,
-    joint_velocity, joint_acceleration: (T, J, 2). ground: joints that stand still. slides: by
-    slider, its two ends (T, 2, 2). connections: (name, body, joint) in the order of the case's
-    ReactionTable. transmission: by link and joint, (T,) degrees, 90 is best, 0 is a dead point.
-    condition: (T,) of the loop equations. shaking_force (T, 2), shaking_moment (T,): of the linkage
-    on its ground, the moment about the joint `shaking_about`. slider_forces: by slider
-    of the base on the moving body. paths: of named points. extremes: over the time, between the
+    joint to its second, degrees counter-clockwise from x, without jumps (of a body with one joint
+    since the drawing, NaN for a particle); angular_velocity, angular_acceleration: (T, B) in rad.
+    joints: J names, those of pitch points last; joint_position, joint_velocity,
+    joint_acceleration: (T, J, 2). ground: joints that stand still. slides: by slider, its two ends
+    (T, 2, 2). pitch: of gears and racks. connections: (name, body, joint) in the order of the
+    case's ReactionTable. transmission: by link and joint, (T,) degrees, 90 is best, 0 is a dead
+    point. condition: (T,) of the loop equations. shaking_force (T, 2), shaking_moment (T,): of the
+    linkage on its ground, the moment about the joint `shaking_about`. slider_forces: by slider of
+    the base on the moving body. paths: of named points. extremes: over the time, between the
     instants too; None: of the instants alone.
     """
 
@@ -269,6 +287,7 @@ class LinkageMotion:
     slider_forces: dict[str, GuideForces] = field(default_factory=dict)
     paths: dict[str, PointPath] = field(default_factory=dict)
     extremes: Extremes | None = None
+    pitch: tuple[PitchCurve, ...] = ()
 
     @property
     def poorest(self) -> dict[str, tuple[float, float | None]]:

@@ -45,6 +45,7 @@ from reports.data.mechanics import (
     LinkageMotion,
     MotionCheck,
     PeakReaction,
+    PitchCurve,
     PointPath,
     PowerLedger,
     PublishedValue,
@@ -57,9 +58,9 @@ __all__ = [
     "BandLoad", "BeamCheck", "Change", "Dimensioned", "DriveEffort", "DriveTable", "DropPeak",
     "DropRecord", "Extremes", "Fatigue", "Field", "Floats", "GoverningLoad", "GuideForces",
     "HandCheck", "LandingRange", "LegTable", "LinkageMotion", "MotionCheck", "PeakReaction",
-    "PinResult", "PinShape", "PointPath", "PowerLedger", "Provenance", "PublishedValue",
-    "ReactionTable", "Refinement", "Results", "SingularZone", "Still", "Surface", "TitleBlock",
-    "Units", "Volume",
+    "PinResult", "PinShape", "PitchCurve", "PointPath", "PowerLedger", "Provenance",
+    "PublishedValue", "ReactionTable", "Refinement", "Results", "SingularZone", "Still",
+    "Surface", "TitleBlock", "Units", "Volume",
 ]  # fmt: skip
 
 

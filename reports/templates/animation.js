@@ -8,7 +8,7 @@
     centres: all("[data-centre]"), arrows: all("[data-arrow]"), rows: all("[data-row]"),
     curves: all("[data-curve]"), strips: all("[data-strip]"), cursors: all(".cursor"),
     positions: all("[data-position]"), forces: all("output[data-force]"),
-    names: all("[data-between]"),
+    names: all("[data-between]"), pitch: all("[data-pitch]"),
   };
   const time = data.time, last = time.length - 1, span = time[last] - time[0];
   const seek = one("#seek"), play = one("#play"), callout = one("#callout"), key = one("#key");
@@ -77,6 +77,11 @@
     parts.names.forEach((text) => {
       const [p, q] = text.dataset.between.split(" ").map((j) => joints[j]);
       text.setAttribute("transform", place((p[0] + q[0]) / 2, (p[1] + q[1]) / 2));
+    });
+    parts.pitch.forEach((g, n) => {
+      const [ax, ay, bx, by] = [0, 1, 2, 3].map((k) => at(data.pitch[n], f, 4, k));
+      g.children[0].setAttribute("d", line([[ax, ay], [bx, by]]));
+      if (g.children[1]) g.children[1].setAttribute("transform", place(ax, ay));
     });
     parts.slides.forEach((g, s) => {
       const slide = data.slides[s];

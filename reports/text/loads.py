@@ -35,12 +35,13 @@ def print_loads(results: Results, console: Console) -> None:
 
 def unresolved(table: ReactionTable, unit: str) -> str:
     """The time intervals in which maxima are not certain."""
-    low, high = table.unresolved[0]
+    low, high = (short(float(f"{t:.6g}")) for t in table.unresolved[0])
+    where = f"between {low} and {high}" if low != high else f"near {low}"
     more = f" and {len(table.unresolved) - 1} more" if len(table.unresolved) > 1 else ""
     return (
-        f"not resolved between {short(float(f'{low:.6g}'))} and {short(float(f'{high:.6g}'))} "
-        f"{unit}{more}: forces change too fast there, and the maximum, mean and RMS are those of "
-        "the computed instants only; use a smoother drive law, or analyse that interval separately"
+        f"not resolved {where} {unit}{more}: forces change too fast there, and the maximum, mean "
+        "and RMS are those of the computed instants only; use a smoother drive law, or analyse "
+        "that interval separately"
     )
 
 

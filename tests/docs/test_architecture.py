@@ -45,6 +45,7 @@ PLUMBING = {  # without any rule of the physics, and not named on the page
     "geometry/mesh/gmsh_tetrahedra.py",
     "geometry/mesh/revolve.py",
     "geometry/meshing.py",
+    "loads/arrays.py",
     "loads/coded.py",
     "loads/tables/csv_table.py",
     "loads/tables/force_table.py",

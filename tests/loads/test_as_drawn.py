@@ -20,7 +20,7 @@ from loads import (
     at_rest,
     motion_reactions,
 )
-from loads.mobility import mobility, require_determined
+from loads.mobility.mobility import mobility, require_determined
 from tests.support.errors import raises
 from tests.support.mechanisms import coupled_wheels, four_bar
 

@@ -9,7 +9,7 @@ import pytest
 
 from benchmarks.scissor import HIGH, LOW, SPAN, lift
 from loads import Course, CycloidalDrive, ledger, loop_equations, motion_reactions
-from loads.linkage import Floats
+from loads.arrays import Floats
 
 LAW = CycloidalDrive(LOW, HIGH, SPAN)
 

@@ -30,7 +30,7 @@ from loads import (
     move,
     over_time,
 )
-from loads.linkage import Floats
+from loads.arrays import Floats
 from tests.support.errors import raises
 from tests.support.mechanisms import four_bar, slider_crank
 

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from benchmarks.scissor import lift
+from loads import Course, CycloidalDrive
+from loads.arrays import Floats
 from loads.least_squares import Factors, elimination
-from loads.linkage import Floats
 from loads.loop_equations import Loops
 
 
@@ -75,3 +76,16 @@ def test_loops_along_the_same_bodies_are_made_short() -> None:
         assert np.count_nonzero(loops.closures.turning[1:]) <= 4 * stages
     assert np.abs(np.linalg.det(loops._combined)) == pytest.approx(1.0)
     assert np.count_nonzero(loops.gaps.turning[1:]) > 10 * stages
+
+
+def test_condition_numbers_of_large_systems() -> None:
+    """By powers of the factors, against singular values: a lift of 43 bodies from low to nearly
+    upright.
+    """
+    course = Course(lift(20), [CycloidalDrive(1.9, 0.05, 1.0)], 0.0, 1.0)
+    motion = course.at(np.linspace(0.0, 1.0, 15))
+    assert course.loops.columns > 30
+    exact = np.linalg.cond(course.loops.jacobian(motion.pose))
+    assert np.ptp(exact) > 100.0
+    assert motion.condition == pytest.approx(exact, rel=1e-5)
+    assert motion.factors.condition() == pytest.approx(exact, rel=1e-5)

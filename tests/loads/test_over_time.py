@@ -24,10 +24,10 @@ from loads import (
     over_time,
     peak_forces,
 )
+from loads.arrays import Floats
 from loads.drives import Law
-from loads.linkage import Floats
 from loads.reactions import Reactions, given_reactions
-from pinstress.model.linkage import laws, span
+from pinstress.model.mechanism.drives import laws, span
 from pinstress.study.file import Study
 from tests.support.errors import raises
 from tests.support.mechanisms import four_bar, slider_crank

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from loads.linkage import Floats
+from loads.arrays import Floats
 from loads.refine import resolved
 
 

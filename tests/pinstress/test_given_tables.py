@@ -11,7 +11,7 @@ import pytest
 
 from pinstress import load_study
 from pinstress.model.cases import case_loads
-from pinstress.model.linkage import linkage
+from pinstress.model.mechanism.linkage import linkage
 from pinstress.schema.cases import GivenCase
 from tests.support.command_line import QUICK, run_here
 

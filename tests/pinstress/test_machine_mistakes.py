@@ -17,6 +17,8 @@ STUDIES = ROOT / "studies"
 GAS = 'table = "engine/gas_force.csv"        # columns position_deg,force'
 HOLD, OFF = 'hold = ["downlock"]', "outside-table"
 LOAD = 'force = { value = ["40 kN", "90 kN"], provenance = "assumed" }'
+SUN = 'bodies = ["sun", "planet1"]'
+SHARED = 'connections = ["sun_planet1", "sun_planet2", "sun_planet3"]'
 LOCKS = 'bodies = ["upper_lock", "lower_lock"]'
 
 
@@ -51,8 +53,23 @@ LOCKS = 'bodies = ["upper_lock", "lower_lock"]'
         ("hood", 'slider = "gas_spring"', 'bodies = ["hood", "ground"]', "give-both", "joints"),
         ("hood", "[535, 680]", "[580, 680]", OFF, "541.912 mm"),
         ("bucket", 'tip]\nbody = "bucket"', 'tip]\nbody = "spoon"', "unknown-body", "'spoon'"),
+        ("planetary", "distance = 96", "distance = 97", "gears-apart", "96 mm apart"),
+        ("planetary", "internal = true\n", "", "gears-apart", "192 mm apart"),
+        ("planetary", "module = 4 ", "radii = [48, 48]", "give-one", "either teeth or radii"),
+        ("planetary", "teeth = [24, 24]", "radii = [48, 48]", "give-both", "module needs teeth"),
+        ("planetary", "teeth = [24, 24]", "teeth = [24, 0]", "out-of-range", "at least 1"),
+        ("planetary", 'joints = ["O", "P1"]', 'joints = ["O", "P9"]', "unknown-joint", "'P9'"),
+        ("planetary", SUN, 'bodies = ["sun", "planet2"]', "joint-not-on-body", "arm, planet1"),
+        ("planetary", SUN, 'bodies = ["sun", "sun"]', "same-body", "twice"),
+        ("planetary", SUN, 'bodies = ["sun", "moon"]', "unknown-body", "'moon'"),
+        ("planetary", SUN, f'{SUN}\npressure_angle = "50 deg"', "out-of-range", "45 deg"),
+        ("planetary", SHARED, SHARED.replace("net3", "net9"), "unknown-connection", "gear"),
+        ("planetary", 'inertia = { value = "0.0025 kg m^2", provenance = "assumed" }', "",
+         "missing-inertia", "0 is allowed"),
+        ("planetary", 'connections = { sun = "sun", arm = "arm" }', 'connections = { sun = "sun" }',
+         "no-carrier", "no third body"),
     ],
-)
+)  # fmt: skip
 def test_what_is_wrong_is_named(
     tmp_path: Path, study: str, old: str, new: str, code: str, named: str
 ) -> None:

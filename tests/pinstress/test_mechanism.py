@@ -12,7 +12,8 @@ from pinstress import InputError, load_study
 from pinstress.analysis.gather import loads_only
 from pinstress.cli.check import describe
 from pinstress.model.cases import case_loads
-from pinstress.model.linkage import laws, linkage
+from pinstress.model.mechanism.drives import laws
+from pinstress.model.mechanism.linkage import linkage
 from reports.tables.json_results import to_json
 from reports.text.loads import remarks
 from reports.text.loads_summary import write_loads_summary

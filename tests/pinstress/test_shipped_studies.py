@@ -16,7 +16,9 @@ STUDIES = ROOT / "studies"
 MECHANISMS = [
     *("grenier2008", "bowman2019", "matrix_four_bar", "slider_crank", "excavator"),
     *("crane", "engine", "hood", "main_gear", "pump_jack", "scissor_lift", "bucket"),
+    "planetary",
 ]
+NO_COUPLER = ("crane", "hood", "scissor_lift", "planetary")  # no moving link with two joints
 
 
 @pytest.mark.slow
@@ -70,7 +72,7 @@ def test_loads_alone(tmp_path: Path, study: str, capsys: pytest.CaptureFixture[s
     for name in ("motion.csv", "joints.csv", "linkage.csv"):
         assert len((out / name).read_text().splitlines()) > 1
     angles = (out / "transmission.csv").read_text().splitlines()[1:]
-    assert bool(angles) == (study not in ("crane", "hood", "scissor_lift"))  # no two-joint links
+    assert bool(angles) == (study not in NO_COUPLER)
     drives = list(csv.DictReader((out / "drive.csv").read_text().splitlines()))
     for case in found["loads"]:
         mine = [r for r in drives if r["case"] == case["case"]]

@@ -26,7 +26,7 @@ from loads import Dynamics, ledger, mobility
 from loads.closed_form.four_bar import four_bar
 from pinstress import load_study
 from pinstress.model import cases as build
-from pinstress.model.linkage import linkage
+from pinstress.model.mechanism.linkage import linkage
 from pinstress.study.file import Study
 from tests.conftest import INCH, LBF
 
@@ -95,7 +95,7 @@ def test_angles_and_rates_of_the_snapshot(snapshot: Dynamics) -> None:
 
 def test_the_snapshot_is_on_the_drives_way(study: Study) -> None:
     """The printed rates are those of the cycloid where it passes 315 degrees."""
-    from pinstress.model.linkage import laws
+    from pinstress.model.mechanism.drives import laws
 
     (law,) = laws(study)
     times = np.linspace(0.0, 5.0, 500001)

@@ -13,7 +13,7 @@ import pytest
 from scipy.interpolate import PchipInterpolator
 
 from pinstress.model.cases import CaseLoads, case_loads
-from pinstress.model.linkage import linkage
+from pinstress.model.mechanism.linkage import linkage
 from pinstress.study.file import Study, load_study
 from pinstress.study.in_python import changed_study
 from tests.conftest import ROOT
@@ -409,3 +409,43 @@ def test_the_work_of_the_bucket_cylinder() -> None:
     raised = at(2.29)[1] - at(1.82)[1]
     assert -digging > 5e4
     assert case.over.drives[0].work[-1] == pytest.approx(raised - digging, rel=1e-6)
+
+
+# --- planetary: Willis, energy, and the balance of a planet ---------------------------------------
+
+RADIUS = 0.048  # m, of sun and planets; the ring's is three times that
+SUN, ARM, PLANET, PLANET_MASS = 0.0025, 1.2, 0.002, 1.5
+
+
+def test_the_drum_turns_a_quarter_as_fast_as_the_motor() -> None:
+    found = machine("planetary")["lift"].dynamics
+    assert found is not None
+    motion = found.motion
+    for of in (motion.angle, motion.angular_velocity, motion.angular_acceleration):
+        largest = np.abs(of("sun")).max()
+        assert np.abs(of("arm") - of("sun") / 4.0).max() < 1e-12 * largest
+        assert np.abs(of("planet2") + of("sun") / 2.0).max() < 1e-12 * largest
+
+
+def test_the_torque_of_the_motor() -> None:
+    found = machine("planetary")["lift"].dynamics
+    assert found is not None
+    arm = ARM + 3.0 * PLANET_MASS * (2.0 * RADIUS) ** 2
+    inertia = SUN + arm / 16.0 + 3.0 * PLANET / 4.0
+    expected = 900.0 / 4.0 + inertia * found.motion.angular_acceleration("sun")
+    assert found.drive[:, 0] == pytest.approx(expected, rel=1e-12)
+
+
+def test_forces_on_a_planet() -> None:
+    """At rest: a third of the torque at each sun gear; the ring's teeth carry as much, but for the
+    weight of the planet, and with them the pin, on which radial forces cancel.
+    """
+    case = machine("planetary")["test_load"]
+    tangential = 1350.0 / 4.0 / 3.0 / RADIUS
+    teeth = tangential * complex(math.tan(math.radians(20.0)), 1.0)
+    for k, name in enumerate(("planet1", "planet2", "planet3")):
+        outwards = np.exp(1j * math.radians(90.0 + 120.0 * k))
+        # On the pin: the sun drives the planets forwards, counter-clockwise about O.
+        assert -force(case, f"sun_{name}") == pytest.approx(teeth * outwards, rel=1e-9)
+        pin = 2.0 * tangential * 1j * outwards - 1j * PLANET_MASS * G
+        assert -force(case, name) == pytest.approx(pin, rel=1e-9)

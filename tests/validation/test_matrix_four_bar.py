@@ -21,7 +21,7 @@ import pytest
 from loads import Dynamics, Linkage, ledger
 from pinstress import load_study
 from pinstress.model import cases as build
-from pinstress.model.linkage import linkage
+from pinstress.model.mechanism.linkage import linkage
 from pinstress.study.file import Study
 
 ROOT = Path(__file__).parents[2]

@@ -6,12 +6,13 @@ from itertools import chain
 
 import numpy as np
 
-from reports.data.results import Floats, LinkageMotion, Units
+from reports.data.results import Floats, LinkageMotion, PitchCurve, Units
 from reports.format.drawing.svg_labels import label_offsets
 from reports.format.file_names import plot_name
 from reports.format.numbers import short
 from reports.plots.spec import Plot, Spec, clipped, headed, rows
 
+ROUND = 72  # sides of a pitch circle
 BETWEEN = 5  # positions between the first and the last
 WIDTH, LOWEST, HIGHEST = 560.0, 160.0, 560.0
 MARGIN = 0.06  # of the size, around the linkage
@@ -52,7 +53,7 @@ class _Frame:
     """What the picture shows, at one scale in both directions."""
 
     def __init__(self, motion: LinkageMotion) -> None:
-        parts = [motion.joint_position, *motion.slides.values()]
+        parts = [motion.joint_position, *motion.slides.values(), *_around(motion)]
         every = np.concatenate([np.asarray(p).reshape(-1, 2) for p in parts])
         low, high = every.min(axis=0), every.max(axis=0)
         self.size = float((high - low).max()) or 1.0
@@ -73,6 +74,12 @@ class _Frame:
         """(.., 2) of points (.., 2), y downwards."""
         x, y = points[..., 0] - self.low[0], self.high[1] - points[..., 1]
         return np.asarray(self.scale * np.stack([x, y], axis=-1))
+
+
+def _around(motion: LinkageMotion) -> list[Floats]:
+    """Points that must be seen of pitch circles and lines."""
+    box = np.array([[-1.0, -1.0], [1.0, 1.0]])
+    return [c.ends[:, :1] + c.radius * box if c.round else c.ends for c in motion.pitch]
 
 
 def _instants(motion: LinkageMotion, size: float) -> list[int]:
@@ -106,10 +113,24 @@ def _links(motion: LinkageMotion, k: int, key: str) -> list[Spec]:
         for joints in motion.links if len(joints) > 1
     ]  # fmt: skip
     sliders = [list(ends[k]) for ends in motion.slides.values()]
+    sliders += [_pitch(curve, k) for curve in motion.pitch]
     return [
         {"x": float(x), "y": float(y), "of": f"{k}.{number}", "key": key}
         for number, shape in enumerate(chain(shapes, sliders)) for x, y in shape
     ]  # fmt: skip
+
+
+def _pitch(curve: PitchCurve, k: int) -> list[Floats]:
+    """A rack's line; of a gear the radius that turns with it and the circle from there."""
+    if not curve.round:
+        return list(curve.ends[k])
+    centre, mark = curve.ends[k]
+    angle = np.linspace(0.0, 2.0 * np.pi, ROUND + 1)
+    x, y = mark - centre
+    turned = np.stack(
+        [x * np.cos(angle) - y * np.sin(angle), x * np.sin(angle) + y * np.cos(angle)], 1
+    )
+    return [centre, *(centre + turned)]
 
 
 def _paths(motion: LinkageMotion) -> list[Spec]:
@@ -169,7 +190,7 @@ def _names(motion: LinkageMotion, instants: list[int], frame: _Frame) -> list[Sp
     segments = [
         [motion.joint_position[k][motion.joints.index(j)] for j in pair]
         for k in instants for joints in motion.links
-        for pair in zip(joints, (*joints[1:], joints[0]), strict=True) if len(joints) > 1
+        for pair in zip(joints, (*joints[1:], *joints[:1]), strict=True) if len(joints) > 1
     ]  # fmt: skip
     ends = frame.pixels(np.array(segments).reshape(1, -1, 2, 2))
     at_pixels = frame.pixels(points)

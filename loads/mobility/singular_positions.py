@@ -13,9 +13,10 @@ from typing import Literal
 
 import numpy as np
 
-from loads.linkage import Floats, Linkage, LinkageError, Slider
+from loads.arrays import Floats
+from loads.linkage import Linkage, LinkageError, Slider
 from loads.loop_equations import Loops
-from loads.mobility import moving_bodies, stressed_connections
+from loads.mobility.mobility import moving_bodies, stressed_connections
 
 Kind = Literal["dead point", "change point", "open"]
 CODES: dict[Kind, str] = {
@@ -72,10 +73,12 @@ class Impasse(LinkageError):
 
         bodies, connections = _some(self.bodies), _some(self.connections)
         if self.kind == "open":
+            toothed = bool(self.linkage.teeth)
             return (
                 f"the linkage does not close beyond {at(self.reached)} (requested: "
                 f"{at(self.wanted)}): {connections} do not meet, because the lengths of its "
-                "redundant links are inconsistent; check the coordinates of the joints"
+                f"redundant links{' or the ratios of its gears' * toothed} are inconsistent; check "
+                f"the coordinates of the joints{' and the gears' * toothed}"
             )
         unbounded = f"the forces at {connections} are unbounded"
         if self.kind == "change point":
@@ -98,13 +101,15 @@ def impasse(
     """What prevents the motion near coordinates q (n,). opened: coordinates with open loops."""
     if opened is not None:
         pose = loops.pose(opened[None])
-        gap = np.abs(loops.place(pose, loops.gaps)[0])
-        worst = [i for i, g in enumerate(gap) if g > 0.1 * gap.max()]
-        members = [loops.closing[i] for i in worst]
-        names = tuple(
+        lag = loops.residual(opened[None], pose, reached[None])[0, 2 * len(loops.closing) :]
+        teeth = loops.linkage.teeth
+        gap = np.abs([*loops.place(pose, loops.gaps)[0], *lag[: len(teeth)]])
+        members = [
             loops.linkage.sliders[k].name if slides else loops.linkage.connections[k][1].name
-            for slides, k in members
-        )
+            for slides, k in loops.closing
+        ]
+        members += [t.name for t in teeth]
+        names = tuple(n for n, g in zip(members, gap, strict=True) if g > 0.1 * gap.max())
         return Impasse(loops.linkage, "open", reached, wanted, (), names)
     pose = loops.pose(q[None])
     left, _, right = np.linalg.svd(loops.jacobian(pose)[0])
@@ -120,5 +125,5 @@ def impasse(
         reached,
         wanted,
         moving_bodies(loops, pose, motion[None] / loops.scale, SNAPS),
-        stressed_connections(loops, force[:, None]),
+        stressed_connections(loops, pose, force[:, None]),
     )

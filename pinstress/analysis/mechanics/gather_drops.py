@@ -7,8 +7,8 @@ from dataclasses import fields
 import numpy as np
 
 from loads import impulse_force
+from loads.arrays import Floats
 from loads.landing import Landing, spin_up_drag
-from loads.linkage import Floats
 from pinstress.model.cases import CaseLoads
 from pinstress.schema.landing import DropCase
 from pinstress.study.file import Study

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loads.as_drawn import rank, singular_as_drawn
+from loads.arrays import Floats
 from loads.joint_forces import connection_members
-from loads.linkage import GROUND, Floats, Linkage, LinkageError
+from loads.linkage import GROUND, Linkage, LinkageError
 from loads.loop_equations import Loops, Pose
+from loads.mobility.as_drawn import rank, singular_as_drawn
 
 TAKES_PART = 1e-6  # of the largest part in a null vector
 
@@ -40,7 +41,7 @@ def mobility(linkage: Linkage) -> Mobility:
     J = loops.jacobian(pose)[0]
     left, singular, right = np.linalg.svd(J)
     found = rank(singular)
-    guided = J[: 2 * len(loops.closing)]
+    guided = J[: loops.guides]
     free = right[found:]
     return Mobility(
         kutzbach=kutzbach(linkage),
@@ -48,12 +49,12 @@ def mobility(linkage: Linkage) -> Mobility:
         free=len(free),
         loose=moving_bodies(loops, pose, free / loops.scale),
         redundant=len(J) - found,
-        shared=stressed_connections(loops, left[:, found:]),
+        shared=stressed_connections(loops, pose, left[:, found:]),
     )
 
 
 def kutzbach(linkage: Linkage) -> int:
-    """Degrees of freedom by count: 3 (links - 1) - 2 (pins and sliders).
+    """Degrees of freedom by count: 3 (links - 1) - 2 (pins and sliders) - pairs of teeth.
 
     A pin on which k links meet counts k - 1 times; particles do not count.
     """
@@ -62,7 +63,7 @@ def kutzbach(linkage: Linkage) -> int:
     for joint in linkage.joints:
         meeting = {c.body for c in joint.connections} | {joint.fixed_in}
         pins += max(len(meeting & links) - 1, 0)
-    return 3 * (len(links) - 1) - 2 * (pins + len(linkage.sliders))
+    return 3 * (len(links) - 1) - 2 * (pins + len(linkage.sliders)) - len(linkage.teeth)
 
 
 def is_particle(linkage: Linkage, name: str) -> bool:
@@ -93,14 +94,17 @@ def moving_bodies(
     )
 
 
-def stressed_connections(loops: Loops, multipliers: Floats) -> tuple[str, ...]:
-    """Connections that take part in self-equilibrated forces: multipliers (rows, k)."""
-    closing = loops.closing_forces(multipliers.T)
+def stressed_connections(loops: Loops, pose: Pose, multipliers: Floats) -> tuple[str, ...]:
+    """Connections and teeth that take part in self-equilibrated forces at one pose: multipliers
+    (rows, k).
+    """
+    closing = loops.closing_forces(pose, multipliers.T)
     if not closing.size:
         return ()
     nothing = np.zeros((len(closing), len(loops.linkage.items)), dtype=complex)
-    size = np.abs(connection_members(loops).forces(nothing, closing)).max(axis=0)
-    names = [c.name for _, c in loops.linkage.connections]
+    forces = connection_members(loops).forces(nothing, closing)
+    size = np.abs(np.hstack([forces, closing[:, len(loops.closing) :]])).max(axis=0)
+    names = [name for name, _ in loops.linkage.forces]
     return tuple(n for n, f in zip(names, size, strict=True) if f > TAKES_PART * size.max())
 
 

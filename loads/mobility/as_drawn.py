@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from loads.linkage import Floats
+from loads.arrays import Floats
 from loads.loop_equations import Loops
 
 Singular = Literal["change point", "dead point"]
@@ -37,14 +37,14 @@ def singular_as_drawn(loops: Loops) -> Singular | None:
 def _ranks(loops: Loops, q: Floats) -> tuple[int, int]:
     """Of the loop equations without the drives', and of all."""
     J = loops.jacobian(loops.pose(q[None]))[0]
-    closing, whole = (np.linalg.svd(A, compute_uv=False) for A in (J[: 2 * len(loops.closing)], J))
+    closing, whole = (np.linalg.svd(A, compute_uv=False) for A in (J[: loops.guides], J))
     return rank(closing), rank(whole)
 
 
 def _nearby(loops: Loops) -> list[Floats]:
     """Coordinates (n,) near the drawing at which all loops are closed, drives free."""
     first = loops.jacobian(loops.pose(np.zeros((1, loops.columns))))[0]
-    closing = first[: 2 * len(loops.closing)]
+    closing = first[: loops.guides]
     _, singular, right = np.linalg.svd(closing)
     ways = right[rank(singular) :]
     random = np.random.default_rng(0)
@@ -60,8 +60,8 @@ def _closed(loops: Loops, way: Floats) -> Floats | None:
     x = ASIDE * scale * way
     for _ in range(40):
         pose = loops.pose((x / loops.scale)[None])
-        gap = loops.place(pose, loops.closures)[0]
-        error = np.concatenate([gap.real, gap.imag, [way @ x - ASIDE * scale]])
+        gap = loops.residual((x / loops.scale)[None], pose, loops.drawn_drives[None])[0]
+        error = np.append(gap[: loops.guides], way @ x - ASIDE * scale)
         if np.abs(error).max() <= CLOSED * scale:
             return np.asarray(x / loops.scale)
         J = np.vstack([loops.jacobian(pose)[0][: len(error) - 1], way])

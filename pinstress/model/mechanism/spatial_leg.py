@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from loads import LegDynamics, LegMotion, LoadsArgumentError, Reactions, SpatialLeg, leg_dynamics
-from loads.linkage import Floats
-from pinstress.model.linkage import LAWS
+from loads.arrays import Floats
+from pinstress.model.mechanism.drives import LAWS
 from pinstress.schema.cases import LegCase
 from pinstress.study.file import Study
 

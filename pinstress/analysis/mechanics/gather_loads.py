@@ -7,14 +7,18 @@ from typing import Any
 import numpy as np
 
 from loads import GROUND, Dynamics, Effort, Linkage, OverTime, Slider, energy, ledger
-from loads.linkage import Floats
+from loads.arrays import Floats
 from loads.loop_equations import pairs
+from loads.mobility.mobility import is_particle
 from loads.transmission_angles import transmission_angles
 from pinstress.analysis.checks import motion_check
-from pinstress.analysis.gather_drops import drop_record
+from pinstress.analysis.mechanics.gather_drops import drop_record
+from pinstress.analysis.mechanics.gather_sequences import sequence_tables
+from pinstress.analysis.mechanics.gather_teeth import pitch_curves
 from pinstress.analysis.published_quantities import published_values
 from pinstress.model.cases import CaseLoads
-from pinstress.model.linkage import ground_joint, offsets
+from pinstress.model.mechanism.drives import offsets
+from pinstress.model.mechanism.linkage import ground_joint
 from pinstress.study.file import Study
 from pinstress.study.published_tables import Published
 from reports.data import results as plain
@@ -56,7 +60,7 @@ LEG_SCALARS = ("actuator", "spin_moment", "kinetic_energy")
 def mechanics(study: Study, loads: dict[str, CaseLoads], published: Published) -> dict[str, Any]:
     """The parts of plain.Results that need no stresses."""
     made = {n: c.dynamics for n, c in loads.items() if c.dynamics is not None}
-    return {
+    parts = {
         "reactions": tuple(_reactions(study, n, c, published) for n, c in loads.items()),
         "drive": tuple(t for n, d in made.items() for t in _drives(study, n, d, loads[n])),
         "motion": tuple(_motion(study, n, d, loads[n].over) for n, d in made.items()),
@@ -65,6 +69,7 @@ def mechanics(study: Study, loads: dict[str, CaseLoads], published: Published) -
         "drops": tuple(drop_record(study, n, c) for n, c in loads.items() if c.landing),
         "legs": tuple(_leg(study, n, c) for n, c in loads.items() if c.leg is not None),
     }
+    return parts | sequence_tables(study, parts)
 
 
 def _drive_positions(study: Study, dynamics: Dynamics) -> Floats:
@@ -204,6 +209,7 @@ def _motion(
     bodies = [b.name for b in linkage.bodies]
     centre, velocity, acceleration = (pairs(z[:, : len(bodies)]) for z in motion.centres)
     joints = [motion.joint(j.name) for j in linkage.joints]
+    joints += [motion.point(t.carrier, t.at) for t in linkage.teeth]
     at, v, a = (np.stack([j[k] for j in joints], axis=1) for k in range(3))
     about = ground_joint(linkage)
     force, moment = dynamics.shaking(linkage.joint(about).at)
@@ -218,7 +224,7 @@ def _motion(
         angle=np.stack([_direction(dynamics, b) for b in bodies], axis=1),
         angular_velocity=np.stack([motion.angular_velocity(b) for b in bodies], axis=1),
         angular_acceleration=np.stack([motion.angular_acceleration(b) for b in bodies], axis=1),
-        joints=tuple(j.name for j in linkage.joints),
+        joints=(*(j.name for j in linkage.joints), *(t.name for t in linkage.teeth)),
         ground=tuple(
             j.name
             for j in linkage.joints
@@ -233,7 +239,10 @@ def _motion(
             )
             for s in linkage.sliders
         },
-        connections=tuple((c.name, c.body, j.name) for j, c in linkage.connections),
+        connections=(
+            *((c.name, c.body, j.name) for j, c in linkage.connections),
+            *((t.name, t.bodies[0], t.name) for t in linkage.teeth),
+        ),
         transmission={
             f"{link} at {joint}": np.degrees(angle)
             for (link, joint), angle in transmission_angles(motion).items()
@@ -246,6 +255,7 @@ def _motion(
         extremes=None if over is None else _extremes(over),
         slider_forces=_slider_forces(dynamics),
         paths=_paths(study, dynamics),
+        pitch=pitch_curves(motion),
     )
 
 
@@ -312,14 +322,14 @@ def _joints_to_draw(linkage: Linkage, body: str) -> tuple[str, ...]:
 
 def _direction(dynamics: Dynamics, body: str) -> Floats:
     """(T,) degrees from x of the line from the body's first joint to its second, or with fewer
-    joints of the slider it belongs to; NaN for a particle.
+    joints of the slider it belongs to, or else since the drawing; NaN for a particle.
     """
     motion, linkage = dynamics.motion, dynamics.motion.linkage
     joints = linkage.joints_on(body)
     lines = [s.axis for s in linkage.sliders if body in (s.base, s.moving)]
     if len(joints) > 1:
         lines = [(joints[1].at[0] - joints[0].at[0], joints[1].at[1] - joints[0].at[1])]
-    if not lines:
+    if not lines and is_particle(linkage, body):
         return np.full(len(motion), np.nan)
-    x, y = lines[0]
+    x, y = lines[0] if lines else (1.0, 0.0)
     return np.asarray(np.degrees(np.arctan2(y, x) + motion.angle(body)))

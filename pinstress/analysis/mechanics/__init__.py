@@ -1,0 +1,1 @@
+"""Results of mechanisms: forces, drives, motion, drops; cases one after the other."""

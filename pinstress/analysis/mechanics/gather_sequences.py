@@ -1,0 +1,285 @@
+"""Cases one after the other on one time axis: from the results of each, nothing is solved again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import fields, is_dataclass, replace
+from itertools import pairwise
+from typing import Any, TypeVar
+
+import numpy as np
+
+from fea.fatigue.records import CaseHistory, PointHistory
+from loads.arrays import Floats
+from pinstress.model.cases import CaseLoads
+from pinstress.model.sequence import Occurrence, complete, steps
+from pinstress.study.file import Study
+from reports.data import results as plain
+from reports.format.numbers import engineering
+
+T = TypeVar("T")
+JUMPS = 1e-6  # of the linkage's size: a joint that is so far off where the next case begins
+
+
+def _joined(parts: Sequence[Any]) -> Any:
+    """Arrays one after the other, as are those in dataclasses, tuples and dictionaries; None where
+    any part has none; else the first.
+    """
+    first: Any = parts[0]
+    if any(part is None for part in parts):
+        return None
+    if isinstance(first, np.ndarray):
+        return np.concatenate(parts)
+    if is_dataclass(first):
+        own = {f.name: _joined([getattr(p, f.name) for p in parts]) for f in fields(first)}
+        return replace(first, **own)  # type: ignore[type-var]
+    if isinstance(first, dict):
+        return {k: _joined([p[k] for p in parts]) for k in first if all(k in p for p in parts)}
+    if isinstance(first, tuple) and any(map(is_dataclass, first)):
+        return tuple(_joined(each) for each in zip(*parts, strict=True))
+    return first
+
+
+def _course(
+    parts: Mapping[str, T], times: Mapping[str, Floats | None], order: list[Occurrence]
+) -> T:
+    """What there is of every step's case; one at rest at its beginning and its end."""
+    every = [parts[s.case] for s in order for _ in range(2 if times[s.case] is None else 1)]
+    joined: T = _joined(every)
+    return joined
+
+
+def _axis(times: Mapping[str, Floats | None], order: list[Occurrence]) -> Floats:
+    """(T,) s, to go with `_course`."""
+    out = []
+    for step in order:
+        own = times[step.case]
+        out.append(step.begin + (np.array([0.0, step.duration]) if own is None else own - own[0]))
+    return np.concatenate(out)
+
+
+def sequence_tables(study: Study, parts: dict[str, Any]) -> dict[str, Any]:
+    """The reactions, drives and motions of the sequences whose cases are all among the parts."""
+    reactions = {t.case: t for t in parts["reactions"]}
+    motions = {m.case: m for m in parts["motion"]}
+    drives = {(d.case, d.name): d for d in parts["drive"]}
+    times = {name: t.times for name, t in reactions.items()}
+    out: dict[str, list[Any]] = {"reactions": [], "drive": [], "motion": []}
+    for name in complete(study, reactions):
+        order = list(steps(study.table.sequence[name], times))
+        own = [step.case for step in order]
+        table = _reactions(name, reactions, order)
+        if all(case in motions for case in own):
+            held = dict.fromkeys(d for case, d in drives if case in own)
+            of = [{case: drives.get((case, drive)) for case in own} for drive in held]
+            found = [_drive(name, there, times, order) for there in of]
+            note = f"{table.note} {_work(study, found)}{_jumps(motions, order)}"
+            table = replace(table, note=note)
+            out["motion"].append(_motion(name, motions, order))
+            out["drive"] += found
+        out["reactions"].append(table)
+    return {key: (*parts[key], *found) for key, found in out.items()}
+
+
+def _reactions(
+    name: str, tables: Mapping[str, plain.ReactionTable], order: list[Occurrence]
+) -> plain.ReactionTable:
+    used = {step.case: tables[step.case] for step in order}
+    names = dict.fromkeys(c for table in used.values() for c in table.connections)
+    whole = {case: _with_all(table, list(names), used) for case, table in used.items()}
+    times = {case: table.times for case, table in used.items()}
+    return replace(
+        _course(whole, times, order),
+        case=name,
+        times=_axis(times, order),
+        note=_steps_in_words(order),
+        published={},
+        shared=tuple(dict.fromkeys(c for t in used.values() for c in t.shared)),
+        peaks=tuple(_peak(c, whole, order) for c in range(len(names))),
+        unresolved=tuple(
+            (s.begin + low - _first(times[s.case]), s.begin + high - _first(times[s.case]))
+            for s in order
+            for low, high in used[s.case].unresolved
+        ),
+    )
+
+
+def _first(times: Floats | None) -> float:
+    return 0.0 if times is None else float(times[0])
+
+
+def _with_all(
+    table: plain.ReactionTable, names: list[str], of: Mapping[str, plain.ReactionTable]
+) -> plain.ReactionTable:
+    """With all connections, in one order: without force where the case has none."""
+    have = {c: k for k, c in enumerate(table.connections)}
+    owner = {c: t for t in of.values() for c in t.connections}
+    at = [have.get(c, -1) for c in names]
+    there = np.array([k >= 0 for k in at])
+    turn = None if table.turn is None else np.where(there, table.turn[:, at], 0.0)
+    of_name = {peak.connection: peak for peak in table.largest}
+    return replace(
+        table,
+        connections=tuple(names),
+        bodies=tuple(owner[c].bodies[owner[c].connections.index(c)] for c in names),
+        pins=tuple(owner[c].pins[owner[c].connections.index(c)] for c in names),
+        forces=np.where(there[:, None], table.forces[:, at], 0.0),
+        moments=np.where(there[:, None], table.moments[:, at], 0.0),
+        turn=turn,
+        peaks=tuple(of_name.get(c, plain.PeakReaction(c, 0.0, None)) for c in names),
+    )
+
+
+def _peak(
+    c: int, tables: Mapping[str, plain.ReactionTable], order: list[Occurrence]
+) -> plain.PeakReaction:
+    """Of connection number c, where it first occurs."""
+    found = [(s, tables[s.case].peaks[c]) for s in order]
+    step, peak = max(found, key=lambda each: each[1].force)
+    own = 0.0 if peak.time is None else peak.time - _first(tables[step.case].times)
+    rubs = [p.frictionless for _, p in found if p.frictionless is not None]
+    return replace(
+        peak,
+        time=step.begin + own,
+        moment=max(p.moment for _, p in found),
+        frictionless=max(rubs, default=None),
+    )
+
+
+def _steps_in_words(order: list[Occurrence]) -> str:
+    runs: list[list[Occurrence]] = []
+    for step in order:
+        if runs and runs[-1][0].case == step.case and runs[-1][0].duration == step.duration:
+            runs[-1].append(step)
+        else:
+            runs.append([step])
+    each = (f"{len(r)} × {r[0].case}" if len(r) > 1 else r[0].case for r in runs)
+    end = order[-1].begin + order[-1].duration
+    return f"Sequence of {', '.join(each)}; {end:g} s. Stresses are those of its cases."
+
+
+def _motion(
+    name: str, motions: Mapping[str, plain.LinkageMotion], order: list[Occurrence]
+) -> plain.LinkageMotion:
+    used = {step.case: motions[step.case] for step in order}
+    times = {case: m.time for case, m in used.items()}
+    whole = _course(used, times, order)
+
+    def later(step: Occurrence, found: tuple[float, float | None]) -> tuple[float, float]:
+        value, time = found
+        own = 0.0 if time is None else time - _first(times[step.case])
+        return value, step.begin + own
+
+    links = [(k, later(s, v)) for s in order for k, v in used[s.case].poorest.items()]
+    angles = {k: min((v for link, v in links if link == k)) for k in dict.fromkeys(dict(links))}
+    worst = max((later(s, used[s.case].worst_condition) for s in order), key=lambda v: v[0])
+    violation = max(m.ledger.violation for m in used.values())
+    return replace(
+        whole,
+        case=name,
+        time=_axis(times, order),
+        ledger=replace(whole.ledger, violation=violation),
+        extremes=plain.Extremes(angles, worst),
+    )
+
+
+def _jumps(motions: Mapping[str, plain.LinkageMotion], order: list[Occurrence]) -> str:
+    """A sentence on the cases that do not begin where those before them end; empty without any."""
+    found: dict[str, None] = {}
+    for one, two in pairwise(order):
+        end, begin = (motions[s.case].joint_position for s in (one, two))
+        size = float(np.ptp(begin[0], axis=0).max()) or 1.0
+        if np.abs(end[-1] - begin[0]).max() > JUMPS * size:
+            found[f"{one.case} and {two.case}"] = None
+    return f" The linkage jumps between {'; '.join(found)}." if found else ""
+
+
+def _drive(
+    name: str,
+    tables: Mapping[str, plain.DriveTable | None],
+    times: Mapping[str, Floats | None],
+    order: list[Occurrence],
+) -> plain.DriveTable:
+    """tables: of the drive by case; None where something else holds, and its force is zero."""
+    like = next(t for t in tables.values() if t is not None)
+    whole = {
+        case: t or _idle(like, 1 if (own := times[case]) is None else len(own))
+        for case, t in tables.items()
+    }
+    joined, axis = _course(whole, times, order), _axis(times, order)
+    work, done = [], 0.0
+    for step in order:
+        own = whole[step.case].work
+        work.append(done + (own if times[step.case] is not None else np.zeros(2)))
+        done = float(work[-1][-1])
+    efforts = [(step, _effort(whole[step.case])) for step in order]
+    effort = _over(efforts, float(np.nanmax(joined.position) - np.nanmin(joined.position)))
+    return replace(joined, case=name, time=axis, work=np.concatenate(work), effort=effort)
+
+
+def _work(study: Study, drives: list[plain.DriveTable]) -> str:
+    unit, factor = study.system.unit("energy"), study.system.factor("energy")
+    each = (f"{d.name} {engineering(d.work[-1] / factor)} {unit}" for d in drives)
+    return f"Work per cycle: {', '.join(each)}."
+
+
+def _idle(like: plain.DriveTable, count: int) -> plain.DriveTable:
+    unknown, zero = np.full(count, np.nan), np.zeros(count)
+    return plain.DriveTable(
+        *("", None, unknown, unknown, unknown, zero, zero, zero, zero, zero), like.name, like.kind
+    )
+
+
+def _effort(table: plain.DriveTable) -> plain.DriveEffort:
+    """Over the case's own time, which begins at zero."""
+    if table.effort is not None:
+        begin, e = _first(table.time), table.effort
+        return replace(e, time=e.time - begin, power_time=e.power_time - begin)
+    size, force = table.largest, float(table.force[0])
+    return plain.DriveEffort(size, 0.0, force, size, table.largest_power, 0.0, 0.0)
+
+
+def _over(efforts: list[tuple[Occurrence, plain.DriveEffort]], stroke: float) -> plain.DriveEffort:
+    lasts = np.array([step.duration for step, _ in efforts])
+    mean, rms = (np.array([getattr(e, key) for _, e in efforts]) for key in ("mean", "rms"))
+    step, most = max(efforts, key=lambda each: each[1].largest)
+    busy, strongest = max(efforts, key=lambda each: each[1].power)
+    rubs = [e.frictionless for _, e in efforts if e.frictionless is not None]
+    return plain.DriveEffort(
+        most.largest,
+        step.begin + most.time,
+        float(lasts @ mean / lasts.sum()),
+        float(np.sqrt(lasts @ rms**2 / lasts.sum())),
+        strongest.power,
+        busy.begin + strongest.power_time,
+        max(stroke, *(e.stroke for _, e in efforts)),
+        max(rubs, default=None),
+    )
+
+
+def with_sequences(
+    study: Study, loads: Mapping[str, CaseLoads], histories: tuple[PointHistory, ...]
+) -> tuple[PointHistory, ...]:
+    """The same with the stress over every sequence whose cases are all among the loads: zero in
+    those that do not load the pin.
+    """
+    times = {case: found.reactions.times for case, found in loads.items()}
+    orders = {n: list(steps(study.table.sequence[n], times)) for n in complete(study, loads)}
+    return tuple(
+        replace(history, cases=(*history.cases, *_sequences(history, orders)))
+        for history in histories
+    )
+
+
+def _sequences(history: PointHistory, orders: dict[str, list[Occurrence]]) -> Iterator[CaseHistory]:
+    have = {case.case: case for case in history.cases}
+    for name, order in orders.items():
+        if any(step.case in have for step in order):
+            used = {step.case: have.get(step.case, _unloaded(history)) for step in order}
+            times = {case: h.times for case, h in used.items()}
+            yield replace(_course(used, times, order), case=name, times=_axis(times, order))
+
+
+def _unloaded(like: PointHistory) -> CaseHistory:
+    zero = np.zeros(1)
+    return CaseHistory("", None, np.zeros((1, like.cases[0].stress.shape[1])), zero, zero)
