@@ -96,18 +96,14 @@ def _supports(ties: Ties) -> Iterator[str]:
 
 def _pairs(ties: Ties) -> Iterator[tuple[int, int]]:
     """Components tied to another, and that."""
-    first = _first(ties)
+    first = ties.first
     for component in np.flatnonzero(ties.unknown >= 0).tolist():
         if (other := int(first[ties.unknown[component]])) != component:
             yield component, other
 
 
-def _first(ties: Ties) -> Ints:
-    return np.unique(ties.unknown, return_index=True)[1][-ties.matrix.shape[1] :]
-
-
 def _forces(ties: Ties, forces: Floats) -> Iterator[str]:
-    first = _first(ties)
+    first = ties.first
     for component, force in zip(first.tolist(), (forces * ties.sign[first]).tolist(), strict=True):
         node, axis = divmod(component, 3)
         yield f"{node + 1}, {axis + 1}, {real(force)}"

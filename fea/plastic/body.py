@@ -51,6 +51,12 @@ class Ties:
         shape = len(self.unknown), int(self.unknown.max()) + 1
         return sp.csr_matrix((self.sign[rows], (rows, self.unknown[rows])), shape=shape)
 
+    @cached_property
+    def first(self) -> Ints:
+        """(U,) the first component of each free unknown."""
+        found: Ints = np.unique(self.unknown, return_index=True)[1]
+        return found[-self.matrix.shape[1] :]
+
     def without(self, unknowns: Ints) -> Ties:
         """With some unknowns zero as well."""
         left = np.ones(self.matrix.shape[1], dtype=bool)
@@ -70,12 +76,6 @@ class FlowingBody:
     def __init__(self, elements: Elements, ties: Ties, rule: FlowRule) -> None:
         self.elements, self.ties, self.rule = elements, ties, rule
         self.size: int = ties.matrix.shape[1]
-
-    @cached_property
-    def node(self) -> Ints:
-        """(U,) the first node of each unknown."""
-        first: Ints = np.unique(self.ties.unknown, return_index=True)[1]
-        return first[-self.size :] // 3
 
     def displacement(self, unknowns: Floats) -> Floats:
         """(N, 3) m."""

@@ -29,8 +29,7 @@ def bending_margin(s: Situation, concentrated: SectionForces) -> Margin:
     fy = s.material.yield_strength
     if fy is None:
         return CONCENTRATED.lacks(s, strength_key(s.material.name, "yield"))
-    modulus = concentrated.of_sections("inertia") / concentrated.of_sections("outer")
-    stress = concentrated.moment / modulus
+    stress = concentrated.moment / concentrated.of_sections("modulus")
     allowable = np.full(stress.shape[1], fy)
     basis = "forces at the middles of bands"
     return CONCENTRATED.worst(s, stress, allowable, concentrated.labels, basis)

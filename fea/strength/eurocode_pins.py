@@ -93,10 +93,6 @@ def eurocode_margins(s: Situation, even: SectionForces) -> list[Margin]:
     return [*checks, _bearing(s, BEARING_SER), _bending(s, even, BENDING_SER), _contact(s)]
 
 
-def _modulus(forces: SectionForces) -> Floats:
-    return forces.of_sections("inertia") / forces.of_sections("outer")
-
-
 def _resistances(s: Situation, even: SectionForces) -> list[Margin]:
     """Of the pin in shear, in bending and in both."""
     fu, fy = s.material.ultimate_strength, s.material.yield_strength
@@ -112,7 +108,7 @@ def _resistances(s: Situation, even: SectionForces) -> list[Margin]:
     shear = SHEAR.worst(s, even.shear, sheared, even.labels)
     if fy is None:
         return [shear, bending, INTERACTION.lacks(s, *needs)]
-    bent = np.asarray(bending_resistance(_modulus(even), fy))
+    bent = np.asarray(bending_resistance(even.of_sections("modulus"), fy))
     used = np.hypot((even.moment / bent).max(axis=1), (even.shear / sheared).max(axis=1))
     basis = "root of the sum of squares; the clause's sum is its square"
     return [shear, bending, INTERACTION.worst(s, used[:, None], np.ones(1), ("",), basis)]
@@ -123,7 +119,7 @@ def _bending(s: Situation, even: SectionForces, check: Check) -> Margin:
     if fy is None:
         return check.lacks(s, strength_key(s.material.name, "yield"))
     ser = check is BENDING_SER
-    resisted = np.asarray(bending_resistance(_modulus(even), fy, replaceable=ser))
+    resisted = np.asarray(bending_resistance(even.of_sections("modulus"), fy, replaceable=ser))
     return check.worst(s, even.moment, resisted, even.labels, "even load on each band")
 
 
