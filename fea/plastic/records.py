@@ -11,13 +11,15 @@ from fea.core.dimensions import Floats, Length, Lengths
 @dataclass(frozen=True)
 class PlasticMesh:
     """One mesh of the solid: unknowns, bounds of the load factor on it, change of volume over the
-    equivalent strain of its mechanism, load steps and iterations.
+    equivalent strain of its mechanism and what is charged for it in the upper bound, load steps and
+    iterations.
     """
 
     unknowns: int
     lower: float
     upper: float
     volume: float
+    charge: float
     steps: int
     iterations: int
 

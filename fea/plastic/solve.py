@@ -15,7 +15,7 @@ from fea.core.pin_loads import PinLoads
 from fea.plastic.flow import FlowRule
 from fea.plastic.hinge import BEAM_ERROR, BeamBounds, beam_bounds
 from fea.plastic.limit_load import OnMesh, bracket, limit_on_mesh
-from fea.plastic.pin_body import acting_at, hexahedral, pin_body, plane_of
+from fea.plastic.pin_body import acting_at, finer, pin_body, plane_of
 from fea.plastic.records import LimitLoad, PlasticMesh
 from geometry import Pin, PinLike
 from geometry.mesh.hexahedra import HexSize
@@ -26,6 +26,10 @@ SIZES = HexSize(2, 0.5), HexSize(4, 0.25), HexSize(6, 1.0 / 6.0)
 WIDEST = 0.05  # of a bracket, over its middle
 MOST_UNKNOWNS = 60_000  # of the solid: a minute or two
 BEFORE_COLLAPSE = 0.95  # of the limit: at most the load after which the permanent set is reported
+TETRAHEDRA = (
+    "only for pins of a profile without holes and flats: others need tetrahedra, which lock when "
+    "the metal flows"
+)
 TOO_LARGE = "the solid would need more than {:,} unknowns or the memory that is allowed"
 
 
@@ -45,7 +49,7 @@ def limit_load(
     begin = time.perf_counter()
     rule = FlowRule(material)
     if not isinstance(pin, Pin):
-        return LimitLoad("none", note="only for bodies of revolution from a profile")
+        return LimitLoad("none", note=TETRAHEDRA)
     bounds = _of_beam(pin, material, clamps, loads)
     if bounds is not None and rung == "auto":
         carries = decided(bounds)
@@ -92,8 +96,7 @@ def _meshes(
         too_much = memory is not None and solid_memory(made.body.size) > memory
         if made.body.size > MOST_UNKNOWNS or too_much:
             return meshes, TOO_LARGE.format(MOST_UNKNOWNS)
-        fine = hexahedral(made.mesh.nodes, made.mesh.elements, 3)
-        meshes.append(limit_on_mesh(made.body, made.forces, fine))
+        meshes.append(limit_on_mesh(made.body, made.forces, finer(made.body.elements)))
         if len(meshes) > 1 and _narrow(*bracket(meshes)):
             break
     return meshes, ""
@@ -123,7 +126,15 @@ def _of_solid(
         permanent_at=at,
         seconds=seconds,
         meshes=tuple(
-            PlasticMesh(m.unknowns, m.lower, m.upper, m.volume, m.steps, m.iterations)
+            PlasticMesh(
+                m.unknowns,
+                m.lower,
+                m.above.factor,
+                m.above.volume,
+                m.above.charge,
+                m.steps,
+                m.iterations,
+            )
             for m in meshes
         ),
         curve=finest.curve,

@@ -22,7 +22,10 @@ FOUND = LimitLoad(
     carries=False,
     permanent_set=1e-3,
     permanent_at=0.84,
-    meshes=(PlasticMesh(900, 0.9, 0.92, 0.05, 12, 40), PlasticMesh(3000, 0.89, 0.91, 0.03, 12, 44)),
+    meshes=(
+        PlasticMesh(900, 0.9, 0.92, 0.05, 0.01, 12, 40),
+        PlasticMesh(3000, 0.89, 0.91, 0.03, 0.01, 12, 44),
+    ),
     curve=CURVE,
 )
 
