@@ -15,7 +15,7 @@ from fea.core.pin_loads import PinLoads
 from fea.plastic.flow import FlowRule
 from fea.plastic.hinge import BEAM_ERROR, BeamBounds, beam_bounds
 from fea.plastic.limit_load import OnMesh, bracket, limit_on_mesh
-from fea.plastic.pin_body import acting_at, finer, pin_body, plane_of
+from fea.plastic.pin_body import PinBody, acting_at, finer, pin_body, plane_of
 from fea.plastic.records import LimitLoad, PlasticMesh
 from geometry import Pin, PinLike
 from geometry.mesh.hexahedra import HexSize
@@ -89,10 +89,9 @@ def _meshes(
     pin: Pin, rule: FlowRule, clamps: tuple[str, ...], loads: PinLoads, memory: float | None
 ) -> tuple[list[OnMesh], str]:
     """The finest two at least, if there is room for them; why not otherwise."""
-    acting = acting_at(loads, 0, -plane_of(loads, 0))
     meshes: list[OnMesh] = []
     for size in SIZES:
-        made = pin_body(pin, rule, clamps, acting, size)
+        made = body_on(pin, rule, clamps, loads, size)
         too_much = memory is not None and solid_memory(made.body.size) > memory
         if made.body.size > MOST_UNKNOWNS or too_much:
             return meshes, TOO_LARGE.format(MOST_UNKNOWNS)
@@ -100,6 +99,13 @@ def _meshes(
         if len(meshes) > 1 and _narrow(*bracket(meshes)):
             break
     return meshes, ""
+
+
+def body_on(
+    pin: Pin, rule: FlowRule, clamps: tuple[str, ...], loads: PinLoads, size: HexSize
+) -> PinBody:
+    """On a mesh, under the loads of the first instant. Raises: SolveError."""
+    return pin_body(pin, rule, clamps, acting_at(loads, 0, -plane_of(loads, 0)), size)
 
 
 def _narrow(lower: float, upper: float) -> bool:
