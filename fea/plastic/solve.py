@@ -50,7 +50,7 @@ def limit_load(
     rule = FlowRule(material)
     if not isinstance(pin, Pin):
         return LimitLoad("none", note=TETRAHEDRA)
-    bounds = _of_beam(pin, material, clamps, loads)
+    bounds = of_beam(pin, material, clamps, loads)
     if bounds is not None and rung == "auto":
         carries = decided(bounds)
         if carries is not None:
@@ -76,7 +76,7 @@ def decided(bounds: BeamBounds) -> bool | None:
     return False if bounds.upper[0] < 1.0 - BEAM_ERROR else None
 
 
-def _of_beam(
+def of_beam(
     pin: Pin, material: Material, clamps: tuple[str, ...], loads: PinLoads
 ) -> BeamBounds | None:
     """None for contact pressures on rings, which the beam does not take."""
@@ -96,7 +96,7 @@ def _meshes(
         if made.body.size > MOST_UNKNOWNS or too_much:
             return meshes, TOO_LARGE.format(MOST_UNKNOWNS)
         meshes.append(limit_on_mesh(made.body, made.forces, finer(made.body.elements)))
-        if len(meshes) > 1 and _narrow(*bracket(meshes)):
+        if len(meshes) > 1 and narrow(*bracket(meshes)):
             break
     return meshes, ""
 
@@ -108,8 +108,8 @@ def body_on(
     return pin_body(pin, rule, clamps, acting_at(loads, 0, -plane_of(loads, 0)), size)
 
 
-def _narrow(lower: float, upper: float) -> bool:
-    """Whether a bracket is, and does not leave open whether it holds."""
+def narrow(lower: float, upper: float) -> bool:
+    """Whether a bracket is, and does not leave open whether the pin carries its loads."""
     return upper - lower <= WIDEST * (upper + lower) / 2.0 and not lower < 1.0 < upper
 
 
