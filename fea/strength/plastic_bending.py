@@ -33,12 +33,12 @@ def plastic_shear(section: Circle, strength: float) -> float:
     return area * strength / math.sqrt(3.0)
 
 
-def plastic_margin(s: Situation, even: SectionForces) -> Margin:
-    """Of the section that is nearest to a hinge; even: section forces with even loads."""
+def plastic_margin(s: Situation, forces: SectionForces) -> Margin:
+    """Of the section that is nearest to a hinge."""
     fy = s.material.yield_strength
     if fy is None:
         return PLASTIC.lacks(s, strength_key(s.material.name, "yield"))
-    M = fy * even.of_sections("plastic_modulus")
-    V = np.array([plastic_shear(section, fy) for section in even.sections])
-    used = np.hypot(even.moment / M, even.shear / V)
-    return PLASTIC.worst(s, used, np.ones(used.shape[1]), even.labels, "even load on each band")
+    M = fy * forces.of_sections("plastic_modulus")
+    V = np.array([plastic_shear(section, fy) for section in forces.sections])
+    used = np.hypot(forces.moment / M, forces.shear / V)
+    return PLASTIC.along(s, forces, used, np.ones(used.shape[1]))

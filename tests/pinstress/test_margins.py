@@ -111,12 +111,23 @@ def test_a_pin_in_two_lugs_of_a_structure_is_a_beam_on_two_supports() -> None:
     changed = {**study(model="auto", joints="foundation"), "case": pulled}
     results = run(study_from({**changed, "pin": {"P": {**bare, "profile": profile}}}))
     found = {(m.margin.method, m.margin.level): m.margin for m in results.margins}
-    assert found["EN 1993 bending", "ultimate"].demand == pytest.approx(5000.0 * 35.0 / 8.0)
+    even = found["EN 1993 bending, for comparison", "ultimate"]
+    assert even.demand == pytest.approx(5000.0 * 35.0 / 8.0)
     (arms,) = results.arms
     assert arms.layout == "double shear"
     assert arms.model == "foundation"
     assert arms.joint is not None
     assert arms.joint < arms.concentrated
+    governs = found["EN 1993 bending", "ultimate"]
+    assert governs.basis == "joint model"
+    assert governs.demand == pytest.approx(arms.joint)
+    analysis = {**changed["analysis"], "bending_moment": "formula"}
+    strict = run(
+        study_from({**changed, "analysis": analysis, "pin": {"P": {**bare, "profile": profile}}})
+    )
+    found = {(m.margin.method, m.margin.level): m.margin for m in strict.margins}
+    assert found["EN 1993 bending", "ultimate"].demand == even.demand
+    assert not found["EN 1993 bending, for comparison", "ultimate"].governs
     profile.append({"length": 8, "diameter": 16, "name": "third"})
     three = {**bare, "profile": profile, "lug": {**bare["lug"], "third": {}}}
     needs = not_made(run(study_from({**changed, "pin": {"P": three}})))

@@ -12,7 +12,7 @@ from reports.format.numbers import DASH, engineering, finite, short
 from reports.tables.table import Table, unit_name
 
 COLUMNS = ("pin", "case", "method", "clause", "at", "level", "demand", "allowable", "factor",
-           "utilisation", "margin", "unit", "time", "basis", "not_made")  # fmt: skip
+           "utilisation", "margin", "unit", "time", "basis", "not_made", "governs")  # fmt: skip
 
 SHOWN = {name: name for name in ("pin", "case", "check", "margin", "utilisation", "loads", "at",
          "time", "demand", "allowable", "clause")}  # fmt: skip
@@ -60,6 +60,7 @@ def _row(found: PinMargin, results: Results) -> dict[str, Any]:
         "time": finite(m.time),
         "basis": m.basis,
         "not_made": f"needs {m.needs}" if m.needs else "",
+        "governs": m.governs,
     }
 
 
@@ -82,9 +83,10 @@ def worst_grid(results: Results) -> Grid | None:
 
 
 def margins_grid(results: Results, pin: str, case: str) -> Grid | None:
-    """All checks that were made of a pin in a case, the worst first."""
+    """All checks that were made of a pin in a case, the worst first, comparisons last."""
     own = [m for m in results.margins if (m.pin, m.case) == (pin, case) and m.used >= 0.0]
-    return _grid(sorted(own, key=lambda m: -m.used), results, without=("pin", "case"))
+    order = sorted(own, key=lambda m: (not m.margin.governs, -m.used))
+    return _grid(order, results, without=("pin", "case"))
 
 
 def not_made_words(results: Results) -> list[str]:
