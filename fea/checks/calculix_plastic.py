@@ -9,7 +9,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-from skfem import ElementHexS2
 
 from fea.checks.calculix import COMMAND, JOB, CalculixError, attempt, end
 from fea.checks.calculix_deck import mesh_lines, real
@@ -23,9 +22,9 @@ from fea.plastic.limit_load import limit_on_mesh
 from fea.plastic.pin_body import PinBody, finer
 from fea.plastic.solve import SIZES, body_on
 from geometry import Pin
-from geometry.arrays import Floats, Ints
+from geometry.arrays import Floats
+from geometry.mesh.hexahedra import twenty
 
-ROUND = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))  # corners of a face, by C3D20's order
 SMALLEST = 1e-3  # increment of the loads, of the largest
 LARGEST = 0.04
 BEYOND = 1.05  # of our factor: so far CalculiX is asked to load the pin
@@ -61,17 +60,6 @@ def factor_reached(pin: PinBody, most: float, folder: Path) -> float:
     return most * reached[-1]
 
 
-def c3d20() -> Ints:
-    """Which of skfem's nodes are those of C3D20, in its order."""
-    ours = [tuple(x) for x in np.asarray(ElementHexS2().doflocs).tolist()]
-    middles = [((a + c) / 2, (b + d) / 2) for (a, b), (c, d) in zip(ROUND, (*ROUND[1:], ROUND[0]),
-                                                                  strict=True)]  # fmt: skip
-    theirs = [(*xy, z) for z in (0.0, 1.0) for xy in ROUND]
-    theirs += [(*xy, z) for z in (0.0, 1.0) for xy in middles]
-    theirs += [(*xy, 0.5) for xy in ROUND]
-    return np.array([ours.index(x) for x in theirs])
-
-
 def _write(pin: PinBody, most: float, path: Path) -> None:
     material, ties = pin.body.rule.material, pin.body.ties
     lines = [
@@ -92,7 +80,7 @@ def _write(pin: PinBody, most: float, path: Path) -> None:
 
 def _mesh(pin: PinBody, material: Material) -> Iterator[str]:
     """With a line for each 16 numbers of an element, and without the section."""
-    for line in mesh_lines("C3D20R", pin.mesh.nodes, pin.mesh.elements[:, c3d20()], material):
+    for line in mesh_lines("C3D20R", pin.mesh.nodes, pin.mesh.elements[:, twenty()], material):
         if line.startswith("*SOLID SECTION"):
             continue
         numbers = line.split(", ")

@@ -121,11 +121,17 @@ def hexahedral(nodes: Floats, numbers: Ints, points: int = 2) -> Elements:
 
 def finer(elements: Elements) -> Finer:
     """Hexahedra with three instead of two quadrature points along each axis."""
-    two, three = _gauss(2)[0], _gauss(3)[0]
-    right = (three - two[0]) / (two[1] - two[0])
-    line = np.stack([1.0 - right, right], axis=1)
-    reading = np.einsum("ai,bj,ck->abcijk", line, line, line).reshape(27, 8)
-    return Finer(hexahedral(elements.nodes, elements.numbers, 3), reading)
+    three = _gauss(3)[0]
+    grid = np.stack(np.meshgrid(three, three, three, indexing="ij"), axis=-1).reshape(-1, 3)
+    return Finer(hexahedral(elements.nodes, elements.numbers, 3), reading(grid))
+
+
+def reading(local: Floats) -> Floats:
+    """(P, 8) values at places (P, 3) in an element, 0 to 1, from those at its quadrature points."""
+    two = _gauss(2)[0]
+    right = (local - two[0]) / (two[1] - two[0])
+    first, second, third = np.stack([1.0 - right, right], axis=-1).swapaxes(0, 1)
+    return np.asarray(np.einsum("pi,pj,pk->pijk", first, second, third).reshape(-1, 8))
 
 
 def _gauss(points: int) -> tuple[Floats, Floats]:

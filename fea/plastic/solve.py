@@ -7,12 +7,14 @@ solid    elastic-plastic, on two meshes, a third if they differ much    (fea.pla
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from typing import Literal
 
 from fea.core.material import Material
 from fea.core.memory import solid_memory
 from fea.core.pin_loads import PinLoads
 from fea.plastic.flow import FlowRule
+from fea.plastic.flow_field import flow_field
 from fea.plastic.hinge import BEAM_ERROR, BeamBounds, beam_bounds
 from fea.plastic.limit_load import OnMesh, bracket, limit_on_mesh
 from fea.plastic.pin_body import PinBody, acting_at, finer, pin_body, plane_of
@@ -63,10 +65,12 @@ def limit_load(
                 seconds=time.perf_counter() - begin,
                 note=f"the theorems for beams; that decides by more than {BEAM_ERROR:.0%}",
             )
-    meshes, note = _meshes(pin, rule, clamps, loads, memory)
-    if len(meshes) < 2:
+    meshes, last, note = _meshes(pin, rule, clamps, loads, memory)
+    if last is None or len(meshes) < 2:
         return LimitLoad("none", seconds=time.perf_counter() - begin, note=note)
-    return _of_solid(meshes, bounds, rule, note, time.perf_counter() - begin)
+    flow = flow_field(last, meshes[-1].last, plane_of(loads, 0))
+    found = _of_solid(meshes, bounds, rule, note)
+    return replace(found, flow=flow, seconds=time.perf_counter() - begin)
 
 
 def decided(bounds: BeamBounds) -> bool | None:
@@ -87,18 +91,22 @@ def of_beam(
 
 def _meshes(
     pin: Pin, rule: FlowRule, clamps: tuple[str, ...], loads: PinLoads, memory: float | None
-) -> tuple[list[OnMesh], str]:
-    """The finest two at least, if there is room for them; why not otherwise."""
+) -> tuple[list[OnMesh], PinBody | None, str]:
+    """The finest two at least, if there is room for them, with the body of the last; why not
+    otherwise.
+    """
     meshes: list[OnMesh] = []
+    last: PinBody | None = None
     for size in SIZES:
         made = body_on(pin, rule, clamps, loads, size)
         too_much = memory is not None and solid_memory(made.body.size) > memory
         if made.body.size > MOST_UNKNOWNS or too_much:
-            return meshes, TOO_LARGE.format(MOST_UNKNOWNS)
+            return meshes, last, TOO_LARGE.format(MOST_UNKNOWNS)
+        last = made
         meshes.append(limit_on_mesh(made.body, made.forces, finer(made.body.elements)))
         if len(meshes) > 1 and narrow(*bracket(meshes)):
             break
-    return meshes, ""
+    return meshes, last, ""
 
 
 def body_on(
@@ -114,7 +122,7 @@ def narrow(lower: float, upper: float) -> bool:
 
 
 def _of_solid(
-    meshes: list[OnMesh], bounds: BeamBounds | None, rule: FlowRule, note: str, seconds: float
+    meshes: list[OnMesh], bounds: BeamBounds | None, rule: FlowRule, note: str
 ) -> LimitLoad:
     lower, upper = bracket(meshes)
     if bounds is not None and bounds.slip[0] < upper:
@@ -130,7 +138,6 @@ def _of_solid(
         hardening=bool(rule.material.hardening),
         permanent_set=finest.permanent_at(at),
         permanent_at=at,
-        seconds=seconds,
         meshes=tuple(
             PlasticMesh(
                 m.unknowns,

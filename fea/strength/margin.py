@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 from fea.core.dimensions import Time
 
 Level = Literal["limit", "ultimate"]
+JOINT_MODEL = "joint model"  # as the basis of section forces
 RATIO = "1"  # the dimension of a demand that is a ratio already: an interaction, a damage
 
 
@@ -40,6 +41,12 @@ class Margin:
     @property
     def instead(self) -> dict[str, str]:
         return {"own": self.dimension}
+
+    @property
+    def shown(self) -> str:
+        """The method, and the joint model where it takes the section forces of that."""
+        named = JOINT_MODEL in self.method or not self.basis.startswith(JOINT_MODEL)
+        return self.method if named else f"{self.method} ({JOINT_MODEL})"
 
     @property
     def utilisation(self) -> float | None:

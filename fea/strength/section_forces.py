@@ -24,6 +24,7 @@ from fea.beam.round_section import Circle, circle
 from fea.beam.stress import sample
 from fea.beam.timoshenko import MOMENT, SHEAR, InternalForces, stepped_beam
 from fea.joint.records import JointForces
+from fea.strength.margin import JOINT_MODEL
 from fea.strength.situation import Situation
 from geometry.arrays import Floats
 
@@ -80,7 +81,7 @@ def of_joint(s: Situation, joint: JointForces) -> SectionForces:
         np.tile(joint.shear, 2),
         np.tile(joint.moment, 2),
         joint.times,
-        "joint model",
+        JOINT_MODEL,
     )
 
 

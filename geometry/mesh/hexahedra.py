@@ -20,6 +20,7 @@ from geometry.shape.pin import Pin
 BULGE = 0.2  # by which the sides of the square are bent outwards, of its size
 SQUARE = 0.55  # its size over the radius of the disc
 DEEP = 0.6  # of a fillet's radius, the least room behind its corner; without it that stays sharp
+ROUND = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))  # corners of a face, in their order
 SAME = 1e-7  # of the length: nodes closer than this are one
 
 
@@ -83,6 +84,19 @@ def hexahedra(pin: Pin, fineness: HexSize, quarters: int = 4) -> HexMesh:
     points = _filleted(pin, np.concatenate(cells))
     nodes, elements = _merged(points, SAME * pin.smallest_diameter)
     return HexMesh(nodes, elements, tuple(np.concatenate(o) for o in outside), quarters)
+
+
+def twenty() -> Ints:
+    """Which of skfem's nodes are those of other programs (VTK, CalculiX), in their order: corners,
+    middles of edges below, above and between.
+    """
+    ours = [tuple(x) for x in np.asarray(ElementHexS2().doflocs).tolist()]
+    middles = [((a + c) / 2, (b + d) / 2) for (a, b), (c, d) in zip(ROUND, (*ROUND[1:], ROUND[0]),
+                                                                  strict=True)]  # fmt: skip
+    theirs = [(*xy, z) for z in (0.0, 1.0) for xy in ROUND]
+    theirs += [(*xy, z) for z in (0.0, 1.0) for xy in middles]
+    theirs += [(*xy, 0.5) for xy in ROUND]
+    return np.array([ours.index(x) for x in theirs])
 
 
 def _merged(points: Floats, tolerance: float) -> tuple[Floats, Ints]:

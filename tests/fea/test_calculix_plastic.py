@@ -6,19 +6,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fea.checks.calculix_plastic import c3d20, factor_reached, limit_opinion
+from fea.checks.calculix_plastic import factor_reached, limit_opinion
 from fea.checks.opinions import SAME_LIMIT
 from fea.core.pin_loads import PinLoads
 from fea.plastic.pin_body import acting_at, pin_body
 from geometry import Pin, Segment
-from geometry.mesh.hexahedra import HexSize
+from geometry.mesh.hexahedra import HexSize, twenty
 from tests.support.plastic import RULE, STEEL, D, limit
 
 COARSE = HexSize(2, 0.5)
 
 
-def test_nodes_of_c3d20_are_ours_in_another_order() -> None:
-    assert sorted(c3d20().tolist()) == list(range(20))
+def test_nodes_of_other_programs_are_ours_in_another_order() -> None:
+    assert sorted(twenty().tolist()) == list(range(20))
 
 
 @pytest.mark.peers

@@ -11,9 +11,11 @@ from fea.core.tractions import tractions_of
 from fea.plastic import path
 from fea.plastic.body import FlowingBody, untied
 from fea.plastic.flow import FlowRule
+from fea.plastic.flow_field import flow_field
 from fea.plastic.limit_load import bracket, limit_on_mesh
 from fea.plastic.mechanism import isochoric, upper_bound, work_of_flow
 from fea.plastic.pin_body import acting_at, finer, hexahedral, pin_body, plane_of
+from fea.plastic.solve import body_on
 from geometry import Pin, Segment
 from geometry.arrays import Floats
 from geometry.mesh.hexahedra import HexSize, hexahedra
@@ -202,6 +204,22 @@ def test_unloading_leaves_nothing_of_an_elastic_pin_and_something_of_a_flowing_o
     assert curve.permanent[1] < 1e-9 * curve.displacement[1]
     assert 0.0 < found.permanent_at(0.9 * found.lower) < found.permanent_at(0.97 * found.lower)
     assert (np.diff(curve.displacement) > 0.0).all()
+
+
+def test_the_field_of_flow_is_in_the_axes_of_the_pin() -> None:
+    """A cantilever pushed aslant: it moves that way, flows near the clamp and not at the end."""
+    pin, loads = _cantilever()
+    aslant = loads.turned(0.4)
+    made = body_on(pin, RULE, ("start",), aslant, COARSE)
+    found = limit_on_mesh(made.body, made.forces, finer(made.body.elements))
+    field = flow_field(made, found.last, 0.4)
+    tip = field.displacement[field.points[:, 2].argmax()]
+    assert math.atan2(tip[1], tip[0]) == pytest.approx(0.4, abs=1e-2)
+    near, far = field.points[:, 2] < 0.5 * D, field.points[:, 2] > 2.0 * D
+    assert field.plastic_strain[near].max() > 1e-3
+    assert field.plastic_strain[far].max() < 1e-4
+    assert field.factor == pytest.approx(found.lower, rel=1e-2)
+    assert field.von_mises.max() == pytest.approx(YIELD, rel=0.2)
 
 
 def test_hardening_raises_the_limit_to_that_of_the_last_stress() -> None:

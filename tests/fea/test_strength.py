@@ -288,6 +288,8 @@ def test_bending_and_shear_of_a_solved_joint_take_its_section_forces() -> None:
         0.5 * (plain["EN 1993 bending", "ultimate"].utilisation or 0.0), rel=1e-2
     )
     assert (bent.time, bent.basis, bent.governs) == (2.0, "joint model", True)
+    assert bent.shown == "EN 1993 bending (joint model)"
+    assert plain["EN 1993 bending", "ultimate"].shown == "EN 1993 bending"
     assert found["bending, joint model", "limit"].utilisation == pytest.approx(
         0.5 * (plain["bending", "limit"].utilisation or 0.0), rel=1e-2
     )

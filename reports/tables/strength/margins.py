@@ -152,7 +152,7 @@ def _cells(found: PinMargin, results: Results) -> dict[str, str]:
     return {
         "pin": found.pin,
         "case": found.case or DASH,
-        "check": m.method,
+        "check": m.shown,
         "at": m.at or DASH,
         "time": DASH if m.time is None else short(m.time),
         "loads": f"{m.level}\u00a0×\u00a0{short(m.factor)}",
