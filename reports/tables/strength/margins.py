@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from fea.strength.margin import RATIO, PinMargin
@@ -103,7 +104,9 @@ def not_made_words(results: Results) -> list[str]:
 
 def not_made_briefly(results: Results) -> str:
     """The same in a sentence without the checks; empty where all were made."""
-    needs = ", ".join(not_made(results))
+    every = not_made(results)
+    alone = [x for x in every if x.count(", ") == 0 or not all(p in every for p in x.split(", "))]
+    needs = ", ".join(alone)
     return f"Checks not made, for want of: {needs}." if needs else ""
 
 
@@ -145,6 +148,12 @@ def _grid(found: list[PinMargin], results: Results, without: tuple[str, ...] = (
     return Grid([heads[n] for n in names], body, [n in NUMERIC for n in names]) if body else None
 
 
+def _signed(margin: float | None) -> str:
+    if margin is not None and math.isinf(margin):
+        return "+∞"
+    return f"{'+' if (margin or 0.0) > 0.0 else ''}{engineering(margin, 3)}"
+
+
 def _cells(found: PinMargin, results: Results) -> dict[str, str]:
     m = found.margin
     unit = "" if m.dimension == RATIO else f" {unit_name(m.dimension, results.units)}"
@@ -159,6 +168,6 @@ def _cells(found: PinMargin, results: Results) -> dict[str, str]:
         "demand": f"{engineering(m.demand)}{unit}",
         "allowable": f"{engineering(m.allowable)}{unit}",
         "utilisation": f"{engineering(used, 3)} %",
-        "margin": f"{'+' if (m.margin or 0.0) > 0.0 else ''}{engineering(m.margin, 3)}",
+        "margin": _signed(m.margin),
         "clause": m.clause,
     }
