@@ -21,7 +21,9 @@ NUMERIC = ("time", "demand", "allowable", "utilisation", "margin")
 READING_MARGINS = (
     "Margin of safety = allowable / (factor × demand) − 1, of the check that governs each pin in "
     "each case. Checks against yield are made at limit load, those against rupture and collapse at "
-    "ultimate load; all checks of a pin are with the pin, and in margins.csv."
+    "ultimate load; all checks of a pin are with the pin, and in margins.csv. Bending and shear of "
+    "a pin whose joint was solved take the moments and forces of the joint model, unless the study "
+    "asks for those of the formulas; checks for comparison govern nothing."
 )
 READING_ARMS = (
     "The largest bending moment along the pin, with the force of each link even over its band, "
