@@ -15,11 +15,21 @@ from fea.plastic.flow_field import flow_field
 from fea.plastic.limit_load import bracket, limit_on_mesh
 from fea.plastic.mechanism import isochoric, upper_bound, work_of_flow
 from fea.plastic.pin_body import acting_at, finer, hexahedral, pin_body, plane_of
-from fea.plastic.solve import body_on
-from geometry import Pin, Segment
+from fea.plastic.solve import TETRAHEDRA, body_on, limit_load
+from geometry import CutPin, Hole, Pin, Segment
 from geometry.arrays import Floats
 from geometry.mesh.hexahedra import HexSize, hexahedra
-from tests.support.plastic import RULE, YIELD, D, bar, couples, cylinder, elastic_moment, limit
+from tests.support.plastic import (
+    RULE,
+    STEEL,
+    YIELD,
+    D,
+    bar,
+    couples,
+    cylinder,
+    elastic_moment,
+    limit,
+)
 
 Points = tuple[tuple[float, float], ...]
 
@@ -204,6 +214,13 @@ def test_unloading_leaves_nothing_of_an_elastic_pin_and_something_of_a_flowing_o
     assert curve.permanent[1] < 1e-9 * curve.displacement[1]
     assert 0.0 < found.permanent_at(0.9 * found.lower) < found.permanent_at(0.97 * found.lower)
     assert (np.diff(curve.displacement) > 0.0).all()
+
+
+def test_pins_that_need_tetrahedra_are_refused_with_the_reason() -> None:
+    pin, loads = _cantilever()
+    cut = CutPin(pin, (Hole(D, D / 4.0),))
+    found = limit_load(cut, STEEL, ("start",), loads)
+    assert (found.method, found.note) == ("none", TETRAHEDRA)
 
 
 def test_the_field_of_flow_is_in_the_axes_of_the_pin() -> None:
