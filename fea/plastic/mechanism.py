@@ -7,8 +7,9 @@ works against the mean stress p of the limit state, so with that
     factor <= (integral of s_y e + p div u) / power of the loads
 
 holds for any field; e is the equivalent strain. The mean stress is that of the last state found,
-and |p| |div u| is charged, place by place, so that nothing cancels. Of a mechanism and the one next
-to it (least squares of the change of shape) whose change of volume is penalised, the lower counts.
+taken as known up to half of its range over an element: p div u is charged, and that half of |div u|
+as well. Of a mechanism and the one next to it (least squares of the change of shape) whose change
+of volume is penalised, the lower counts.
 
 Source: W. F. Chen, D. J. Han, Plasticity for Structural Engineers (1988), chapter 8.
 """
@@ -52,7 +53,8 @@ def upper_bound(
     body: FlowingBody, forces: Floats, finer: Finer, mechanism: Floats, stress: Floats
 ) -> UpperBound:
     """By a mechanism (U,) m under forces (U,) N, with the stress (M, Q, 6) Pa of the last state."""
-    pressure = np.abs(stress[..., :3].mean(-1) @ finer.reading.T)
+    mean = stress[..., :3].mean(-1)
+    pressure = mean @ finer.reading.T, np.ptp(mean, axis=1, keepdims=True) / 2.0
     found = (
         _bound(body, forces, finer.elements, u, pressure)
         for u in (mechanism, isochoric(body, forces, finer.elements, mechanism))
@@ -80,12 +82,17 @@ def work_of_flow(body: FlowingBody, fine: Elements, mechanism: Floats) -> float:
 
 
 def _bound(
-    body: FlowingBody, forces: Floats, fine: Elements, mechanism: Floats, pressure: Floats
+    body: FlowingBody,
+    forces: Floats,
+    fine: Elements,
+    mechanism: Floats,
+    pressure: tuple[Floats, Floats],
 ) -> UpperBound:
-    """pressure: size of the mean stress (M, F) Pa."""
+    """pressure: mean stress (M, F) Pa, and by how much that may be wrong (M, 1)."""
     power = float(forces @ mechanism)
     work = work_of_flow(body, fine, mechanism)
-    changed = np.abs(fine.volume_change(body.displacement(mechanism))) * fine.weights
-    charge = float((pressure * changed).sum())
-    volume = float(changed.sum()) * body.rule.strongest / work
+    changed = fine.volume_change(body.displacement(mechanism)) * fine.weights
+    known, doubt = pressure
+    charge = float((known * changed + doubt * np.abs(changed)).sum())
+    volume = float(np.abs(changed).sum()) * body.rule.strongest / work
     return UpperBound((work + charge) / power, volume, charge / power)
