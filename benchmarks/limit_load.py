@@ -18,7 +18,8 @@ from fea.core.pin_loads import PinLoads
 from fea.plastic.body import Elements, FlowingBody, untied
 from fea.plastic.flow import FlowRule
 from fea.plastic.limit_load import OnMesh, limit_on_mesh
-from fea.plastic.pin_body import PinBody, acting_at, hexahedral, pin_body
+from fea.plastic.mechanism import Finer
+from fea.plastic.pin_body import PinBody, acting_at, finer, pin_body
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import clamped_nodes, surface
 from fea.solid.nodal_loads import nodal_loads
@@ -57,8 +58,7 @@ def limit_load() -> str:
             begin = time.perf_counter()
             acting = acting_at(problem.loads, 0)
             made = pin_body(problem.pin, RULE, problem.clamps, acting, size)
-            fine = hexahedral(made.mesh.nodes, made.mesh.elements, 3)
-            found = limit_on_mesh(made.body, made.forces, fine)
+            found = limit_on_mesh(made.body, made.forces, finer(made.body.elements))
             one = one or found.lower
             theirs = (
                 _calculix(made, found)
@@ -115,7 +115,8 @@ def _tetrahedra(problem: Problem, size: MeshSize, one: float) -> tuple[str, ...]
     ties = untied(len(space.nodes)).without((3 * nodes[:, None] + np.arange(3)).ravel())
     elements = Elements(space.nodes, space.elements, space.gradients, space.weights)
     body = FlowingBody(elements, ties, RULE)
-    found = limit_on_mesh(body, np.asarray(ties.matrix.T @ forces.ravel()), elements)
+    same = Finer(elements, np.eye(elements.weights.shape[1]))
+    found = limit_on_mesh(body, np.asarray(ties.matrix.T @ forces.ravel()), same)
     spent = time.perf_counter() - begin
     return _row(problem.name, "tetrahedra, 10 nodes", found, one, spent, None)
 
@@ -134,9 +135,9 @@ def _row(
         kind,
         str(found.unknowns),
         f"{found.lower / one:.4f}",
-        f"{found.upper / one:.4f}",
+        f"{found.above.factor / one:.4f}",
         factor,
-        f"{found.volume:.3f}",
+        f"{found.above.volume:.3f}",
         str(found.steps),
         str(found.iterations),
         f"{seconds:.1f}",

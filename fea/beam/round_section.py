@@ -42,6 +42,21 @@ class Circle:
         """Second moment of area about the axis, m^4."""
         return 2.0 * self.inertia
 
+    @property
+    def modulus(self) -> float:
+        """Elastic section modulus, m^3."""
+        return self.inertia / self.outer
+
+    @property
+    def plastic_modulus(self) -> float:
+        """Moment of a fully plastic section over the yield stress, m^3: twice the first moment of
+        half of it. It exceeds the elastic one by the factor 16 / (3 pi) (1 - q^3) / (1 - q^4), with
+        q = inner / outer.
+
+        Source: S. P. Timoshenko, Strength of Materials II, plastic bending.
+        """
+        return 4.0 / 3.0 * (self.outer**3 - self.inner**3)
+
     def shear_coefficient(self, nu: float) -> float:
         """Timoshenko's, no unit, under a static end load; 6 (1 + nu) / (7 + 6 nu) if solid.
 

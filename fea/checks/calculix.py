@@ -44,9 +44,20 @@ def run(folder: Path) -> str:
 
     Raises: CalculixError when it cannot be run or fails.
     """
+    done = attempt(folder)
+    if done.returncode:
+        raise CalculixError(
+            f"{COMMAND} ended with status {done.returncode}: {end(done.stdout + done.stderr)}",
+            "failed",
+        )
+    return done.stdout
+
+
+def attempt(folder: Path) -> subprocess.CompletedProcess[str]:
+    """The same, of a job that may end without an answer. Raises: CalculixError if it cannot run."""
     threads = {"OMP_NUM_THREADS": str(os.cpu_count() or 1)}
     try:
-        done = subprocess.run(
+        return subprocess.run(
             [COMMAND, "-i", JOB],
             cwd=folder,
             env=threads | os.environ,
@@ -58,12 +69,6 @@ def run(folder: Path) -> str:
         raise CalculixError(
             f"{COMMAND} cannot be run ({error.strerror}); {TO_GET}", "not-installed"
         ) from None
-    if done.returncode:
-        raise CalculixError(
-            f"{COMMAND} ended with status {done.returncode}: {end(done.stdout + done.stderr)}",
-            "failed",
-        )
-    return done.stdout
 
 
 def solved(folder: Path, printed: str) -> CalculixSolution:

@@ -4,23 +4,44 @@ until it finds no equilibrium; the load factor that it reached is a lower bound 
 
 from __future__ import annotations
 
-import subprocess
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-from skfem import ElementHexS2
 
-from fea.checks.calculix import COMMAND, JOB, CalculixError, end
+from fea.checks.calculix import COMMAND, JOB, CalculixError, attempt, end
 from fea.checks.calculix_deck import mesh_lines, real
+from fea.checks.opinions import LimitOpinion
+from fea.core.linear_solver import SolveError
 from fea.core.material import Material
+from fea.core.pin_loads import PinLoads
 from fea.plastic.body import Ties
-from fea.plastic.pin_body import PinBody
-from geometry.arrays import Floats, Ints
+from fea.plastic.flow import FlowRule
+from fea.plastic.limit_load import limit_on_mesh
+from fea.plastic.pin_body import PinBody, finer
+from fea.plastic.solve import SIZES, body_on
+from geometry import Pin
+from geometry.arrays import Floats
+from geometry.mesh.hexahedra import twenty
 
-ROUND = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))  # corners of a face, by C3D20's order
 SMALLEST = 1e-3  # increment of the loads, of the largest
 LARGEST = 0.04
+BEYOND = 1.05  # of our factor: so far CalculiX is asked to load the pin
+
+
+def limit_opinion(
+    pin: Pin, material: Material, clamps: tuple[str, ...], loads: PinLoads
+) -> LimitOpinion:
+    """On the first mesh of fea.plastic.solve, under the loads of one instant."""
+    made = body_on(pin, FlowRule(material), clamps, loads, SIZES[0])
+    try:
+        ours = limit_on_mesh(made.body, made.forces, finer(made.body.elements)).lower
+        with tempfile.TemporaryDirectory(prefix="pinstress-") as folder:
+            theirs = factor_reached(made, BEYOND * ours, Path(folder))
+    except (CalculixError, SolveError) as error:
+        return LimitOpinion(made.body.size, failure=f"limit load: {error}")
+    return LimitOpinion(made.body.size, ours, theirs)
 
 
 def factor_reached(pin: PinBody, most: float, folder: Path) -> float:
@@ -29,28 +50,14 @@ def factor_reached(pin: PinBody, most: float, folder: Path) -> float:
     Raises: CalculixError when it converges in no increment.
     """
     _write(pin, most, folder / f"{JOB}.inp")
-    done = subprocess.run(
-        [COMMAND, "-i", JOB], cwd=folder, capture_output=True, text=True, errors="replace"
-    )
+    done, status = attempt(folder), folder / f"{JOB}.sta"
+    lines = status.read_text("ascii").splitlines() if status.exists() else []
     reached = [
-        float(line.split()[-2])
-        for line in (folder / f"{JOB}.sta").read_text("ascii").splitlines()
-        if line.split()[:1] == ["1"] and "U" not in line
+        float(line.split()[-2]) for line in lines if line.split()[:1] == ["1"] and "U" not in line
     ]
     if not reached:
-        raise CalculixError(f"{COMMAND} failed: {end(done.stdout)}", "failed")
+        raise CalculixError(f"{COMMAND} failed: {end(done.stdout + done.stderr)}", "failed")
     return most * reached[-1]
-
-
-def c3d20() -> Ints:
-    """Which of skfem's nodes are those of C3D20, in its order."""
-    ours = [tuple(x) for x in np.asarray(ElementHexS2().doflocs).tolist()]
-    middles = [((a + c) / 2, (b + d) / 2) for (a, b), (c, d) in zip(ROUND, (*ROUND[1:], ROUND[0]),
-                                                                  strict=True)]  # fmt: skip
-    theirs = [(*xy, z) for z in (0.0, 1.0) for xy in ROUND]
-    theirs += [(*xy, z) for z in (0.0, 1.0) for xy in middles]
-    theirs += [(*xy, 0.5) for xy in ROUND]
-    return np.array([ours.index(x) for x in theirs])
 
 
 def _write(pin: PinBody, most: float, path: Path) -> None:
@@ -73,7 +80,7 @@ def _write(pin: PinBody, most: float, path: Path) -> None:
 
 def _mesh(pin: PinBody, material: Material) -> Iterator[str]:
     """With a line for each 16 numbers of an element, and without the section."""
-    for line in mesh_lines("C3D20R", pin.mesh.nodes, pin.mesh.elements[:, c3d20()], material):
+    for line in mesh_lines("C3D20R", pin.mesh.nodes, pin.mesh.elements[:, twenty()], material):
         if line.startswith("*SOLID SECTION"):
             continue
         numbers = line.split(", ")
@@ -96,18 +103,14 @@ def _supports(ties: Ties) -> Iterator[str]:
 
 def _pairs(ties: Ties) -> Iterator[tuple[int, int]]:
     """Components tied to another, and that."""
-    first = _first(ties)
+    first = ties.first
     for component in np.flatnonzero(ties.unknown >= 0).tolist():
         if (other := int(first[ties.unknown[component]])) != component:
             yield component, other
 
 
-def _first(ties: Ties) -> Ints:
-    return np.unique(ties.unknown, return_index=True)[1][-ties.matrix.shape[1] :]
-
-
 def _forces(ties: Ties, forces: Floats) -> Iterator[str]:
-    first = _first(ties)
+    first = ties.first
     for component, force in zip(first.tolist(), (forces * ties.sign[first]).tolist(), strict=True):
         node, axis = divmod(component, 3)
         yield f"{node + 1}, {axis + 1}, {real(force)}"

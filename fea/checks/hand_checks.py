@@ -31,6 +31,7 @@ from geometry.arrays import Floats
 SHIGLEY = "Budynas & Nisbett, Shigley's Mechanical Engineering Design"
 JOINTS = f"{SHIGLEY}, 8-12"
 CONVENTION = f"{JOINTS}; yield as its strength is a convention"
+BENDING = "bending"
 HALVES = 0.1  # part of a band's load by which its two sides may differ in double shear
 
 
@@ -57,7 +58,7 @@ def hand_checks(
         HandCheck(axis, *shear, highest, in_shear, formula, f"{SHIGLEY}, 3-11"),
         *_double_shear(pin, forces, c, loads, in_shear),
         *_bearing(pin, loads, yields),
-        HandCheck("bending", *bent, largest, yields, "M c / I", f"{SHIGLEY}, 3-10"),
+        HandCheck(BENDING, *bent, largest, yields, "M c / I", f"{SHIGLEY}, 3-10"),
     )
     return tuple(replace(check, material=material.name) for check in made)
 

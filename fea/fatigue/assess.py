@@ -56,6 +56,7 @@ class _Found:
     mean: float
     equivalent: Floats
     units: int
+    normal: Floats | None = None
 
 
 def assess(
@@ -90,6 +91,7 @@ def assess(
         amplitudes=shown,
         counts=counts,
         note=history.chosen,
+        normal=None if found.normal is None else history.in_pin_axes(found.normal),
     )
 
 
@@ -121,7 +123,8 @@ def _by_plane(
     planes = plane_cycles(courses, order, findley_k(material.sensitivity or 0.0))
     worst = max(planes, key=lambda plane: (curve.damage(plane.equivalent), plane.equivalent.max()))
     damage = _damage(curve, worst.equivalent, order.units, spectrum.probability)
-    return _Found(damage, *_largest(worst.shear, worst.equivalent), worst.equivalent, order.units)
+    largest = _largest(worst.shear, worst.equivalent)
+    return _Found(damage, *largest, worst.equivalent, order.units, worst.normal)
 
 
 def _by_fkm(

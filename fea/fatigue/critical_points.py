@@ -72,7 +72,14 @@ def stress_histories(pin: str, solutions: Sequence[Solution]) -> tuple[PointHist
     if not cases:
         return ()
     return tuple(
-        PointHistory(pin, k, _tuple(place.location), place.chosen, _at(place, cases))
+        PointHistory(
+            pin,
+            k,
+            _tuple(place.location),
+            place.chosen,
+            _at(place, cases),
+            cases[0].known.revolved,
+        )
         for k, place in enumerate(_places(cases), 1)
     )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from fea.core.dimensions import Floats, Point, Stress, Stresses, Times
@@ -24,7 +25,8 @@ class CaseHistory:
 @dataclass(frozen=True)
 class PointHistory:
     """A critical point of a pin, numbered from 1, in all cases that were solved with it. location:
-    in the pin's axes. chosen: why, in words.
+    in the pin's axes. chosen: why, in words. cylindrical: whether stresses have the components of a
+    body of revolution.
     """
 
     pin: str
@@ -32,6 +34,14 @@ class PointHistory:
     location: Point
     chosen: str
     cases: tuple[CaseHistory, ...]
+    cylindrical: bool = False
+
+    def in_pin_axes(self, direction: Floats) -> tuple[float, float, float]:
+        """A direction (3,) in the axes of the stresses."""
+        first, second, z = direction.tolist()
+        angle = math.atan2(self.location[1], self.location[0]) if self.cylindrical else 0.0
+        c, s = math.cos(angle), math.sin(angle)
+        return c * first - s * second, s * first + c * second, z
 
 
 @dataclass(frozen=True)
@@ -42,7 +52,8 @@ class PointFatigue:
 
     amplitude, mean: of the largest cycle, uncorrected. amplitudes: of all cycles with damaging
     potential, corrected for the mean, (C,) Pa, the largest first; counts: of each per unit.
-    method: of the equivalent stress. note: what was found on the way.
+    method: of the equivalent stress. note: what was found on the way. normal: of the critical
+    plane, in the pin's axes; amplitude and mean are those of its shear stress.
     """
 
     pin: str
@@ -59,3 +70,4 @@ class PointFatigue:
     amplitudes: Stresses
     counts: Floats
     note: str = ""
+    normal: tuple[float, float, float] | None = None

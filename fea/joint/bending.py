@@ -8,7 +8,23 @@ import numpy as np
 
 from fea.core.pin_loads import Floats, PinLoads
 from fea.joint.contact import Bands
+from fea.joint.records import JointForces
 from geometry import Pin
+
+STATIONS = 61  # along the pin, besides the ends of rings and segments
+
+
+def stations(pin: Pin) -> Floats:
+    """z at which results have section forces, m."""
+    return np.union1d(np.linspace(*pin.ends, STATIONS), pin.stations)
+
+
+def joint_forces(pin: Pin, mass: Floats, bands: Bands, loads: PinLoads) -> JointForces:
+    """At all instants, as `bending_moment`."""
+    z = stations(pin)
+    across = (f(pin, mass, bands, loads, z) for f in (shear_force, bending_moment))
+    shear, moment = (np.linalg.norm(x, axis=2) for x in across)
+    return JointForces(z, loads.times, shear, moment)
 
 
 def bending_moment(pin: Pin, mass: Floats, bands: Bands, loads: PinLoads, z: Floats) -> Floats:

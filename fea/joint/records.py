@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from fea.core.dimensions import Force, Length, Stress
+from fea.core.dimensions import Force, Forces, Length, Lengths, Moments, Stress, Times
 
 LineLoad = Annotated[float, "force length^-1"]
 Couple = Annotated[float, "moment"]
@@ -58,10 +58,23 @@ class JointRange:
 
 
 @dataclass(frozen=True)
+class JointForces:
+    """Shear force and bending moment (T, Z) across the pin at z (Z,) at all instants of the case;
+    times: (T,), None without a motion.
+    """
+
+    z: Lengths
+    times: Times | None
+    shear: Forces
+    moment: Moments
+
+
+@dataclass(frozen=True)
 class JointResult:
     """How the pin sits in its lugs. model: "contact", "foundation" or "prescribed", with a range
     alone. bending_moment: the largest along the pin; bending_moments: pairs of z and moment. range:
-    None where it was not found. remark: why not, or what it leaves out.
+    None where it was not found. remark: why not, or what it leaves out. along: the pin at all
+    instants, None of a prescribed joint.
     """
 
     model: str
@@ -70,3 +83,4 @@ class JointResult:
     bending_moments: tuple[tuple[Length, Couple], ...] = ()
     range: JointRange | None = None
     remark: str = ""
+    along: JointForces | None = None

@@ -258,10 +258,10 @@ class _Contact:
         peak = with_cells(_named(self.model, solution.peak), known.cells + missed, asked)
         peak = replace(peak, governing=links, imbalance=_imbalance(self.model, case))
         over = known.range(peak.max_von_mises or 0.0)
-        joint = joint_result(contact, over, known.left_out)
+        found = replace(_at_all_samples(solution, self.press(case)), peak=peak)
+        joint = joint_result(contact, over, found.loads, known.left_out)
         (pressed,) = contact.contact
         pressure = CellPressure(contact.bands, pressed.pressure, pressed.angle)
-        found = replace(_at_all_samples(solution, self.press(case)), peak=peak)
         return LugSolution(found, joint, self.press, pressure, self.model.pin)
 
 

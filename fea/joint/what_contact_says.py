@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from fea.core.pin_loads import Floats
+from fea.core.pin_loads import PinLoads
+from fea.joint.bending import joint_forces, stations
 from fea.joint.records import BandContact, JointRange, JointResult
 from fea.joint.solve_joint import JointContact
 
-STATIONS = 61  # along the pin, besides the ends of rings
 
-
-def joint_result(contact: JointContact, over: JointRange | None, remark: str = "") -> JointResult:
-    """Of a contact at a single instant. remark: what the range leaves out."""
-    z = _stations(contact)
+def joint_result(
+    contact: JointContact, over: JointRange | None, case: PinLoads, remark: str = ""
+) -> JointResult:
+    """Of a contact at a single instant. case: what the rings do to the pin at all instants; remark:
+    what the range leaves out.
+    """
+    z = stations(contact.pin)
     moment = np.linalg.norm(contact.bending_moment(z)[0], axis=1)
     return JointResult(
         model="contact",
@@ -22,14 +25,8 @@ def joint_result(contact: JointContact, over: JointRange | None, remark: str = "
         bending_moments=tuple(zip(z.tolist(), moment.tolist(), strict=True)),
         range=over,
         remark=remark,
+        along=joint_forces(contact.pin, contact.mass, contact.bands, case),
     )
-
-
-def _stations(contact: JointContact) -> Floats:
-    bands = contact.bands
-    ends = np.concatenate([bands.z - bands.length / 2.0, bands.z + bands.length / 2.0])
-    even = np.linspace(*contact.pin.ends, STATIONS)
-    return np.unique(np.round(np.concatenate([ends, even]), 12))
 
 
 def _band(contact: JointContact, b: int) -> BandContact:

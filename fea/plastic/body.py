@@ -34,6 +34,11 @@ class Elements:
         h = self.gradients.swapaxes(2, 3) @ displacement[self.numbers][:, None]
         return np.stack([(h[..., a, b] + h[..., b, a]) / 2.0 for a, b in ENTRIES], -1)
 
+    def volume_change(self, displacement: Floats) -> Floats:
+        """(M, Q), of a displacement (N, 3) m."""
+        u = displacement[self.numbers].reshape(len(self.numbers), -1, 1)
+        return np.asarray((self.gradients.reshape(*self.weights.shape, -1) @ u)[..., 0])
+
 
 @dataclass(frozen=True)
 class Ties:
@@ -50,6 +55,12 @@ class Ties:
         rows = np.flatnonzero(self.unknown >= 0)
         shape = len(self.unknown), int(self.unknown.max()) + 1
         return sp.csr_matrix((self.sign[rows], (rows, self.unknown[rows])), shape=shape)
+
+    @cached_property
+    def first(self) -> Ints:
+        """(U,) the first component of each free unknown."""
+        found: Ints = np.unique(self.unknown, return_index=True)[1]
+        return found[-self.matrix.shape[1] :]
 
     def without(self, unknowns: Ints) -> Ties:
         """With some unknowns zero as well."""
@@ -71,12 +82,6 @@ class FlowingBody:
         self.elements, self.ties, self.rule = elements, ties, rule
         self.size: int = ties.matrix.shape[1]
 
-    @cached_property
-    def node(self) -> Ints:
-        """(U,) the first node of each unknown."""
-        first: Ints = np.unique(self.ties.unknown, return_index=True)[1]
-        return first[-self.size :] // 3
-
     def displacement(self, unknowns: Floats) -> Floats:
         """(N, 3) m."""
         return np.asarray(self.ties.matrix @ unknowns).reshape(-1, 3)
@@ -94,7 +99,10 @@ class FlowingBody:
     def forces(self, stress: Floats) -> Floats:
         """Internal forces (U,) of a stress (M, Q, 6) Pa, N."""
         weighted = stress * self.elements.weights[..., None]
-        each = np.einsum("mqri,mqr->mi", self._b, weighted, optimize=True)
+        return self.gathered(np.einsum("mqri,mqr->mi", self._b, weighted, optimize=True))
+
+    def gathered(self, each: Floats) -> Floats:
+        """Forces (U,) on the unknowns of those of the elements' nodes (M, 3 K), N."""
         whole = np.bincount(self._dofs.ravel(), each.ravel(), minlength=len(self.ties.unknown))
         return np.asarray(self.ties.matrix.T @ whole)
 
@@ -103,7 +111,10 @@ class FlowingBody:
         b, points = self._b, self.elements.weights[..., None, None]
         db = (tangent * points) @ b
         flat = len(b), -1, b.shape[-1]
-        each = b.reshape(flat).swapaxes(1, 2) @ db.reshape(flat)
+        return self.assembled(b.reshape(flat).swapaxes(1, 2) @ db.reshape(flat))
+
+    def assembled(self, each: Floats) -> sp.csr_matrix:
+        """(U, U) N/m of the elements' matrices (M, 3 K, 3 K), which may be overwritten."""
         sign = self.ties.sign[self._dofs]
         each *= sign[:, :, None] * sign[:, None, :]
         place, kept, indices, indptr = self._pattern

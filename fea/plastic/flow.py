@@ -22,9 +22,9 @@ from geometry.arrays import Floats
 # Part of the elastic stiffness in the tangent: keeps it positive definite at the limit load, where
 # Newton's method then converges linearly, by this ratio. The solution does not depend on it.
 ELASTIC_PART = 1e-6
-_DOUBLED = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])  # shears count twice in a product of tensors
+DOUBLED = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])  # shears count twice in a product of tensors
 _ONE = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
-_DEVIATOR = np.diag([1.0, 1.0, 1.0, 0.5, 0.5, 0.5]) - np.outer(_ONE, _ONE) / 3.0
+DEVIATOR = np.diag([1.0, 1.0, 1.0, 0.5, 0.5, 0.5]) - np.outer(_ONE, _ONE) / 3.0
 
 
 class Flow(NamedTuple):
@@ -78,7 +78,7 @@ class FlowRule:
         trial = self.material.stress(strain - plastic)
         pressure = trial[..., :3].sum(-1, keepdims=True) / 3.0
         deviator = trial - pressure * _ONE
-        mises = np.sqrt(1.5 * (deviator**2 @ _DOUBLED))
+        mises = np.sqrt(1.5 * (deviator**2 @ DOUBLED))
         strains, stresses = self.curve
         line = stresses + 3.0 * shear * strains
         driving = mises + 3.0 * shear * equivalent
@@ -105,9 +105,9 @@ class FlowRule:
         """
         lam, shear = self.material.lame
         bulk = lam + 2.0 * shear / 3.0
-        elastic = bulk * np.outer(_ONE, _ONE) + 2.0 * shear * _DEVIATOR
+        elastic = bulk * np.outer(_ONE, _ONE) + 2.0 * shear * DEVIATOR
         along = unit[..., :, None] * (3.0 * shear * normal[..., None, None] * unit[..., None, :])
-        softer = elastic - 2.0 * shear * (1.0 - ratio)[..., None, None] * _DEVIATOR - along
+        softer = elastic - 2.0 * shear * (1.0 - ratio)[..., None, None] * DEVIATOR - along
         return np.asarray((1.0 - ELASTIC_PART) * softer + ELASTIC_PART * elastic)
 
     def dissipation(self, strain: Floats) -> Floats:
@@ -115,4 +115,4 @@ class FlowRule:
         deviator.
         """
         deviator = strain - strain[..., :3].mean(-1, keepdims=True) * _ONE
-        return np.asarray(self.strongest * np.sqrt(2.0 / 3.0 * (deviator**2 @ _DOUBLED)))
+        return np.asarray(self.strongest * np.sqrt(2.0 / 3.0 * (deviator**2 @ DOUBLED)))

@@ -55,11 +55,6 @@ class BeamBounds:
         return int(self.lower.argmin())
 
 
-def plastic_moment(section: Circle, strength: float) -> float:
-    """N m, of a round section."""
-    return 4.0 / 3.0 * strength * (section.outer**3 - section.inner**3)
-
-
 def beam_bounds(
     pin: Pin, material: Material, clamps: tuple[str, ...], loads: AnyLoads
 ) -> BeamBounds:
@@ -99,7 +94,7 @@ def _strengths(sections: list[Circle]) -> Floats:
         [
             (
                 s.area / math.sqrt(3.0),
-                plastic_moment(s, 1.0),
+                s.plastic_modulus,
                 s.area,
                 2.0 / 3.0 * math.pi * (s.outer**3 - s.inner**3) / math.sqrt(3.0),
             )

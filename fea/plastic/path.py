@@ -49,7 +49,7 @@ class EquilibriumPath:
     def __init__(self, body: FlowingBody, forces: Floats) -> None:
         self.body, self.load = body, forces
         stiff = body.stiffness(body.at_rest().tangent)
-        self._analysis = Analysis(stiff, body.node)
+        self._analysis = Analysis(stiff, body.ties.first // 3)
         self.elastic = self._analysis.factorize(stiff)(forces)
         self.compliance = float(forces @ self.elastic)
 

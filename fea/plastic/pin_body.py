@@ -23,6 +23,7 @@ from fea.core.pin_loads import AnyLoads, UnitLoad
 from fea.core.tractions import Traction, closing_tractions, tractions_of
 from fea.plastic.body import Elements, FlowingBody, Ties
 from fea.plastic.flow import FlowRule
+from fea.plastic.mechanism import Finer
 from fea.solid.model import rigid_modes
 from fea.solid.nodal_loads import components
 from geometry import Pin
@@ -116,6 +117,21 @@ def hexahedral(nodes: Floats, numbers: Ints, points: int = 2) -> Elements:
     jacobian = np.einsum("kaq,mkb->mqab", local, nodes[numbers], optimize=True)
     gradients = np.einsum("mqba,kaq->mqkb", np.linalg.inv(jacobian), local, optimize=True)
     return Elements(nodes, numbers, gradients, np.linalg.det(jacobian) * weights)
+
+
+def finer(elements: Elements) -> Finer:
+    """Hexahedra with three instead of two quadrature points along each axis."""
+    three = _gauss(3)[0]
+    grid = np.stack(np.meshgrid(three, three, three, indexing="ij"), axis=-1).reshape(-1, 3)
+    return Finer(hexahedral(elements.nodes, elements.numbers, 3), reading(grid))
+
+
+def reading(local: Floats) -> Floats:
+    """(P, 8) values at places (P, 3) in an element, 0 to 1, from those at its quadrature points."""
+    two = _gauss(2)[0]
+    right = (local - two[0]) / (two[1] - two[0])
+    first, second, third = np.stack([1.0 - right, right], axis=-1).swapaxes(0, 1)
+    return np.asarray(np.einsum("pi,pj,pk->pijk", first, second, third).reshape(-1, 8))
 
 
 def _gauss(points: int) -> tuple[Floats, Floats]:

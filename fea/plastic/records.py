@@ -5,19 +5,24 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from fea.core.dimensions import Floats, Length, Lengths
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.core.dimensions import Floats, Length, Lengths, Stresses
 
 
 @dataclass(frozen=True)
 class PlasticMesh:
     """One mesh of the solid: unknowns, bounds of the load factor on it, change of volume over the
-    equivalent strain of its mechanism, load steps and iterations.
+    equivalent strain of its mechanism and what is charged for it in the upper bound, load steps and
+    iterations.
     """
 
     unknowns: int
     lower: float
     upper: float
     volume: float
+    charge: float
     steps: int
     iterations: int
 
@@ -34,6 +39,21 @@ class LoadCurve:
 
 
 @dataclass(frozen=True)
+class FlowField:
+    """The pin, or the part of its turn that was computed, when its limit load is reached, at a load
+    factor: points (N, 3) in pin axes, cells (M, 20) in the order of VTK, displacement (N, 3),
+    equivalent plastic strain and von Mises stress (N,).
+    """
+
+    points: Lengths
+    cells: NDArray[np.int64]
+    displacement: Lengths
+    plastic_strain: Floats
+    von_mises: Stresses
+    factor: float
+
+
+@dataclass(frozen=True)
 class LimitLoad:
     """The load factor at which a pin collapses is between lower and upper: all loads of the case at
     its governing instant, in proportion. method: beam or solid, or why there is no answer ("none",
@@ -41,7 +61,7 @@ class LimitLoad:
 
     carries: whether the pin carries its loads (factor 1) without collapse; None where that is not
     decided. permanent_set: what is left of the largest displacement after the loads reached the
-    factor permanent_at and were taken off. curve: of the finest mesh.
+    factor permanent_at and were taken off. curve, flow: of the finest mesh.
     """
 
     method: Literal["beam", "solid", "none"]
@@ -54,4 +74,5 @@ class LimitLoad:
     seconds: float = 0.0
     meshes: tuple[PlasticMesh, ...] = ()
     curve: LoadCurve | None = None
+    flow: FlowField | None = None
     note: str = ""

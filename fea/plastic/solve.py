@@ -7,15 +7,17 @@ solid    elastic-plastic, on two meshes, a third if they differ much    (fea.pla
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from typing import Literal
 
 from fea.core.material import Material
 from fea.core.memory import solid_memory
 from fea.core.pin_loads import PinLoads
 from fea.plastic.flow import FlowRule
+from fea.plastic.flow_field import flow_field
 from fea.plastic.hinge import BEAM_ERROR, BeamBounds, beam_bounds
 from fea.plastic.limit_load import OnMesh, bracket, limit_on_mesh
-from fea.plastic.pin_body import acting_at, hexahedral, pin_body, plane_of
+from fea.plastic.pin_body import PinBody, acting_at, finer, pin_body, plane_of
 from fea.plastic.records import LimitLoad, PlasticMesh
 from geometry import Pin, PinLike
 from geometry.mesh.hexahedra import HexSize
@@ -26,6 +28,10 @@ SIZES = HexSize(2, 0.5), HexSize(4, 0.25), HexSize(6, 1.0 / 6.0)
 WIDEST = 0.05  # of a bracket, over its middle
 MOST_UNKNOWNS = 60_000  # of the solid: a minute or two
 BEFORE_COLLAPSE = 0.95  # of the limit: at most the load after which the permanent set is reported
+TETRAHEDRA = (
+    "only for pins of a profile without holes and flats: others need tetrahedra, which lock when "
+    "the metal flows"
+)
 TOO_LARGE = "the solid would need more than {:,} unknowns or the memory that is allowed"
 
 
@@ -45,8 +51,8 @@ def limit_load(
     begin = time.perf_counter()
     rule = FlowRule(material)
     if not isinstance(pin, Pin):
-        return LimitLoad("none", note="only for bodies of revolution from a profile")
-    bounds = _of_beam(pin, material, clamps, loads)
+        return LimitLoad("none", note=TETRAHEDRA)
+    bounds = of_beam(pin, material, clamps, loads)
     if bounds is not None and rung == "auto":
         carries = decided(bounds)
         if carries is not None:
@@ -59,10 +65,12 @@ def limit_load(
                 seconds=time.perf_counter() - begin,
                 note=f"the theorems for beams; that decides by more than {BEAM_ERROR:.0%}",
             )
-    meshes, note = _meshes(pin, rule, clamps, loads, memory)
-    if len(meshes) < 2:
+    meshes, last, note = _meshes(pin, rule, clamps, loads, memory)
+    if last is None or len(meshes) < 2:
         return LimitLoad("none", seconds=time.perf_counter() - begin, note=note)
-    return _of_solid(meshes, bounds, rule, note, time.perf_counter() - begin)
+    flow = flow_field(last, meshes[-1].last, plane_of(loads, 0))
+    found = _of_solid(meshes, bounds, rule, note)
+    return replace(found, flow=flow, seconds=time.perf_counter() - begin)
 
 
 def decided(bounds: BeamBounds) -> bool | None:
@@ -72,7 +80,7 @@ def decided(bounds: BeamBounds) -> bool | None:
     return False if bounds.upper[0] < 1.0 - BEAM_ERROR else None
 
 
-def _of_beam(
+def of_beam(
     pin: Pin, material: Material, clamps: tuple[str, ...], loads: PinLoads
 ) -> BeamBounds | None:
     """None for contact pressures on rings, which the beam does not take."""
@@ -83,29 +91,38 @@ def _of_beam(
 
 def _meshes(
     pin: Pin, rule: FlowRule, clamps: tuple[str, ...], loads: PinLoads, memory: float | None
-) -> tuple[list[OnMesh], str]:
-    """The finest two at least, if there is room for them; why not otherwise."""
-    acting = acting_at(loads, 0, -plane_of(loads, 0))
+) -> tuple[list[OnMesh], PinBody | None, str]:
+    """The finest two at least, if there is room for them, with the body of the last; why not
+    otherwise.
+    """
     meshes: list[OnMesh] = []
+    last: PinBody | None = None
     for size in SIZES:
-        made = pin_body(pin, rule, clamps, acting, size)
+        made = body_on(pin, rule, clamps, loads, size)
         too_much = memory is not None and solid_memory(made.body.size) > memory
         if made.body.size > MOST_UNKNOWNS or too_much:
-            return meshes, TOO_LARGE.format(MOST_UNKNOWNS)
-        fine = hexahedral(made.mesh.nodes, made.mesh.elements, 3)
-        meshes.append(limit_on_mesh(made.body, made.forces, fine))
-        if len(meshes) > 1 and _narrow(*bracket(meshes)):
+            return meshes, last, TOO_LARGE.format(MOST_UNKNOWNS)
+        last = made
+        meshes.append(limit_on_mesh(made.body, made.forces, finer(made.body.elements)))
+        if len(meshes) > 1 and narrow(*bracket(meshes)):
             break
-    return meshes, ""
+    return meshes, last, ""
 
 
-def _narrow(lower: float, upper: float) -> bool:
-    """Whether a bracket is, and does not leave open whether it holds."""
+def body_on(
+    pin: Pin, rule: FlowRule, clamps: tuple[str, ...], loads: PinLoads, size: HexSize
+) -> PinBody:
+    """On a mesh, under the loads of the first instant. Raises: SolveError."""
+    return pin_body(pin, rule, clamps, acting_at(loads, 0, -plane_of(loads, 0)), size)
+
+
+def narrow(lower: float, upper: float) -> bool:
+    """Whether a bracket is, and does not leave open whether the pin carries its loads."""
     return upper - lower <= WIDEST * (upper + lower) / 2.0 and not lower < 1.0 < upper
 
 
 def _of_solid(
-    meshes: list[OnMesh], bounds: BeamBounds | None, rule: FlowRule, note: str, seconds: float
+    meshes: list[OnMesh], bounds: BeamBounds | None, rule: FlowRule, note: str
 ) -> LimitLoad:
     lower, upper = bracket(meshes)
     if bounds is not None and bounds.slip[0] < upper:
@@ -121,9 +138,16 @@ def _of_solid(
         hardening=bool(rule.material.hardening),
         permanent_set=finest.permanent_at(at),
         permanent_at=at,
-        seconds=seconds,
         meshes=tuple(
-            PlasticMesh(m.unknowns, m.lower, m.upper, m.volume, m.steps, m.iterations)
+            PlasticMesh(
+                m.unknowns,
+                m.lower,
+                m.above.factor,
+                m.above.volume,
+                m.above.charge,
+                m.steps,
+                m.iterations,
+            )
             for m in meshes
         ),
         curve=finest.curve,

@@ -38,7 +38,7 @@ def bending_arms(s: Situation, joint: Couple | None, model: str) -> BendingArms:
     return BendingArms(
         s.pin.name,
         s.loads.case,
-        s.time(0),
+        None if s.loads.times is None else float(s.loads.times[0]),
         layout(s),
         float(even.moment.max()),
         float(concentrated.moment.max()),

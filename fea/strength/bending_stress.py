@@ -22,15 +22,13 @@ from fea.strength.situation import Situation
 from fea.strength.worst import Check, strength_key
 
 CONCENTRATED = Check("bending, concentrated forces", "Shigley, problem 3-40", "limit", "stress")
+OF_JOINT = Check("bending, joint model", "Shigley, 3-10", "limit", "stress")
 
 
-def bending_margin(s: Situation, concentrated: SectionForces) -> Margin:
-    """With concentrated forces against yield."""
+def bending_margin(s: Situation, check: Check, forces: SectionForces) -> Margin:
+    """Against yield."""
     fy = s.material.yield_strength
     if fy is None:
-        return CONCENTRATED.lacks(s, strength_key(s.material.name, "yield"))
-    modulus = concentrated.of_sections("inertia") / concentrated.of_sections("outer")
-    stress = concentrated.moment / modulus
-    allowable = np.full(stress.shape[1], fy)
-    basis = "forces at the middles of bands"
-    return CONCENTRATED.worst(s, stress, allowable, concentrated.labels, basis)
+        return check.lacks(s, strength_key(s.material.name, "yield"))
+    stress = forces.moment / forces.of_sections("modulus")
+    return check.along(s, forces, stress, np.full(stress.shape[1], fy))

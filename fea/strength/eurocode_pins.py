@@ -85,22 +85,23 @@ def contact_stress(force: Floats | float, at: PinInHole) -> Floats:
     return np.asarray(0.591 * np.sqrt(at.modulus * force * play / area))
 
 
-def eurocode_margins(s: Situation, even: SectionForces) -> list[Margin]:
-    """All of table 3.10; even: section forces with even loads on the bands."""
-    checks = [*_resistances(s, even), _bearing(s, BEARING)]
+def eurocode_bending(s: Situation, forces: SectionForces) -> list[Margin]:
+    """Shear and bending of table 3.10."""
+    bending = [_bending(s, forces, BENDING_SER)] if s.replaceable else []
+    return [*_resistances(s, forces), *bending]
+
+
+def eurocode_bearing(s: Situation) -> list[Margin]:
+    """Bearing and contact of table 3.10."""
     if not s.replaceable:
-        return checks
-    return [*checks, _bearing(s, BEARING_SER), _bending(s, even, BENDING_SER), _contact(s)]
+        return [_bearing(s, BEARING)]
+    return [_bearing(s, BEARING), _bearing(s, BEARING_SER), _contact(s)]
 
 
-def _modulus(forces: SectionForces) -> Floats:
-    return forces.of_sections("inertia") / forces.of_sections("outer")
-
-
-def _resistances(s: Situation, even: SectionForces) -> list[Margin]:
+def _resistances(s: Situation, forces: SectionForces) -> list[Margin]:
     """Of the pin in shear, in bending and in both."""
     fu, fy = s.material.ultimate_strength, s.material.yield_strength
-    bending = _bending(s, even, BENDING)
+    bending = _bending(s, forces, BENDING)
     needs = [
         strength_key(s.material.name, which)
         for which, value in (("ultimate", fu), ("yield", fy))
@@ -108,23 +109,23 @@ def _resistances(s: Situation, even: SectionForces) -> list[Margin]:
     ]
     if fu is None:
         return [SHEAR.lacks(s, needs[0]), bending, INTERACTION.lacks(s, *needs)]
-    sheared = np.asarray(shear_resistance(even.of_sections("area"), fu))
-    shear = SHEAR.worst(s, even.shear, sheared, even.labels)
+    sheared = np.asarray(shear_resistance(forces.of_sections("area"), fu))
+    shear = SHEAR.along(s, forces, forces.shear, sheared)
     if fy is None:
         return [shear, bending, INTERACTION.lacks(s, *needs)]
-    bent = np.asarray(bending_resistance(_modulus(even), fy))
-    used = np.hypot((even.moment / bent).max(axis=1), (even.shear / sheared).max(axis=1))
-    basis = "root of the sum of squares; the clause's sum is its square"
-    return [shear, bending, INTERACTION.worst(s, used[:, None], np.ones(1), ("",), basis)]
+    bent = np.asarray(bending_resistance(forces.of_sections("modulus"), fy))
+    used = np.hypot((forces.moment / bent).max(axis=1), (forces.shear / sheared).max(axis=1))
+    note = "root of the sum of squares; the clause's sum is its square"
+    return [shear, bending, INTERACTION.along(s, forces, used[:, None], np.ones(1), note)]
 
 
-def _bending(s: Situation, even: SectionForces, check: Check) -> Margin:
+def _bending(s: Situation, forces: SectionForces, check: Check) -> Margin:
     fy = s.material.yield_strength
     if fy is None:
         return check.lacks(s, strength_key(s.material.name, "yield"))
-    ser = check is BENDING_SER
-    resisted = np.asarray(bending_resistance(_modulus(even), fy, replaceable=ser))
-    return check.worst(s, even.moment, resisted, even.labels, "even load on each band")
+    modulus, ser = forces.of_sections("modulus"), check is BENDING_SER
+    resisted = np.asarray(bending_resistance(modulus, fy, replaceable=ser))
+    return check.along(s, forces, forces.moment, resisted)
 
 
 def _lower_strengths(s: Situation) -> tuple[list[float], list[str]]:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Literal
 
 from fea.core.dimensions import Time
 
 Level = Literal["limit", "ultimate"]
+JOINT_MODEL = "joint model"  # as the basis of section forces
 RATIO = "1"  # the dimension of a demand that is a ratio already: an interaction, a damage
 
 
@@ -20,7 +21,8 @@ class Margin:
     whole pin. demand: under the loads of the study, and allowable, both of a `dimension` ("stress",
     "force", "moment" or "1"). factor: by which the demand is multiplied; level: the loads to which
     it leads. time: s, None without a motion. basis: how the demand was found. needs: what is
-    missing where the check was not made; then demand and allowable are None.
+    missing where the check was not made; then demand and allowable are None. governs: whether it
+    may; if not, it is there for comparison.
     """
 
     method: str
@@ -34,10 +36,17 @@ class Margin:
     time: Time | None = None
     basis: str = ""
     needs: str = ""
+    governs: bool = True
 
     @property
     def instead(self) -> dict[str, str]:
         return {"own": self.dimension}
+
+    @property
+    def shown(self) -> str:
+        """The method, and the joint model where it takes the section forces of that."""
+        named = JOINT_MODEL in self.method or not self.basis.startswith(JOINT_MODEL)
+        return self.method if named else f"{self.method} ({JOINT_MODEL})"
 
     @property
     def utilisation(self) -> float | None:
@@ -68,6 +77,11 @@ class PinMargin:
         """Its utilisation, for sorting: below all others where the check was not made."""
         used = self.margin.utilisation
         return -1.0 if used is None else used
+
+
+def compared(margin: Margin) -> Margin:
+    """The same for comparison only."""
+    return replace(margin, method=f"{margin.method}, for comparison", governs=False)
 
 
 def not_made(method: str, clause: str, level: Level, factor: float, needs: str) -> Margin:

@@ -1,16 +1,15 @@
 """The fully plastic section of a round pin, solid or hollow, in bending with shear.
 
-    M_pl = k W_el f_y       k = 16 / (3 pi) (1 - q^3) / (1 - q^4),  q = bore / diameter
-    V_pl = A_v f_y / sqrt(3)
+    M_pl = W_pl f_y       V_pl = A_v f_y / sqrt(3)
 
-k is exact for a perfectly plastic section. A_v is the shear area 2 A / pi of a circular hollow
-section, or that at which V Q / (I t) reaches yield, which is safe, too, and larger for thick ones:
-3 A / 4 if solid. Both together: (M / M_pl)^2 + (V / V_pl)^2 <= 1 in every section, whose root
-is the utilisation, at ultimate load with the yield strength: a hinge is no permissible state at
-limit load.
+W_pl is exact for a perfectly plastic section (fea.beam.round_section). A_v is the shear area 2 A /
+pi of a circular hollow section, or that at which V Q / (I t) reaches yield, which is safe, too, and
+larger for thick ones: 3 A / 4 if solid. Both together: (M / M_pl)^2 + (V / V_pl)^2 <= 1 in every
+section, whose root is the utilisation, at ultimate load with the yield strength: a hinge is no
+permissible state at limit load.
 
-Source: S. P. Timoshenko, Strength of Materials II, plastic bending (k); EN 1993-1-1:2005, 6.2.6(3)
-g (shear area); the circle of M and V is more cautious than 6.2.8 of the same up to 0.83 V_pl.
+Source: EN 1993-1-1:2005, 6.2.6(3) g (shear area); the circle of M and V is more cautious than 6.2.8
+of the same up to 0.83 V_pl.
 """
 
 from __future__ import annotations
@@ -28,30 +27,18 @@ from fea.strength.worst import Check, strength_key
 PLASTIC = Check("plastic bending and shear", "EN 1993-1-1, 6.2.6", "ultimate", RATIO)
 
 
-def section_factor(bore_over_diameter: float) -> float:
-    """Plastic over elastic section modulus. Source: as the module."""
-    q = bore_over_diameter
-    return 16.0 / (3.0 * math.pi) * (1.0 - q**3) / (1.0 - q**4)
-
-
-def plastic_moment(section: Circle, strength: float) -> float:
-    """M_pl, N m, of a yield strength in Pa."""
-    elastic = section.inertia / section.outer
-    return section_factor(section.inner / section.outer) * elastic * strength
-
-
 def plastic_shear(section: Circle, strength: float) -> float:
     """V_pl, N, of a yield strength in Pa."""
     area = section.area * max(2.0 / math.pi, 1.0 / section.vq_it)
     return area * strength / math.sqrt(3.0)
 
 
-def plastic_margin(s: Situation, even: SectionForces) -> Margin:
-    """Of the section that is nearest to a hinge; even: section forces with even loads."""
+def plastic_margin(s: Situation, forces: SectionForces) -> Margin:
+    """Of the section that is nearest to a hinge."""
     fy = s.material.yield_strength
     if fy is None:
         return PLASTIC.lacks(s, strength_key(s.material.name, "yield"))
-    M = np.array([plastic_moment(section, fy) for section in even.sections])
-    V = np.array([plastic_shear(section, fy) for section in even.sections])
-    used = np.hypot(even.moment / M, even.shear / V)
-    return PLASTIC.worst(s, used, np.ones(used.shape[1]), even.labels, "even load on each band")
+    M = fy * forces.of_sections("plastic_modulus")
+    V = np.array([plastic_shear(section, fy) for section in forces.sections])
+    used = np.hypot(forces.moment / M, forces.shear / V)
+    return PLASTIC.along(s, forces, used, np.ones(used.shape[1]))

@@ -14,15 +14,17 @@ ways); EN 1993-1-8:2005, 3.13.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam.line_load import acting, shares
-from fea.beam.round_section import Circle
+from fea.beam.round_section import Circle, circle
 from fea.beam.stress import sample
 from fea.beam.timoshenko import MOMENT, SHEAR, InternalForces, stepped_beam
+from fea.joint.records import JointForces
+from fea.strength.margin import JOINT_MODEL
 from fea.strength.situation import Situation
 from geometry.arrays import Floats
 
@@ -32,7 +34,7 @@ Cells = NDArray[np.intp]  # (S,) numbers of a beam's cells
 @dataclass(frozen=True)
 class SectionForces:
     """At S stations: z (S,) m, sections, shear and moment (T, S), N and N m; labels: of the
-    segments.
+    segments. times: of the instants, s; basis: where they come from.
     """
 
     z: Floats
@@ -40,6 +42,8 @@ class SectionForces:
     labels: tuple[str, ...]
     shear: Floats
     moment: Floats
+    times: Floats | None
+    basis: str
 
     def of_sections(self, name: str) -> Floats:
         """A property of the sections, (S,)."""
@@ -60,7 +64,25 @@ def section_forces(s: Situation) -> tuple[SectionForces, SectionForces]:
     where = np.concatenate([z[~inside], middles])
     there = np.concatenate([cells[~inside], _cells(forces, middles)])
     both = np.concatenate([outside, at_bands], axis=1)
-    return even, _sized(s, forces, there, where, both)
+    at_middles = _sized(s, forces, there, where, both)
+    return even, replace(at_middles, basis="forces at the middles of bands")
+
+
+def of_joint(s: Situation, joint: JointForces) -> SectionForces:
+    """By the model of the joint, on both sides of each station."""
+    inner = np.array(s.pin.stations[1:-1])
+    sides = [np.searchsorted(inner, joint.z, side=side) for side in ("left", "right")]
+    segments = np.concatenate(sides)
+    sections = [circle(segment) for segment in s.pin.segments]
+    return SectionForces(
+        np.tile(joint.z, 2),
+        tuple(sections[int(i)] for i in segments),
+        tuple(s.pin.labels[int(i)] for i in segments),
+        np.tile(joint.shear, 2),
+        np.tile(joint.moment, 2),
+        joint.times,
+        JOINT_MODEL,
+    )
 
 
 def _values(forces: InternalForces, c: Floats, cells: Cells, z: Floats) -> Floats:
@@ -105,4 +127,6 @@ def _sized(
         tuple(s.pin.labels[segments[int(i)]] for i in cells),
         V.T,
         M.T,
+        s.loads.times,
+        "even load on each band",
     )

@@ -10,6 +10,7 @@ import numpy as np
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.joint.lugs.lug import Lug
+from fea.joint.records import JointForces
 from fea.strength.margin import Level
 from geometry import Pin
 from geometry.arrays import Floats
@@ -37,7 +38,9 @@ class LoadFactors:
 @dataclass(frozen=True)
 class Situation:
     """A pin in a case. lugs: those that the study gives; loads: on all bands that carry, in balance
-    or with `clamps`. replaceable: whether the pin is meant to be replaced.
+    or with `clamps`. replaceable: whether the pin is meant to be replaced. joint: section forces by
+    the joint model, if one supports the pin; even_governs: whether checks of bending and shear take
+    the even loads of the formulas all the same.
     """
 
     pin: Pin
@@ -47,15 +50,13 @@ class Situation:
     lugs: tuple[Lug, ...] = ()
     factors: LoadFactors = LoadFactors()
     replaceable: bool = False
+    joint: JointForces | None = None
+    even_governs: bool = False
 
     @property
     def across(self) -> Floats:
         """Size of the force across the pin on each of C bands, (T, C) N."""
         return np.asarray(np.hypot(self.loads.forces[..., 0], self.loads.forces[..., 1]))
-
-    def time(self, instant: int) -> float | None:
-        """Of an instant, s; None without a motion."""
-        return None if self.loads.times is None else float(self.loads.times[instant])
 
     def lug(self, band: str) -> Lug | None:
         """In which a band sits, if it was given."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fea.strength.margin import Level, Margin, not_made
+from fea.strength.section_forces import SectionForces
 from fea.strength.situation import Situation
 from geometry.arrays import Floats
 
@@ -26,12 +27,33 @@ class Check:
         self, s: Situation, demand: Floats, allowable: Floats, at: tuple[str, ...], basis: str = ""
     ) -> Margin:
         """Of demands (T, S) with allowables (S,) at S places, called `at`."""
-        t, k = np.unravel_index(np.argmax(demand / allowable), demand.shape)
-        size, limit = float(demand[t, k]), float(allowable[k])
-        factor = s.factors.at(self.level)
+        return self._worst(s, s.loads.times, demand / allowable, (demand, allowable), at, basis)
+
+    def along(
+        self, s: Situation, forces: SectionForces, demand: Floats, allowable: Floats, note: str = ""
+    ) -> Margin:
+        """Of demands (T, S) with allowables (S,) at the stations of section forces, or at one place
+        that stands for all.
+        """
+        at = forces.labels if demand.shape[1] == len(forces.labels) else ("",)
+        both, basis = (demand, allowable), "; ".join(x for x in (forces.basis, note) if x)
+        return self._worst(s, forces.times, demand / allowable, both, at, basis)
+
+    def _worst(
+        self,
+        s: Situation,
+        times: Floats | None,
+        used: Floats,
+        both: tuple[Floats, Floats],
+        at: tuple[str, ...],
+        basis: str,
+    ) -> Margin:
+        t, k = np.unravel_index(np.argmax(used), used.shape)
+        demand, allowable = both
         return Margin(
-            self.method, self.clause, self.level, size, limit, factor, self.dimension,
-            at[int(k)], s.time(int(t)), basis,
+            self.method, self.clause, self.level, float(demand[t, k]), float(allowable[k]),
+            s.factors.at(self.level), self.dimension, at[int(k)],
+            None if times is None else float(times[t]), basis,
         )  # fmt: skip
 
     def lacks(self, s: Situation, *needs: str) -> Margin:

@@ -1,8 +1,8 @@
 """A body of revolution as quadratic hexahedra of 20 nodes, structured, all of it or a sector.
 
 The disc of the smallest radius is a square surrounded by a fan; rings between the radii of the
-segments follow. Each layer along the axis has the cells that its segment fills. Fillets are left
-out: corners are sharp.
+segments follow. Each layer along the axis has the cells that its segment fills. At a fillet the
+nodes about the sharp corner move out along the diagonal, until those on its sides are on the arc.
 """
 
 from __future__ import annotations
@@ -19,6 +19,8 @@ from geometry.shape.pin import Pin
 
 BULGE = 0.2  # by which the sides of the square are bent outwards, of its size
 SQUARE = 0.55  # its size over the radius of the disc
+DEEP = 0.6  # of a fillet's radius, the least room behind its corner; without it that stays sharp
+ROUND = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))  # corners of a face, in their order
 SAME = 1e-7  # of the length: nodes closer than this are one
 
 
@@ -79,9 +81,22 @@ def hexahedra(pin: Pin, fineness: HexSize, quarters: int = 4) -> HexMesh:
                     radius = np.linalg.norm(patch.position[:, local[:, 0] == 1.0], axis=2)
                     rim = np.flatnonzero(radius.min(axis=1) > b * (1.0 - 1e-9))
                     outside[i].append(count - len(xy) + rim)
-    points = np.concatenate(cells)
+    points = _filleted(pin, np.concatenate(cells))
     nodes, elements = _merged(points, SAME * pin.smallest_diameter)
     return HexMesh(nodes, elements, tuple(np.concatenate(o) for o in outside), quarters)
+
+
+def twenty() -> Ints:
+    """Which of skfem's nodes are those of other programs (VTK, CalculiX), in their order: corners,
+    middles of edges below, above and between.
+    """
+    ours = [tuple(x) for x in np.asarray(ElementHexS2().doflocs).tolist()]
+    middles = [((a + c) / 2, (b + d) / 2) for (a, b), (c, d) in zip(ROUND, (*ROUND[1:], ROUND[0]),
+                                                                  strict=True)]  # fmt: skip
+    theirs = [(*xy, z) for z in (0.0, 1.0) for xy in ROUND]
+    theirs += [(*xy, z) for z in (0.0, 1.0) for xy in middles]
+    theirs += [(*xy, 0.5) for xy in ROUND]
+    return np.array([ours.index(x) for x in theirs])
 
 
 def _merged(points: Floats, tolerance: float) -> tuple[Floats, Ints]:
@@ -93,6 +108,58 @@ def _merged(points: Floats, tolerance: float) -> tuple[Floats, Ints]:
         key[order, axis] = np.cumsum(jump)
     _, first, number = np.unique(key, axis=0, return_index=True, return_inverse=True)
     return flat[first], number.reshape(points.shape[:2]).astype(np.int64)
+
+
+@dataclass(frozen=True)
+class _Fillet:
+    """About a corner at radius r and z, of a shaft that goes along `way` (1 or -1) from it. depth:
+    behind the corner, to which nodes move, m.
+    """
+
+    r: float
+    z: float
+    way: int
+    radius: float
+    depth: float
+
+    def moved(self, r: Floats, z: Floats) -> Floats:
+        """By how much nodes move along both axes, m.
+
+        With a and b the distances from the corner along shaft and face, b - a stays the same and
+        tells the place on the arc, from one tangent point (-radius) to the other (radius). Behind
+        the sides nodes move less, by how deep they are.
+        """
+        a, b = (z - self.z) * self.way, r - self.r
+        place = np.clip((b - a) / self.radius, -1.0, 1.0)
+        reach = 1.0 - np.abs(place) / 2.0 - np.sqrt(0.5 - place**2 / 4.0)
+        deep = -np.minimum(a, b) / self.depth
+        left = np.where(deep > -SAME, np.clip(1.0 - deep, 0.0, 1.0), 0.0)
+        return np.asarray(self.radius * reach * left)
+
+
+def _fillets(pin: Pin) -> list[_Fillet]:
+    """Those with room for them."""
+    found = []
+    for i, (left, right) in enumerate(pairwise(pin.segments)):
+        radius = pin.fillet_at(i)
+        thin, thick, way = (left, right, -1) if left.diameter < right.diameter else (right, left, 1)
+        wall = (thin.diameter - max(thin.bore, thick.bore)) / 2.0
+        depth = min(radius, wall, thick.length)
+        if radius and depth >= DEEP * radius:
+            at = thin.diameter / 2.0, pin.stations[i + 1]
+            found.append(_Fillet(*at, way, radius, depth))
+    return found
+
+
+def _filleted(pin: Pin, points: Floats) -> Floats:
+    """Nodes (..., 3) of cells with sharp corners where those with fillets have them."""
+    r, z = np.hypot(points[..., 0], points[..., 1]), points[..., 2]
+    outwards, along = np.zeros_like(r), np.zeros_like(z)
+    for fillet in _fillets(pin):
+        move = fillet.moved(r, z)
+        outwards, along = outwards + move, along + fillet.way * move
+    stretch = 1.0 + np.divide(outwards, r, out=np.zeros_like(r), where=r > 0.0)
+    return np.stack([points[..., 0] * stretch, points[..., 1] * stretch, z + along], axis=-1)
 
 
 def _layers(pin: Pin, fineness: HexSize) -> Floats:
@@ -111,7 +178,9 @@ def _layers(pin: Pin, fineness: HexSize) -> Floats:
 
 
 def _patches(pin: Pin, fineness: HexSize) -> list[_Patch]:
-    radii = sorted({x / 2.0 for s in pin.segments for x in (s.diameter, s.bore) if x})
+    ends = [fillet.r + fillet.radius for fillet in _fillets(pin)]
+    every = sorted({*ends, *(x / 2.0 for s in pin.segments for x in (s.diameter, s.bore) if x)})
+    radii = [r for below, r in pairwise([0.0, *every]) if r - below > pin.tolerance]
     n, first, patches = fineness.around // 2, radii[0], []
     if any(s.bore == 0.0 for s in pin.segments):
         fan = max(1, n // 2)
@@ -121,7 +190,7 @@ def _patches(pin: Pin, fineness: HexSize) -> list[_Patch]:
         ]
     for a, b in pairwise(radii):
         thickness = math.pi / 2.0 * b / fineness.around
-        count = max(2, math.ceil((b - a) / thickness))
+        count = max(1 if a in ends or b in ends else 2, math.ceil((b - a) / thickness))
         for low, high in pairwise(np.linspace(a, b, count + 1)):
             patches.append(_ring(low, high, 2 * n, a, b))
     return patches

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from fea.checks.calculix_compare import second_opinions
 from fea.checks.calculix_in_lugs import Seated, opinion_in_lugs
-from fea.checks.opinions import Opinion
+from fea.checks.calculix_plastic import limit_opinion
+from fea.checks.opinions import LimitOpinion, Opinion
+from fea.core.peak import Peak
+from fea.joint.solve_joint import JointModel
 from geometry import Pin
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import Solved
@@ -14,8 +19,30 @@ from pinstress.processes.pool import Tell
 
 def ask_calculix(plan: Plan, task: Task, solved: Solved, tell: Tell) -> tuple[Opinion, ...]:
     """Solve the rows of a task once more; for the task's own process."""
+    limits = {
+        peak.case: _limit(task, peak, tell)
+        for peak, limit in zip(solved.peaks, solved.limits, strict=False)  # none of a failed task
+        if limit is not None and limit.method == "solid"
+    }
+    found = _in_lugs(task, solved, tell) if task.lugs else _alone(plan, task, solved, tell)
+    return tuple(replace(opinion, limit=limits.get(opinion.case)) for opinion in found)
+
+
+def _limit(task: Task, peak: Peak, tell: Tell) -> LimitOpinion:
+    """Of a limit load; contact with lugs is found again for it."""
+    tell(f"pin {task.pin.name}, {peak.case}: CalculiX, limit load")
+    pin, loads = task.pin, peak.governing
+    assert isinstance(pin, Pin)
+    assert loads is not None
     if task.lugs:
-        return _in_lugs(task, solved, tell)
+        contact = JointModel(pin, task.material, task.lugs).solve(loads)
+        pin, loads = contact.pin, contact.loads
+    clamps = tuple(pin.surface(name) for name in task.clamps)
+    return limit_opinion(pin, task.material, clamps, loads)
+
+
+def _alone(plan: Plan, task: Task, solved: Solved, tell: Tell) -> tuple[Opinion, ...]:
+    """Of a pin with prescribed clamps and loads."""
     distance = plan.asked.distance
     try:
         return second_opinions(

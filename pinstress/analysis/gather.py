@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, replace
 from importlib.metadata import version
 
@@ -12,6 +12,7 @@ from fea.checks.records import BeamCheck
 from fea.core.peak import Peak, decides
 from fea.core.pin_loads import PinLoads
 from fea.joint.records import JointResult
+from fea.plastic.records import LimitLoad
 from fea.solve_pin import Solution
 from pinstress.analysis.gather_fatigue import fatigue_margins, fatigue_of
 from pinstress.analysis.mechanics.gather_loads import drive_position, mechanics, position_unit
@@ -52,7 +53,7 @@ def results_of(plan: Plan, found: list[Solved]) -> plain.Results:
     }
     rows.sort(key=lambda row: (pins.index(row[1].pin), cases.index(row[1].case)))
     beam = next((made.beam for made in found if made.beam is not None), None)
-    results = _results(study, plan.loads, rows, beam, plan.published, plan.asked.tolerance)
+    results = _results(study, plan.loads, rows, beam, plan.published, plan.asked.tolerance, limits)
     fatigue = fatigue_of(plan, found)
     results = replace(
         results,
@@ -90,7 +91,7 @@ def loads_only(study: Study, cases: Iterable[str] | None = None) -> plain.Result
     published = read_published(study)
     loads = all_loads(study, chosen_cases(study, cases))
     tolerance = study.table.analysis.tolerance
-    return _in_study_units(_results(study, loads, [], None, published, tolerance), study)
+    return _in_study_units(_results(study, loads, [], None, published, tolerance, {}), study)
 
 
 def _results(
@@ -100,11 +101,17 @@ def _results(
     beam: BeamCheck | None,
     published: Published,
     tolerance: float,
+    limits: Mapping[tuple[str, str], LimitLoad | None],
 ) -> plain.Results:
-    """Everything a run found, in SI. rows: each peak with its task, in the order of the table."""
+    """Everything a run found, in SI. rows: each peak with its task, in the order of the table.
+    limits: loads, by pin and case.
+    """
     table = study.table
     tasks = {task.pin.name: task for task, _, _ in reversed(rows)}
-    strength = [checked(study, task, peak, joint) for task, peak, joint in rows]
+    strength = [
+        checked(study, task, peak, joint, limits.get((peak.pin, peak.case)))
+        for task, peak, joint in rows
+    ]
     return plain.Results(
         title=table.title,
         study=study.path.name,

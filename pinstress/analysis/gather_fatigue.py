@@ -21,6 +21,7 @@ FACTORS = (
     "Factors for surface, size, temperature, corrosion and surface treatment are not applied: the "
     "S-N data must include them."
 )
+ZERO = "Every case begins and ends at zero load, and so does every motion."
 SUPPORT = "Support by the stress gradient and the size of the highly stressed surface is left out."
 
 
@@ -100,12 +101,18 @@ def _left_out(plan: Plan, found: list[Solved], table: FatigueTable) -> tuple[str
         if not needs_fkm
         and any(decides(p, task.material.yield_strength or inf) is False for p in made.peaks)
     ]
+    tight = [t.pin.name for t in plan.tasks if any(lug.clearance < 0.0 for lug in t.lugs)]
     sentences = [
         ("No fatigue data of the material: pin", without),
         ("Not run, so that damage is too low: case", missing),
         ("Solved with different clamps, whose damage does not add up here: pin", apart),
         ("Beyond yield, where elastic stress understates the damage: pin", dict.fromkeys(yields)),
+        (
+            "Assembly stress of interference fits is taken as gone between cases, which "
+            "overstates ranges: pin",
+            dict.fromkeys(tight),
+        ),
         ("Cracks may start in singular zones, where stress is not evaluated: pin", singular),
     ]
     said = [f"{text} {', '.join(names)}." for text, names in sentences if names]
-    return (*said, SUPPORT if needs_fkm else FACTORS)
+    return (*said, ZERO, SUPPORT if needs_fkm else FACTORS)

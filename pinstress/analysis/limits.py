@@ -39,7 +39,7 @@ def _limit_load(
 ) -> LimitLoad | None:
     in_lugs = solved if isinstance(solved, LugSolution) else None
     peak = solved.solution.peak if isinstance(solved, LugSolution) else solved.peak
-    if rung is None or not _asked(peak, task, rung):
+    if rung is None or not limit_asked(peak, task, rung):
         return None
     tell(f"pin {task.pin.name}, limit load in {peak.case}")
     pin, loads = task.pin, peak.governing
@@ -55,7 +55,8 @@ def _limit_load(
         return LimitLoad("none", note=str(error))
 
 
-def _asked(peak: Peak, task: Task, rung: Rung) -> bool:
+def limit_asked(peak: Peak, task: Task, rung: Rung) -> bool:
+    """Whether the limit load of a row is computed."""
     factor = peak.safety_factor(task.material.yield_strength)
     if factor is None or peak.governing is None:
         return False

@@ -11,6 +11,7 @@ from fea.core.peak import Peak
 from fea.joint.pressure_loads import PressureLoads
 from fea.joint.solve_in_lugs import InLugs, solve_in_lugs
 from fea.single_joint import JointProblem, JointRung
+from fea.single_limit import LimitProblem
 from fea.single_mesh import Problem, Rung
 from fea.solve_pin import Asked, Solution, solve_pin
 from fea.verdict import Seen
@@ -18,6 +19,7 @@ from geometry import Pin
 from geometry.mesh.elements import Element
 from pinstress.analysis.plan import all_loads
 from pinstress.chart.in_lugs import chosen_in_lugs, climb_in_lugs, contact_reference
+from pinstress.chart.limit_loads import limit_points, limit_problem
 from pinstress.chart.measured_process import Measure, Measured
 from pinstress.chart.mesh_sequences import (
     HARMONIC,
@@ -49,7 +51,7 @@ NAMES = {
 class ChartPlan:
     """What is to be charted, every input read and found usable. peak: what `auto` says of it on
     its first mesh. beam_error: relative, of the beam by itself. chosen: of a pin in its lugs, on
-    which mesh of contact a run ends.
+    which mesh of contact a run ends. limit: load, where a run computes one.
     """
 
     study: Study
@@ -58,6 +60,7 @@ class ChartPlan:
     peak: Peak
     beam_error: float | None = None
     chosen: JointRung | None = None
+    limit: LimitProblem | None = None
 
 
 def plan_chart(study: Study, pin: str, case: str, tolerance: float | None = None) -> ChartPlan:
@@ -92,7 +95,8 @@ def plan_chart(study: Study, pin: str, case: str, tolerance: float | None = None
             beam = first(replace(asked, model="beam")).peak
             if beam.max_von_mises and beam.error_estimate is not None:
                 beam_error = beam.error_estimate / beam.max_von_mises
-    return ChartPlan(study, problem, asked, peak, beam_error)
+    limit = limit_problem(study, task, solution)
+    return ChartPlan(study, problem, asked, peak, beam_error, limit=limit)
 
 
 def _require_stress(study: Study, peak: Peak) -> None:
@@ -120,7 +124,8 @@ def _plan_in_lugs(study: Study, task: Task, asked: Asked) -> ChartPlan:
         asked.distance,
     )
     end = chosen_in_lugs(problem, solution.peak, found.joint)
-    return ChartPlan(study, problem, asked, solution.peak, chosen=end)
+    limit = limit_problem(study, task, found)
+    return ChartPlan(study, problem, asked, solution.peak, chosen=end, limit=limit)
 
 
 def chart(
@@ -144,10 +149,19 @@ def chart(
         behind += 1
 
     climb = Climb(plan.problem, plan.asked, plan.peak.model, measure, runs, tell)
+    made = _climbed(plan, climb, meshes, calculix)
+    if plan.limit is None:
+        return made
+    limits = limit_points(plan.limit, measure, runs, tell)
+    return replace(made, points=(*made.points, *limits))
+
+
+def _climbed(plan: ChartPlan, climb: Climb, meshes: int | None, calculix: bool) -> Chart:
+    """The ladders of the maximum von Mises stress."""
     if plan.chosen is not None:
         climb_in_lugs(climb, plan.chosen, calculix)
         rung, seen, cells = contact_reference(climb)
-        return _joined(plan, climb, (rung, seen), runs, cells)
+        return _joined(plan, climb, (rung, seen), cells)
     pin = plan.problem.pin
     if isinstance(pin, Pin):
         climb.to(Rung("beam"))
@@ -159,14 +173,13 @@ def chart(
     for element in elements:
         climb_solid(climb, element, meshes)
     reference = harmonic_reference(climb) if isinstance(pin, Pin) else solid_reference(climb)
-    return _joined(plan, climb, reference, runs)
+    return _joined(plan, climb, reference)
 
 
 def _joined(
     plan: ChartPlan,
     climb: Climb,
     reference: tuple[Rung | JointRung, Seen],
-    runs: int,
     cells: float = 0.0,
 ) -> Chart:
     """cells: the part of the reference's error from cells of contact, relative."""
@@ -205,7 +218,7 @@ def _joined(
             best.maximum / stress, seen.relative + cells,
         ),
         bare=max(m.bare for _, m in climb.done),
-        runs=runs,
+        runs=climb.runs,
         beam_error=plan.beam_error,
         note=_note(plan.peak),
     )  # fmt: skip

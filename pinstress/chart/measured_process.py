@@ -20,6 +20,7 @@ from pathlib import Path
 from fea.checks.calculix import CalculixError
 from fea.core.mesh_result import MeshResult
 from fea.single_joint import JointProblem, JointRung, joint_result_on
+from fea.single_limit import LimitFound, LimitProblem, LimitRung, limit_found_on
 from fea.single_mesh import Problem, Rung, result_on
 from pinstress.processes.current_folder import trusting_python
 
@@ -38,7 +39,8 @@ class MeasureLimits:
 
 @dataclass(frozen=True)
 class Measured:
-    """result: what the mesh says, None where it `failed`, for that reason. seconds: the median of
+    """result: what the mesh says, None where it `failed`, for that reason; limit: of a limit load,
+    instead. seconds: the median of
     the runs, each from the mesh to the maximum over the motion, without the start of the
     interpreter and imports. memory: the largest during the first run above the process with its
     libraries loaded, MB; bare: that process, MB. over: it failed because it passed a limit, as
@@ -51,6 +53,7 @@ class Measured:
     bare: float = 0.0
     failed: str = ""
     over: bool = False
+    limit: LimitFound | None = None
 
 
 @dataclass(frozen=True)
@@ -59,8 +62,8 @@ class MeasureJob:
     times. reference: whatever time it takes.
     """
 
-    problem: Problem | JointProblem
-    rung: Rung | JointRung
+    problem: Problem | JointProblem | LimitProblem
+    rung: Rung | JointRung | LimitRung
     before: tuple[MeshResult, ...] = ()
     runs: int = 1
     reference: bool = False
@@ -144,10 +147,16 @@ def climb(job: MeasureJob) -> Measured:
 
             others = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024.0
             result, peak = found, memory("self", "VmHWM") + others
-    return Measured(result, statistics.median(spent), max(peak - bare, LEAST), bare)
+    cost = statistics.median(spent), max(peak - bare, LEAST), bare
+    if isinstance(result, LimitFound):
+        return Measured(None, *cost, limit=result)
+    return Measured(result, *cost)
 
 
-def _result(job: MeasureJob) -> MeshResult:
+def _result(job: MeasureJob) -> MeshResult | LimitFound:
+    if isinstance(job.problem, LimitProblem):
+        assert isinstance(job.rung, LimitRung)
+        return limit_found_on(job.problem, job.rung)
     if isinstance(job.problem, JointProblem):
         assert isinstance(job.rung, JointRung)
         return joint_result_on(job.problem, job.rung, job.before)

@@ -87,7 +87,8 @@ def _report_missed(found: Chart) -> int:
             f"exceeds the tolerance of {tolerance}.", err=True,
         )  # fmt: skip
         return 1
-    if not any(p.error is not None and p.error <= found.tolerance for p in found.points):
+    errors = [p.error for p in found.points if p.error is not None and p.bracket is None]
+    if not any(error <= found.tolerance for error in errors):
         click.echo(f"Not converged: no mesh is within the tolerance of {tolerance}.", err=True)
         return 1
     return 0

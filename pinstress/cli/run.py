@@ -34,13 +34,13 @@ from pinstress.processes.pool import Progress, preload, processes
 from pinstress.study.choices import Chosen
 from pinstress.study.file import Study
 from pinstress.study.file_names import field_name
-from reports.data.results import Field, Units
+from reports.data.results import Field, Results, Units
 from reports.files import write_loads, write_reports
 from reports.tables.table import MOST_IN_CSV
 from reports.text.loads import print_loads
 from reports.text.safety_factors import print_safety_factors
 from reports.text.second_opinion import print_second_opinion
-from reports.vtk.fields import surface, write_pin
+from reports.vtk.fields import surface, write_flow, write_pin
 
 SOLVERS = (
     "gmsh",
@@ -92,6 +92,8 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
             preload(*SOLVERS)
             found = solve_tasks(plan, keep, progress, jobs=most, cache=cache, **ask)
             results = results_of(plan, found)
+            if wanted.vtk != "none":
+                _write_flows(results, staging / "vtk")
             progress("report", 1.0)
             write_reports(results, staging)
             if wanted.plots:
@@ -139,6 +141,13 @@ def _keep(staging: Path, units: Units, vtk: str, field: Field) -> None:
     if vtk != "none":
         shown = surface(field) if vtk == "surface" else field
         write_pin(shown, field_name(field.pin, field.case), staging / "vtk", units)
+
+
+def _write_flows(results: Results, directory: Path) -> None:
+    for pin in results.pins:
+        if pin.limit_load and pin.limit_load.flow:
+            path = directory / f"{field_name(pin.pin, pin.case)}.limit-load.vtu"
+            write_flow(pin.limit_load.flow, path, results.units)
 
 
 def loads_and_write(

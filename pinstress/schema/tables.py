@@ -58,6 +58,11 @@ class AnalysisTable(StrictTable):
     """Additional factor of all checks of margins, for fittings whose strength no test proves; 14
     CFR 25.625 demands 1.15."""
 
+    bending_moment: Literal["joint", "formula"] = "joint"
+    """Which bending moments and shear forces the margins of pins in solved joints take: those of
+    the joint model ("joint") or those of even loads on the bands ("formula"); the others are
+    listed for comparison. Pins without a joint model always have the formulas'."""
+
     @model_validator(mode="after")
     def _ultimate_is_more(self) -> "AnalysisTable":
         if self.ultimate_factor < self.limit_factor:

@@ -14,7 +14,9 @@ from fea.core.peak import Peak
 from fea.core.pin_loads import PinLoads
 from fea.joint.lugs.fit import on_structure
 from fea.joint.records import JointResult
+from fea.plastic.records import LimitLoad
 from fea.strength.bending_arms import BendingArms, bending_arms
+from fea.strength.collapse import collapse_margin
 from fea.strength.margin import PinMargin, not_made
 from fea.strength.model_stress import model_margins
 from fea.strength.pin_checks import formula_margins
@@ -36,10 +38,14 @@ class Checked:
     arms: BendingArms | None = None
 
 
-def checked(study: Study, task: Task, peak: Peak, joint: JointResult | None) -> Checked:
+def checked(
+    study: Study, task: Task, peak: Peak, joint: JointResult | None, limit: LimitLoad | None = None
+) -> Checked:
     """By formula and by the model. A pin that is cut is checked as if it were not."""
     factors = load_factors(study)
     margins = model_margins(peak, task.material, factors)
+    if limit is not None:
+        margins.append(collapse_margin(limit, factors, peak.time))
     loads = next(x for x in task.loads if x.case == peak.case)
     profile = task.pin.profile if isinstance(task.pin, CutPin) else task.pin
     checks: tuple[HandCheck, ...] = ()
@@ -47,7 +53,7 @@ def checked(study: Study, task: Task, peak: Peak, joint: JointResult | None) -> 
     if not isinstance(profile, Pin):
         why = "a profile, which a pin from a file does not have"
     else:
-        s, why = _situation(study, task, profile, loads)
+        s, why = _situation(study, task, profile, loads, joint)
         if s is None:
             checks = _lugs_checked(study, task, profile, loads)
         else:
@@ -80,7 +86,7 @@ def factor_assumption(study: Study, found: Sequence[Checked]) -> tuple[str, ...]
 
 
 def _situation(
-    study: Study, task: Task, profile: Pin, loads: PinLoads
+    study: Study, task: Task, profile: Pin, loads: PinLoads, joint: JointResult | None
 ) -> tuple[Situation | None, str]:
     """None, and why, where equilibrium does not give all forces."""
     structure = [x.connection for x in task.lugs if x.connection not in profile.connections]
@@ -93,7 +99,11 @@ def _situation(
     pin = on_structure(profile, task.lugs) if structure else profile
     factors = load_factors(study)
     made_of, clamps = task.material, task.clamps
-    return Situation(pin, made_of, whole, clamps, lugs, factors, table.replaceable), ""
+    even = study.table.analysis.bending_moment == "formula"
+    return Situation(
+        pin, made_of, whole, clamps, lugs, factors, table.replaceable,
+        joint.along if joint else None, even,
+    ), ""  # fmt: skip
 
 
 def _lugs_checked(study: Study, task: Task, pin: Pin, loads: PinLoads) -> tuple[HandCheck, ...]:

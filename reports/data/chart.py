@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 NAME = "chart"
+LIMIT_LOADS = "hinges", "elastic-plastic"  # models of the limit load
 
 
 @dataclass(frozen=True)
@@ -12,7 +13,8 @@ class ChartPoint:
     """One mesh of one element of a model. dofs: unknowns, 0 of a beam. seconds: median wall time
     from the mesh to the maximum over the motion. memory: the most it took above the process with
     its libraries loaded, MB. error: of the maximum relative to the reference. chosen: whether
-    `auto` ends on it. All are None where it `failed`, for that reason.
+    `auto` ends on it. All are None where it `failed`, for that reason. bracket: of a limit load,
+    whose error is half of its width over its middle.
     """
 
     model: str
@@ -24,6 +26,7 @@ class ChartPoint:
     error: float | None = None
     chosen: bool = False
     failed: str = ""
+    bracket: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)

@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
-from fea.strength.bending_stress import CONCENTRATED
 from fea.strength.margin import PinMargin
 from reports.data.results import Results
 
 
 def governing(results: Results) -> list[PinMargin]:
-    """Of every pin in every case, the worst first; none of those of which no check was made.
-
-    Bending by concentrated forces governs no pin whose joint was solved: its moment is known.
-    """
-    solved = {(arms.pin, arms.case) for arms in results.arms if arms.joint}
+    """Of every pin in every case, the worst first; none of those of which no check was made."""
     found: dict[tuple[str, str], PinMargin] = {}
     for margin in results.margins:
         key = margin.pin, margin.case
-        if margin.margin.method == CONCENTRATED.method and key in solved:
-            continue
-        if margin.used >= 0.0 and (key not in found or margin.used > found[key].used):
+        may = margin.margin.governs and margin.used >= 0.0
+        if may and (key not in found or margin.used > found[key].used):
             found[key] = margin
     return sorted(found.values(), key=lambda margin: -margin.used)
 

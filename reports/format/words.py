@@ -62,6 +62,8 @@ def verdict_words(verdict: str, yields: bool | None) -> str:
 
 def undecided_because(pin: PinResult) -> str:
     """Why a row is not decided."""
+    if pin.max_von_mises == 0.0:
+        return "no stress"
     reasons = {
         "unconverged": "not converged",
         "converged": "no yield strength",

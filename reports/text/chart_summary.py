@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from reports.data.chart import Chart, ChartPoint
+from reports.data.chart import LIMIT_LOADS, Chart, ChartPoint
 from reports.format.numbers import engineering, short
 
 LEAST = 1e-12  # replaces an error of zero
@@ -15,6 +15,8 @@ OURS = {"harmonic": "the harmonic model", "contact": "contact by the harmonic mo
 THEIRS = {"solid": "the solid model", "calculix": "CalculiX"}
 SHORT = {
     "foundation": "foundation",
+    "hinges": "limit load: hinges",
+    "elastic-plastic": "limit load: elastic-plastic",
     "calculix": "CalculiX",
     "Timoshenko beam": "beam",
     "quadratic triangles": "harmonic",
@@ -75,7 +77,7 @@ def summary(chart: Chart) -> str:
     """The sentences under the table: cheapest model within the tolerance, cost of equal errors, and
     errors of models of another form.
     """
-    said = (_cheapest(chart), _ratio(chart), _another_form(chart))
+    said = (_cheapest(chart), _ratio(chart), _another_form(chart), _limit_load(chart))
     return " ".join(text for text in said if text)
 
 
@@ -84,7 +86,7 @@ def _cheapest(chart: Chart) -> str:
     found = [
         staying(curve, chart.tolerance)
         for (model, _), curve in chart.curves.items()
-        if model not in ANOTHER_FORM
+        if model not in (*ANOTHER_FORM, *LIMIT_LOADS)
     ]
     first = [within[0] for within in found if within]
     if not first:
@@ -111,6 +113,19 @@ def _another_form(chart: Chart) -> str:
     if not found:
         return ""
     return f"Errors of simpler models of the joint, on their finest meshes: {', '.join(found)}."
+
+
+def _limit_load(chart: Chart) -> str:
+    """The bracket of the model on which a run ends."""
+    found = [p for p in chart.points if p.bracket and p.chosen]
+    if not found:
+        return ""
+    (best,) = found
+    lower, upper = (engineering(x, 4) for x in best.bracket or ())
+    return (
+        f"Limit load: {lower} to {upper} times the loads by {label(best)} in "
+        f"{seconds(best.seconds)}; its error is half of the bracket's width."
+    )
 
 
 def _curves(chart: Chart, models: dict[str, str]) -> tuple[str, dict[str, Curve]]:
@@ -172,7 +187,7 @@ def curve_name(model: str, element: str) -> str:
 
 def label(point: ChartPoint) -> str:
     """A point as text."""
-    if point.model in ("beam", "foundation"):
+    if point.model in ("beam", "foundation", "hinges"):
         return point.model
     dofs = f", {point.dofs:,} unknowns" if point.dofs else ""
     return f"{point.model} ({point.element}{dofs})"

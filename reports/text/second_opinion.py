@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING
 
 from fea.checks.opinions import (
     SAME_DISPLACEMENT,
+    SAME_LIMIT,
     SAME_LOAD,
     SAME_MAXIMUM,
     SAME_MOMENT,
     SAME_STRESS,
     ContactOpinion,
+    LimitOpinion,
     Opinion,
 )
 from reports.data.results import Results, Units
@@ -36,9 +38,11 @@ def outcome_of(opinion: Opinion) -> str:
 
 def sentences(opinion: Opinion, units: Units) -> list[str]:
     """What CalculiX found for a row, and how it compares."""
+    limit = _limit(opinion.limit)
     if opinion.failure:
-        return [f"Not compared with CalculiX: {opinion.failure}."]
+        return [f"Not compared with CalculiX: {opinion.failure}.", *limit]
     said = _contact(opinion, units) if opinion.contact else [_same_mesh(opinion, units)]
+    said += limit
     if opinion.complaint:
         return [*said, f"Beyond the limits: {opinion.complaint}."]
     return said
@@ -81,6 +85,17 @@ def _contact(o: Opinion, units: Units) -> list[str]:
     return said
 
 
+def _limit(limit: LimitOpinion | None) -> list[str]:
+    """What became of a limit load."""
+    if limit is None or limit.theirs is None:
+        return [] if limit is None else [f"CalculiX has no {limit.failure}."]
+    return [
+        f"Past yield, on our coarsest mesh of the limit load ({limit.unknowns:,} unknowns), "
+        f"CalculiX carries {engineering(limit.theirs, 4)} times the loads, we "
+        f"{engineering(limit.ours, 4)} ({_signed(limit.difference)})."
+    ]
+
+
 def _meshes(o: Opinion, c: ContactOpinion) -> str:
     """Whether CalculiX's mesh explains the difference in stress."""
     change, error, difference = abs(c.stress_change), o.own_error, abs(o.deviation or 0.0)
@@ -111,11 +126,15 @@ def print_second_opinion(results: Results, console: Console) -> None:
                 table.add_row(Text(o.pin, "bold"), Text(o.case), *cells(o), _word(o))
             console.print()
             console.print(table)
+    for o in opinions:
+        for line in _limit(o.limit):
+            console.print(Text(f"Pin {o.pin}, {o.case}: {line}"))
     console.print(Text(summary(others, pressed)))
 
 
 def _in_lugs(results: Results, opinion: Opinion) -> bool:
-    return results[opinion.pin, opinion.case].joint is not None
+    joint = results[opinion.pin, opinion.case].joint
+    return joint is not None and joint.model != "prescribed"
 
 
 def _table(headings: Sequence[str]) -> Table:
@@ -200,4 +219,6 @@ def summary(others: Sequence[Opinion], pressed: Sequence[Opinion]) -> str:
             f"{SAME_MAXIMUM:.0%} of the stress at the point of our maximum, each plus the error; "
             f"{SAME_LOAD:.0%} of the load of a lug elsewhere along it."
         )
+    if any(o.limit for o in every):
+        text += f" Limit for limit loads on the same mesh: {SAME_LIMIT:.0%}."
     return text

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from fea.plastic.records import FlowField
 from reports.data.results import BandLoad, Field, Floats, Units, Volume
 from reports.vtk.render import render_pin
 from reports.vtk.renderer import renderer_problem
@@ -19,6 +20,7 @@ __all__ = [
     "render_pin",
     "renderer_problem",
     "surface",
+    "write_flow",
     "write_pin",
     "write_vtu",
 ]
@@ -90,6 +92,17 @@ def write_pin(field: Field, name: str, directory: Path, units: Units) -> None:
             [(time, kind, f"{name}/{file}") for time, kind, file in parts],
             directory / f"{name}.pvd",
         )
+
+
+def write_flow(flow: FlowField, path: Path, units: Units) -> None:
+    """Write how a pin flows at its limit load as a VTU file."""
+    data = {
+        f"displacement [{units.length}]": flow.displacement,
+        "equivalent plastic strain": flow.plastic_strain,
+        f"von Mises [{units.stress}]": flow.von_mises,
+    }
+    whole = {"load factor": np.array([flow.factor])}
+    write_block(Block(flow.points, flow.cells, "hexahedron20", data, whole=whole), path)
 
 
 def _volume(volume: Volume, units: Units) -> Block:

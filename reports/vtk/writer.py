@@ -19,7 +19,7 @@ from reports.data.results import Floats
 
 TYPES = {
     **{"vertex": 1, "triangle": 5, "quad": 9, "tetra": 10, "wedge": 13},
-    **{"triangle6": 22, "tetra10": 24, "wedge15": 26},
+    **{"triangle6": 22, "tetra10": 24, "wedge15": 26, "hexahedron20": 25},
 }
 Data = Mapping[str, "NDArray[Any] | Sequence[str]"]  # numbers, or texts
 

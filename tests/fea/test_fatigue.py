@@ -1,5 +1,7 @@
 """Fatigue against hand calculations and the printed examples of the FKM guideline."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -52,6 +54,25 @@ def test_pure_shear_of_either_direction_is_positive() -> None:
     shear = np.zeros((2, 6))
     shear[:, 3] = [1.0, -1.0]
     assert signed_von_mises(shear) == pytest.approx(np.sqrt([3.0, 3.0]))
+
+
+@pytest.mark.parametrize("cylindrical", [False, True])
+def test_the_normal_of_the_plane_is_in_the_axes_of_the_pin(cylindrical: bool) -> None:
+    """Alternating tension along the tangent at 90 degrees from x, which is -x: without mean stress
+    the plane of largest shear is at 45 degrees to it.
+    """
+    stress = _uniaxial([100.0, -100.0], (0.0, 1.0, 0.0))
+    case = CaseHistory("a", None, stress, abs(signed_von_mises(stress)), signed_von_mises(stress))
+    history = PointHistory("P", 1, (0.0, 1.0, 0.5), "", (case,), cylindrical)
+    curve = FatigueMaterial(SnCurve((50.0, 1e6), 5.0))
+    found = _assessed(history, Spectrum({"a": 1.0}, "critical-plane"), curve)
+    assert found.normal is not None
+    along = found.normal[0 if cylindrical else 1]
+    assert abs(along) == pytest.approx(math.sqrt(0.5), abs=1e-6)
+    assert np.linalg.norm(found.normal) == pytest.approx(1.0)
+    assert found.amplitude == pytest.approx(50.0)
+    plain = _assessed(history, Spectrum({"a": 1.0}), curve)
+    assert plain.normal is None
 
 
 def test_turning_points_keep_the_ends_and_no_plateau_twice() -> None:

@@ -18,7 +18,11 @@ from fea.core.material import Material
 from fea.core.peak import Peak
 from fea.core.pin_loads import PinLoads
 from fea.joint.lugs.lug import Lug
+from fea.joint.records import JointForces
+from fea.plastic.records import LimitLoad
 from fea.strength.bending_arms import bending_arms, layout
+from fea.strength.bending_stress import OF_JOINT, bending_margin
+from fea.strength.collapse import collapse_margin
 from fea.strength.eurocode_pins import (
     PinInHole,
     bearing_resistance,
@@ -30,8 +34,8 @@ from fea.strength.eurocode_pins import (
 from fea.strength.margin import Margin
 from fea.strength.model_stress import model_margins
 from fea.strength.pin_checks import formula_margins
-from fea.strength.plastic_bending import plastic_moment, plastic_shear, section_factor
-from fea.strength.section_forces import section_forces
+from fea.strength.plastic_bending import plastic_shear
+from fea.strength.section_forces import of_joint, section_forces
 from fea.strength.situation import LoadFactors, Situation, with_supports
 from geometry import Pin, Segment
 from tests.support.plain_pins import double_shear
@@ -151,15 +155,16 @@ def test_contact_stress_rises_as_the_root_of_the_force() -> None:
 @pytest.mark.parametrize(("ratio", "printed"), [(0.0, 1.69765), (0.5, 1.58448)])
 def test_plastic_section_factors(ratio: float, printed: float) -> None:
     """Printed, and from the first moment of half of the section."""
-    assert section_factor(ratio) == pytest.approx(printed, abs=5e-6)
+    section = Circle(1.0, ratio)
+    assert section.plastic_modulus / section.modulus == pytest.approx(printed, abs=5e-6)
     first, _ = dblquad(lambda r, t: 2.0 * r * r * math.sin(t), 0.0, math.pi, ratio, 1.0)
-    assert plastic_moment(Circle(1.0, ratio), 1.0) == pytest.approx(first, rel=1e-9)
+    assert section.plastic_modulus == pytest.approx(first, rel=1e-9)
 
 
 def test_a_thin_tube_carries_less_bending_than_it_has_fibres() -> None:
     """4 / pi in the limit, and its plastic shear is that of a flow around it."""
-    assert section_factor(1.0 - 1e-6) == pytest.approx(4.0 / math.pi, rel=1e-5)
     tube = Circle(1.0, 1.0 - 1e-6)
+    assert tube.plastic_modulus / tube.modulus == pytest.approx(4.0 / math.pi, rel=1e-5)
     flow = 4.0 * 1e-6 * 1.0 / math.sqrt(3.0)  # twice the depth, one wall on each side
     assert plastic_shear(tube, 1.0) == pytest.approx(flow, rel=1e-5)
 
@@ -265,6 +270,57 @@ def test_two_lugs_of_a_structure_take_what_equilibrium_gives() -> None:
     assert with_supports(pin, loads, ()) is loads
 
 
+def test_bending_and_shear_of_a_solved_joint_take_its_section_forces() -> None:
+    """A moment of half the even one: half the utilisation, at the joint's own instant; the even
+    loads and the concentrated forces are for comparison, or the joint is.
+    """
+    s = in_double_shear(0.008, 0.001, 0.015, 0.016, 5000.0)
+    even, _ = section_forces(s)
+    z = np.union1d(np.linspace(0.0, s.pin.length, 40), s.pin.stations)
+    moment = np.interp(z, even.z, even.moment[0])
+    shear = np.full_like(z, 2500.0)
+    course = np.array([0.1, 0.5])[:, None]
+    along = JointForces(z, np.array([1.0, 2.0]), 2 * course * shear, course * moment)
+    plain = margins(s)
+    found = margins(replace(s, joint=along, replaceable=True))
+    bent = found["EN 1993 bending", "ultimate"]
+    assert bent.utilisation == pytest.approx(
+        0.5 * (plain["EN 1993 bending", "ultimate"].utilisation or 0.0), rel=1e-2
+    )
+    assert (bent.time, bent.basis, bent.governs) == (2.0, "joint model", True)
+    assert bent.shown == "EN 1993 bending (joint model)"
+    assert plain["EN 1993 bending", "ultimate"].shown == "EN 1993 bending"
+    assert found["bending, joint model", "limit"].utilisation == pytest.approx(
+        0.5 * (plain["bending", "limit"].utilisation or 0.0), rel=1e-2
+    )
+    shear_of = found["EN 1993 shear", "ultimate"]
+    assert shear_of.demand == pytest.approx(2500.0)
+    compared = {method for (method, _), m in found.items() if not m.governs}
+    assert compared == {
+        f"{name}, for comparison"
+        for name in (
+            "bending", "bending, concentrated forces", "plastic bending and shear",
+            "EN 1993 shear", "EN 1993 bending", "EN 1993 shear and bending",
+            "EN 1993 bending, replaceable",
+        )
+    }  # fmt: skip
+    strict = margins(replace(s, joint=along, even_governs=True))
+    assert strict["EN 1993 bending", "ultimate"] == plain["EN 1993 bending", "ultimate"]
+    assert not strict["bending, joint model, for comparison", "limit"].governs
+    assert all(m.governs for m in plain.values())
+
+
+def test_a_shoulder_is_checked_on_both_sides() -> None:
+    """The moment of the joint at a step loads the thinner section there."""
+    pin = Pin("P", (Segment(0.02, 0.03, connection="A"), Segment(0.02, 0.02, connection="B")))
+    z = np.array([0.0, 0.02, 0.04])
+    along = JointForces(z, None, np.zeros((1, 3)), np.array([[0.0, 100.0, 0.0]]))
+    s = replace(in_double_shear(0.008, 0.001, 0.015, 0.016, 5000.0), pin=pin)
+    found = bending_margin(s, OF_JOINT, of_joint(s, along))
+    assert found.demand == pytest.approx(100.0 / (math.pi / 32.0 * 0.02**3))
+    assert found.at == "B"
+
+
 def test_arms_stand_next_to_the_joint_model() -> None:
     s = in_double_shear(0.01, 0.001, 0.02, 0.02, 50e3)
     found = bending_arms(s, 200.0, "contact")
@@ -275,6 +331,16 @@ def test_arms_stand_next_to_the_joint_model() -> None:
     uneven = in_double_shear(0.01, 0.001, 0.02, 0.02, 50e3).loads
     forces = uneven.forces * np.array([1.2, 1.0, 0.8])[:, None]
     assert layout(replace(s, loads=replace(uneven, forces=forces))).endswith("not symmetrical")
+
+
+def test_a_limit_load_is_a_margin_at_ultimate_load() -> None:
+    """1.35 to 1.40 times the loads: short of 1.5 by a tenth, by the lower end."""
+    factors = LoadFactors(fitting=1.15)
+    found = collapse_margin(LimitLoad("solid", 1.35, 1.40, True), factors, 0.2)
+    assert found.margin == pytest.approx(1.35 / (1.5 * 1.15) - 1.0)
+    assert (found.level, found.time) == ("ultimate", 0.2)
+    none = collapse_margin(LimitLoad("none", note="no mesh"), factors, None)
+    assert none.needs == "a limit load: no mesh"
 
 
 @pytest.mark.parametrize(

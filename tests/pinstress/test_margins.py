@@ -111,12 +111,23 @@ def test_a_pin_in_two_lugs_of_a_structure_is_a_beam_on_two_supports() -> None:
     changed = {**study(model="auto", joints="foundation"), "case": pulled}
     results = run(study_from({**changed, "pin": {"P": {**bare, "profile": profile}}}))
     found = {(m.margin.method, m.margin.level): m.margin for m in results.margins}
-    assert found["EN 1993 bending", "ultimate"].demand == pytest.approx(5000.0 * 35.0 / 8.0)
+    even = found["EN 1993 bending, for comparison", "ultimate"]
+    assert even.demand == pytest.approx(5000.0 * 35.0 / 8.0)
     (arms,) = results.arms
     assert arms.layout == "double shear"
     assert arms.model == "foundation"
     assert arms.joint is not None
     assert arms.joint < arms.concentrated
+    governs = found["EN 1993 bending", "ultimate"]
+    assert governs.basis == "joint model"
+    assert governs.demand == pytest.approx(arms.joint)
+    analysis = {**changed["analysis"], "bending_moment": "formula"}
+    strict = run(
+        study_from({**changed, "analysis": analysis, "pin": {"P": {**bare, "profile": profile}}})
+    )
+    found = {(m.margin.method, m.margin.level): m.margin for m in strict.margins}
+    assert found["EN 1993 bending", "ultimate"].demand == even.demand
+    assert not found["EN 1993 bending, for comparison", "ultimate"].governs
     profile.append({"length": 8, "diameter": 16, "name": "third"})
     three = {**bare, "profile": profile, "lug": {**bare["lug"], "third": {}}}
     needs = not_made(run(study_from({**changed, "pin": {"P": three}})))
@@ -179,3 +190,30 @@ def test_exit_status_and_files(
     ]
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     assert 'id="margins"' in page
+
+
+@pytest.mark.slow
+def test_past_yield_from_the_study_to_the_files(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A stub that bends and stays bent: bracket, margin of collapse at ultimate load, field."""
+    monkeypatch.chdir(tmp_path)
+    profile = [
+        {"length": 40, "diameter": 20},
+        {"length": 10, "diameter": 20, "connection": "L"},
+    ]
+    given = {
+        **study({"yield_strength": "235 MPa"}, limit_load="always"),
+        "pin": {"P": {"material": "steel", "clamp": ["start"], "profile": profile}},
+        "case": {"pull": {"kind": "given", "forces": {"L": [4500, 0]}}},
+    }
+    Path("study.toml").write_text(study_from(given).text)
+    assert run_command_line(["run", "study.toml", "--no-pictures", "--out", "out"]) == 0
+    written = json.loads(Path("out/results.json").read_text())
+    (limit,) = [p["limit_load"] for p in written["pins"]]
+    assert (limit["method"], limit["carries"]) == ("solid", True)
+    assert 1.0 < limit["lower"] < limit["upper"] < 1.05 * limit["lower"]
+    assert all(mesh["charge"] > 0.0 for mesh in limit["meshes"])
+    (row,) = [m for m in written["margins"] if m["method"] == "limit load, collapse"]
+    assert row["margin"] == pytest.approx(limit["lower"] / 1.5 - 1.0)
+    assert Path("out/vtk/P_pull.limit-load.vtu").is_file()

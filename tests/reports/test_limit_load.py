@@ -1,16 +1,21 @@
 """The limit load of a row in tables, in results.json and as a plot."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+import pyvista
 
-from fea.plastic.records import LimitLoad, LoadCurve, PlasticMesh
+from fea.plastic.records import FlowField, LimitLoad, LoadCurve, PlasticMesh
+from geometry import Pin, Segment
+from geometry.mesh.hexahedra import HexSize, hexahedra, twenty
 from pinstress.cache.serialise import pack, unpack
 from reports.data.results import Results
 from reports.plots.strength.limit_load import limit_plot
 from reports.tables.json_results import to_json
 from reports.tables.strength.limit_load import limit_grid, limit_load_table, limit_word
+from reports.vtk.fields import write_flow
 
 CURVE = LoadCurve(
     np.array([0.0, 0.5, 0.9]), np.array([0.0, 1e-3, 4e-3]), np.array([0.0, 0.0, 2.5e-3])
@@ -22,9 +27,26 @@ FOUND = LimitLoad(
     carries=False,
     permanent_set=1e-3,
     permanent_at=0.84,
-    meshes=(PlasticMesh(900, 0.9, 0.92, 0.05, 12, 40), PlasticMesh(3000, 0.89, 0.91, 0.03, 12, 44)),
+    meshes=(
+        PlasticMesh(900, 0.9, 0.92, 0.05, 0.01, 12, 40),
+        PlasticMesh(3000, 0.89, 0.91, 0.03, 0.01, 12, 44),
+    ),
     curve=CURVE,
 )
+
+
+def test_a_file_of_flow_has_the_pin(results: Results, tmp_path: Path) -> None:
+    """VTK finds the volume of the quarter that was computed, so the nodes are in its order."""
+    pin = Pin("p", (Segment(1.0, 2.0), Segment(1.0, 3.0)), fillet=0.2)
+    mesh = hexahedra(pin, HexSize(4, 0.25), 1)
+    strain = mesh.nodes[:, 2].copy()
+    flow = FlowField(mesh.nodes, mesh.elements[:, twenty()], 0.0 * mesh.nodes, strain, strain, 1.2)
+    write_flow(flow, tmp_path / "flow.vtu", results.units)
+    read = pyvista.read(tmp_path / "flow.vtu")
+    assert set(read.celltypes.tolist()) == {25}
+    assert read.volume == pytest.approx(pin.volume / 4.0, rel=2e-2)
+    assert np.max(read.point_data["equivalent plastic strain"]) == pytest.approx(2.0)
+    assert read.field_data["load factor"][0] == pytest.approx(1.2)
 
 
 @pytest.mark.parametrize(

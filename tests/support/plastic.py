@@ -6,10 +6,11 @@ import numpy as np
 
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads, UnitLoad
-from fea.plastic.body import Elements, FlowingBody, untied
+from fea.plastic.body import FlowingBody, untied
 from fea.plastic.flow import FlowRule
 from fea.plastic.limit_load import OnMesh, limit_on_mesh
-from fea.plastic.pin_body import acting_at, hexahedral, nodal_forces, pin_body
+from fea.plastic.mechanism import Finer
+from fea.plastic.pin_body import acting_at, finer, hexahedral, nodal_forces, pin_body
 from geometry import Pin, Segment
 from geometry.arrays import Floats
 from geometry.mesh.hexahedra import HexSize, hexahedra
@@ -38,8 +39,7 @@ def couples(axis: int) -> PinLoads:
 
 def limit(pin: Pin, loads: PinLoads, fineness: HexSize, clamps: tuple[str, ...] = ()) -> OnMesh:
     made = pin_body(pin, RULE, clamps, acting_at(loads, 0), fineness)
-    fine = hexahedral(made.mesh.nodes, made.mesh.elements, 3)
-    return limit_on_mesh(made.body, made.forces, fine)
+    return limit_on_mesh(made.body, made.forces, finer(made.body.elements))
 
 
 def elastic_moment(bore: float = 0.0) -> float:
@@ -47,7 +47,7 @@ def elastic_moment(bore: float = 0.0) -> float:
     return YIELD * math.pi / 32 * D**3 * (1 - bore**4)
 
 
-def cylinder(around: int) -> tuple[FlowingBody, Floats, Elements]:
+def cylinder(around: int) -> tuple[FlowingBody, Floats, Finer]:
     """A quarter of a thick cylinder, 1 and 1.3 m, in plane strain, the forces of 1 Pa from outside,
     which makes it flow as a pressure inside does, and its elements with more points.
     """
@@ -59,4 +59,4 @@ def cylinder(around: int) -> tuple[FlowingBody, Floats, Elements]:
     ties = untied(len(mesh.nodes)).without(np.flatnonzero(zero))
     pressure = ((UnitLoad("a", "pressure", 0, (("a", 1.0),)), 0, 1.0),)
     forces = ties.matrix.T @ nodal_forces(pin, RULE, mesh, elements, pressure).ravel()
-    return FlowingBody(elements, ties, RULE), forces, hexahedral(mesh.nodes, mesh.elements, 3)
+    return FlowingBody(elements, ties, RULE), forces, finer(elements)

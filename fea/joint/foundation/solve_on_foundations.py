@@ -23,6 +23,7 @@ from fea.core.over_time import rise_between, through_time
 from fea.core.peak import ErrorParts, Note, Peak, Refinement
 from fea.core.pin_loads import Amounts, AnyLoads, Floats, PinLoads, UnitLoad
 from fea.core.solution import Picture
+from fea.joint.bending import joint_forces, stations
 from fea.joint.foundation.bounds import LOCAL, Bounded, bounded
 from fea.joint.foundation.foundation_model import PLAIN_ERROR, FoundationModel, JointFoundation
 from fea.joint.foundation.plane_contact import half_angle, largest_pressure
@@ -45,7 +46,6 @@ LEAVES_OUT = (
     "A beam on foundations leaves out local stress at lugs and shoulders; the error includes its "
     "measured effect, but not the peaks at the edges of lugs."
 )
-STATIONS = 61  # along the pin, besides the ends of rings
 GOVERNS = 2.0  # times LOCAL of the largest pressure: a smaller stress may not govern
 
 
@@ -214,7 +214,10 @@ def _of_case(
     history = (Refinement(0, found.maximum, time.perf_counter() - start),)
     solution = Solution(replace(peak, governing=here, history=history), answer, case, found.instant)
     whole, remark = over.at(here)
-    joint = _joint(over.own.model.solve(here), over.own.model, whole, remark)
+    model, every = over.own.model, over.own.model.solve(case)
+    joint = _joint(model.solve(here), model, whole, remark)
+    along = joint_forces(every.pin, every.mass, every.bands, every.loads)
+    joint = replace(joint, along=along)
     return LugSolution(solution, joint, lambda links: links)
 
 
@@ -249,7 +252,7 @@ def _joint(
     found: JointFoundation, model: FoundationModel, over: JointRange | None, remark: str
 ) -> JointResult:
     """Of a single instant."""
-    z = np.union1d(np.linspace(*found.pin.ends, STATIONS), found.pin.stations)
+    z = stations(found.pin)
     moment = np.linalg.norm(found.bending_moment(z)[0], axis=1)
     return JointResult(
         model="foundation",

@@ -22,7 +22,7 @@ HISTORY = ("pin", "case", "time", "point", "von_mises", "signed")
 POINTS = ("pin", "point", "x", "y", "z", "chosen")
 COLUMNS = (
     *("pin", "point", "x", "y", "z", "method", "damage", "life", "life_10", "life_50", "life_90"),
-    *("utilisation", "amplitude", "mean_stress", "note"),
+    *("utilisation", "amplitude", "mean_stress", "note", "normal_x", "normal_y", "normal_z"),
 )
 
 
@@ -55,6 +55,7 @@ def _rows(fatigue: Fatigue | None) -> Iterator[list[Cell]]:
         yield [
             *(p.pin, p.point, *p.location, p.method, p.damage, p.life, *lives),
             *(p.utilisation, p.amplitude, p.mean, p.note),
+            *(p.normal or (None,) * 3),
         ]
 
 
@@ -74,6 +75,7 @@ def fatigue_grid(results: Results) -> Grid | None:
     head += [f"at {p}" for p in PROBABILITIES] if scattered else []
     head += ["utilisation"] if fatigue.life is not None else []
     head += [f"amplitude [{stress}]", f"mean [{stress}]"]
+    head += ["normal of the plane"] if fatigue.method == "critical-plane" else []
     body = []
     for p in worst_points(fatigue):
         lives = [life_words(x) for x in p.lives] or [DASH] * len(PROBABILITIES)
@@ -84,6 +86,7 @@ def fatigue_grid(results: Results) -> Grid | None:
                 *(lives if scattered else []),
                 *([_per_cent(p.utilisation)] if fatigue.life is not None else []),
                 *(engineering(p.amplitude, 3), engineering(p.mean, 3)),
+                *([", ".join(f"{x:.2f}" for x in p.normal)] if p.normal else []),
             ]
         )
     return Grid(head, body, [False, *[True] * (len(head) - 1)])
@@ -107,7 +110,8 @@ def fatigue_sentence(fatigue: Fatigue) -> str:
         return f"Fatigue: no damage at any critical point ({METHODS[fatigue.method]})."
     text = f"Fatigue: pin {worst.pin} reaches damage 1 after {life_words(worst.life)} {unit}s"
     if worst.lives:
-        text += f" ({life_words(worst.lives[0])} at 10 %, {life_words(worst.lives[2])} at 90 %)"
+        few, many = life_words(worst.lives[0]), life_words(worst.lives[2])
+        text += f" ({few} at 10 %, {many} at 90 % failure probability)"
     if worst.utilisation is not None:
         text += f"; the design life uses {_per_cent(worst.utilisation)} of it"
     return f"{text} ({METHODS[fatigue.method]})."
@@ -142,4 +146,5 @@ def _point(p: PointFatigue) -> dict[str, Any]:
         "amplitude": finite(p.amplitude),
         "mean": finite(p.mean),
         "note": p.note,
+        "plane_normal": None if p.normal is None else [finite(x) for x in p.normal],
     }

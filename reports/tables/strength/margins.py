@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from fea.strength.margin import RATIO, PinMargin
@@ -12,7 +13,7 @@ from reports.format.numbers import DASH, engineering, finite, short
 from reports.tables.table import Table, unit_name
 
 COLUMNS = ("pin", "case", "method", "clause", "at", "level", "demand", "allowable", "factor",
-           "utilisation", "margin", "unit", "time", "basis", "not_made")  # fmt: skip
+           "utilisation", "margin", "unit", "time", "basis", "not_made", "governs")  # fmt: skip
 
 SHOWN = {name: name for name in ("pin", "case", "check", "margin", "utilisation", "loads", "at",
          "time", "demand", "allowable", "clause")}  # fmt: skip
@@ -20,7 +21,9 @@ NUMERIC = ("time", "demand", "allowable", "utilisation", "margin")
 READING_MARGINS = (
     "Margin of safety = allowable / (factor × demand) − 1, of the check that governs each pin in "
     "each case. Checks against yield are made at limit load, those against rupture and collapse at "
-    "ultimate load; all checks of a pin are with the pin, and in margins.csv."
+    "ultimate load; all checks of a pin are with the pin, and in margins.csv. Bending and shear of "
+    "a pin whose joint was solved take the moments and forces of the joint model, unless the study "
+    "asks for those of the formulas; checks for comparison govern nothing."
 )
 READING_ARMS = (
     "The largest bending moment along the pin, with the force of each link even over its band, "
@@ -60,6 +63,7 @@ def _row(found: PinMargin, results: Results) -> dict[str, Any]:
         "time": finite(m.time),
         "basis": m.basis,
         "not_made": f"needs {m.needs}" if m.needs else "",
+        "governs": m.governs,
     }
 
 
@@ -82,9 +86,10 @@ def worst_grid(results: Results) -> Grid | None:
 
 
 def margins_grid(results: Results, pin: str, case: str) -> Grid | None:
-    """All checks that were made of a pin in a case, the worst first."""
+    """All checks that were made of a pin in a case, the worst first, comparisons last."""
     own = [m for m in results.margins if (m.pin, m.case) == (pin, case) and m.used >= 0.0]
-    return _grid(sorted(own, key=lambda m: -m.used), results, without=("pin", "case"))
+    order = sorted(own, key=lambda m: (not m.margin.governs, -m.used))
+    return _grid(order, results, without=("pin", "case"))
 
 
 def not_made_words(results: Results) -> list[str]:
@@ -101,7 +106,9 @@ def not_made_words(results: Results) -> list[str]:
 
 def not_made_briefly(results: Results) -> str:
     """The same in a sentence without the checks; empty where all were made."""
-    needs = ", ".join(not_made(results))
+    every = not_made(results)
+    alone = [x for x in every if x.count(", ") == 0 or not all(p in every for p in x.split(", "))]
+    needs = ", ".join(alone)
     return f"Checks not made, for want of: {needs}." if needs else ""
 
 
@@ -143,6 +150,12 @@ def _grid(found: list[PinMargin], results: Results, without: tuple[str, ...] = (
     return Grid([heads[n] for n in names], body, [n in NUMERIC for n in names]) if body else None
 
 
+def _signed(margin: float | None) -> str:
+    if margin is not None and math.isinf(margin):
+        return "+∞"
+    return f"{'+' if (margin or 0.0) > 0.0 else ''}{engineering(margin, 3)}"
+
+
 def _cells(found: PinMargin, results: Results) -> dict[str, str]:
     m = found.margin
     unit = "" if m.dimension == RATIO else f" {unit_name(m.dimension, results.units)}"
@@ -150,13 +163,13 @@ def _cells(found: PinMargin, results: Results) -> dict[str, str]:
     return {
         "pin": found.pin,
         "case": found.case or DASH,
-        "check": m.method,
+        "check": m.shown,
         "at": m.at or DASH,
         "time": DASH if m.time is None else short(m.time),
         "loads": f"{m.level}\u00a0×\u00a0{short(m.factor)}",
         "demand": f"{engineering(m.demand)}{unit}",
         "allowable": f"{engineering(m.allowable)}{unit}",
         "utilisation": f"{engineering(used, 3)} %",
-        "margin": f"{'+' if (m.margin or 0.0) > 0.0 else ''}{engineering(m.margin, 3)}",
+        "margin": _signed(m.margin),
         "clause": m.clause,
     }
