@@ -59,6 +59,8 @@ def limit_load(
                 seconds=time.perf_counter() - begin,
                 note=f"the theorems for beams; that decides by more than {BEAM_ERROR:.0%}",
             )
+    if not pin.stepped:
+        return LimitLoad("none", note="only for cylinders: no cones, no rounded edges")
     meshes, note = _meshes(pin, rule, clamps, loads, memory)
     if len(meshes) < 2:
         return LimitLoad("none", seconds=time.perf_counter() - begin, note=note)

@@ -91,9 +91,10 @@ def _support(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> str:
 
 
 def _form(pin: PinTable) -> str:
-    if pin.profile is None:
+    if pin.geometry is not None:
         return f"from {pin.geometry}"
-    counted = ((len(pin.profile), "segment"), (len(pin.hole), "hole"), (len(pin.flat), "flat"))
+    shape = (pin.profile, "segment") if pin.meridian is None else (pin.meridian, "corner")
+    counted = ((len(shape[0] or ()), shape[1]), (len(pin.hole), "hole"), (len(pin.flat), "flat"))
     return ", ".join(f"{n} {what}{'s' * (n > 1)}" for n, what in counted if n)
 
 
