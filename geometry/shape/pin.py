@@ -10,7 +10,7 @@ from itertools import pairwise
 from typing import ClassVar
 
 from geometry.coded import Coded
-from geometry.shape.polygon import Leg, Rounding, corners, legs, roundings, turn_at
+from geometry.shape.polygon import Leg, Rounding, bore_turn_at, corners, legs, roundings, turn_at
 from geometry.shape.profile import meridian, volume_within
 from geometry.shape.segment import Segment
 from geometry.shape.tolerance import ROUND_OFF, SAME, merged, snapped
@@ -51,7 +51,8 @@ class Band:
 
 @dataclass(frozen=True)
 class Pin:
-    """A body of revolution from z = 0 on; `fillet` (m) is the radius at every inner corner.
+    """A body of revolution from z = 0 on; `fillet` (m) is the radius at every inner corner. source:
+    where its shape comes from, for people.
 
     Diameters and bores that differ by less than its `tolerance` are made equal; merged: the largest
     difference (m) that was, 0 where it was no more than round-off.
@@ -62,6 +63,7 @@ class Pin:
     name: str
     segments: tuple[Segment, ...]
     fillet: float = 0.0
+    source: str = field(default="", compare=False)
     merged: float = field(init=False, default=0.0, compare=False)
 
     revolved: ClassVar[bool] = True
@@ -178,7 +180,9 @@ class Pin:
 
         Raises: GeometryError listing the names there are.
         """
-        return name if name in FACES else self.labels[self._position(name)]
+        if name in FACES and any(leg.name == name and leg.start != leg.end for leg in self.legs):
+            return name
+        return self.labels[self._position(name)]
 
     def _position(self, name: str) -> int:
         for i, s in enumerate(self.segments):
@@ -289,16 +293,24 @@ def _check(pin: Pin) -> None:
 def _check_edges(pin: Pin) -> None:
     """Raises: GeometryError for an edge radius where there is no edge."""
     turns = [turn_at(a, b) for a, b in pairwise(pin.segments)]
+    inside = [bore_turn_at(a, b) for a, b in pairwise(pin.segments)]
     for i, s in enumerate(pin.segments):
         for end, k in ((0, i - 1), (1, i)):
-            if not s.edge_radii[end] or not 0 <= k < len(turns):
-                continue
-            other = pin.segments[i + 2 * end - 1].diameters[1 - end]
-            if turns[k] != "edge" and not (turns[k] == "step" and s.diameters[end] > other):
+            within, what = 0 <= k < len(turns), f"pin {pin.name}, segment {i + 1}"
+            if s.edge_radii[end] and within:
+                other = pin.segments[i + 2 * end - 1].diameters[1 - end]
+                if turns[k] != "edge" and not (turns[k] == "step" and s.diameters[end] > other):
+                    raise GeometryError(
+                        f"{what}: its outer surface has no edge at its {FACES[end]} for "
+                        "edge_radius to round; set that to 0 (the radius of an inner corner is a "
+                        "fillet)",
+                        "no-edge",
+                        ("segment", i + 1),
+                    )
+            if s.bore_radii[end] and (not s.bores[end] or (within and inside[k] == "smooth")):
                 raise GeometryError(
-                    f"pin {pin.name}, segment {i + 1}: its outer surface has no edge at its "
-                    f"{FACES[end]} for edge_radius to round; set that to 0 (the radius of an inner "
-                    "corner is a fillet)",
+                    f"{what}: its bore has no corner at its {FACES[end]} for bore_radius to round; "
+                    "set that to 0",
                     "no-edge",
                     ("segment", i + 1),
                 )

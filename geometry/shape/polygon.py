@@ -70,10 +70,21 @@ def turn_at(left: Segment, right: Segment) -> Turn:
     """How the outer surfaces of two segments meet: in a step, which has an inner corner and an
     edge, in either of these alone, or smoothly.
     """
-    (a, b), (c, d) = left.diameters, right.diameters
+    return _turn((left.length, *left.diameters), (right.length, *right.diameters))
+
+
+def bore_turn_at(left: Segment, right: Segment) -> Turn:
+    """The same of their bores."""
+    turn = _turn((left.length, *left.bores), (right.length, *right.bores))
+    return {"inner": "edge", "edge": "inner"}.get(turn, turn)  # type: ignore[return-value]
+
+
+def _turn(left: tuple[float, float, float], right: tuple[float, float, float]) -> Turn:
+    """Of lengths and diameters at both ends."""
+    (length, a, b), (after, c, d) = left, right
     if b != c:
         return "step"
-    bend = math.atan2(d - c, 2.0 * right.length) - math.atan2(b - a, 2.0 * left.length)
+    bend = math.atan2(d - c, 2.0 * after) - math.atan2(b - a, 2.0 * length)
     return "smooth" if abs(bend) <= SMOOTH else "inner" if bend > 0.0 else "edge"
 
 

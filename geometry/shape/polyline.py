@@ -58,6 +58,8 @@ def pin_of_polyline(name: str, outside: Sequence[Bend], bore: Sequence[Bend] = (
         [_at([replace(bend, z=same[bend.z]) for bend in line], z) for z in stations]
         for line in (outside, inside)
     )
+    for places in (outer, core):
+        places[0] = places[0][0], places[0][0]
     segments = [
         _segment(b - a, outer[k : k + 2], core[k : k + 2])
         for k, (a, b) in enumerate(pairwise(stations))
@@ -152,7 +154,7 @@ def with_stripes(pin: Pin, stripes: Iterable[Stripe]) -> Pin:
     segments: list[Segment] = []
     for i, s in enumerate(pin.segments):
         segments += _cut(s, pin.stations[i], on.get(i, []))
-    return Pin(pin.name, tuple(segments), pin.fillet)
+    return replace(pin, segments=tuple(segments))
 
 
 def _on_cylinder(pin: Pin, stripe: Stripe) -> tuple[int, Stripe]:

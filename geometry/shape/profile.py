@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from geometry.shape.polygon import RZ, corners, cross, legs, turn_at
+from geometry.shape.polygon import RZ, SMOOTH, corners, cross
 
 if TYPE_CHECKING:
     from geometry.shape.pin import Pin
@@ -48,8 +48,7 @@ class Corner:
 
 def meridian(pin: Pin) -> tuple[Edge, ...]:
     """The closed outline, counter-clockwise in (r, z), from the start face on."""
-    nodes = corners(pin)
-    sides = legs(nodes, pin.tolerance)
+    nodes, sides = corners(pin), pin.legs
     edges: list[Edge] = []
     for node, before, after in zip(nodes, (sides[-1], *sides), sides, strict=False):
         if node.radius and before.end != after.start:
@@ -66,15 +65,12 @@ def meridian(pin: Pin) -> tuple[Edge, ...]:
 
 def sharp_corners(pin: Pin) -> tuple[Corner, ...]:
     """Inner corners without a fillet, on the shaft and in bores."""
-    found = []
-    for i, z in enumerate(pin.stations[1:-1]):
-        left, right = pin.segments[i], pin.segments[i + 1]
-        if turn_at(left, right) in ("step", "inner") and pin.fillet_at(i) == 0.0:
-            found.append(Corner(min(left.diameters[1], right.diameter) / 2, z))
-        bore, wide = max((left.bores[1], left.bore_radii[1]), (right.bore, right.bore_radii[0]))
-        if left.bores[1] != right.bore and not wide:
-            found.append(Corner(bore / 2, z))
-    return tuple(found)
+    nodes, sides = corners(pin), pin.legs
+    return tuple(
+        Corner(node.r, node.z)
+        for node, before, after in zip(nodes, (sides[-1], *sides), sides, strict=False)
+        if node.r and not node.radius and cross(before.along, after.along) < -SMOOTH
+    )
 
 
 def volume_within(outline: tuple[Edge, ...]) -> float:

@@ -11,8 +11,8 @@ from loads.closed_form.four_bar import four_bar
 from pinstress.model.cases import CaseLoads, case_loads
 from pinstress.model.linkage import determined, linkage, span
 from pinstress.model.lugs import lugs
-from pinstress.model.pins import lost_shape, weight
 from pinstress.model.pins import pin as pin_of
+from pinstress.model.pins import shape_notes, weight
 from pinstress.model.tasks import Task, tasks
 from pinstress.schema.cases import GivenCase, LegCase, MotionCase
 from pinstress.schema.landing import DropCase, GroundCase
@@ -79,7 +79,7 @@ def _pin(study: Study, pin: PinLike) -> str:
     return (
         f"pin {name}: {p.material}, {_form(p)}{heavy}; "
         f"loaded at {', '.join(pin.connections) or 'nothing'}; {' or '.join(supports)}"
-        + (f"; {lost}" if (lost := lost_shape(pin)) else "")
+        + (f"; {notes}" if (notes := shape_notes(pin)) else "")
     )
 
 

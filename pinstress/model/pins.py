@@ -70,8 +70,14 @@ def _key(name: str, p: PinTable, at: Place) -> str:
     return f"pin.{name}" + ".geometry" * (p.geometry is not None)
 
 
-def lost_shape(pin: PinLike) -> str:
-    """Errors of a shape that no error estimate includes, as text; empty if there are none."""
+def shape_notes(pin: PinLike) -> str:
+    """Where its shape comes from, and errors of it that no error estimate includes, as text; empty
+    if there is nothing to say.
+    """
+    return "; ".join(filter(None, (pin.source, _lost_shape(pin))))
+
+
+def _lost_shape(pin: PinLike) -> str:
     profile = pin.profile if isinstance(pin, CutPin) else pin
     if isinstance(profile, Pin) and profile.merged:
         return (
@@ -180,4 +186,4 @@ def _from_file(study: Study, name: str, p: PinTable) -> PinLike:
     assert p.geometry is not None
     places = tuple(Band(n, b.z, b.surface, b.connection) for n, b in p.band.items())
     file = BodyFile(name, study.path_to(p.geometry), METRES[p.geometry_unit], places)
-    return read_body(file)
+    return read_body(file, (clamp for _, clamp in _clamps(study, name)))

@@ -29,8 +29,8 @@ EVERYTHING = Pin(
     "E",
     (
         Segment(2.0, 3.0, bore=0.5, end_bore=1.0, edge_radii=(0.3, 0.1), bore_radii=(0.05, 0.0)),
-        Segment(1.0, 2.6, bore=1.0, end_diameter=2.0, fillet=0.3),
-        Segment(0.5, 2.0, bore=0.6, fillet=0.1, bore_radii=(0.08, 0.05)),
+        Segment(1.0, 2.6, bore=1.0, end_diameter=2.0, fillet=0.3, bore_radii=(0.0, 0.1)),
+        Segment(0.5, 2.0, bore=0.6, fillet=0.1, bore_radii=(0.08, 0.0)),
         Segment(0.5, 2.4, bore=0.6, edge_radii=(0.05, 0.1)),
     ),
     fillet=0.1,
@@ -75,7 +75,7 @@ def test_meshes_have_the_exact_volume() -> None:
     finer = volume(meridian_mesh(EVERYTHING, SectionSize().finer(2.0)))
     assert finer == pytest.approx(EVERYTHING.volume, rel=1e-5)
     assert set(found.edges) == {e.name for e in meridian(EVERYTHING) if e.name}
-    edges = {f"edge {end}" for end in ("start", 1, 3, "end")} | {"bore edge start", "bore edge 3"}
+    edges = {f"edge {end}" for end in ("start", 1, 3, "end")} | {"bore edge start", "bore edge 2"}
     assert edges | {"fillet 2", "fillet 3", "bore fillet 2"} <= set(found.edges) | {"fillet 1"}
 
 
@@ -178,6 +178,8 @@ def test_outlines_that_cannot_be(outside: list[Bend], bore: list[Bend], code: st
         ((Segment(1, 2, edge_radii=(0.6, 0.6)),), "fillets-overlap"),
         ((Segment(1, 2, edge_radii=(0, 0.1)), Segment(1, 3)), "no-edge"),
         ((Segment(1, 2), Segment(1, 2, edge_radii=(0.1, 0))), "no-edge"),
+        ((Segment(1, 2, bore_radii=(0.1, 0)),), "no-edge"),
+        ((Segment(1, 2, bore=1, bore_radii=(0, 0.1)), Segment(1, 2, bore=1)), "no-edge"),
         ((Segment(1, 2), Segment(1, 2, end_diameter=4, fillet=0.1), Segment(1, 4)), None),
     ],
 )
