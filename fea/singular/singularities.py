@@ -230,10 +230,7 @@ _LOCAL = (
     "contact stress at the edge of a bore is local: assess it as bearing stress, or by the wear "
     "and fretting that it causes"
 )
-_BORE = (
-    "a radius here would make it finite, but the step of a bore cannot be given one; read the "
-    "stress away from it"
-)
+_BORE = "a radius here would make it finite: the bore_radius of the wider segment"
 
 
 def _fillet(pin: Pin, v: Vertex) -> str:

@@ -30,7 +30,9 @@ def imported_text(path: Path, name: str | None, unit: str, material: str) -> str
     try:
         usable_name(name)
     except ValueError as error:
-        raise InputError(f"--pin: {error}", code="unusable-name") from None
+        raise InputError(
+            f"the name of the pin: {error}; give --pin", code="unusable-name"
+        ) from None
     file = BodyFile(name, path, METRES[unit], ())
     try:
         if not path.exists():

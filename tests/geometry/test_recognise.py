@@ -66,7 +66,10 @@ def step(pin: Pin | CutPin, path: Path, change: Change = _as_drawn) -> BodyFile:
 
 def same(found: Turned, pin: Pin) -> None:
     """The outline is the pin's: as long edge by edge, and as large."""
-    made, wanted = found.pin("P"), pin.scaled(MM)
+    same_outline(found.pin("P"), pin.scaled(MM))
+
+
+def same_outline(made: Pin, wanted: Pin) -> None:
     assert made.volume == pytest.approx(wanted.volume, rel=1e-9)
     ours, theirs = ([(*e.start, *e.end) for e in meridian(p) if e.name] for p in (made, wanted))
     near = [min(math.dist(a, b) for b in theirs) for a in ours]
