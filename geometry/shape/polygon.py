@@ -16,7 +16,7 @@ SMOOTH = 1e-9  # rad: two surfaces that meet at pi within this are one smooth su
 
 
 class Profile(Protocol):
-    """What of a pin its corners follow from."""
+    """What of a pin its outline follows from."""
 
     @property
     def segments(self) -> tuple[Segment, ...]: ...
@@ -26,6 +26,8 @@ class Profile(Protocol):
     def labels(self) -> tuple[str, ...]: ...
     @property
     def tolerance(self) -> float: ...
+    @property
+    def legs(self) -> tuple[Leg, ...]: ...
     def fillet_at(self, corner: int) -> float: ...
 
 

@@ -4,12 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-from geometry.shape.polygon import RZ, SMOOTH, corners, cross
-
-if TYPE_CHECKING:
-    from geometry.shape.pin import Pin
+from geometry.shape.polygon import RZ, SMOOTH, Profile, corners, cross
 
 __all__ = ["RZ", "Arc", "Corner", "Edge", "meridian", "sharp_corners", "volume_within"]
 
@@ -46,7 +42,7 @@ class Corner:
     z: float
 
 
-def meridian(pin: Pin) -> tuple[Edge, ...]:
+def meridian(pin: Profile) -> tuple[Edge, ...]:
     """The closed outline, counter-clockwise in (r, z), from the start face on."""
     nodes, sides = corners(pin), pin.legs
     edges: list[Edge] = []
@@ -63,7 +59,7 @@ def meridian(pin: Pin) -> tuple[Edge, ...]:
     return (*found[start:], *found[:start])
 
 
-def sharp_corners(pin: Pin) -> tuple[Corner, ...]:
+def sharp_corners(pin: Profile) -> tuple[Corner, ...]:
     """Inner corners without a fillet, on the shaft and in bores."""
     nodes, sides = corners(pin), pin.legs
     return tuple(

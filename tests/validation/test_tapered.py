@@ -40,11 +40,13 @@ def test_a_long_taper_breaks_where_its_diameter_has_grown_by_half(steel: Materia
     (found,) = solve_pin(LONG, steel, ("end",), (replace(PUSH, distribution="cosine"),), asked)
     peak = found.peak
     assert peak.max_von_mises == pytest.approx(nominal[top], rel=2e-3)
+    assert peak.location is not None
     assert peak.location[2] == pytest.approx(D + x[top], abs=D)
     beam = replace(asked, model="beam")
     (by_beam,) = solve_pin(LONG, steel, ("end",), (PUSH,), beam)
     assert "no-notch-factor" in by_beam.peak.reasons  # of the ends of cones
     assert by_beam.peak.verdict == "unconverged"
+    assert by_beam.peak.max_von_mises is not None
     assert by_beam.peak.max_von_mises == pytest.approx(nominal[top], rel=0.02)
     assert by_beam.peak.max_von_mises > nominal[top]
 
@@ -95,7 +97,11 @@ def test_harmonic_and_solid_agree_at_the_end_of_a_cone(steel: Material) -> None:
     ]
     one, other = peaks
     assert one.verdict == "converged"
+    assert one.max_von_mises is not None
+    assert other.max_von_mises is not None
     gap = abs(one.max_von_mises - other.max_von_mises)
-    assert gap < one.error_estimate + other.error_estimate
+    assert gap < (one.error_estimate or 0.0) + (other.error_estimate or 0.0)
     assert gap < 0.03 * one.max_von_mises
+    assert one.location is not None
+    assert other.location is not None
     assert math.dist(one.location, other.location) < 0.002
