@@ -59,8 +59,7 @@ def shapes() -> str:
     head = ("shape", "given as", "command, s", "model", "largest stress, MPa", "±, MPa", "verdict")
     return (
         "A pin of 30 and 20 mm, bent by two couples at its ends, pictures left out. The "
-        "least of three runs, of one for solids; the command takes about 1 s before it solves "
-        "anything:\n\n" + table(head, rows)
+        "least of three runs, of one for solids:\n\n" + table(head, rows)
     )
 
 
