@@ -46,6 +46,8 @@ def limit_load(
     rule = FlowRule(material)
     if not isinstance(pin, Pin):
         return LimitLoad("none", note="only for bodies of revolution from a profile")
+    if not pin.stepped:
+        return LimitLoad("none", note="only for pins of cylinders, without cones or rounded edges")
     bounds = _of_beam(pin, material, clamps, loads)
     if bounds is not None and rung == "auto":
         carries = decided(bounds)
@@ -59,8 +61,6 @@ def limit_load(
                 seconds=time.perf_counter() - begin,
                 note=f"the theorems for beams; that decides by more than {BEAM_ERROR:.0%}",
             )
-    if not pin.stepped:
-        return LimitLoad("none", note="only for cylinders: no cones, no rounded edges")
     meshes, note = _meshes(pin, rule, clamps, loads, memory)
     if len(meshes) < 2:
         return LimitLoad("none", seconds=time.perf_counter() - begin, note=note)

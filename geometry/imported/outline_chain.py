@@ -18,7 +18,7 @@ QUARTER = math.pi / 2.0 * (1.0 + 1e-9)
 
 
 @dataclass(frozen=True)
-class Side:
+class MeridianSide:
     """A straight or round part of the outline from (r, z) to (r, z); of round ones the centre, and
     the angle by which they turn to the left from start to end. name: of its face.
     """
@@ -30,7 +30,7 @@ class Side:
     name: str = ""
 
     @staticmethod
-    def of(face: SampledFace, to_axis: bool, size: float) -> Side | None:
+    def of(face: SampledFace, to_axis: bool, size: float) -> MeridianSide | None:
         """Of a face of revolution about the z-axis; None where it is neither straight nor round.
 
         to_axis: whether the axis goes through it, if it is plane.
@@ -56,11 +56,11 @@ class Side:
         """Of a round one."""
         return math.dist(self.start, self.centre) if self.centre else 0.0
 
-    def reversed(self) -> Side:
+    def reversed(self) -> MeridianSide:
         """The same from its end to its start."""
         return replace(self, start=self.end, end=self.start, turn=-self.turn)
 
-    def quarters(self) -> Iterator[Side]:
+    def quarters(self) -> Iterator[MeridianSide]:
         """The same in parts that turn by a right angle at most."""
         if self.centre is None:
             yield self
@@ -88,18 +88,20 @@ def _straight(
     rim: Floats,
     normal: Floats,
     to_axis: bool,
-) -> Side:
+) -> MeridianSide:
     every = rim if face.plane else np.vstack([rz, rim])
     along = np.array([-normal[1], normal[0]])
     at = every @ along
     low, high = every[int(at.argmin())], every[int(at.argmax())]
     if face.plane and to_axis:
         wide = max(_pair(low), _pair(high))
-        return Side((0.0, wide[1]), wide, None, 0.0, face.name)
-    return Side(_pair(low), _pair(high), None, 0.0, face.name)
+        return MeridianSide((0.0, wide[1]), wide, None, 0.0, face.name)
+    return MeridianSide(_pair(low), _pair(high), None, 0.0, face.name)
 
 
-def _round(every: Floats, rz: Floats, normals: Floats, size: float, name: str) -> Side | None:
+def _round(
+    every: Floats, rz: Floats, normals: Floats, size: float, name: str
+) -> MeridianSide | None:
     """A circle p = c + rho n through points with normals."""
     count = len(rz)
     rows = np.zeros((2 * count, 3))
@@ -115,7 +117,7 @@ def _round(every: Floats, rz: Floats, normals: Floats, size: float, name: str) -
     low, high = int(angle.argmin()), int(angle.argmax())
     turn = float(angle[high] - angle[low])
     start, end = _pair(every[low]), _pair(every[high])
-    return Side(start, end, (float(centre[0]), float(centre[1])), turn, name)
+    return MeridianSide(start, end, (float(centre[0]), float(centre[1])), turn, name)
 
 
 def _pair(point: Floats) -> RZ:
@@ -128,7 +130,7 @@ def _turned_about(centre: RZ, at: RZ, angle: float) -> RZ:
     return centre[0] + c * r - s * z, centre[1] + s * r + c * z
 
 
-def outlines(sides: Sequence[Side], near: float) -> tuple[list[Bend], list[Bend]]:
+def outlines(sides: Sequence[MeridianSide], near: float) -> tuple[list[Bend], list[Bend]]:
     """Corners of the outer surface and of the bore (none of a solid body), in order of z.
 
     near: distance within which two places are one. Raises: ValueError where the sides do not make
@@ -152,16 +154,16 @@ def outlines(sides: Sequence[Side], near: float) -> tuple[list[Bend], list[Bend]
     return _bends(chain[i:j], near), _blind(before, after, low, high, near)
 
 
-def _back(sides: Sequence[Side]) -> list[Side]:
+def _back(sides: Sequence[MeridianSide]) -> list[MeridianSide]:
     return [side.reversed() for side in reversed(sides)]
 
 
-def _area_below(sides: Sequence[Side]) -> float:
+def _area_below(sides: Sequence[MeridianSide]) -> float:
     """Between the axis and a chain of sides, roughly."""
     return sum((s.start[0] + s.end[0]) * (s.end[1] - s.start[1]) for s in sides)
 
 
-def _whole(sides: Sequence[Side], near: float) -> list[Side]:
+def _whole(sides: Sequence[MeridianSide], near: float) -> list[MeridianSide]:
     """Each once, with exactly equal ends where they meet; without those that lead nowhere."""
     places: list[RZ] = []
 
@@ -173,7 +175,7 @@ def _whole(sides: Sequence[Side], near: float) -> list[Side]:
         places.append(at)
         return at
 
-    met: list[Side] = []
+    met: list[MeridianSide] = []
     for side in sides:
         start, end = place(side.start), place(side.end)
         if start == end and abs(side.turn) < math.pi:
@@ -191,7 +193,7 @@ def _whole(sides: Sequence[Side], near: float) -> list[Side]:
         met = leading
 
 
-def _alike(a: Side, b: Side, near: float) -> bool:
+def _alike(a: MeridianSide, b: MeridianSide, near: float) -> bool:
     if {a.start, a.end} != {b.start, b.end}:
         return False
     if a.centre is None or b.centre is None:
@@ -199,7 +201,7 @@ def _alike(a: Side, b: Side, near: float) -> bool:
     return math.dist(a.centre, b.centre) <= 100.0 * near and abs(abs(a.turn) - abs(b.turn)) < NEAR
 
 
-def _chain(sides: list[Side], near: float) -> list[Side]:
+def _chain(sides: list[MeridianSide], near: float) -> list[MeridianSide]:
     """The sides one after the other: from axis to axis, or all round."""
     if not sides:
         raise ValueError("its faces of revolution make no outline")
@@ -222,7 +224,7 @@ def _chain(sides: list[Side], near: float) -> list[Side]:
     return chain
 
 
-def _bends(sides: Sequence[Side], near: float) -> list[Bend]:
+def _bends(sides: Sequence[MeridianSide], near: float) -> list[Bend]:
     """Corners of a chain; a round side is a corner between its tangents, rounded."""
     if not sides:
         return []
@@ -259,10 +261,12 @@ def _without_faces(bends: list[Bend], near: float) -> list[Bend]:
     return bends
 
 
-def _inside(sides: Sequence[Side], low: float, high: float, near: float) -> list[Side]:
+def _inside(
+    sides: Sequence[MeridianSide], low: float, high: float, near: float
+) -> list[MeridianSide]:
     """Without the end faces."""
 
-    def face(side: Side) -> bool:
+    def face(side: MeridianSide) -> bool:
         z0, z1 = side.start[1], side.end[1]
         flat = side.centre is None and abs(z0 - z1) <= near
         return flat and (abs(z0 - low) <= near or abs(z0 - high) <= near)
@@ -271,7 +275,11 @@ def _inside(sides: Sequence[Side], low: float, high: float, near: float) -> list
 
 
 def _blind(
-    before: Sequence[Side], after: Sequence[Side], low: float, high: float, near: float
+    before: Sequence[MeridianSide],
+    after: Sequence[MeridianSide],
+    low: float,
+    high: float,
+    near: float,
 ) -> list[Bend]:
     """Bores that end on the axis, from the start face and from the end face."""
     first = _inside(before, low, high, near)

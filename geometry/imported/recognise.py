@@ -17,7 +17,7 @@ import numpy as np
 from geometry.arrays import Floats
 from geometry.imported.body_file import BodyFile
 from geometry.imported.cad_mesh import face_names, solids_of
-from geometry.imported.outline_chain import Side, outlines
+from geometry.imported.outline_chain import MeridianSide, outlines
 from geometry.imported.sampled_face import NEAR, Axis, SampledFace, sampled_faces
 from geometry.mesh.cut_pin import CutPin
 from geometry.mesh.gmsh_session import MeshError, gmsh_model
@@ -31,9 +31,16 @@ DIGITS = 7  # of the size, to which dimensions are rounded
 
 
 class NotTurnedError(GeometryError):
-    """The body is not one of revolution, nor one with cross holes and flats; the message says what
-    of it is not.
+    """The body is not one of revolution, nor one with cross holes and flats; `why` says what of it
+    is not.
     """
+
+    def __init__(self, pin: str, file: str, why: str) -> None:
+        super().__init__(f"pin {pin}: {file}: {why}", "not-turned")
+        self.why, self._made_of = why, (pin, file, why)
+
+    def __reduce__(self) -> tuple[type[NotTurnedError], tuple[str, str, str]]:
+        return NotTurnedError, self._made_of
 
 
 @dataclass(frozen=True)
@@ -81,7 +88,7 @@ def turned(file: BodyFile, upright: bool = True) -> Turned:
 
 
 def _not(file: BodyFile, why: str) -> NotTurnedError:
-    return NotTurnedError(f"pin {file.name}: {file.path.name}: {why}", "not-turned")
+    return NotTurnedError(file.name, file.path.name, why)
 
 
 def _axis(
@@ -133,7 +140,7 @@ def _turned(
         if not face.revolved(upright, size):
             rest.append(face)
             continue
-        side = Side.of(face, face.tag in inside, size)
+        side = MeridianSide.of(face, face.tag in inside, size)
         if side is None:
             raise _not(
                 file, f"{face.name} is curved otherwise than cylinder, cone, torus or sphere"
@@ -228,7 +235,7 @@ def _hole(face: SampledFace, size: float, digits: int) -> Hole | None:
 
 
 def _surfaces(
-    sides: Sequence[Side], start: float, size: float, unit: float
+    sides: Sequence[MeridianSide], start: float, size: float, unit: float
 ) -> dict[str, tuple[float, float]]:
     """z (m from the start face) of the cylinders whose whole surface has one name."""
     names: dict[tuple[int, ...], set[str]] = {}

@@ -178,7 +178,8 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
     surfaces = surfaces_of(plan.loads, task, found, pressures)
     histories = stress_histories(task.pin.name, found)
     tell(f"pin {task.pin.name}, what to change")
-    to_do = change(plan.asked, task, found, STEPS[study.table.units] if plan.sensitive else None)
+    sensitive = plan.sensitive and study.table.pin[task.pin.name].profile is not None
+    to_do = change(plan.asked, task, found, STEPS[study.table.units] if sensitive else None)
     limits = limit_loads(plan, task, every, tell)
     return Solved(
         peaks,

@@ -53,7 +53,7 @@ def read_body(file: BodyFile, clamps: Iterable[str] = ()) -> PinLike:
     try:
         return _profiled(file, turned_apart(file), set(clamps))
     except NotTurnedError as error:
-        return SolidBody(file, apart, f"solid, since {str(error).split(': ', 2)[-1]}")
+        return SolidBody(file, apart, f"{file.path.name} is taken as a solid, since {error.why}")
 
 
 def turned_apart(file: BodyFile, upright: bool = True) -> Turned:
@@ -87,9 +87,8 @@ def _profiled(file: BodyFile, found: Turned, clamps: set[str]) -> Pin | CutPin:
         if place.z is not None:
             at = place.z[0] - start, place.z[1] - start
         if at is None:
-            raise _not_on(
-                file, f"surface {place.surface} of band {place.name} is no whole cylinder"
-            )
+            why = f"surface {place.surface} of band {place.name} is no whole cylinder"
+            raise NotTurnedError(file.name, file.path.name, why)
         stripes.append(Stripe(place.name, *at, place.connection))
     named = {place.name for place in file.places}
     stripes += [Stripe(c, *found.surfaces[c], False) for c in clamps - named if c in found.surfaces]
@@ -99,7 +98,7 @@ def _profiled(file: BodyFile, found: Turned, clamps: set[str]) -> Pin | CutPin:
         for clamp in clamps:
             pin.surface(clamp)
     except GeometryError as error:
-        raise _not_on(file, str(error).removeprefix(f"pin {file.name}: ")) from None
+        raise NotTurnedError(file.name, file.path.name, str(error)) from None
     counted = (
         (len(profile.segments), "segment"),
         (len(pin.holes), "hole"),
@@ -111,10 +110,6 @@ def _profiled(file: BodyFile, found: Turned, clamps: set[str]) -> Pin | CutPin:
         source += f"; z counts from its start face, at z = {found.start:g} of the file"
     profile = replace(profile, source=source)
     return replace(pin, profile=profile) if pin.holes or pin.flats else profile
-
-
-def _not_on(file: BodyFile, why: str) -> NotTurnedError:
-    return NotTurnedError(f"pin {file.name}: {file.path.name}: {why}", "not-turned")
 
 
 def apart(work: Work, file: BodyFile, *arguments: object) -> Any:

@@ -80,7 +80,7 @@ def resized(
                     for here, at in _numbers(table, key):
                         _scale(here, at, scale, system, rounding, up)
         for key, up in (("meridian", 1), ("bore_meridian", -1)):
-            for corner in map(_plain, _plain(table_of_pin.get(key, []))):
+            for corner in map(_value, _plain(table_of_pin.get(key, []))):
                 radius = step / 2.0 if step is not None and up > 0 else None
                 _scale(corner, 1, scale, system, radius, up)
                 if corner[2:]:

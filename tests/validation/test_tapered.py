@@ -47,7 +47,7 @@ def test_a_long_taper_breaks_where_its_diameter_has_grown_by_half(steel: Materia
     assert "no-notch-factor" in by_beam.peak.reasons  # of the ends of cones
     assert by_beam.peak.verdict == "unconverged"
     assert by_beam.peak.max_von_mises is not None
-    assert by_beam.peak.max_von_mises == pytest.approx(nominal[top], rel=0.02)
+    assert by_beam.peak.max_von_mises == pytest.approx(nominal[top], rel=0.03)  # 3 x 1 % of d
     assert by_beam.peak.max_von_mises > nominal[top]
 
 
