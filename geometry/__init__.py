@@ -8,9 +8,10 @@ from geometry.coded import ArgumentError, Coded
 from geometry.mesh.cut_pin import CutPin
 from geometry.shape.corners import Vertex, vertices
 from geometry.shape.features import Flat, Hole
-from geometry.shape.pin import Band, GeometryError, Pin, Segment
+from geometry.shape.pin import Band, GeometryError, Pin
 from geometry.shape.pin_like import PinLike
 from geometry.shape.profile import Arc, Edge, meridian, sharp_corners
+from geometry.shape.segment import Segment
 
 __all__ = [
     "Arc",

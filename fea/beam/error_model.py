@@ -133,7 +133,7 @@ def _local(pin: Pin, loads: PinLoads) -> Floats:
 def _wall(pin: Pin, band: Band) -> float:
     """Wall over radius; 1 if solid."""
     segment = pin.segments[pin.labels.index(band.name)]
-    return 1.0 - segment.bore / segment.diameter
+    return 1.0 - max(segment.bores) / segment.diameter
 
 
 def _ovalisation(pin: Pin, band: Band, loads: PinLoads) -> float:

@@ -89,5 +89,13 @@ class Circle:
 
 
 def circle(segment: Segment) -> Circle:
-    """The section of a segment."""
+    """The section of a segment that has no cones."""
     return Circle(segment.diameter / 2.0, segment.bore / 2.0)
+
+
+def weakest(segment: Segment, start: float, end: float) -> Circle:
+    """The thinnest section of a part of a segment, from start to end in m from the segment's
+    start.
+    """
+    (b0, r0), (b1, r1) = segment.radii(start), segment.radii(end)
+    return Circle(min(r0, r1), max(b0, b1))

@@ -104,28 +104,32 @@ class Notch:
 
 
 def notches(pin: Pin) -> tuple[Notch, ...]:
-    """All steps of the outer diameter and of the bore."""
+    """All steps of the outer diameter and of the bore, and all cones."""
     out = []
     for i, (left, right) in enumerate(zip(pin.segments, pin.segments[1:], strict=False)):
-        on = i if left.diameter - left.bore < right.diameter - right.bore else i + 1
-        if left.bore != right.bore:
+        on = i if left.walls[1] < right.walls[0] else i + 1
+        if left.bores[1] != right.bore:
             why = f"a step of the bore at z = {pin.stations[i + 1]:.4g} m"
             out.append(Notch(pin.stations[i + 1], on, None, None, None, why))
-        if left.diameter != right.diameter:
+        if left.diameters[1] != right.diameter:
             out.append(_shoulder(pin, i))
+    for i, s in enumerate(pin.segments):
+        if s.walls[0] != s.walls[1]:
+            middle = pin.stations[i] + s.length / 2.0
+            out.append(Notch(middle, i, None, None, None, f"a cone at z = {middle:.4g} m"))
     return tuple(out)
 
 
 def _shoulder(pin: Pin, i: int) -> Notch:
     left, right = pin.segments[i], pin.segments[i + 1]
-    on = i if left.diameter < right.diameter else i + 1
-    thin, thick = sorted((left.diameter, right.diameter))
+    on = i if left.diameters[1] < right.diameter else i + 1
+    thin, thick = sorted((left.diameters[1], right.diameter))
     rho, where = pin.fillet_at(i), f"at z = {pin.stations[i + 1]:.4g} m"
     away = (1.0 - PEAK) * rho
     z = pin.stations[i + 1] + (away if on == i + 1 else -away)
     if rho == 0.0:
         return Notch(z, on, None, None, None, f"a sharp inner corner {where}")
-    if max(left.bore, right.bore) > LARGEST_BORE * thin:
+    if max(left.bores[1], right.bore) > LARGEST_BORE * thin:
         return Notch(z, on, None, None, None, f"the fillet of a tube {where}")
     bending, tension, torsion = (
         shoulder_factor(fits, thick, thin, rho) for fits in (BENDING, TENSION, TORSION)

@@ -16,19 +16,24 @@ fea.beam.round_section.
 
 from __future__ import annotations
 
+import math
+from bisect import bisect_right
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam.line_load import line_loads
-from fea.beam.round_section import Circle, circle
+from fea.beam.round_section import Circle, weakest
 from fea.core.material import Material
 from fea.core.pin_loads import UnitLoad
 from geometry import Pin
 from geometry.arrays import Floats
 
 SHEAR, MOMENT, AXIAL, TORQUE = range(4)
+SLICE = 0.01  # by which a cone's diameter or bore changes over a cell, of the wall
 _GAUSS, _WEIGHT = np.polynomial.legendre.leggauss(4)  # exact for products of our cubics
 
 
@@ -94,9 +99,7 @@ def stepped_beam(
     """
     constrained = [_constrained(pin, pin.surface(name)) for name in clamps]
     stations = _stations(pin, constrained)
-    middles = 0.5 * (stations[1:] + stations[:-1])
-    segments = np.searchsorted(pin.stations[1:-1], middles, side="right")
-    sections = tuple(circle(pin.segments[i]) for i in segments)
+    sections = tuple(_section(pin, a, b) for a, b in pairwise(stations.tolist()))
     w = line_loads(pin, material, stations, sections, loads, closed=not clamps)
     q = np.zeros((len(sections), 2, 4, len(loads)))  # by the force whose slope it makes
     for k, load in enumerate(loads):
@@ -128,10 +131,23 @@ def _constrained(pin: Pin, surface: str) -> tuple[float, float]:
 
 
 def _stations(pin: Pin, constrained: list[tuple[float, float]]) -> Floats:
-    z = np.sort(
-        [*pin.stations, *(e for b in pin.bands for e in (b.z0, b.z1)), *np.ravel(constrained)]
-    )
+    ends = (e for b in pin.bands for e in (b.z0, b.z1))
+    z = np.sort([*pin.stations, *ends, *_on_cones(pin), *np.ravel(constrained)])
     return np.asarray(z[np.r_[True, np.diff(z) > 1e-12 * pin.length]])
+
+
+def _on_cones(pin: Pin) -> Iterator[float]:
+    """Where to cut cones, as finely as SLICE says."""
+    for s, z in zip(pin.segments, pin.stations, strict=False):
+        (d0, d1), (b0, b1) = s.diameters, s.bores
+        change = max(abs(d1 - d0), abs(b1 - b0)) / min(*s.walls, d0, d1)
+        yield from np.linspace(z, z + s.length, math.ceil(change / SLICE) + 1)[1:-1].tolist()
+
+
+def _section(pin: Pin, a: float, b: float) -> Circle:
+    """The section from a to b (m): of a cone's slice the thinnest, which is on the safe side."""
+    i = min(bisect_right(pin.stations, 0.5 * (a + b)), len(pin.segments)) - 1
+    return weakest(pin.segments[i], a - pin.stations[i], b - pin.stations[i])
 
 
 def _spans(stations: Floats, constrained: list[tuple[float, float]]) -> tuple[Span, ...]:

@@ -94,8 +94,10 @@ class _Section:
 def pin_mesh(pin: Pin, z: Sequence[Floats], fineness: Fineness, half: bool) -> Hexahedra:
     """z: ends of the layers of each segment, m. half: only y > 0.
 
-    Raises: ArgumentError for a pin with fillets.
+    Raises: ArgumentError for a pin with fillets, cones or rounded edges.
     """
+    if not pin.stepped:
+        raise ArgumentError(f"CalculiX's model has only cylinders (pin {pin.name})", "cone")
     if any(pin.fillet_at(i) for i in range(len(pin.segments) - 1)):
         raise ArgumentError(f"CalculiX's model has no fillets (pin {pin.name})", "fillet")
     bores = [s.bore / 2.0 for s in pin.segments]

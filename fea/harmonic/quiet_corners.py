@@ -13,6 +13,7 @@ from fea.harmonic.fields import MeridianFields
 from fea.harmonic.superposition import Circumference
 from fea.singular.singularities import Singularity
 from geometry import Pin
+from geometry.shape.polygon import Rounding
 
 CROWD = 24  # fillets, from which on it is worth a mesh to look
 # Of the maximum: on 199 fillets of a cantilever the coarse mesh finds 0.90 to 0.99 of what the
@@ -23,8 +24,15 @@ ABOUT = 1.5  # radii of a fillet from its corner within which its stress is look
 
 def crowd(pin: Pin) -> tuple[int, ...]:
     """All fillets of a pin, as numbers of corners from 0, if they are many; none otherwise."""
-    fillets = tuple(i for i in range(len(pin.segments) - 1) if pin.fillet_at(i) > 0.0)
-    return fillets if len(fillets) > CROWD else ()
+    fillets = _fillets(pin)
+    return tuple(fillets) if len(fillets) > CROWD else ()
+
+
+def _fillets(pin: Pin) -> dict[int, Rounding]:
+    """Of the shaft, by their numbers."""
+    every = {rounding.name: rounding for rounding in pin.roundings}
+    names = ((i, f"fillet {i + 1}") for i in range(len(pin.segments) - 1))
+    return {i: every[name] for i, name in names if name in every}
 
 
 def quiet_corners(
@@ -34,16 +42,15 @@ def quiet_corners(
     singularities: tuple[Singularity, ...],
 ) -> tuple[int, ...]:
     """Fillets where no case has nearly as much stress as elsewhere outside the singularities."""
-    quiet = set(crowd(pin))
+    quiet, fillets = set(crowd(pin)), _fillets(pin)
     among = fields.outside(singularities)
     r, z = fields.points.T
     for case in cases:
         around = Circumference(fields, case)
         top = around.top(among).value
         for i in tuple(quiet):
-            thin = min(s.diameter for s in pin.segments[i : i + 2]) / 2.0
-            distance = np.hypot(r - thin, z - pin.stations[i + 1])
-            near = np.flatnonzero(among & (distance <= ABOUT * pin.fillet_at(i)))
+            distance = np.hypot(r - fillets[i].at[0], z - fillets[i].at[1])
+            near = np.flatnonzero(among & (distance <= ABOUT * fillets[i].reach))
             if around.bound(near).max(initial=0.0) >= QUIET * top:
                 quiet.remove(i)
     return tuple(sorted(quiet))

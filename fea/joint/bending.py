@@ -74,6 +74,6 @@ def _forces(way: Floats, lengths: Floats) -> Parts:
 
 def mass_per_length(pin: Pin, density: float | None) -> Floats:
     """Of the segments, (S,) kg/m, 0 without density; what fillets add is spread in proportion."""
-    area = np.array([s.diameter**2 - s.bore**2 for s in pin.segments])
+    area = np.array([s.mean_area for s in pin.segments])
     whole = (density or 0.0) * pin.volume
     return np.asarray(whole * area / (area @ np.diff(pin.stations)))

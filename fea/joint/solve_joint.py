@@ -310,6 +310,6 @@ def edges_of(pin: Pin, material: Material, lugs: Sequence[Lug]) -> tuple[LugEdge
 
 def _centre(pin: Pin) -> float:
     """z of the centre of volume of the cylinders, m."""
-    area = np.array([s.diameter**2 - s.bore**2 for s in pin.segments])
+    area = np.array([s.mean_area for s in pin.segments])
     ends = np.array(pin.stations)
     return float(area @ np.diff(ends**2) / 2.0 / (area @ np.diff(ends)))

@@ -52,6 +52,8 @@ def limit_load(
     rule = FlowRule(material)
     if not isinstance(pin, Pin):
         return LimitLoad("none", note=TETRAHEDRA)
+    if not pin.stepped:
+        return LimitLoad("none", note="only for pins of cylinders, without cones or rounded edges")
     bounds = of_beam(pin, material, clamps, loads)
     if bounds is not None and rung == "auto":
         carries = decided(bounds)

@@ -13,13 +13,13 @@ from fea.core.pin_loads import LugEdge
 from fea.singular.williams import Side, antiplane_exponent, plane_exponent
 from geometry import Pin, Vertex, vertices
 from geometry.arrays import Floats, Mask
+from geometry.shape.polygon import SMOOTH
 from geometry.shape.tolerance import SAME
 
 Kind = Literal[
     "sharp corner", "edge of a clamp", "edge of a load", "edge of a lug", "rounded edge of a lug"
 ]
 
-FLAT = 1e-9  # rad: two surfaces that meet at pi within this are one smooth surface
 VARIED = (0.5, 2.0)  # times the excluded distance, which is a convention
 FILLET = 0.1  # of the smaller diameter: the radius to try
 LOGARITHM = 0.1  # of the distance of a power: a logarithm is felt that much closer only
@@ -127,7 +127,7 @@ def _lug_edge(
     """near: so far (m) from a vertex, the edge is there."""
     at, corners = (edge.r, edge.z), []
     for v in every:
-        if abs(v.angle - math.pi) > FLAT:
+        if abs(v.angle - math.pi) > SMOOTH:
             corners.append((v.r, v.z))
         if math.dist(at, (v.r, v.z)) <= near:
             at = (v.r, v.z)
@@ -166,7 +166,7 @@ def smooth_edges(
         for v in vertices(pin)
         if names & set(v.between)
         and not constrained & set(v.between)
-        and abs(v.angle - math.pi) <= FLAT
+        and abs(v.angle - math.pi) <= SMOOTH
     )
 
 
@@ -180,7 +180,7 @@ def _singularity(
     pin: Pin, v: Vertex, constrained: set[str], pushed: set[str], nu: float, distance: float
 ) -> Singularity | None:
     first, second = (_side(name, constrained) for name in v.between)
-    smooth = abs(v.angle - math.pi) <= FLAT
+    smooth = abs(v.angle - math.pi) <= SMOOTH
     omega = math.pi if smooth else v.angle
     plane = plane_exponent(omega, nu, first, second)
     torsion = antiplane_exponent(omega, first, second)
@@ -208,7 +208,7 @@ def _feature(every: tuple[Vertex, ...], k: int, constrained: set[str]) -> float:
             here, i = every[i], (i + step) % len(every)
             total += math.dist((here.r, here.z), (every[i].r, every[i].z))
             clamped = {name in constrained for name in every[i].between}
-            if len(clamped) > 1 or abs(every[i].angle - math.pi) > FLAT:
+            if len(clamped) > 1 or abs(every[i].angle - math.pi) > SMOOTH:
                 break
         return total
 
@@ -230,21 +230,18 @@ _LOCAL = (
     "contact stress at the edge of a bore is local: assess it as bearing stress, or by the wear "
     "and fretting that it causes"
 )
-_BORE = (
-    "a radius here would make it finite, but the step of a bore cannot be given one; read the "
-    "stress away from it"
-)
+_BORE = "a radius here would make it finite: the bore_radius of the wider segment"
 
 
 def _fillet(pin: Pin, v: Vertex) -> str:
     """What fillet to try at an inner corner, and why not a larger one."""
     i = min(range(len(pin.segments) - 1), key=lambda i: abs(pin.stations[i + 1] - v.z))
     left, right = pin.segments[i], pin.segments[i + 1]
-    thin = i if left.diameter < right.diameter else i + 1
-    d = pin.segments[thin].diameter
-    if abs(2.0 * v.r - d) > abs(2.0 * v.r - max(left.bore, right.bore)):
+    here, there = left.diameters[1], right.diameter
+    thin, d = (i, here) if here < there else (i + 1, there)
+    if abs(2.0 * v.r - d) > abs(2.0 * v.r - max(left.bores[1], right.bore)):
         return _BORE
-    step = abs(left.diameter - right.diameter) / 2.0
+    step = abs(here - there) / 2.0 or math.inf
     band = pin.bands[thin]
     limit, what = min(
         (step, "the height of the step"), (band.length / 2.0, f"half the length of {band.name}")

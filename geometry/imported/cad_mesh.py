@@ -36,13 +36,13 @@ def cad_mesh(file: BodyFile, size: MeshSize) -> SolidMesh:
 def cad_volume(file: BodyFile) -> float:
     """Volume of the solids of a file, m^3. Raises: GeometryError as `cad_mesh`."""
     with gmsh_model(file.name) as gmsh:
-        solids = _solids(gmsh, file)
+        solids = solids_of(gmsh, file)
         return float(sum(gmsh.model.occ.getMass(*s) for s in solids)) * file.unit**3
 
 
 def _mesh(file: BodyFile, size: MeshSize) -> SolidMesh:
     with gmsh_model(f"{file.name}, {file.path.name}") as gmsh:
-        solids = _solids(gmsh, file)
+        solids = solids_of(gmsh, file)
         z = dict.fromkeys(v for place in file.places if place.z for v in place.z)
         cuts = [v / file.unit for v in z]
         faces = _split(gmsh, file, solids, cuts)
@@ -54,7 +54,7 @@ def _mesh(file: BodyFile, size: MeshSize) -> SolidMesh:
     return SolidMesh(replace(mesh, doflocs=mesh.doflocs * file.unit), jacobian, repaired)
 
 
-def _solids(gmsh: Any, file: BodyFile) -> list[tuple[int, int]]:
+def solids_of(gmsh: Any, file: BodyFile) -> list[tuple[int, int]]:
     try:
         gmsh.option.setNumber("Geometry.OCCImportLabels", 0)
         with silence():
@@ -84,7 +84,7 @@ def _solids(gmsh: Any, file: BodyFile) -> list[tuple[int, int]]:
     return solids
 
 
-def _face_names(file: BodyFile, tags: list[int]) -> dict[int, str]:
+def face_names(file: BodyFile, tags: list[int]) -> dict[int, str]:
     """Names of a file's faces by gmsh's tags: gmsh numbers them as the shells of a STEP file list
     them, but does not hand on their names.
     """
@@ -105,7 +105,7 @@ def _split(
     """Split the solids at z = `cuts`; tags of the boundary's faces by name."""
     model, occ = gmsh.model, gmsh.model.occ
     tags = [tag for _, tag in model.getEntities(2)]
-    names = _face_names(file, tags)
+    names = face_names(file, tags)
     x0, y0, z0, x1, y1, z1 = model.getBoundingBox(-1, -1)
     size = max(x1 - x0, y1 - y0, z1 - z0)
     inner = [z for z in cuts if z0 + 1e-6 * size < z < z1 - 1e-6 * size]

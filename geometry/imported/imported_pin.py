@@ -29,7 +29,8 @@ def here(work: Callable[..., Any], *arguments: object) -> Any:
 @dataclass(frozen=True)
 class SolidBody:
     """The body in a file, with its bands measured. call: runs `work(file, ...)`, in another process
-    if wanted, since the libraries that read the file crash on some damaged ones.
+    if wanted, since the libraries that read the file crash on some damaged ones. source: why it is
+    not a profile, for people.
 
     Raises: GeometryError when the file is missing or not a solid, or a band is not on it;
     MeshError when it cannot be meshed.
@@ -37,6 +38,7 @@ class SolidBody:
 
     file: BodyFile
     call: Callable[..., Any] = field(default=here, compare=False, repr=False)
+    source: str = field(default="", compare=False)
 
     revolved: ClassVar[bool] = False  # not known to be
 

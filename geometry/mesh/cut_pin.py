@@ -42,6 +42,11 @@ class CutPin:
         return self.profile.name
 
     @property
+    def source(self) -> str:
+        """The profile's."""
+        return self.profile.source
+
+    @property
     def length(self) -> float:
         """Overall length, m."""
         return self.profile.length

@@ -30,7 +30,7 @@ def cut_solid(gmsh: Any, pin: Pin, holes: Holes, flats: Flats) -> tuple[int, int
     """
     occ = gmsh.model.occ
     body = revolve(gmsh, meridian(pin))
-    reach = 2.0 * max(s.diameter for s in pin.segments)
+    reach = 2.0 * pin.largest_diameter
     tools = [_drill(occ, hole, reach) for hole in holes]
     tools += [_mill(occ, flat, reach) for flat in flats]
     left, _ = occ.cut([body], tools)
@@ -62,7 +62,7 @@ def name_faces(gmsh: Any, pin: Pin, holes: Holes, flats: Flats) -> dict[str, lis
 
     Raises: GeometryError when a feature is cut away by others; MeshError.
     """
-    size = max(pin.length, *(s.diameter for s in pin.segments))
+    size = max(pin.length, pin.largest_diameter)
     known: list[tuple[str, str, Off]] = []
     for i, hole in enumerate(holes, 1):
         known.append((f"hole {i}", "Cylinder", _off_hole(hole)))
@@ -116,13 +116,15 @@ def _points(gmsh: Any, face: int) -> Floats:
 
 def _kind(edge: Edge) -> str:
     """gmsh's word for the surface that an edge makes."""
+    (r0, z0), (r1, z1) = edge.start, edge.end
     if isinstance(edge, Arc):
-        return "Torus"
-    return "Plane" if edge.start[1] == edge.end[1] else "Cylinder"
+        return "Sphere" if edge.centre[0] == 0.0 else "Torus"
+    return "Plane" if z0 == z1 else "Cylinder" if r0 == r1 else "Cone"
 
 
 def _off_edge(edge: Edge) -> Off:
     (r0, z0), (r1, z1) = sorted([edge.start, edge.end])
+    length = math.dist(edge.start, edge.end)
 
     def off(x: Floats) -> Floats:
         r, z = np.hypot(x[:, 0], x[:, 1]), x[:, 2]
@@ -130,6 +132,8 @@ def _off_edge(edge: Edge) -> Off:
         beyond += np.maximum(np.abs(z - (z0 + z1) / 2) - abs(z1 - z0) / 2, 0.0)
         if isinstance(edge, Arc):
             beyond += np.abs(np.hypot(r - edge.centre[0], z - edge.centre[1]) - edge.radius)
+        else:
+            beyond += np.abs((r - r0) * (z1 - z0) - (z - z0) * (r1 - r0)) / length
         return np.asarray(beyond)
 
     return off

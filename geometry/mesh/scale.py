@@ -22,9 +22,10 @@ def unit_of(pin: Pin) -> float:
 
 def unit_of_solid(pin: Pin) -> float:
     """The same where anything of the pin is too small in metres, or it too large; otherwise 1."""
-    small = [x for s in pin.segments for x in (s.length, s.bore, (s.diameter - s.bore) / 2)]
-    for i, (left, right) in enumerate(pairwise(pin.segments)):
-        step, step_inside = left.diameter - right.diameter, left.bore - right.bore
-        small += [pin.fillet_at(i), abs(step) / 2, abs(step_inside) / 2]
+    small = [x for s in pin.segments for x in (s.length, *s.bores, *(w / 2 for w in s.walls))]
+    small += [rounding.radius for rounding in pin.roundings]
+    for left, right in pairwise(pin.segments):
+        step, step_inside = left.diameters[1] - right.diameter, left.bores[1] - right.bore
+        small += [abs(step) / 2, abs(step_inside) / 2]
     fits = min(x for x in small if x) >= SMALLEST and pin.smallest_diameter <= LARGEST
     return 1.0 if fits else unit_of(pin)

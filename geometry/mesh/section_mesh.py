@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass
@@ -82,14 +81,15 @@ def _require_reasonable(pin: Pin, size: SectionSize) -> None:
             "is very small compared with the whole; model the critical part on its own",
             "too-many-elements",
         )
-    for i, (left, right) in enumerate(itertools.pairwise(pin.segments)):
-        rho, thin = pin.fillet_at(i), min(left.diameter, right.diameter)
-        if 0.0 < rho < SMALLEST_FILLET * thin:
+    for rounding in pin.roundings:
+        rho, thin = rounding.radius, 2.0 * rounding.at[0]
+        if rho < SMALLEST_FILLET * thin:
+            number = rounding.name.split()[-1]
             raise MeshError(
-                f"pin {pin.name}: the radius of fillet {i + 1} is {rho / thin:.1e} of the "
+                f"pin {pin.name}: the radius of {rounding.name} is {rho / thin:.1e} of the "
                 "diameter, too small to mesh; enlarge it, or set it to 0 for a sharp corner",
                 "fillet-too-small",
-                ("segment", i + 1),
+                ("segment", int(number)) if number.isdecimal() else (),
             )
 
 

@@ -11,6 +11,7 @@ from geometry.shape.pin import Pin
 from geometry.shape.profile import RZ
 
 QUIET_ARC, QUIET_GROWTH = 1.5, 1.0  # as of SectionSize, of fillets where nothing is looked for
+EDGE = 0.4  # elements along a rounded edge, where stress is low, over those along a fillet
 EQUILATERAL = 0.43  # area of a triangle over its side squared
 MANY = 1e4  # triangles of a first mesh
 STEEPEST = 0.6  # growth of elements next to a spot, on all meshes
@@ -84,13 +85,14 @@ def stretches(pin: Pin, size: SectionSize) -> list[Stretch]:
     """
     parts: list[Stretch] = []
     triangles, first = 0.0, largest(pin, SectionSize())
-    for (diameter, bore), found in itertools.groupby(
-        zip(pin.segments, pin.stations, strict=False), lambda at: (at[0].diameter, at[0].bore)
+    for (diameters, bores), found in itertools.groupby(
+        zip(pin.segments, pin.stations, strict=False), lambda at: (at[0].diameters, at[0].bores)
     ):
         ends = [(z, z + s.length) for s, z in found]
         z0, z1 = ends[0][0], ends[-1][1]
-        parts.append(Stretch(z0, z1, min(diameter - bore, z1 - z0) / size.across))
-        triangles += (z1 - z0) * (diameter - bore) / 2.0 / (EQUILATERAL * first**2)
+        walls = [d - b for d, b in zip(diameters, bores, strict=True)]
+        parts.append(Stretch(z0, z1, min(*walls, z1 - z0) / size.across))
+        triangles += (z1 - z0) * max(walls) / 2.0 / (EQUILATERAL * first**2)
     return parts if triangles > MANY else [Stretch(0.0, pin.length, largest(pin, size))]
 
 
@@ -100,38 +102,39 @@ def triangles(pin: Pin, size: SectionSize) -> float:
     for part in stretches(pin, size):
         for s, z in zip(pin.segments, pin.stations, strict=False):
             if part.z0 <= z < part.z1:
-                total += s.length * (s.diameter - s.bore) / 2.0 / (EQUILATERAL * part.near**2)
+                total += s.length * max(s.walls) / 2.0 / (EQUILATERAL * part.near**2)
     return total
 
 
 def largest(pin: Pin, size: SectionSize) -> float:
     """Element size (m) away from all that is small: by the thinnest wall, or half a shaft."""
-    return min(s.diameter - s.bore for s in pin.segments) / size.across
+    return min(min(s.walls) for s in pin.segments) / size.across
 
 
 def grades(
     pin: Pin, size: SectionSize, spots: Iterable[Spot], quiet: Collection[int] = ()
 ) -> list[Grade]:
-    """About all fillets and spots. quiet: numbers of corners whose fillets may be coarse."""
+    """About all roundings and spots. quiet: numbers of corners whose fillets may be coarse."""
     out = []
-    arcs: dict[float, list[RZ]] = {}
-    coarse: dict[float, list[RZ]] = {}
-    for i, (left, right) in enumerate(itertools.pairwise(pin.segments)):
-        rho = pin.fillet_at(i)
-        if rho > 0.0:
-            corner = (min(left.diameter, right.diameter) / 2.0, pin.stations[i + 1])
-            (coarse if i in quiet else arcs).setdefault(rho, []).append(corner)
-    for alike, arc, growth in (
+    arcs: dict[tuple[float, float], list[RZ]] = {}
+    coarse: dict[tuple[float, float], list[RZ]] = {}
+    edges: dict[tuple[float, float], list[RZ]] = {}
+    calm = {f"fillet {i + 1}" for i in quiet}
+    for rounding in pin.roundings:
+        kind = edges if not rounding.inner else coarse if rounding.name in calm else arcs
+        kind.setdefault((rounding.radius, rounding.reach), []).append(rounding.at)
+    for found, arc, growth in (
         (arcs, size.arc, size.growth),
         (coarse, QUIET_ARC, QUIET_GROWTH),
+        (edges, EDGE * size.arc, size.growth),
     ):
-        for rho, corners in alike.items():
-            out.append(Grade(tuple(corners), rho * math.pi / 2.0 / arc, 1.3 * rho, growth))
+        for (rho, reach), corners in found.items():
+            out.append(Grade(tuple(corners), rho * math.pi / 2.0 / arc, 1.3 * reach, growth))
     close: dict[tuple[float, float], list[RZ]] = {}
     for s in dict.fromkeys(spots):
         close.setdefault((s.size, s.reach), []).append((s.r, s.z))
-    for (near, reach), found in close.items():
-        points = tuple(found)
+    for (near, reach), places in close.items():
+        points = tuple(places)
         steep = near < size.growth * reach
         out.append(Grade(points, near, 0.0, STEEPEST if steep else size.growth))
         if steep:

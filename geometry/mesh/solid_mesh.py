@@ -137,7 +137,7 @@ def _require_reasonable(pin: Pin, size: MeshSize) -> None:
 
 def _far(pin: Pin, size: MeshSize) -> float:
     """Element size (m) away from all features: by the thinnest shaft or wall."""
-    walls = [(s.diameter - s.bore) / 2 for s in pin.segments if s.bore]
+    walls = [wall / 2 for s in pin.segments if any(s.bores) for wall in s.walls]
     return min([pin.smallest_diameter / size.across, *walls])
 
 
@@ -179,21 +179,18 @@ def _set_sizes(
     for z in edges:
         radii = {b.radius for b in pin.bands if b.z0 - pin.tolerance <= z <= b.z1 + pin.tolerance}
         circles += [(r, z, near, 0.0) for r in radii]
-    for i in range(len(pin.segments) - 1):
-        rho = pin.fillet_at(i)
-        if rho > 0.0:
-            thin = min(pin.segments[i].diameter, pin.segments[i + 1].diameter) / 2
-            arc = min(far, rho * math.pi / 2 / size.arc)
-            circles.append((thin, pin.stations[i + 1], arc, 1.3 * rho))
+    for rounding in pin.roundings:
+        arc = min(far, rounding.radius * math.pi / 2 / size.arc)
+        circles.append((*rounding.at, arc, 1.3 * rounding.reach))
     tags = list(more)
     for r, z, h, flat in dict.fromkeys(circles):
         d = f"Sqrt((Sqrt(x*x+y*y)-{r!r})^2+(z-{z!r})^2)-{flat!r}"
         tags.append(formula_size(gmsh, f"{h!r}+{size.growth / 2!r}*(({d})+Fabs({d}))"))
     for i, s in enumerate(pin.segments):
-        if s.bore:
-            h = math.pi * s.bore / (2.0 * size.across)
+        if bore := max(s.bores):
+            h = math.pi * bore / (2.0 * size.across)
             z0, z1 = pin.stations[i], pin.stations[i + 1]
-            d = f"(Sqrt(x*x+y*y)-{s.bore / 2!r})"
+            d = f"(Sqrt(x*x+y*y)-{bore / 2!r})"
             out = f"(Fabs(z-{(z0 + z1) / 2!r})-{(z1 - z0) / 2!r})"
             grow = f"{size.growth / 2!r}*({d}+Fabs({d})+{out}+Fabs({out}))"
             tags.append(formula_size(gmsh, f"{h!r}+{grow}"))

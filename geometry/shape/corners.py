@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass
 
 from geometry.shape.pin import Pin
-from geometry.shape.profile import RZ, Arc, Edge, meridian
+from geometry.shape.polygon import RZ, cross
+from geometry.shape.profile import Arc, Edge, meridian
 
 SHORT = 1e-9  # of the smallest diameter: what rounding leaves of a shaft that fillets take whole
 
@@ -43,23 +44,11 @@ def vertices(pin: Pin) -> tuple[Vertex, ...]:
 
 def _tangent(edge: Edge, at: RZ) -> RZ:
     """A vector along the edge, as it is walked."""
-    if not isinstance(edge, Arc):
-        return _minus(edge.end, edge.start)
-    start, end = _minus(edge.start, edge.centre), _minus(edge.end, edge.centre)
-    sense = math.copysign(1.0, _cross(start, end))
-    r, z = _minus(at, edge.centre)
-    # Quarter circles end along r or z; rounding must not bend a tiny one away from its shaft.
-    return (0.0, sense * r) if abs(r) > abs(z) else (-sense * z, 0.0)
+    if isinstance(edge, Arc):
+        return edge.along[0] if at == edge.start else edge.along[1]
+    return edge.end[0] - edge.start[0], edge.end[1] - edge.start[1]
 
 
 def _turn(before: RZ, after: RZ) -> float:
     """Angle to the left from one vector to the other, -pi to pi."""
-    return math.atan2(_cross(before, after), before[0] * after[0] + before[1] * after[1])
-
-
-def _cross(a: RZ, b: RZ) -> float:
-    return a[0] * b[1] - a[1] * b[0]
-
-
-def _minus(a: RZ, b: RZ) -> RZ:
-    return a[0] - b[0], a[1] - b[1]
+    return math.atan2(cross(before, after), before[0] * after[0] + before[1] * after[1])

@@ -50,7 +50,8 @@ class Flat:
 def radii(pin: Pin, z0: float, z1: float) -> tuple[float, float]:
     """Smallest and largest outer radius, m, of the segments between z0 and z1."""
     ends = zip(pin.segments, pin.stations, pin.stations[1:], strict=False)
-    found = [s.diameter / 2 for s, a, b in ends if b > z0 and a < z1]
+    near = [(s, a, (max(a, z0), min(b, z1))) for s, a, b in ends if b > z0 and a < z1]
+    found = [s.radii(z - a)[1] for s, a, both in near for z in both]
     return (min(found), max(found)) if found else (0.0, 0.0)
 
 

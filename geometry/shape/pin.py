@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_left
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import ClassVar
 
 from geometry.coded import Coded
+from geometry.shape.polygon import Leg, Rounding, bore_turn_at, corners, legs, roundings, turn_at
+from geometry.shape.profile import meridian, volume_within
+from geometry.shape.segment import Segment
 from geometry.shape.tolerance import ROUND_OFF, SAME, merged, snapped
 
 FACES = ("start", "end")
@@ -19,30 +23,10 @@ class GeometryError(Coded, ValueError):
 
 
 @dataclass(frozen=True)
-class Segment:
-    """A cylinder of the profile; all in m.
-
-    bore: inner diameter, 0 for solid. connection: the connection whose link bears on it. fillet:
-    radius of the inner corner at its far end; None takes the pin's.
-    """
-
-    length: float
-    diameter: float
-    bore: float = 0.0
-    name: str | None = None
-    connection: str | None = None
-    fillet: float | None = None
-
-    def scaled(self, factor: float) -> Segment:
-        """The same segment in another unit."""
-        length, diameter, bore = (x * factor for x in (self.length, self.diameter, self.bore))
-        fillet = None if self.fillet is None else self.fillet * factor
-        return replace(self, length=length, diameter=diameter, bore=bore, fillet=fillet)
-
-
-@dataclass(frozen=True)
 class Band:
-    """A cylindrical surface: the part of a segment between its fillets; m."""
+    """A cylindrical surface: the part of a segment between its fillets; m. Of a cone `radius` is
+    the mean, and no link can bear on it.
+    """
 
     name: str
     z0: float
@@ -67,7 +51,8 @@ class Band:
 
 @dataclass(frozen=True)
 class Pin:
-    """A body of revolution from z = 0 on; `fillet` (m) is the radius at every inner corner.
+    """A body of revolution from z = 0 on; `fillet` (m) is the radius at every inner corner. source:
+    where its shape comes from, for people.
 
     Diameters and bores that differ by less than its `tolerance` are made equal; merged: the largest
     difference (m) that was, 0 where it was no more than round-off.
@@ -78,6 +63,7 @@ class Pin:
     name: str
     segments: tuple[Segment, ...]
     fillet: float = 0.0
+    source: str = field(default="", compare=False)
     merged: float = field(init=False, default=0.0, compare=False)
 
     revolved: ClassVar[bool] = True
@@ -116,7 +102,17 @@ class Pin:
     @property
     def smallest_diameter(self) -> float:
         """m."""
-        return min(s.diameter for s in self.segments)
+        return min(d for s in self.segments for d in s.diameters)
+
+    @property
+    def largest_diameter(self) -> float:
+        """m."""
+        return max(d for s in self.segments for d in s.diameters)
+
+    @property
+    def stepped(self) -> bool:
+        """Whether it has only cylinders, without rounded edges."""
+        return all(s.cylindrical for s in self.segments)
 
     @cached_property
     def labels(self) -> tuple[str, ...]:
@@ -125,27 +121,43 @@ class Pin:
             s.connection or s.name or f"segment {i}" for i, s in enumerate(self.segments, 1)
         )
 
+    def radii(self, z: float) -> tuple[float, float]:
+        """Radius of the bore and of the shaft at z, m, without their roundings; at a station those
+        of the segment before it.
+        """
+        i = min(max(bisect_left(self.stations, z) - 1, 0), len(self.segments) - 1)
+        return self.segments[i].radii(z - self.stations[i])
+
     def fillet_at(self, corner: int) -> float:
-        """Radius (m) of the corner between segments `corner` and `corner` + 1 (from 0)."""
+        """Radius (m) of the inner corner between segments `corner` and `corner` + 1 (from 0); 0
+        where they have none.
+        """
         left, right = self.segments[corner], self.segments[corner + 1]
-        if left.diameter == right.diameter:
-            return 0.0
-        step = 0.5 * abs(left.diameter - right.diameter)
+        turn = turn_at(left, right)
         rho = self.fillet if left.fillet is None else left.fillet
-        return snapped(rho, (step,), min(self.tolerance, 1e-3 * step))
+        if turn == "step":
+            step = 0.5 * abs(left.diameters[1] - right.diameter)
+            return snapped(rho, (step,), min(self.tolerance, 1e-3 * step))
+        return rho if turn == "inner" else 0.0
+
+    @cached_property
+    def legs(self) -> tuple[Leg, ...]:
+        """The sides of its section, as `geometry.shape.polygon.legs`."""
+        return legs(corners(self), self.tolerance)
+
+    @cached_property
+    def roundings(self) -> tuple[Rounding, ...]:
+        """The fillets and rounded edges of its section."""
+        return roundings(corners(self), self.legs)
 
     @cached_property
     def bands(self) -> tuple[Band, ...]:
-        """The outer cylinder of every segment, without what fillets take from it."""
+        """The outer surface of every segment, without what fillets and rounded edges take."""
+        mine = iter(self.legs[1:])
         bands = []
-        for i, s in enumerate(self.segments):
-            cut = [0.0, 0.0]
-            for side, j, corner in ((0, i - 1, i - 1), (1, i + 1, i)):
-                if 0 <= j < len(self.segments) and self.segments[j].diameter > s.diameter:
-                    cut[side] = self.fillet_at(corner)
-            z0, z1 = self.stations[i] + cut[0], self.stations[i + 1] - cut[1]
-            z1 = snapped(z1, (z0,), self.tolerance)  # fillets that meet, meet in one circle
-            bands.append(Band(self.labels[i], z0, z1, 0.5 * s.diameter))
+        for label, s in zip(self.labels, self.segments, strict=True):
+            leg = next(leg for leg in mine if leg.name == label)
+            bands.append(Band(label, leg.start[1], leg.end[1], 0.25 * sum(s.diameters)))
         return tuple(bands)
 
     @property
@@ -159,7 +171,8 @@ class Pin:
         """
         if name.startswith("bore ") and name[5:] in self.labels:
             i = self.labels.index(name[5:])
-            return Band(name, self.stations[i], self.stations[i + 1], 0.5 * self.segments[i].bore)
+            radius = 0.25 * sum(self.segments[i].bores)
+            return Band(name, self.stations[i], self.stations[i + 1], radius)
         return self.bands[self._position(name)]
 
     def surface(self, name: str) -> str:
@@ -167,7 +180,9 @@ class Pin:
 
         Raises: GeometryError listing the names there are.
         """
-        return name if name in FACES else self.labels[self._position(name)]
+        if name in FACES and any(leg.name == name and leg.start != leg.end for leg in self.legs):
+            return name
+        return self.labels[self._position(name)]
 
     def _position(self, name: str) -> int:
         for i, s in enumerate(self.segments):
@@ -180,17 +195,8 @@ class Pin:
 
     @cached_property
     def volume(self) -> float:
-        """Exact volume, m^3: cylinders, and by Pappus the rings that fillets add."""
-        tubes = (s.length * (s.diameter**2 - s.bore**2) * math.pi / 4.0 for s in self.segments)
-        rings = 0.0
-        for i in range(len(self.segments) - 1):
-            rho = self.fillet_at(i)
-            shaft = 0.5 * min(self.segments[i].diameter, self.segments[i + 1].diameter)
-            # spandrel between two tangents and the arc: area and its centroid's distance from both
-            area = (1.0 - math.pi / 4.0) * rho**2
-            centroid = rho * (10.0 - 3.0 * math.pi) / (12.0 - 3.0 * math.pi)
-            rings += 2.0 * math.pi * (shaft + centroid) * area
-        return sum(tubes) + rings
+        """Exact volume, m^3."""
+        return volume_within(meridian(self))
 
     def scaled(self, factor: float) -> Pin:
         """The same pin in another unit."""
@@ -209,11 +215,16 @@ def _merged(segments: tuple[Segment, ...], tolerance: float) -> tuple[tuple[Segm
     """Segments whose diameters and bores are equal or further apart than the tolerance; the largest
     difference (m) between a dimension and what it became, if more than round-off.
     """
-    outer = merged((s.diameter for s in segments), tolerance)
-    inner = merged((0.0, *(s.bore for s in segments)), tolerance)
+    outer = merged((d for s in segments for d in s.diameters), tolerance)
+    inner = merged((0.0, *(d for s in segments for d in s.bores)), tolerance)
     changes = [*outer.items(), *inner.items()]
     apart = max((old - new for old, new in changes if old - new > ROUND_OFF * old), default=0.0)
-    one = (replace(s, diameter=outer[s.diameter], bore=inner[s.bore]) for s in segments)
+    one = (
+        s.with_diameters(
+            (outer[s.diameters[0]], outer[s.diameters[1]]), (inner[s.bores[0]], inner[s.bores[1]])
+        )
+        for s in segments
+    )
     return tuple(one), apart
 
 
@@ -225,12 +236,21 @@ def _check_dimensions(pin: Pin) -> None:
         what, at = f"{where}, segment {i}", ("segment", i)
         if not (math.isfinite(s.length) and s.length > 0.0):
             raise GeometryError(f"{what}: the length must be positive", "not-positive", at)
-        if not (math.isfinite(s.diameter) and s.diameter > 0.0):
+        if not all(math.isfinite(d) and d > 0.0 for d in s.diameters):
             raise GeometryError(f"{what}: the diameter must be positive", "not-positive", at)
-        if not 0.0 <= s.bore < s.diameter:
+        if not all(0.0 <= b < d for b, d in zip(s.bores, s.diameters, strict=True)):
             raise _bore_too_large(what, i)
         if s.fillet is not None and not s.fillet >= 0.0:
             raise GeometryError(f"{what}: the fillet must not be negative", "negative", at)
+        if not all(radius >= 0.0 for radius in (*s.edge_radii, *s.bore_radii)):
+            raise GeometryError(f"{what}: a radius must not be negative", "negative", at)
+        if s.cone and s.connection:
+            raise GeometryError(
+                f"{what}: a link cannot bear on a cone, as {s.connection} does; give it a segment "
+                "of one diameter",
+                "band-on-cone",
+                at,
+            )
     if not pin.fillet >= 0.0:
         raise GeometryError(f"{where}: the fillet must not be negative", "negative")
 
@@ -243,7 +263,7 @@ def _bore_too_large(what: str, i: int) -> GeometryError:
 def _check(pin: Pin) -> None:
     where, least = f"pin {pin.name}", pin.tolerance
     for i, s in enumerate(pin.segments, 1):
-        if s.diameter - s.bore <= least:
+        if min(s.walls) <= least:
             raise _bore_too_large(f"{where}, segment {i}", i)
         if s.length <= least:
             raise GeometryError(
@@ -253,7 +273,7 @@ def _check(pin: Pin) -> None:
                 ("segment", i),
             )
     for i, (a, b) in enumerate(pairwise(pin.segments), 1):
-        if min(a.diameter, b.diameter) - max(a.bore, b.bore) <= least:
+        if min(a.diameters[1], b.diameter) - max(a.bores[1], b.bore) <= least:
             raise GeometryError(
                 f"{where}: the bore separates segment {i} from segment {i + 1}; it must be less "
                 "than the smaller of their diameters",
@@ -266,14 +286,41 @@ def _check(pin: Pin) -> None:
         raise GeometryError(
             f"{where}: two surfaces are named {twice[0]!r}; names must be unique", "duplicate-name"
         )
+    _check_edges(pin)
     _check_fillets(pin)
 
 
+def _check_edges(pin: Pin) -> None:
+    """Raises: GeometryError for an edge radius where there is no edge."""
+    turns = [turn_at(a, b) for a, b in pairwise(pin.segments)]
+    inside = [bore_turn_at(a, b) for a, b in pairwise(pin.segments)]
+    for i, s in enumerate(pin.segments):
+        for end, k in ((0, i - 1), (1, i)):
+            within, what = 0 <= k < len(turns), f"pin {pin.name}, segment {i + 1}"
+            if s.edge_radii[end] and within:
+                other = pin.segments[i + 2 * end - 1].diameters[1 - end]
+                if turns[k] != "edge" and not (turns[k] == "step" and s.diameters[end] > other):
+                    raise GeometryError(
+                        f"{what}: its outer surface has no edge at its {FACES[end]} for "
+                        "edge_radius to round; set that to 0 (the radius of an inner corner is a "
+                        "fillet)",
+                        "no-edge",
+                        ("segment", i + 1),
+                    )
+            if s.bore_radii[end] and (not s.bores[end] or (within and inside[k] == "smooth")):
+                raise GeometryError(
+                    f"{what}: its bore has no corner at its {FACES[end]} for bore_radius to round; "
+                    "set that to 0",
+                    "no-edge",
+                    ("segment", i + 1),
+                )
+
+
 def _check_fillets(pin: Pin) -> None:
-    for i in range(len(pin.segments) - 1):
+    for i, (left, right) in enumerate(pairwise(pin.segments)):
         rho = pin.fillet_at(i)
-        step = 0.5 * abs(pin.segments[i].diameter - pin.segments[i + 1].diameter)
-        if rho > step:
+        step = 0.5 * abs(left.diameters[1] - right.diameter)
+        if step and rho > step and not (left.cone or right.cone):
             raise GeometryError(
                 f"pin {pin.name}: the fillet between segments {i + 1} and {i + 2} is "
                 f"{rho / step:.4g} times as large as the step; reduce it to at most half the "
@@ -281,12 +328,24 @@ def _check_fillets(pin: Pin) -> None:
                 "fillet-too-large",
                 ("segment", i + 1),
             )
-    for i, (s, band) in enumerate(zip(pin.segments, pin.bands, strict=True), 1):
-        left = band.length
-        if left < 0.0 or (s.connection and left == 0.0):
-            raise GeometryError(
-                f"pin {pin.name}, segment {i}: the fillets at its ends take up its whole length "
-                f"({(s.length - left) / s.length:.4g} of it); reduce them or lengthen the segment",
-                "fillets-overlap",
-                ("segment", i),
-            )
+    borne = {s.connection for s in pin.segments if s.connection}
+    for leg in pin.legs:
+        if leg.short > pin.tolerance or (leg.name in borne and leg.start == leg.end):
+            raise _overlapping(pin, leg)
+
+
+def _overlapping(pin: Pin, leg: Leg) -> GeometryError:
+    taken, name = sum(leg.taken) / leg.length if leg.length else math.inf, leg.name or "the axis"
+    if leg.name in pin.labels:
+        i = pin.labels.index(leg.name) + 1
+        return GeometryError(
+            f"pin {pin.name}, segment {i}: the fillets at its ends take up its whole length "
+            f"({taken:.4g} of it); reduce them or lengthen the segment",
+            "fillets-overlap",
+            ("segment", i),
+        )
+    return GeometryError(
+        f"pin {pin.name}: the radii at the ends of {name} take up more than there is of it "
+        f"({taken:.4g} times); reduce them",
+        "fillets-overlap",
+    )

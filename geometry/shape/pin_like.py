@@ -10,6 +10,7 @@ from geometry.shape.pin import Band
 class PinLike(Protocol):
     """A pin along z between its `ends` (m), with named surfaces and bands; `volume` in m^3.
 
+    source: where its shape comes from, for people, if not from the study.
     revolved: whether it is a body of revolution. meshed: whether it is given by a mesh, which
     can only be refined by halving.
     """
@@ -22,6 +23,8 @@ class PinLike(Protocol):
     def ends(self) -> tuple[float, float]: ...
     @property
     def volume(self) -> float: ...
+    @property
+    def source(self) -> str: ...
     @property
     def revolved(self) -> bool: ...
     @property

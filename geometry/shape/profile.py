@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
-from geometry.shape.pin import Pin, Segment
+from geometry.shape.polygon import RZ, SMOOTH, Profile, corners, cross
 
-RZ = tuple[float, float]
+__all__ = ["RZ", "Arc", "Corner", "Edge", "meridian", "sharp_corners", "volume_within"]
 
 
 @dataclass(frozen=True)
@@ -20,10 +21,17 @@ class Edge:
 
 @dataclass(frozen=True)
 class Arc(Edge):
-    """A quarter circle about `centre`, of `radius` (m)."""
+    """A part of a circle about `centre`, of `radius` (m); along: unit tangents at its two ends."""
 
     centre: RZ = (0.0, 0.0)
     radius: float = 0.0
+    along: tuple[RZ, RZ] = ((0.0, 0.0), (0.0, 0.0))
+
+    @property
+    def turn(self) -> float:
+        """Angle by which it turns to the left, rad."""
+        (a, b), (c, d) = self.along
+        return math.atan2(a * d - b * c, a * c + b * d)
 
 
 @dataclass(frozen=True)
@@ -34,67 +42,49 @@ class Corner:
     z: float
 
 
-def meridian(pin: Pin) -> tuple[Edge, ...]:
+def meridian(pin: Profile) -> tuple[Edge, ...]:
     """The closed outline, counter-clockwise in (r, z), from the start face on."""
-    first, last = pin.segments[0], pin.segments[-1]
-    edges: list[Edge] = [Edge("start", (first.bore / 2, 0.0), (first.diameter / 2, 0.0))]
-    edges += _outside(pin)
-    z = pin.length
-    edges.append(Edge("end", (last.diameter / 2, z), (last.bore / 2, z)))
-    edges += _inside(pin)
-    return tuple(e for e in edges if e.start != e.end)
-
-
-def _outside(pin: Pin) -> list[Edge]:
+    nodes, sides = corners(pin), pin.legs
     edges: list[Edge] = []
-    for i, (segment, band) in enumerate(zip(pin.segments, pin.bands, strict=True)):
-        r = band.radius
-        edges.append(Edge(band.name, (r, band.z0), (r, band.z1)))
-        if i + 1 == len(pin.segments):
-            break
-        edges += _shoulder(pin, i, segment, pin.segments[i + 1])
-    return edges
+    for node, before, after in zip(nodes, (sides[-1], *sides), sides, strict=False):
+        if node.radius and before.end != after.start:
+            along = before.along, after.along
+            r, z = before.end
+            side = math.copysign(node.radius, cross(*along))
+            centre = (r - side * along[0][1], z + side * along[0][0])
+            edges.append(Arc(node.arc, before.end, after.start, centre, node.radius, along))
+        edges.append(Edge(after.name, after.start, after.end))
+    found = [e for e in edges if e.start != e.end]
+    start = next((k for k, e in enumerate(found) if e.name == "start"), 0)
+    return (*found[start:], *found[:start])
 
 
-def _shoulder(pin: Pin, i: int, left: Segment, right: Segment) -> list[Edge]:
-    """The corner between two segments: fillet at the thinner shaft, then the shoulder face."""
-    if left.diameter == right.diameter:
-        return []
-    rho, z = pin.fillet_at(i), pin.stations[i + 1]
-    thin, thick = sorted((left.diameter / 2, right.diameter / 2))
-    rises = right.diameter > left.diameter
-    z_tangent = pin.bands[i].z1 if rises else pin.bands[i + 1].z0
-    on_shaft, on_face, rim = (thin, z_tangent), (thin + rho, z), (thick, z)
-    if rho == abs(left.diameter - right.diameter) / 2:  # the fillet takes the whole shoulder
-        on_face = rim
-    fillet: list[Edge] = []
-    if rho > 0.0:
-        ends = (on_shaft, on_face) if rises else (on_face, on_shaft)
-        fillet = [Arc(f"fillet {i + 1}", *ends, centre=(thin + rho, z_tangent), radius=rho)]
-    face = Edge(f"shoulder {i + 1}", *((on_face, rim) if rises else (rim, on_face)))
-    return [*fillet, face] if rises else [face, *fillet]
-
-
-def _inside(pin: Pin) -> list[Edge]:
-    """Back along the bores, or the axis where there is none; from the end to the start."""
-    edges: list[Edge] = []
-    for i in reversed(range(len(pin.segments))):
-        r = pin.segments[i].bore / 2
-        name = f"bore {pin.labels[i]}" if r else None
-        edges.append(Edge(name, (r, pin.stations[i + 1]), (r, pin.stations[i])))
-        if i and pin.segments[i - 1].bore != pin.segments[i].bore:
-            z = pin.stations[i]
-            edges.append(Edge(f"bore step {i}", (r, z), (pin.segments[i - 1].bore / 2, z)))
-    return edges
-
-
-def sharp_corners(pin: Pin) -> tuple[Corner, ...]:
+def sharp_corners(pin: Profile) -> tuple[Corner, ...]:
     """Inner corners without a fillet, on the shaft and in bores."""
-    corners = []
-    for i, z in enumerate(pin.stations[1:-1]):
-        left, right = pin.segments[i], pin.segments[i + 1]
-        if left.diameter != right.diameter and pin.fillet_at(i) == 0.0:
-            corners.append(Corner(min(left.diameter, right.diameter) / 2, z))
-        if left.bore != right.bore:
-            corners.append(Corner(max(left.bore, right.bore) / 2, z))
-    return tuple(corners)
+    nodes, sides = corners(pin), pin.legs
+    return tuple(
+        Corner(node.r, node.z)
+        for node, before, after in zip(nodes, (sides[-1], *sides), sides, strict=False)
+        if node.r and not node.radius and cross(before.along, after.along) < -SMOOTH
+    )
+
+
+def volume_within(outline: tuple[Edge, ...]) -> float:
+    """Of the body of revolution, m^3, exactly: pi times the integral of r^2 dz round it."""
+    return math.pi * math.fsum(_under(e) for e in outline)
+
+
+def _under(e: Edge) -> float:
+    """Integral of r^2 dz along an edge, m^3."""
+    if not isinstance(e, Arc):
+        (a, start), (b, end) = e.start, e.end
+        return (end - start) * (a * a + a * b + b * b) / 3.0
+    c, rho = e.centre[0], e.radius
+    first = math.atan2(e.start[1] - e.centre[1], e.start[0] - c)
+
+    def below(t: float) -> float:
+        s = math.sin(t)
+        half = t / 2.0 + math.sin(2.0 * t) / 4.0
+        return rho * (c * c * s + 2.0 * c * rho * half + rho * rho * (s - s**3 / 3.0))
+
+    return below(first + e.turn) - below(first)

@@ -21,7 +21,7 @@ from pinstress.analysis.plan import Plan, all_loads
 from pinstress.analysis.stored import Solved
 from pinstress.cache.store import PACKAGES
 from pinstress.model.cases import CaseLoads, at_time
-from pinstress.model.pins import outline, weight
+from pinstress.model.pins import far_ends, outline, weight
 from pinstress.model.sequence import chosen_cases
 from pinstress.model.tasks import Task
 from pinstress.schema.tables import ReportTable
@@ -235,7 +235,7 @@ def _shape(task: Task) -> plain.PinShape:
         for length, diameter, bore, label, kind in outline(pin)
     )
     heavy = weight(pin, density) if density else None
-    return plain.PinShape(pin.name, segments, task.material.name, heavy)
+    return plain.PinShape(pin.name, segments, task.material.name, heavy, far_ends(pin))
 
 
 def landing_range(

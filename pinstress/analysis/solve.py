@@ -23,7 +23,7 @@ from pinstress.analysis.limits import limit_loads
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import Entry, Solved, lasting, question
 from pinstress.cache.store import Cache
-from pinstress.model.pins import lost_shape
+from pinstress.model.pins import shape_notes
 from pinstress.model.tasks import Task
 from pinstress.processes.pool import Died, Job, Progress, Tell, side_by_side
 from pinstress.remedies.changes import change
@@ -161,8 +161,10 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
         if field is not None:
             tell(f"pin {task.pin.name}, pictures")
             keep(field)
-    lost = lost_shape(task.pin)
-    peaks = tuple(replace(s.peak, note="; ".join(filter(None, (s.peak.note, lost)))) for s in found)
+    notes = shape_notes(task.pin)
+    peaks = tuple(
+        replace(s.peak, note="; ".join(filter(None, (s.peak.note, notes)))) for s in found
+    )
     pressed = [j.pressed for j in joined] or [_as_given] * len(found)
     ranges = (
         gather.landing_range(plan.loads, task, s, on) for s, on in zip(found, pressed, strict=True)
@@ -176,7 +178,8 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
     surfaces = surfaces_of(plan.loads, task, found, pressures)
     histories = stress_histories(task.pin.name, found)
     tell(f"pin {task.pin.name}, what to change")
-    to_do = change(plan.asked, task, found, STEPS[study.table.units] if plan.sensitive else None)
+    sensitive = plan.sensitive and study.table.pin[task.pin.name].profile is not None
+    to_do = change(plan.asked, task, found, STEPS[study.table.units] if sensitive else None)
     limits = limit_loads(plan, task, every, tell)
     return Solved(
         peaks,

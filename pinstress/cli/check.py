@@ -12,8 +12,8 @@ from pinstress.model.cases import CaseLoads, case_loads
 from pinstress.model.lugs import lugs
 from pinstress.model.mechanism.drives import span
 from pinstress.model.mechanism.linkage import determined, linkage
-from pinstress.model.pins import lost_shape, weight
 from pinstress.model.pins import pin as pin_of
+from pinstress.model.pins import shape_notes, weight
 from pinstress.model.sequence import require_times
 from pinstress.model.tasks import Task, tasks
 from pinstress.schema.cases import GivenCase, LegCase, MotionCase
@@ -86,7 +86,7 @@ def _pin(study: Study, pin: PinLike) -> str:
     return (
         f"pin {name}: {p.material}, {_form(p)}{heavy}; "
         f"loaded at {', '.join(pin.connections) or 'nothing'}; {' or '.join(supports)}"
-        + (f"; {lost}" if (lost := lost_shape(pin)) else "")
+        + (f"; {notes}" if (notes := shape_notes(pin)) else "")
     )
 
 
@@ -98,9 +98,10 @@ def _support(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> str:
 
 
 def _form(pin: PinTable) -> str:
-    if pin.profile is None:
+    if pin.geometry is not None:
         return f"from {pin.geometry}"
-    counted = ((len(pin.profile), "segment"), (len(pin.hole), "hole"), (len(pin.flat), "flat"))
+    shape = (pin.profile, "segment") if pin.meridian is None else (pin.meridian, "corner")
+    counted = ((len(shape[0] or ()), shape[1]), (len(pin.hole), "hole"), (len(pin.flat), "flat"))
     return ", ".join(f"{n} {what}{'s' * (n > 1)}" for n, what in counted if n)
 
 

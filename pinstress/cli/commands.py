@@ -13,6 +13,7 @@ import click
 from pinstress.cli.more_commands import (
     compare_runs,
     completion,
+    import_,
     init,
     pdf_of,
     plots,
@@ -333,5 +334,5 @@ def check(study: Path) -> int:
     return NOT_REACHED if unheld else REACHED
 
 
-for _command in (compare_runs, init, pdf_of, plots, schema, size, view, completion):
+for _command in (compare_runs, import_, init, pdf_of, plots, schema, size, view, completion):
     commands.add_command(_command)

@@ -43,6 +43,44 @@ def init(directory: Path, opens: bool) -> int:
 
 
 @click.command(
+    "import",
+    short_help="Write the [pin.NAME] of a CAD file as a profile.",
+    help=example("pinstress import shaft.step >> study.toml")
+    + "\nRecognise the body in a CAD file (STEP, BREP, IGES) as a profile with cross holes and "
+    "flats, and print its table for a study; the axis may have any direction.\n\n"
+    "Exit status: 0 done; 2 bad input, or a body that is not turned; 130 interrupted.",
+)
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option("--pin", metavar="NAME", help="Name of the pin [the file's].")
+@click.option(
+    "--material", default="steel", metavar="NAME", show_default=True, help="Its material."
+)
+@click.option(
+    "--unit",
+    type=click.Choice(["mm", "cm", "m", "in"]),
+    default="mm",
+    show_default=True,
+    help="Unit of length in the file; STEP files are read in mm, whatever theirs is.",
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, dir_okay=False),
+    metavar="FILE",
+    help="Write this new file instead of printing.",
+)
+def import_(file: Path, pin: str | None, material: str, unit: str, out: Path | None) -> None:
+    from pinstress.cli.new_file import write_new
+    from pinstress.model.pin_text import imported_text
+
+    text = imported_text(file, pin, unit, material)
+    if out is None:
+        click.echo(text, nl=False)
+    else:
+        write_new(out, text.encode(), "name another file")
+        click.echo(f"Written: {out}", err=True)
+
+
+@click.command(
     short_help="Print the JSON Schema of the study file.",
     help=example("pinstress schema > study.schema.json")
     + "\nPrint the JSON Schema of the study file, for completion and validation in editors.",

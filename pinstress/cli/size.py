@@ -155,7 +155,7 @@ def _row(study: Study, new: Study, sized: Sized, results: Results) -> SizeRow:
     worst = min(mine, key=lambda p: p.safety_factor or 0.0) if mine else None
     unit = study.system.factor("length")
     before, after = (
-        tuple(s.diameter / unit for s in x.table.pin[sized.pin].profile or ()) for x in (study, new)
+        tuple(d / unit for d in x.table.pin[sized.pin].diameters) for x in (study, new)
     )
     return SizeRow(
         pin=sized.pin,

@@ -10,16 +10,19 @@ import os
 import pickle
 import signal
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from geometry import GeometryError
+from geometry import CutPin, GeometryError, Pin, PinLike
 from geometry.imported.body_file import BodyFile
 from geometry.imported.imported_pin import MEASURE, SolidBody
+from geometry.imported.recognise import NotTurnedError, Turned, turned
 from geometry.mesh.solid_mesh import MeshError
+from geometry.shape.polyline import Stripe, with_stripes
 from loads import MB, FileError, require_regular
 from pinstress.processes.current_folder import trusting_python
 from pinstress.processes.limits import Limits, keep_within, passed
@@ -37,12 +40,33 @@ CAD = Limits(30, 300)  # to measure it; a sound pin takes about a second
 LARGE = Limits(600, 6000)  # for a mesh file, and to mesh a CAD file more finely
 
 
-def read_body(file: BodyFile) -> SolidBody:
-    """The body in the file, with its bands measured.
+def read_body(file: BodyFile, clamps: Iterable[str] = ()) -> PinLike:
+    """The body in the file: a profile, with holes and flats, if it is one and its bands and clamps
+    (by name) are on it; otherwise a solid, with its bands measured.
 
     Raises: GeometryError, MeshError as SolidBody; GeometryError if it is not a regular file, is too
     large, or cannot be read within the limits.
     """
+    require_readable(file)
+    if file.meshed or not file.path.is_file():
+        return SolidBody(file, apart)
+    try:
+        return _profiled(file, turned_apart(file), set(clamps))
+    except NotTurnedError as error:
+        return SolidBody(file, apart, f"{file.path.name} is taken as a solid, since {error.why}")
+
+
+def turned_apart(file: BodyFile, upright: bool = True) -> Turned:
+    """As `geometry.imported.recognise.turned`, in another process.
+
+    Raises: as that and `apart`.
+    """
+    found: Turned = apart(turned, file, upright)
+    return found
+
+
+def require_readable(file: BodyFile) -> None:
+    """Raises: GeometryError if the file cannot be read, or is too large."""
     try:
         require_regular(file.path, LARGEST_BODY)
     except FileError as error:
@@ -53,7 +77,39 @@ def read_body(file: BodyFile) -> SolidBody:
         raise GeometryError(
             f"pin {file.name}: {file.path.name} cannot be read ({error.strerror})", "unreadable"
         ) from None
-    return SolidBody(file, apart)
+
+
+def _profiled(file: BodyFile, found: Turned, clamps: set[str]) -> Pin | CutPin:
+    """Raises: NotTurnedError where a band or a clamp is not one of the profile."""
+    start, stripes = found.start * file.unit, []
+    for place in file.places:
+        at = found.surfaces.get(place.surface or "")
+        if place.z is not None:
+            at = place.z[0] - start, place.z[1] - start
+        if at is None:
+            why = f"surface {place.surface} of band {place.name} is no whole cylinder"
+            raise NotTurnedError(file.name, file.path.name, why)
+        stripes.append(Stripe(place.name, *at, place.connection))
+    named = {place.name for place in file.places}
+    stripes += [Stripe(c, *found.surfaces[c], False) for c in clamps - named if c in found.surfaces]
+    try:
+        profile = with_stripes(found.pin(file.name), stripes)
+        pin = CutPin(profile, found.holes, found.flats)
+        for clamp in clamps:
+            pin.surface(clamp)
+    except GeometryError as error:
+        raise NotTurnedError(file.name, file.path.name, str(error)) from None
+    counted = (
+        (len(profile.segments), "segment"),
+        (len(pin.holes), "hole"),
+        (len(pin.flats), "flat"),
+    )
+    parts = ", ".join(f"{n} {what}{'s' * (n > 1)}" for n, what in counted if n)
+    source = f"{file.path.name} is taken as a profile: {parts}"
+    if found.start:
+        source += f"; z counts from its start face, at z = {found.start:g} of the file"
+    profile = replace(profile, source=source)
+    return replace(pin, profile=profile) if pin.holes or pin.flats else profile
 
 
 def apart(work: Work, file: BodyFile, *arguments: object) -> Any:
@@ -61,7 +117,8 @@ def apart(work: Work, file: BodyFile, *arguments: object) -> Any:
 
     Raises: what it raises; GeometryError if that process crashes or exceeds its limits.
     """
-    limits = CAD if not file.meshed and arguments in ((), (MEASURE,)) else LARGE
+    quick = work is turned or arguments in ((), (MEASURE,))
+    limits = CAD if quick and not file.meshed else LARGE
     job = partial(_limited, limits, work, file, *arguments)
     if processes(2) == 1:  # with other threads running no process can be forked
         made = _started(job)

@@ -58,7 +58,7 @@ def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]
             fitted(on_structure(pin, tried), made_of, tried)
     except ArgumentError as error:
         raise study.error(str(error), at, error.code) from None
-    if joints == "foundation" and (reason := beyond_foundations(out)):
+    if joints == "foundation" and (reason := beyond_foundations(pin, out)):
         raise study.error(
             f'pin {pin.name} on foundations: {reason}; use analysis.joints = "contact"',
             at,

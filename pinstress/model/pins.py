@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from fea.core.material import Material
 from geometry import CutPin, Flat, GeometryError, Hole, Pin, PinLike, Segment
 from geometry.coded import Place
+from geometry.shape.polyline import Bend, Stripe, pin_of_polyline, with_stripes
 from pinstress.schema.pins import PinTable
 from pinstress.study.errors import Wrong
 from pinstress.study.file import Study
@@ -59,7 +60,9 @@ def _key(name: str, p: PinTable, at: Place) -> str:
     """The key of the part of a pin that geometry names."""
     match at:
         case ("segment", int(i)):
-            return f"pin.{name}.profile[{i}]"
+            return f"pin.{name}.profile[{i}]" if p.profile is not None else f"pin.{name}.meridian"
+        case ("key", str(key)):
+            return f"pin.{name}.{key}"
         case (str(kind), int(i)):
             return f"pin.{name}.{kind}[{i}]"
         case ("band", str(band)):
@@ -67,8 +70,14 @@ def _key(name: str, p: PinTable, at: Place) -> str:
     return f"pin.{name}" + ".geometry" * (p.geometry is not None)
 
 
-def lost_shape(pin: PinLike) -> str:
-    """Errors of a shape that no error estimate includes, as text; empty if there are none."""
+def shape_notes(pin: PinLike) -> str:
+    """Where its shape comes from, and errors of it that no error estimate includes, as text; empty
+    if there is nothing to say.
+    """
+    return "; ".join(filter(None, (pin.source, _lost_shape(pin))))
+
+
+def _lost_shape(pin: PinLike) -> str:
     profile = pin.profile if isinstance(pin, CutPin) else pin
     if isinstance(profile, Pin) and profile.merged:
         return (
@@ -99,9 +108,19 @@ def slenderness(pin: PinLike) -> float:
     return pin.length / (2.0 * max(pin.band(name).radius for name in pin.connections))
 
 
+def far_ends(pin: PinLike) -> tuple[tuple[float, float], ...]:
+    """Diameter and bore (m) at the far ends of what `outline` draws; none where all are
+    cylinders.
+    """
+    profile = pin.profile if isinstance(pin, CutPin) else pin
+    if not isinstance(profile, Pin) or profile.stepped:
+        return ()
+    return tuple((s.diameters[1], s.bores[1]) for s in profile.segments)
+
+
 def outline(pin: PinLike) -> list[tuple[float, float, float, str, str]]:
-    """Cylinders to draw a pin by: length, diameter, bore (m), name, and "band" or "plain"; of a
-    shape from a file its bands, and as much as there is between them.
+    """Cylinders or cones to draw a pin by: length, diameter, bore (m), name, and "band" or "plain";
+    of a shape from a file its bands, and as much as there is between them.
     """
     profile = pin.profile if isinstance(pin, CutPin) else pin
     if isinstance(profile, Pin):
@@ -124,17 +143,39 @@ def outline(pin: PinLike) -> list[tuple[float, float, float, str, str]]:
 
 
 def _turned(name: str, p: PinTable) -> Pin | CutPin:
-    segments = tuple(
-        Segment(s.length, s.diameter, s.bore, s.name, s.connection, s.fillet)
-        for s in p.profile or ()
-    )
-    profile = Pin(name, segments, p.fillet)
+    profile = _by_corners(name, p) if p.profile is None else _by_segments(name, p)
     if not (p.hole or p.flat):
         return profile
     holes = tuple(Hole(h.z, h.diameter, h.angle) for h in p.hole)
     cut = CutPin(profile, holes, tuple(Flat(*f.z, f.distance, f.angle) for f in p.flat))
     cut.require_whole()
     return cut
+
+
+def _by_segments(name: str, p: PinTable) -> Pin:
+    segments = (
+        Segment(
+            s.length,
+            s.diameters[0],
+            name=s.name,
+            connection=s.connection,
+            fillet=s.fillet,
+            edge_radii=_at_ends(s.edge_radius),
+            bore_radii=_at_ends(s.bore_radius),
+        ).with_diameters(s.diameters, s.bores)
+        for s in p.profile or ()
+    )
+    return Pin(name, tuple(segments), p.fillet)
+
+
+def _at_ends(radius: float | tuple[float, float]) -> tuple[float, float]:
+    return radius if isinstance(radius, tuple) else (0.0, radius)
+
+
+def _by_corners(name: str, p: PinTable) -> Pin:
+    outside, bore = ([Bend(*x) for x in line or ()] for line in (p.meridian, p.bore_meridian))
+    stripes = (Stripe(n, *b.z, b.connection) for n, b in p.band.items() if b.z is not None)
+    return with_stripes(pin_of_polyline(name, outside, bore), stripes)
 
 
 def _from_file(study: Study, name: str, p: PinTable) -> PinLike:
@@ -145,4 +186,4 @@ def _from_file(study: Study, name: str, p: PinTable) -> PinLike:
     assert p.geometry is not None
     places = tuple(Band(n, b.z, b.surface, b.connection) for n, b in p.band.items())
     file = BodyFile(name, study.path_to(p.geometry), METRES[p.geometry_unit], places)
-    return read_body(file)
+    return read_body(file, (clamp for _, clamp in _clamps(study, name)))

@@ -153,13 +153,5 @@ def _widening(problem: Problem, pin: Pin, factor: float, required: float) -> flo
 
 def widened(pin: Pin, scale: float) -> Pin:
     """The pin with its diameters, bores and fillets scaled; lengths stay."""
-    segments = tuple(
-        replace(
-            s,
-            diameter=s.diameter * scale,
-            bore=s.bore * scale,
-            fillet=None if s.fillet is None else s.fillet * scale,
-        )
-        for s in pin.segments
-    )
+    segments = tuple(s.widened(lambda x: x * scale) for s in pin.segments)
     return replace(pin, segments=segments, fillet=pin.fillet * scale)

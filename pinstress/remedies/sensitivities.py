@@ -67,27 +67,51 @@ def _power(problem: Problem, of: Dimension, level: int) -> float:
 
 def _dimensions(pin: Pin) -> Iterator[Dimension]:
     """Those that are not zero; the diameter or bore of neighbours where it is equal is one."""
-    every = range(len(pin.segments))
-    for key in ("diameter", "bore"):
-        values: list[float] = [getattr(segment, key) for segment in pin.segments]
-        for value, run in groupby(every, values.__getitem__):
+    ends = [(k, end) for k in range(len(pin.segments)) for end in (0, 1)]
+    for key, pairs in (
+        ("diameter", [s.diameters for s in pin.segments]),
+        ("bore", [s.bores for s in pin.segments]),
+    ):
+        values = [value for pair in pairs for value in pair]
+        for value, run in groupby(range(len(ends)), values.__getitem__):
             if value:
-                yield _dimension(pin, key, list(run))
+                yield _across(pin, key, value, [ends[i] for i in run])
     for key in ("length", "fillet"):
-        for k in every:
-            if getattr(pin.segments[k], key):
-                yield _dimension(pin, key, [k])
+        for k, segment in enumerate(pin.segments):
+            if value := getattr(segment, key):
+                yield _along(pin, key, value, k)
     if pin.fillet:
         yield Dimension("fillet", pin.fillet, lambda value: replace(pin, fillet=value))
 
 
-def _dimension(pin: Pin, key: str, at: Sequence[int]) -> Dimension:
-    """Of segments (from 0) that have it in common."""
+def _across(pin: Pin, key: str, value: float, at: Sequence[tuple[int, int]]) -> Dimension:
+    """Of the ends of segments, (segment, end) from 0, that have it in common."""
 
-    def changed(value: float) -> Pin:
-        changes: dict[str, Any] = {key: value}
-        segments = [replace(s, **changes) if k in at else s for k, s in enumerate(pin.segments)]
+    def changed(new: float) -> Pin:
+        segments = list(pin.segments)
+        for k, s in enumerate(segments):
+            outer, inner = list(s.diameters), list(s.bores)
+            for end in (0, 1):
+                if (k, end) in at:
+                    (outer if key == "diameter" else inner)[end] = new
+            segments[k] = s.with_diameters((outer[0], outer[1]), (inner[0], inner[1]))
         return replace(pin, segments=tuple(segments))
 
-    where = f"{at[0] + 1}" if len(at) == 1 else f"{at[0] + 1}-{at[-1] + 1}"
-    return Dimension(f"profile[{where}].{key}", getattr(pin.segments[at[0]], key), changed)
+    whole = sorted({k for k, _ in at if (k, 0) in at and (k, 1) in at})
+    if not whole:
+        k, end = at[-1]
+        return Dimension(f"profile[{k + 1}].{key}[{end + 1}]", value, changed)
+    where = f"{whole[0] + 1}" if len(whole) == 1 else f"{whole[0] + 1}-{whole[-1] + 1}"
+    return Dimension(f"profile[{where}].{key}", value, changed)
+
+
+def _along(pin: Pin, key: str, value: float, k: int) -> Dimension:
+    """Of segment k from 0."""
+
+    def changed(new: float) -> Pin:
+        changes: dict[str, Any] = {key: new}
+        segments = list(pin.segments)
+        segments[k] = replace(segments[k], **changes)
+        return replace(pin, segments=tuple(segments))
+
+    return Dimension(f"profile[{k + 1}].{key}", value, changed)

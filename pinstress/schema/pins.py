@@ -1,6 +1,6 @@
 """The study file's form: materials and pins."""
 
-from itertools import pairwise
+from itertools import groupby, pairwise
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
@@ -11,12 +11,14 @@ from pinstress.schema.types import (
     Angle,
     Density,
     Length,
+    NotNegativeAtEnds,
     NotNegativeLength,
     Number,
     PositiveLength,
     Stress,
     StrictTable,
     Switch,
+    Tapered,
     Tilt,
 )
 
@@ -73,20 +75,42 @@ class MaterialTable(StrictTable):
 
 
 class SegmentTable(StrictTable):
-    """A cylinder of a pin's profile."""
+    """A cylinder or a cone of a pin's profile."""
 
     length: PositiveLength
     """Length along the axis."""
-    diameter: PositiveLength
-    """Outer diameter."""
-    bore: NotNegativeLength = 0.0
-    """Inner diameter; 0 is solid."""
+    diameter: Tapered
+    """Outer diameter; [a, b] for a cone, at its start and at its far end. A chamfer is a short
+    cone."""
+    bore: NotNegativeAtEnds = 0.0
+    """Inner diameter; 0 is solid; [a, b] for a cone."""
     name: str | None = None
     """Name of the outer surface, for `clamp`. Default: its connection."""
     connection: str | None = None
     """Connection of the link that bears on the outer surface; also the name of the surface."""
     fillet: NotNegativeLength | None = None
     """Fillet radius at the inner corner at the far end; overrides the pin's `fillet`."""
+    edge_radius: NotNegativeAtEnds = 0.0
+    """Radius to which the edge of the outer surface at the far end is rounded; [a, b] at its start
+    and at its far end."""
+    bore_radius: NotNegativeAtEnds = 0.0
+    """The same of the corners of the bore, inner ones too."""
+
+    @property
+    def diameters(self) -> tuple[float, float]:
+        """At its start and far end, m."""
+        return self.diameter if isinstance(self.diameter, tuple) else (self.diameter,) * 2
+
+    @property
+    def bores(self) -> tuple[float, float]:
+        """At its start and far end, m."""
+        return self.bore if isinstance(self.bore, tuple) else (self.bore,) * 2
+
+
+Corners = Annotated[
+    list[Annotated[list[NotNegativeLength], Field(min_length=2, max_length=3)]],
+    Field(min_length=2),
+]
 
 
 class HoleTable(StrictTable):
@@ -174,29 +198,46 @@ class LugTable(StrictTable):
     """What is not known of the lug, for the range of the maximum over the joint (`joint.range`)."""
 
 
+SHAPES = "profile", "meridian", "geometry"
+ONLY_WITH = {
+    "fillet": ("profile",),
+    "bore_meridian": ("meridian",),
+    "hole": ("profile", "meridian"),
+    "flat": ("profile", "meridian"),
+    "lug": ("profile", "meridian"),
+    "band": ("meridian", "geometry"),
+    "geometry_unit": ("geometry",),
+}
+
+
 class PinTable(StrictTable):
     """A pin: a body of revolution or the body in a file, and its clamped surfaces."""
 
     material: str
     """Name of a `[material]`."""
     profile: Annotated[list[SegmentTable], Field(min_length=1)] | None = None
-    """Segments, starting at z = 0. Give either `profile` or `geometry`."""
+    """Segments, starting at z = 0. Give either `profile`, `meridian` or `geometry`."""
+    meridian: Corners | None = None
+    """Instead of a profile: the outline from z = 0 to the far end by its corners, [z, r] or
+    [z, r, radius to which the corner is rounded], r being half the diameter."""
+    bore_meridian: Corners | None = None
+    """The same of the bore. Default: solid. Only with `meridian`."""
     fillet: NotNegativeLength = 0.0
     """Radius at every inner corner of the shaft, tangent to the thinner shaft and to the shoulder
     face; 0 is sharp. Only with a profile."""
     hole: list[HoleTable] = []
-    """Cross holes. Only with a profile."""
+    """Cross holes. Not with `geometry`."""
     flat: list[FlatTable] = []
-    """Flats. Only with a profile."""
+    """Flats. Not with `geometry`."""
     geometry: str | None = None
     """A CAD file (STEP, BREP, IGES) or a mesh of tetrahedra, in the study's folder."""
     geometry_unit: Literal["mm", "cm", "m", "in"] = "mm"
     """Unit of length in the file. Only with `geometry`."""
     band: dict[str, BandTable] = {}
-    """Bands of a pin from a file, by name. Only with `geometry`."""
+    """Bands, by name. Only with `geometry` or `meridian`."""
     lug: dict[str, LugTable] = {}
     """Lugs, by connection or by the name of a segment; an empty table takes all defaults. With any,
-    the pin is supported by its lugs (see `analysis.joints`). Only with a profile."""
+    the pin is supported by its lugs (see `analysis.joints`). Not with `geometry`."""
     replaceable: Switch = False
     """Whether the pin is meant to be replaced; then EN 1993-1-8, 3.13 limits bearing, bending and
     contact stress at limit load, too."""
@@ -207,19 +248,34 @@ class PinTable(StrictTable):
 
     @model_validator(mode="after")
     def _one_shape(self) -> "PinTable":
-        if (self.profile is None) == (self.geometry is None):
+        given = [shape for shape in SHAPES if getattr(self, shape) is not None]
+        if len(given) != 1:
             raise LoadsArgumentError(
-                'give either profile = [...] or geometry = "file.step"', "give-one"
+                'give one of profile = [...], meridian = [...] or geometry = "file.step"',
+                "give-one",
             )
-        turned = ("fillet", "hole", "flat", "lug")
-        excluded = ("band", "geometry_unit") if self.profile is not None else turned
-        for key in excluded:
-            if key in self.model_fields_set:
-                other = "geometry" if self.profile is not None else "a profile"
+        for key, shapes in ONLY_WITH.items():
+            if key in self.model_fields_set and given[0] not in shapes:
                 raise LoadsArgumentError(
-                    f"{key} can only be used with {other}; remove it", "key-not-applicable"
+                    f"{key} can only be used with {' or '.join(shapes)}; remove it",
+                    "key-not-applicable",
+                )
+        for name, band in self.band.items():
+            if self.meridian is not None and band.z is None:
+                raise LoadsArgumentError(
+                    f"band {name}: with meridian give z = [a, b], since only files name surfaces",
+                    "key-not-applicable",
                 )
         return self
+
+    @property
+    def diameters(self) -> tuple[float, ...]:
+        """Of the segments or corners in order, m, each once where equal ones follow each other;
+        none of a pin from a file.
+        """
+        of_segments = (d for s in self.profile or () for d in s.diameters)
+        of_corners = (2.0 * corner[1] for corner in self.meridian or ())
+        return tuple(d for d, _ in groupby((*of_segments, *of_corners)))
 
     @property
     def connections(self) -> list[tuple[str, str]]:

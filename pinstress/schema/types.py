@@ -168,6 +168,22 @@ Length = Annotated[float, Quantity("length")]
 Force = Annotated[float, Quantity("force")]
 PositiveLength = Annotated[Length, POSITIVE, PIN_SIZED]
 NotNegativeLength = Annotated[Length, NOT_NEGATIVE]
+
+
+def _one_or_both(value: object) -> str:
+    return "<both>" if isinstance(value, list | tuple) else "<one>"
+
+
+Tapered = Annotated[
+    Annotated[PositiveLength, Tag("<one>")]
+    | Annotated[tuple[PositiveLength, PositiveLength], Tag("<both>")],
+    Discriminator(_one_or_both),
+]
+NotNegativeAtEnds = Annotated[
+    Annotated[NotNegativeLength, Tag("<one>")]
+    | Annotated[tuple[NotNegativeLength, NotNegativeLength], Tag("<both>")],
+    Discriminator(_one_or_both),
+]
 Stress = Annotated[Annotated[float, Quantity("stress")], POSITIVE]
 Density = Annotated[Annotated[float, Quantity("density")], POSITIVE]
 Weight = Annotated[Force, NOT_NEGATIVE]

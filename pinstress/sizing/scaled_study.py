@@ -12,13 +12,20 @@ from typing import Any
 import tomlkit
 
 from pinstress.model.pins import pin, weight
-from pinstress.schema.pins import PinTable
 from pinstress.schema.units import UnitSystem, to_si
 from pinstress.study.file import Study, parse_study
 
 DIGITS = 4  # of a length that is not rounded to a step
 LEAST_EYE = 1.5  # outer diameter over the bore below which an eye that was wider grows with its pin
 NUMBER = re.compile(r"\s*[-+]?[0-9_.]+(?:[eE][-+]?[0-9]+)?")
+ACROSS = {  # keys of lengths across the axis; 1 where rounding up is on the safe side
+    "diameter": 1,
+    "distance": 1,
+    "bore": -1,
+    "fillet": -1,
+    "edge_radius": -1,
+    "bore_radius": -1,
+}
 FILES = ("peaks", "reactions", "motion", "values")  # that [published] names
 
 
@@ -67,10 +74,17 @@ def resized(
         table_of_pin: Any = study["pin"][name]
         parts = (*_plain(table_of_pin.get("profile", [])), *_plain(table_of_pin.get("flat", [])))
         for table in (table_of_pin, *parts):
-            for key, up in (("diameter", 1), ("distance", 1), ("bore", -1), ("fillet", -1)):
+            for key, up in ACROSS.items():
                 if key in table:
                     rounding = step if key == "diameter" else None
-                    _scale(table, key, scale, system, rounding, up)
+                    for here, at in _numbers(table, key):
+                        _scale(here, at, scale, system, rounding, up)
+        for key, up in (("meridian", 1), ("bore_meridian", -1)):
+            for corner in map(_value, _plain(table_of_pin.get(key, []))):
+                radius = step / 2.0 if step is not None and up > 0 else None
+                _scale(corner, 1, scale, system, radius, up)
+                if corner[2:]:
+                    _scale(corner, 2, scale, system, None, -1)
     if required is not None:
         analysis: Any = study.setdefault("analysis", tomlkit.table())
         old = analysis.get("required_safety_factor")
@@ -144,20 +158,21 @@ def _widen_eyes(document: Any, old: Study, new: Study, name: str) -> None:
         if lug.outer_diameter is None:
             continue
         ring = 2.0 * lug.bushing.thickness if lug.bushing else 0.0
-        before, after = (_diameter(x.table.pin[name], at) + ring for x in (old, new))
+        before, after = (2.0 * pin(x, name).band(at).radius + ring for x in (old, new))
         least = min(LEAST_EYE, lug.outer_diameter / before) * after
         if lug.outer_diameter < least * (1.0 - 1e-9):
             table = document["pin"][name]["lug"][at]
             _write(table, "outer_diameter", least, "length", new.system)
 
 
-def _diameter(table: PinTable, at: str) -> float:
-    """Of the segment with this connection or name, m."""
-    return next(s.diameter for s in table.profile or () if at in (s.connection, s.name))
+def _numbers(table: Any, key: str) -> list[tuple[Any, Any]]:
+    """Where a key's numbers are, each with its key or index: one, or one for each end."""
+    both = _value(table[key])
+    return [(both, i) for i in range(len(both))] if isinstance(both, list) else [(table, key)]
 
 
 def _scale(
-    table: Any, key: str, scale: float, system: UnitSystem, step: float | None, up: int
+    table: Any, key: Any, scale: float, system: UnitSystem, step: float | None, up: int
 ) -> None:
     old = _value(table[key])
     size, one = to_si(old, "length", system), _unit(old, "length", system)[1]
@@ -177,11 +192,11 @@ def _unit(old: Any, dimension: str, system: UnitSystem) -> tuple[str, float]:
     return text, to_si(f"1{text}", dimension, system) if text.strip() else system.factor(dimension)
 
 
-def _replace(table: Any, key: str, number: float, unit: str) -> None:
+def _replace(table: Any, key: Any, number: float, unit: str) -> None:
     """Another number, in the same unit; where there is a source, the source is this."""
     old = _value(table[key])
     new = f"{number:.12g}{unit}" if isinstance(old, str) else number
-    if "provenance" in table or isinstance(table[key], dict):
+    if (isinstance(table, dict) and "provenance" in table) or isinstance(table[key], dict):
         note = f"by pinstress size, from {old}"
         sourced = tomlkit.inline_table()
         sourced.update({"value": new, "provenance": "derived", "note": note})

@@ -85,7 +85,7 @@ def size_pin(
         best = smallest(factor_at, wish.required, start)
         scale, factor = best.scale, best.factor
         if wish.step is not None:
-            least = min(segment.diameter for segment in study.table.pin[pin].profile or ())
+            least = min(study.table.pin[pin].diameters)
             scale, factor = _stepped(factor_at, scale, wish.step, least, wish.required)
     except NoSizeError as error:
         return Sized(pin, None, before, None, None, str(error))
@@ -143,7 +143,7 @@ def _factor(study: Study, peak: Peak) -> float:
 
 def _problem(study: Study, pin: str) -> str:
     table = study.table.pin[pin]
-    if table.profile is None:
+    if table.geometry is not None:
         return "its shape comes from a file, which has no diameters to change"
     if study.table.material[table.material].yield_strength is None:
         return f"its material {table.material} has no yield_strength"

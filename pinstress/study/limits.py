@@ -20,15 +20,17 @@ def too_many(table: StudyTable) -> Iterator[str]:
         if len(there) > most:
             yield f"{key}: {len(there):,} {what}; the limit is {most:,}"
     for name, pin in table.pin.items():
-        diameters = [segment.diameter for segment in pin.profile or ()]
+        diameters = [d for d in pin.diameters if d]
         if not diameters:
             continue
-        slender = sum(segment.length for segment in pin.profile or ()) / max(diameters)
+        key = f"pin.{name}.{'meridian' if pin.profile is None else 'profile'}"
+        length = pin.meridian[-1][0] if pin.meridian else sum(s.length for s in pin.profile or ())
+        slender = length / max(diameters)
         if slender > MOST_SLENDER:
-            yield f"pin.{name}.profile: {_odd('as long as it is wide', slender, MOST_SLENDER)}"
+            yield f"{key}: {_odd('as long as it is wide', slender, MOST_SLENDER)}"
         stepped = max(diameters) / min(diameters)
         if stepped > MOST_STEPPED:
-            yield f"pin.{name}.profile: {_odd('as wide as elsewhere', stepped, MOST_STEPPED)}"
+            yield f"{key}: {_odd('as wide as elsewhere', stepped, MOST_STEPPED)}"
 
 
 def _odd(what: str, found: float, most: float) -> str:
@@ -40,6 +42,8 @@ def _counted(table: StudyTable) -> Iterator[tuple[str, str, Sized, int]]:
     yield "case", "cases", table.case, MOST_CASES
     for name, pin in table.pin.items():
         yield f"pin.{name}.profile", "segments", pin.profile or (), MOST_PARTS
+        yield f"pin.{name}.meridian", "corners", pin.meridian or (), MOST_PARTS
+        yield f"pin.{name}.bore_meridian", "corners", pin.bore_meridian or (), MOST_PARTS
         yield f"pin.{name}.hole", "holes", pin.hole, MOST_PARTS
         yield f"pin.{name}.flat", "flats", pin.flat, MOST_PARTS
         yield f"pin.{name}.band", "bands", pin.band, MOST_PARTS

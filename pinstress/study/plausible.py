@@ -112,8 +112,13 @@ def _of_material(key: str, material: MaterialTable, raw: dict[str, Any]) -> Iter
 
 def _of_pin(key: str, pin: PinTable, raw: dict[str, Any]) -> Iterator[Stated]:
     for i, segment in enumerate(pin.profile or ()):
-        for kind, value in (("diameter", segment.diameter), ("length", segment.length)):
-            yield Stated(kind, f"{key}.profile[{i + 1}].{kind}", value, raw["profile"][i][kind])
+        at, written = f"{key}.profile[{i + 1}]", raw["profile"][i]
+        yield Stated("length", f"{at}.length", segment.length, written["length"])
+        if not isinstance(segment.diameter, tuple):
+            yield Stated("diameter", f"{at}.diameter", segment.diameter, written["diameter"])
+            continue
+        for k, value in enumerate(segment.diameter):
+            yield Stated("diameter", f"{at}.diameter[{k + 1}]", value, written["diameter"][k])
 
 
 def _question(stated: Stated, system: UnitSystem) -> str:

@@ -36,6 +36,7 @@ def cross_references(table: StudyTable) -> Iterator[Wrong]:
         yield from _known(f"pin.{name}.material", "material", pin.material, table.material)
         own = dict.fromkeys(connection for _, connection in pin.connections)
         own |= dict.fromkeys(s.name for s in pin.profile or () if s.name)
+        own |= dict.fromkeys(pin.band)
         for connection, lug in pin.lug.items():
             key = f"pin.{name}.lug.{connection}"
             yield from _known(key, "connection or segment", connection, own)

@@ -164,13 +164,15 @@ class LandingRange:
 @dataclass(frozen=True)
 class PinShape:
     """A pin's profile for drawing: segments (length, diameter, bore, label, kind) in order, where
-    kind is "band", "held" or "plain"; its weight (None without a density).
+    kind is "band", "held" or "plain"; its weight (None without a density). far_ends: diameter and
+    bore at the segments' far ends, where any is a cone.
     """
 
     pin: str
     segments: tuple[tuple[Length, Length, Length, str, str], ...]
     material: str
     weight: Force | None
+    far_ends: tuple[tuple[Length, Length], ...] = ()
 
 
 @dataclass(frozen=True)

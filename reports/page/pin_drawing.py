@@ -19,16 +19,21 @@ FILLS = {"band": "#9dbbe0", "held": "url(#held)", "plain": "#ececec"}
 
 @dataclass(frozen=True)
 class _Piece:
-    """A segment on the drawing: x to x + width, radii in the same unit."""
+    """A segment on the drawing: x to x + width, radii at its two ends in the same unit."""
 
     x: float
     width: float
-    radius: float
-    bore: float
+    radii: tuple[float, float]
+    bores: tuple[float, float]
     label: str
     size: str
     length: str
     kind: str
+
+    @property
+    def radius(self) -> float:
+        """The larger."""
+        return max(self.radii)
 
     @property
     def middle(self) -> float:
@@ -83,39 +88,57 @@ def draw_pin(
 
 def _pieces(shape: PinShape, across: float) -> list[_Piece]:
     length = sum(s[0] for s in shape.segments)
-    widest = max((s[1] for s in shape.segments), default=0.0)
+    widths = [s[1] for s in shape.segments] + [diameter for diameter, _ in shape.far_ends]
+    widest = max(widths, default=0.0)
     if length <= 0.0 or widest <= 0.0:
         return []
     scale = min((across - 2 * MARGIN) / length, TALLEST * across / widest)
     x = 0.5 * (across - scale * length)
     pieces = []
-    for long, diameter, bore, label, kind in shape.segments:
-        size = f"⌀{short(diameter)}" + (f" / {short(bore)}" if bore > 0.0 else "")
-        pieces.append(
-            _Piece(
-                x, scale * long, scale * diameter / 2, scale * bore / 2, label, size,
-                short(long), kind,
-            )
-        )  # fmt: skip
+    near_ends = [(diameter, bore) for _, diameter, bore, _, _ in shape.segments]
+    far_ends = shape.far_ends or near_ends
+    for (long, _, _, label, kind), near, far in zip(
+        shape.segments, near_ends, far_ends, strict=True
+    ):
+        diameters, bores = (near[0], far[0]), (near[1], far[1])
+        size = f"⌀{_from_to(diameters)}" + (f" / {_from_to(bores)}" if any(bores) else "")
+        radii, holes = ((scale * a / 2, scale * b / 2) for a, b in (diameters, bores))
+        pieces.append(_Piece(x, scale * long, radii, holes, label, size, short(long), kind))
         x += scale * long
     return pieces
+
+
+def _from_to(ends: tuple[float, float]) -> str:
+    """One size, or those at both ends of a cone."""
+    return "–".join(dict.fromkeys(short(size) for size in ends))
 
 
 def _section(piece: _Piece, axis: float) -> str:
     """The section: the walls above and below the axis."""
     fill = FILLS.get(piece.kind, FILLS["plain"])
+    paint = f'fill="{fill}" stroke="{INK}" stroke-width="1"/>'
+    if piece.radii[0] != piece.radii[1] or piece.bores[0] != piece.bores[1]:
+        return "".join(f'<polygon points="{_cone(piece, axis, s)}" {paint}' for s in (-1.0, 1.0))
     rectangles = [
-        f'<rect x="{x:.2f}" y="{y:.2f}" width="{width:.2f}" height="{height:.2f}" '
-        f'fill="{fill}" stroke="{INK}" stroke-width="1"/>'
+        f'<rect x="{x:.2f}" y="{y:.2f}" width="{width:.2f}" height="{height:.2f}" {paint}'
         for x, y, width, height in _walls(piece, axis)
     ]
     return "".join(rectangles)
 
 
+def _cone(piece: _Piece, axis: float, side: float) -> str:
+    """The corners of a wall above (side -1) or below the axis."""
+    far = piece.x + piece.width
+    (r0, r1), (b0, b1) = piece.radii, piece.bores
+    corners = (piece.x, r0), (far, r1), (far, b1), (piece.x, b0)
+    return " ".join(f"{x:.2f},{axis + side * r:.2f}" for x, r in corners)
+
+
 def _walls(piece: _Piece, axis: float) -> list[tuple[float, float, float, float]]:
-    """x, y, width, height of the walls."""
-    wall = piece.radius - piece.bore
-    return [(piece.x, y, piece.width, wall) for y in (axis - piece.radius, axis + piece.bore)]
+    """x, y, width, height of the walls, of cones of the rectangles around them."""
+    bore = min(piece.bores)
+    wall = piece.radius - bore
+    return [(piece.x, y, piece.width, wall) for y in (axis - piece.radius, axis + bore)]
 
 
 def _leader(piece: _Piece, axis: float, row: int) -> str:

@@ -9,7 +9,7 @@ import pytest
 
 from docs.study_reference import reference, sections, takes
 from pinstress.schema.cases import ImpulseTable, MotionCase
-from pinstress.schema.pins import SegmentTable
+from pinstress.schema.pins import PinTable, SegmentTable
 from pinstress.schema.tables import StudyTable
 from pinstress.schema.types import StrictTable, described
 
@@ -39,7 +39,7 @@ def test_every_table_has_its_place() -> None:
 def test_the_reference_has_type_unit_domain_default_and_description() -> None:
     text = reference(SCHEMA)
     for row in (
-        "| `diameter` | length from 1 µm to 1 km | **required** | Outer diameter. |",
+        "| `length` | length from 1 µm to 1 km | **required** | Length along the axis. |",
         '| `gravity` | acceleration > 0 | `"9.80665 m/s^2"` | Converts the weight to a mass. |',
         "| `samples` | integer ≥ 2, ≤ 100001 | `201` | Number of equally spaced instants. |",
         "| `poisson_ratio` | number > -1, < 0.5 | **required** | Poisson's ratio. |",
@@ -52,7 +52,8 @@ def test_the_reference_has_type_unit_domain_default_and_description() -> None:
 @pytest.mark.parametrize(
     ("table", "key", "words"),
     [
-        (SegmentTable, "bore", "length ≥ 0"),
+        (SegmentTable, "bore", "length ≥ 0 or [length ≥ 0, length ≥ 0]"),
+        (PinTable, "meridian", "list of list of 2 to 3 length ≥ 0"),
         (ImpulseTable, "direction", "[number, number]"),
         (MotionCase, "clamp", "by name: list of string"),
         (MotionCase, "distribution", '`"uniform"`, `"cosine"`'),

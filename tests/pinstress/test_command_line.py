@@ -138,7 +138,8 @@ def test_schema_is_json_and_knows_every_table() -> None:
 
 
 @pytest.mark.parametrize(
-    "command", ["run", "loads", "chart", "check", "init", "schema", "size", "view", "completion"]
+    "command",
+    ["run", "loads", "chart", "check", "import", "init", "schema", "size", "view", "completion"],
 )
 def test_help_begins_with_an_example(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert run_command_line([command, "--help"]) == 0

@@ -13,8 +13,9 @@ import pytest
 from geometry import GeometryError, Pin, Segment
 from geometry.imported.body_file import BodyFile, Place
 from geometry.imported.imported_pin import SolidBody
+from geometry.imported.recognise import turned
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
-from pinstress.model.imported_pin import apart, read_body
+from pinstress.model.imported_pin import apart, read_body, turned_apart
 from pinstress.processes.system import portable
 from tests.conftest import ROOT
 from tests.support.limited_process import limited, start_server
@@ -82,10 +83,10 @@ def test_every_reading_is_in_another_process(kind: str, files: dict[str, BodyFil
     assert done == (whole if kind == ".step" else ["mesh_from_file"])
 
 
-@pytest.mark.parametrize("kind", [pytest.param(".step", marks=pytest.mark.slow), ".msh"])
-def test_what_is_read_there_is_what_is_read_here(kind: str, files: dict[str, BodyFile]) -> None:
-    here = SolidBody(files[kind])
-    for found in (read_body(files[kind]), beside_a_thread(lambda: read_body(files[kind]))):
+def test_what_is_read_there_is_what_is_read_here(files: dict[str, BodyFile]) -> None:
+    file = files[".msh"]
+    here = SolidBody(file)
+    for found in (read_body(file), beside_a_thread(lambda: read_body(file))):
         assert isinstance(found, SolidBody)
         assert found == here
         assert (found.volume, found.ends, found.connections) == (
@@ -94,6 +95,14 @@ def test_what_is_read_there_is_what_is_read_here(kind: str, files: dict[str, Bod
             here.connections,
         )
         assert found.band("B") == here.band("B")
+
+
+@pytest.mark.slow
+def test_what_is_recognised_there_is_what_is_recognised_here(files: dict[str, BodyFile]) -> None:
+    here, file = turned(files[".step"]), files[".step"]
+    assert turned_apart(file) == beside_a_thread(lambda: turned_apart(file)) == here
+    assert read_body(file) == beside_a_thread(lambda: read_body(file))
+    assert isinstance(read_body(file), Pin)
 
 
 def test_errors_come_back_as_they_are(tmp_path: Path) -> None:

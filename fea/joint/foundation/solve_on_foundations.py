@@ -79,7 +79,8 @@ def solve_joints(
 def _may_be_enough(given: InLugs, asked: Asked) -> bool:
     known = given.material.yield_strength is not None and asked.required is not None
     may = asked.tolerance >= PLAIN + PLAIN_ERROR or (asked.goal == "decide" and known)
-    return asked.model == "auto" and may and not beyond_foundations(given.lugs)
+    beyond = beyond_foundations(given.pin, given.lugs)
+    return asked.model == "auto" and may and not beyond
 
 
 def _bounded_everywhere(given: InLugs, asked: Asked) -> bool:

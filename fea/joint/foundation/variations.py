@@ -45,7 +45,7 @@ class FoundationRange:
     def __init__(
         self, pin: Pin, material: Material, lugs: Sequence[Lug], distance: float, assumed: bool
     ) -> None:
-        if reason := beyond_foundations(lugs):
+        if reason := beyond_foundations(pin, lugs):
             raise SolveError(reason, "beyond-foundations")
         self.assumed = assumed
         self.own = FoundationStress.of(FoundationModel(pin, material, lugs), distance)

@@ -49,7 +49,7 @@ def fitted(pin: Pin, material: Material, lugs: Sequence[Lug]) -> tuple[Lug, ...]
             f"pin {pin.name} needs one lug for each of {', '.join(pin.connections)}",
             "lugs-unlike-bands",
         )
-    bores = {s.connection: s.bore for s in pin.segments}
+    bores = {s.connection: max(s.bores) for s in pin.segments}
     for lug in lugs:
         band = pin.band(lug.connection)
         _require_walls(lug, band)
@@ -161,8 +161,12 @@ def _widening(r: float, material: Material) -> Floats:
     return np.array([r * (1.0 - nu) / E, (1.0 + nu) / (E * r)])
 
 
-def beyond_foundations(lugs: Iterable[Lug]) -> str:
-    """What of lugs a beam on foundations cannot answer (fea.joint.foundation), if anything."""
+def beyond_foundations(pin: Pin, lugs: Iterable[Lug]) -> str:
+    """What of pin and lugs a beam on foundations cannot answer (fea.joint.foundation), if
+    anything.
+    """
+    if not pin.stepped:
+        return f"pin {pin.name} has cones or rounded edges, and its beams have only cylinders"
     for lug in lugs:
         if lug.clearance < 0.0:
             return f"lug {lug.connection} has an interference, whose stress it does not include"

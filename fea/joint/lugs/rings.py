@@ -91,12 +91,10 @@ def ringed(pin: Pin, ends: Mapping[str, Floats]) -> Pin:
             segments.append(s)
             continue
         inner = (band.z0 + ends[s.connection])[1:-1]
-        parts = [
-            replace(s, length=float(b - a), name=None, connection=ring(s.connection, k), fillet=0.0)
-            for k, (a, b) in enumerate(pairwise([pin.stations[i], *inner, pin.stations[i + 1]]))
+        parts = s.cut([0.0, *(inner - pin.stations[i]), s.length])
+        segments += [
+            replace(part, connection=ring(s.connection, k)) for k, part in enumerate(parts)
         ]
-        parts[-1] = replace(parts[-1], fillet=s.fillet)
-        segments += parts
     return replace(pin, segments=tuple(segments))
 
 

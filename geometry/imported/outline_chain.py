@@ -1,0 +1,291 @@
+"""From the sides of a section, found face by face, to its outlines by corners and radii."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from geometry.arrays import Floats
+from geometry.imported.sampled_face import NEAR, SampledFace
+from geometry.shape.polygon import RZ, cross
+from geometry.shape.polyline import Bend
+
+QUARTER = math.pi / 2.0 * (1.0 + 1e-9)
+
+
+@dataclass(frozen=True)
+class MeridianSide:
+    """A straight or round part of the outline from (r, z) to (r, z); of round ones the centre, and
+    the angle by which they turn to the left from start to end. name: of its face.
+    """
+
+    start: RZ
+    end: RZ
+    centre: RZ | None = None
+    turn: float = 0.0
+    name: str = ""
+
+    @staticmethod
+    def of(face: SampledFace, to_axis: bool, size: float) -> MeridianSide | None:
+        """Of a face of revolution about the z-axis; None where it is neither straight nor round.
+
+        to_axis: whether the axis goes through it, if it is plane.
+        """
+        r, z = np.hypot(face.points[:, 0], face.points[:, 1]), face.points[:, 2]
+        out = np.sum(face.points[:, :2] * face.normals[:, :2], axis=1)
+        normals = np.stack([out / np.maximum(r, NEAR * size), face.normals[:, 2]], axis=1)
+        off = r > 1e-3 * size * NEAR
+        rz, normals = np.stack([r, z], axis=1)[off], normals[off]
+        rim = np.stack([np.hypot(face.rim[:, 0], face.rim[:, 1]), face.rim[:, 2]], axis=1)
+        if np.ptp(normals, axis=0).max() < 10.0 * NEAR:
+            return _straight(face, rz, rim, normals[0], to_axis)
+        return _round(np.vstack([np.stack([r, z], axis=1), rim]), rz, normals, size, face.name)
+
+    @property
+    def cylinder(self) -> bool:
+        """Whether it is parallel to the axis."""
+        (r0, z0), (r1, z1) = self.start, self.end
+        return self.centre is None and abs(r1 - r0) <= NEAR * abs(z1 - z0)
+
+    @property
+    def radius(self) -> float:
+        """Of a round one."""
+        return math.dist(self.start, self.centre) if self.centre else 0.0
+
+    def reversed(self) -> MeridianSide:
+        """The same from its end to its start."""
+        return replace(self, start=self.end, end=self.start, turn=-self.turn)
+
+    def quarters(self) -> Iterator[MeridianSide]:
+        """The same in parts that turn by a right angle at most."""
+        if self.centre is None:
+            yield self
+            return
+        count = math.ceil(abs(self.turn) / QUARTER)
+        at = [self.start]
+        for k in range(1, count):
+            at.append(_turned_about(self.centre, self.start, self.turn * k / count))
+        for a, b in zip(at, [*at[1:], self.end], strict=True):
+            yield replace(self, start=a, end=b, turn=self.turn / count)
+
+    def tangent(self) -> RZ:
+        """Unit vector at its start."""
+        if self.centre is None:
+            length = math.dist(self.start, self.end)
+            return (self.end[0] - self.start[0]) / length, (self.end[1] - self.start[1]) / length
+        side = math.copysign(1.0 / self.radius, self.turn)
+        r, z = self.start[0] - self.centre[0], self.start[1] - self.centre[1]
+        return -side * z, side * r
+
+
+def _straight(
+    face: SampledFace,
+    rz: Floats,
+    rim: Floats,
+    normal: Floats,
+    to_axis: bool,
+) -> MeridianSide:
+    every = rim if face.plane else np.vstack([rz, rim])
+    along = np.array([-normal[1], normal[0]])
+    at = every @ along
+    low, high = every[int(at.argmin())], every[int(at.argmax())]
+    if face.plane and to_axis:
+        wide = max(_pair(low), _pair(high))
+        return MeridianSide((0.0, wide[1]), wide, None, 0.0, face.name)
+    return MeridianSide(_pair(low), _pair(high), None, 0.0, face.name)
+
+
+def _round(
+    every: Floats, rz: Floats, normals: Floats, size: float, name: str
+) -> MeridianSide | None:
+    """A circle p = c + rho n through points with normals."""
+    count = len(rz)
+    rows = np.zeros((2 * count, 3))
+    rows[:count, 0], rows[count:, 1] = 1.0, 1.0
+    rows[:, 2] = normals.T.ravel()
+    found, *_ = np.linalg.lstsq(rows, rz.T.ravel(), rcond=None)
+    if np.abs(rows @ found - rz.T.ravel()).max() > 10.0 * NEAR * size:
+        return None
+    centre = found[:2]
+    way = every - centre
+    middle = (rz - centre).mean(axis=0)
+    angle = np.arctan2(middle[0] * way[:, 1] - middle[1] * way[:, 0], way @ middle)
+    low, high = int(angle.argmin()), int(angle.argmax())
+    turn = float(angle[high] - angle[low])
+    start, end = _pair(every[low]), _pair(every[high])
+    return MeridianSide(start, end, (float(centre[0]), float(centre[1])), turn, name)
+
+
+def _pair(point: Floats) -> RZ:
+    return float(point[0]), float(point[1])
+
+
+def _turned_about(centre: RZ, at: RZ, angle: float) -> RZ:
+    c, s = math.cos(angle), math.sin(angle)
+    r, z = at[0] - centre[0], at[1] - centre[1]
+    return centre[0] + c * r - s * z, centre[1] + s * r + c * z
+
+
+def outlines(sides: Sequence[MeridianSide], near: float) -> tuple[list[Bend], list[Bend]]:
+    """Corners of the outer surface and of the bore (none of a solid body), in order of z.
+
+    near: distance within which two places are one. Raises: ValueError where the sides do not make
+    one outline.
+    """
+    chain = _chain(_whole(sides, near), near)
+    places = [chain[0].start, *(side.end for side in chain)]
+    low, high = min(z for _, z in places), max(z for _, z in places)
+    first = max((p for p in places if p[1] - low <= near), key=lambda p: p[0])
+    last = max((p for p in places if high - p[1] <= near), key=lambda p: p[0])
+    i, j = places.index(first), places.index(last)
+    if i > j:
+        chain = [side.reversed() for side in reversed(chain)]
+        count = len(places) - 1
+        i, j = count - i, count - j
+    if chain[0].start == chain[-1].end:
+        routes = [chain[i:j], _back([*chain[j:], *chain[:i]])]
+        core, shaft = sorted(routes, key=_area_below)
+        return _bends(shaft, near), _bends(_inside(core, low, high, near), near)
+    before, after = _back(chain[:i]), _back(chain[j:])
+    return _bends(chain[i:j], near), _blind(before, after, low, high, near)
+
+
+def _back(sides: Sequence[MeridianSide]) -> list[MeridianSide]:
+    return [side.reversed() for side in reversed(sides)]
+
+
+def _area_below(sides: Sequence[MeridianSide]) -> float:
+    """Between the axis and a chain of sides, roughly."""
+    return sum((s.start[0] + s.end[0]) * (s.end[1] - s.start[1]) for s in sides)
+
+
+def _whole(sides: Sequence[MeridianSide], near: float) -> list[MeridianSide]:
+    """Each once, with exactly equal ends where they meet; without those that lead nowhere."""
+    places: list[RZ] = []
+
+    def place(at: RZ) -> RZ:
+        for known in places:
+            if math.dist(known, at) <= 10.0 * near:
+                return known
+        at = (0.0 if at[0] <= near else at[0], at[1])
+        places.append(at)
+        return at
+
+    met: list[MeridianSide] = []
+    for side in sides:
+        start, end = place(side.start), place(side.end)
+        if start == end and abs(side.turn) < math.pi:
+            continue
+        made = replace(side, start=start, end=end)
+        if not any(_alike(made, other, near) for other in met):
+            met.append(made)
+    while True:
+        ends = [p for s in met for p in (s.start, s.end)]
+        leading = [
+            s for s in met if all(p[0] == 0.0 or ends.count(p) > 1 for p in (s.start, s.end))
+        ]
+        if len(leading) == len(met):
+            return met
+        met = leading
+
+
+def _alike(a: MeridianSide, b: MeridianSide, near: float) -> bool:
+    if {a.start, a.end} != {b.start, b.end}:
+        return False
+    if a.centre is None or b.centre is None:
+        return a.centre is b.centre
+    return math.dist(a.centre, b.centre) <= 100.0 * near and abs(abs(a.turn) - abs(b.turn)) < NEAR
+
+
+def _chain(sides: list[MeridianSide], near: float) -> list[MeridianSide]:
+    """The sides one after the other: from axis to axis, or all round."""
+    if not sides:
+        raise ValueError("its faces of revolution make no outline")
+    starts = [s for s in sides if s.start[0] == 0.0 or s.end[0] == 0.0]
+    first = starts[0] if starts else sides[0]
+    chain = [first if not starts or first.start[0] == 0.0 else first.reversed()]
+    left = [s for s in sides if s is not first]
+    while left and chain[-1].end[0] != 0.0:
+        at = chain[-1].end
+        following = [s for s in left if at in (s.start, s.end)]
+        if len(following) > 1:
+            raise ValueError("more than two of its faces of revolution meet in a circle")
+        if not following:
+            break
+        left.remove(following[0])
+        chain.append(following[0] if following[0].start == at else following[0].reversed())
+    closed = chain[0].start == chain[-1].end
+    if left or not (closed or chain[0].start[0] == chain[-1].end[0] == 0.0):
+        raise ValueError("its faces of revolution do not make one closed outline")
+    return chain
+
+
+def _bends(sides: Sequence[MeridianSide], near: float) -> list[Bend]:
+    """Corners of a chain; a round side is a corner between its tangents, rounded."""
+    if not sides:
+        return []
+    out = [Bend(sides[0].start[1], sides[0].start[0])]
+    for side in (part for whole in sides for part in whole.quarters()):
+        if side.centre is not None:
+            taken = side.radius * math.tan(abs(side.turn) / 2.0)
+            along = side.tangent()
+            at = side.start[0] + taken * along[0], side.start[1] + taken * along[1]
+            out.append(Bend(at[1], at[0], side.radius))
+        out.append(Bend(side.end[1], side.end[0]))
+    return _without_faces(_without_straight(out, near), near)
+
+
+def _without_straight(bends: list[Bend], near: float) -> list[Bend]:
+    """Without corners that are none."""
+    out = bends[:1]
+    for bend, after in pairwise(bends[1:]):
+        before = out[-1]
+        one, two = (bend.r - before.r, bend.z - before.z), (after.r - bend.r, after.z - bend.z)
+        length = math.hypot(*one) * math.hypot(*two)
+        bent = abs(cross(one, two)) > 10.0 * NEAR * length
+        if bend.radius or (bent and math.hypot(*one) > near):
+            out.append(bend)
+    return [*out, bends[-1]]
+
+
+def _without_faces(bends: list[Bend], near: float) -> list[Bend]:
+    """Without what lies in the end faces."""
+    while len(bends) > 2 and abs(bends[0].z - bends[1].z) <= near and not bends[0].radius:
+        bends = bends[1:]
+    while len(bends) > 2 and abs(bends[-1].z - bends[-2].z) <= near and not bends[-1].radius:
+        bends = bends[:-1]
+    return bends
+
+
+def _inside(
+    sides: Sequence[MeridianSide], low: float, high: float, near: float
+) -> list[MeridianSide]:
+    """Without the end faces."""
+
+    def face(side: MeridianSide) -> bool:
+        z0, z1 = side.start[1], side.end[1]
+        flat = side.centre is None and abs(z0 - z1) <= near
+        return flat and (abs(z0 - low) <= near or abs(z0 - high) <= near)
+
+    return [side for side in sides if not face(side)]
+
+
+def _blind(
+    before: Sequence[MeridianSide],
+    after: Sequence[MeridianSide],
+    low: float,
+    high: float,
+    near: float,
+) -> list[Bend]:
+    """Bores that end on the axis, from the start face and from the end face."""
+    first = _inside(before, low, high, near)
+    last = _back(_inside(after, low, high, near))
+    if not (first or last):
+        return []
+    start = _bends(first, near) if first else [Bend(low, 0.0)]
+    end = _bends(last, near) if last else [Bend(high, 0.0)]
+    return _without_straight([*start, *end], near)

@@ -1,0 +1,262 @@
+"""A CAD body that is turned on a lathe, drilled across or milled flat: profile, holes and flats.
+
+Faces of revolution about one axis give straight and round parts of the section's outline; a chain
+of them from end to end is the outline. What is not of revolution must be cross holes or flats. That
+the volume comes out is the proof that nothing was overlooked.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from geometry.arrays import Floats
+from geometry.imported.body_file import BodyFile
+from geometry.imported.cad_mesh import face_names, solids_of
+from geometry.imported.outline_chain import MeridianSide, outlines
+from geometry.imported.sampled_face import NEAR, Axis, SampledFace, sampled_faces
+from geometry.mesh.cut_pin import CutPin
+from geometry.mesh.gmsh_session import MeshError, gmsh_model
+from geometry.shape.features import Flat, Hole
+from geometry.shape.pin import GeometryError, Pin
+from geometry.shape.polyline import Bend, pin_of_polyline
+
+SAME_VOLUME = 1e-5
+MOST_FACES = 400
+DIGITS = 7  # of the size, to which dimensions are rounded
+
+
+class NotTurnedError(GeometryError):
+    """The body is not one of revolution, nor one with cross holes and flats; `why` says what of it
+    is not.
+    """
+
+    def __init__(self, pin: str, file: str, why: str) -> None:
+        super().__init__(f"pin {pin}: {file}: {why}", "not-turned")
+        self.why, self._made_of = why, (pin, file, why)
+
+    def __reduce__(self) -> tuple[type[NotTurnedError], tuple[str, str, str]]:
+        return NotTurnedError, self._made_of
+
+
+@dataclass(frozen=True)
+class Turned:
+    """A recognised body, m. start: z of its start face along the axis, in the file's unit, from the
+    point of the axis nearest to the file's origin. along: direction of the axis in the file. x:
+    that from which angles count. surfaces: z of cylinders from the start face, by their names.
+    """
+
+    outside: tuple[Bend, ...]
+    bore: tuple[Bend, ...]
+    holes: tuple[Hole, ...]
+    flats: tuple[Flat, ...]
+    start: float
+    along: tuple[float, float, float]
+    x: tuple[float, float, float]
+    surfaces: dict[str, tuple[float, float]]
+
+    def pin(self, name: str) -> Pin:
+        """Its profile. Raises: GeometryError."""
+        return pin_of_polyline(name, self.outside, self.bore)
+
+
+def turned(file: BodyFile, upright: bool = True) -> Turned:
+    """The profile, holes and flats of the body in a file. upright: only if the file's z-axis is its
+    axis.
+
+    Raises: NotTurnedError; GeometryError, MeshError as cad_mesh.
+    """
+    with gmsh_model(f"{file.name}, {file.path.name}") as gmsh:
+        solids = solids_of(gmsh, file)
+        tags = [tag for _, tag in gmsh.model.getEntities(2)]
+        if len(tags) > MOST_FACES:
+            raise _not(file, f"it has {len(tags)} faces")
+        faces = sampled_faces(gmsh, face_names(file, tags))
+        x0, y0, z0, x1, y1, z1 = gmsh.model.getBoundingBox(-1, -1)
+        centre = np.array([x0 + x1, y0 + y1, z0 + z1]) / 2.0
+        size = float(math.dist((x0, y0, z0), (x1, y1, z1)))
+        axis = _axis(file, faces, centre, size, upright)
+        inside = _reaches_axis(gmsh, faces, axis)
+        volume = float(gmsh.model.occ.getMass(*solids[0])) * file.unit**3
+    found = _turned(file, faces, axis, inside, size)
+    _require_volume(file, found, volume)
+    return found
+
+
+def _not(file: BodyFile, why: str) -> NotTurnedError:
+    return NotTurnedError(file.name, file.path.name, why)
+
+
+def _axis(
+    file: BodyFile, faces: Sequence[SampledFace], centre: Floats, size: float, upright: bool
+) -> Axis:
+    """The axis about which most of the surface is of revolution."""
+    z_axis = Axis(np.zeros(3), np.array([0.0, 0.0, 1.0]))
+    found = [z_axis, *(a for face in faces if (a := face.axis(centre, size)) is not None)]
+
+    def turned_area(axis: Axis) -> float:
+        round_ones = (f for f in faces if not f.plane and f.revolved(axis, size))
+        return sum(f.area for f in round_ones)
+
+    areas = [turned_area(axis) for axis in found]
+    best = int(np.argmax(np.array(areas) * [1.0 + NEAR, *[1.0] * (len(found) - 1)]))
+    if not areas[best]:
+        raise _not(file, "none of its faces is of revolution")
+    if best and upright:
+        raise _not(
+            file, "its axis is not the file's z-axis; `pinstress import` writes it as a profile"
+        )
+    axis = found[best]
+    along = axis.along * math.copysign(1.0, axis.along[int(np.argmax(np.abs(axis.along)))])
+    along = np.where(np.abs(along) < NEAR, 0.0, along)
+    along /= np.linalg.norm(along)
+    return Axis(axis.point - (axis.point @ along) * along, along)
+
+
+def _reaches_axis(gmsh: Any, faces: Sequence[SampledFace], axis: Axis) -> set[int]:
+    """Tags of the plane faces that the axis goes through."""
+    found = set()
+    for face in faces:
+        normal = face.normals[0]
+        if face.plane and abs(abs(normal @ axis.along) - 1.0) < NEAR:
+            at = axis.point + ((face.points[0] - axis.point) @ axis.along) * axis.along
+            if gmsh.model.isInside(2, face.tag, at.tolist()):
+                found.add(face.tag)
+    return found
+
+
+def _turned(
+    file: BodyFile, faces: Sequence[SampledFace], axis: Axis, inside: set[int], size: float
+) -> Turned:
+    frame = axis.frame()
+    local = [_in_frame(face, axis.point, frame) for face in faces]
+    upright = Axis(np.zeros(3), np.array([0.0, 0.0, 1.0]))
+    sides, rest = [], []
+    for face in local:
+        if not face.revolved(upright, size):
+            rest.append(face)
+            continue
+        side = MeridianSide.of(face, face.tag in inside, size)
+        if side is None:
+            raise _not(
+                file, f"{face.name} is curved otherwise than cylinder, cone, torus or sphere"
+            )
+        sides.append(side)
+    try:
+        outside, bore = outlines(sides, NEAR * size)
+    except ValueError as error:
+        raise _not(file, str(error)) from None
+    start = min(bend.z for bend in outside)
+    down = np.array([0.0, 0.0, start])
+    holes, flats = _cuts(file, [_in_frame(face, down, np.eye(3)) for face in rest], size)
+    surfaces = _surfaces(sides, start, size, file.unit)
+    digits = DIGITS - math.floor(math.log10(size))
+    return Turned(
+        tuple(_rounded(bend, start, digits, file.unit) for bend in outside),
+        tuple(_rounded(bend, start, digits, file.unit) for bend in bore),
+        tuple(hole.scaled(file.unit) for hole in holes),
+        tuple(flat.scaled(file.unit) for flat in flats),
+        round(start, digits),
+        _plain(frame[2]),
+        _plain(frame[0]),
+        surfaces,
+    )
+
+
+def _in_frame(face: SampledFace, origin: Floats, frame: Floats) -> SampledFace:
+    return replace(
+        face,
+        points=(face.points - origin) @ frame.T,
+        normals=face.normals @ frame.T,
+        rim=(face.rim - origin) @ frame.T,
+    )
+
+
+def _plain(vector: Floats) -> tuple[float, float, float]:
+    x, y, z = (round(float(v), 12) + 0.0 for v in vector)
+    return x, y, z
+
+
+def _rounded(bend: Bend, start: float, digits: int, unit: float) -> Bend:
+    z, r, radius = (round(x, digits) * unit for x in (bend.z - start, bend.r, bend.radius))
+    return Bend(z, r, radius)
+
+
+def _cuts(
+    file: BodyFile, rest: Sequence[SampledFace], size: float
+) -> tuple[list[Hole], list[Flat]]:
+    """The faces that are not of revolution as cross holes and flats, in the file's unit."""
+    holes: list[Hole] = []
+    flats: list[Flat] = []
+    digits = DIGITS - math.floor(math.log10(size))
+    for face in rest:
+        if face.plane and abs(face.normals[0, 2]) < NEAR:
+            flat = _flat(face, digits)
+            if flat not in flats:
+                flats.append(flat)
+            continue
+        hole = None if face.plane else _hole(face, size, digits)
+        if hole is None:
+            raise _not(file, f"{face.name} is neither of revolution nor a cross hole nor a flat")
+        if hole not in holes:
+            holes.append(hole)
+    return holes, flats
+
+
+def _flat(face: SampledFace, digits: int) -> Flat:
+    normal = face.normals[0]
+    distance = float(face.points[0] @ normal)
+    angle = math.atan2(normal[1], normal[0]) if distance > 0 else math.atan2(-normal[1], -normal[0])
+    z = face.rim[:, 2]
+    ends = round(float(z.min()), digits), round(float(z.max()), digits)
+    return Flat(*ends, round(abs(distance), digits), round(angle, 9) + 0.0)
+
+
+def _hole(face: SampledFace, size: float, digits: int) -> Hole | None:
+    """A cylinder whose axis crosses the z-axis at a right angle."""
+    axis = face.axis(np.zeros(3), size)
+    if axis is None or abs(axis.along[2]) > NEAR:
+        return None
+    along = axis.along / np.linalg.norm(axis.along)
+    z, point = axis.point[2], axis.point
+    if abs(along[0] * point[1] - along[1] * point[0]) > NEAR * size:
+        return None
+    away = np.cross(face.points - point, along)
+    r = np.linalg.norm(away, axis=1)
+    if np.ptp(r) > NEAR * size:
+        return None
+    angle = math.atan2(along[1], along[0]) % math.pi
+    angle = 0.0 if math.pi - angle < NEAR else round(angle, 9)
+    return Hole(round(float(z), digits), round(2.0 * float(r.mean()), digits), angle)
+
+
+def _surfaces(
+    sides: Sequence[MeridianSide], start: float, size: float, unit: float
+) -> dict[str, tuple[float, float]]:
+    """z (m from the start face) of the cylinders whose whole surface has one name."""
+    names: dict[tuple[int, ...], set[str]] = {}
+    ends: dict[tuple[int, ...], tuple[float, float]] = {}
+    for side in (side for side in sides if side.cylinder):
+        z0, z1 = sorted((side.start[1], side.end[1]))
+        key = tuple(round(x / (10.0 * NEAR * size)) for x in (side.start[0], z0, z1))
+        names.setdefault(key, set()).add(side.name)
+        ends[key] = (z0 - start) * unit, (z1 - start) * unit
+    return {name: ends[key] for key, (name, *more) in names.items() if not more}
+
+
+def _require_volume(file: BodyFile, found: Turned, volume: float) -> None:
+    try:
+        profile = found.pin(file.name)
+        made = profile.volume
+        if found.holes or found.flats:
+            made = CutPin(profile, found.holes, found.flats).volume
+    except (GeometryError, MeshError) as error:
+        raise _not(file, f"with cross holes and flats it cannot be modelled ({error})") from None
+    if abs(made / volume - 1.0) > SAME_VOLUME:
+        raise _not(
+            file, f"a profile of its faces of revolution has {made / volume:.6g} times its volume"
+        )

@@ -1,0 +1,113 @@
+"""Faces of a CAD body by points and normals on them.
+
+So it does not matter how a program writes them: a cylinder may come whole, in halves, or as a
+spline.
+
+A surface is one of revolution about an axis if all its normals meet that axis. With velocities
+v = a + w x p of a rigid motion that leaves the surface in itself, n . v = 0 at all points p: the
+motions are the null space of the rows (n, p x n).
+
+Source: H. Pottmann & J. Wallner, Computational Line Geometry, Springer 2001, ch. 3.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from geometry.arrays import Floats
+
+NEAR = 1e-6  # of the body's size: two places; and of 1: two directions
+GRID = np.linspace(0.0, 1.0, 7)
+ALONG = np.linspace(0.0, 1.0, 9)
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A line through a point (3,), along a unit vector (3,)."""
+
+    point: Floats
+    along: Floats
+
+    def frame(self) -> Floats:
+        """Unit vectors x, y, z (3, 3) by row, z along the axis; the file's own where that is z."""
+        z = self.along
+        first = np.eye(3)[int(np.argmin(np.abs(z)))] if abs(z[2]) < 1.0 - NEAR else np.eye(3)[0]
+        x = first - (first @ z) * z
+        x /= np.linalg.norm(x)
+        return np.stack([x, np.cross(z, x), z])
+
+
+@dataclass(frozen=True)
+class SampledFace:
+    """points, normals (P, 3) on it; rim (R, 3): points on its edges;
+    area: in the file's unit, squared.
+    """
+
+    tag: int
+    name: str
+    points: Floats
+    normals: Floats
+    rim: Floats
+    area: float
+
+    @property
+    def plane(self) -> bool:
+        """Whether it is flat."""
+        return bool(np.ptp(self.normals, axis=0).max() < NEAR)
+
+    def motions(self, centre: Floats, size: float) -> Floats:
+        """A basis (K, 6) of the motions (a, w) that leave it in itself; lengths over `size`, from
+        `centre`.
+        """
+        p = (self.points - centre) / size
+        rows = np.hstack([self.normals, np.cross(p, self.normals)])
+        _, values, basis = np.linalg.svd(rows, full_matrices=True)
+        return np.asarray(basis[values < NEAR * np.sqrt(len(rows))])
+
+    def axis(self, centre: Floats, size: float) -> Axis | None:
+        """The one line about which it is of revolution; None of planes, spheres and others."""
+        if self.plane:
+            return None
+        motions = self.motions(centre, size)
+        if not 1 <= len(motions) <= 2:
+            return None
+        left, values, _ = np.linalg.svd(motions[:, 3:])
+        turn = left[:, 0] @ motions / values[0]
+        w, a = turn[3:], turn[:3]
+        if abs(w @ a) > NEAR and len(motions) == 1:  # a screw
+            return None
+        return Axis(centre + size * np.cross(w, a), w)
+
+    def revolved(self, axis: Axis, size: float) -> bool:
+        """Whether it is of revolution about an axis."""
+        p = self.points - axis.point
+        across = np.cross(axis.along, p)
+        r = np.linalg.norm(across, axis=1)
+        about = np.abs(np.sum(across * self.normals, axis=1))
+        return bool((about <= NEAR * np.maximum(r, size)).all())
+
+
+def sampled_faces(gmsh: Any, names: dict[int, str]) -> list[SampledFace]:
+    """The faces of the body in gmsh's model."""
+    return [_sampled(gmsh, tag, name) for tag, name in names.items()]
+
+
+def _sampled(gmsh: Any, tag: int, name: str) -> SampledFace:
+    model = gmsh.model
+    low, high = model.getParametrizationBounds(2, tag)
+    u, v = (a + GRID * (b - a) for a, b in zip(low, high, strict=True))
+    at = np.stack(np.meshgrid(u, v), axis=-1).ravel().tolist()
+    points = np.reshape(model.getValue(2, tag, at), (-1, 3))
+    normals = np.reshape(model.getNormal(tag, at), (-1, 3))
+    length = np.linalg.norm(normals, axis=1)
+    good = np.isfinite(length) & (length > 0.5)  # a pole of a sphere has none
+    rim = [np.zeros((0, 3))]
+    for _, curve in model.getBoundary([(2, tag)], combined=False, oriented=False):
+        first, last = model.getParametrizationBounds(1, curve)
+        along = (first[0] + ALONG * (last[0] - first[0])).tolist()
+        rim.append(np.reshape(model.getValue(1, curve, along), (-1, 3)))
+    area = float(model.occ.getMass(2, tag))
+    return SampledFace(tag, name, points[good], normals[good], np.concatenate(rim), area)

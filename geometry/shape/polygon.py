@@ -1,0 +1,214 @@
+"""The corners of a pin's section before any is rounded, and what rounding takes off their sides."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Literal, Protocol
+
+from geometry.shape.segment import Segment
+
+RZ = tuple[float, float]
+Turn = Literal["step", "inner", "edge", "smooth"]
+
+SMOOTH = 1e-9  # rad: two surfaces that meet at pi within this are one smooth surface
+
+
+class Profile(Protocol):
+    """What of a pin its outline follows from."""
+
+    @property
+    def segments(self) -> tuple[Segment, ...]: ...
+    @property
+    def stations(self) -> tuple[float, ...]: ...
+    @property
+    def labels(self) -> tuple[str, ...]: ...
+    @property
+    def tolerance(self) -> float: ...
+    @property
+    def legs(self) -> tuple[Leg, ...]: ...
+    def fillet_at(self, corner: int) -> float: ...
+
+
+@dataclass(frozen=True)
+class Node:
+    """A corner at (r, z), m, to be rounded with `radius` (m) by an arc of that name; `leg`: of the
+    surface from here to the next corner, None on the axis.
+    """
+
+    r: float
+    z: float
+    radius: float
+    arc: str
+    leg: str | None
+
+    @property
+    def at(self) -> RZ:
+        """(r, z), m."""
+        return self.r, self.z
+
+
+@dataclass(frozen=True)
+class Leg:
+    """A side between corners: what of it is straight, its ends (r, z) in m, its direction, and what
+    roundings take at its ends, m. `short`: by how much they take more than there is, m.
+    """
+
+    name: str | None
+    start: RZ
+    end: RZ
+    along: RZ
+    length: float
+    taken: tuple[float, float]
+
+    @property
+    def short(self) -> float:
+        """m."""
+        return sum(self.taken) - self.length
+
+
+def turn_at(left: Segment, right: Segment) -> Turn:
+    """How the outer surfaces of two segments meet: in a step, which has an inner corner and an
+    edge, in either of these alone, or smoothly.
+    """
+    return _turn((left.length, *left.diameters), (right.length, *right.diameters))
+
+
+def bore_turn_at(left: Segment, right: Segment) -> Turn:
+    """The same of their bores."""
+    turn = _turn((left.length, *left.bores), (right.length, *right.bores))
+    return {"inner": "edge", "edge": "inner"}.get(turn, turn)  # type: ignore[return-value]
+
+
+def _turn(left: tuple[float, float, float], right: tuple[float, float, float]) -> Turn:
+    """Of lengths and diameters at both ends."""
+    (length, a, b), (after, c, d) = left, right
+    if b != c:
+        return "step"
+    bend = math.atan2(d - c, 2.0 * after) - math.atan2(b - a, 2.0 * length)
+    return "smooth" if abs(bend) <= SMOOTH else "inner" if bend > 0.0 else "edge"
+
+
+def corners(pin: Profile) -> tuple[Node, ...]:
+    """All, counter-clockwise in (r, z), from the inner end of the start face on."""
+    first, last = pin.segments[0], pin.segments[-1]
+    z = pin.stations[-1]
+    start = Node(first.bores[0] / 2, 0.0, first.bore_radii[0], "bore edge start", "start")
+    rim = Node(first.diameter / 2, 0.0, first.edge_radii[0], "edge start", pin.labels[0])
+    far = Node(last.diameters[1] / 2, z, last.edge_radii[1], "edge end", "end")
+    mouth = Node(last.bores[1] / 2, z, last.bore_radii[1], "bore edge end", _bore(pin, -1))
+    count = len(pin.segments)
+    outside = [node for i in range(count - 1) for node in _outside(pin, i)]
+    inside = [node for i in reversed(range(count - 1)) for node in _inside(pin, i)]
+    return (start, rim, *outside, far, mouth, *inside)
+
+
+def _outside(pin: Profile, i: int) -> list[Node]:
+    """The corners between segments i and i + 1."""
+    left, right, z = pin.segments[i], pin.segments[i + 1], pin.stations[i + 1]
+    here, there, label = left.diameters[1] / 2, right.diameter / 2, pin.labels[i + 1]
+    fillet, edge = (pin.fillet_at(i), f"fillet {i + 1}"), f"edge {i + 1}"
+    match turn_at(left, right):
+        case "step":
+            face = f"shoulder {i + 1}"
+            if there > here:
+                return [
+                    Node(here, z, *fillet, face),
+                    Node(there, z, right.edge_radii[0], edge, label),
+                ]
+            return [Node(here, z, left.edge_radii[1], edge, face), Node(there, z, *fillet, label)]
+        case "edge":
+            return [Node(here, z, max(left.edge_radii[1], right.edge_radii[0]), edge, label)]
+    return [Node(here, z, *fillet, label)]
+
+
+def _inside(pin: Profile, i: int) -> list[Node]:
+    """The corners of the bore between segments i + 1 and i, in this order."""
+    left, right, z = pin.segments[i], pin.segments[i + 1], pin.stations[i + 1]
+    here, there = right.bore / 2, left.bores[1] / 2
+    names = f"bore fillet {i + 1}", f"bore edge {i + 1}"
+    radii = right.bore_radii[0], left.bore_radii[1]
+    if here == there:
+        return [Node(here, z, max(radii), names[1], _bore(pin, i))]
+    one, other = names if here > there else names[::-1]
+    return [
+        Node(here, z, radii[0], one, f"bore step {i + 1}"),
+        Node(there, z, radii[1], other, _bore(pin, i)),
+    ]
+
+
+def _bore(pin: Profile, i: int) -> str | None:
+    return f"bore {pin.labels[i]}" if any(pin.segments[i].bores) else None
+
+
+def legs(nodes: tuple[Node, ...], tolerance: float) -> tuple[Leg, ...]:
+    """From every corner to the next; `tolerance` (m) within which what is left of one is nothing.
+
+    Roundings that take a leg whole meet in one point of it.
+    """
+    around = [(a.at, b.at) for a, b in pairwise((*nodes, nodes[0]))]
+    along = [_unit(a, b) for a, b in around]
+    taken = [
+        node.radius * taken_by_unit(along[k - 1], along[k]) if node.radius else 0.0
+        for k, node in enumerate(nodes)
+    ]
+    out = []
+    for k, (node, (a, b)) in enumerate(zip(nodes, around, strict=True)):
+        first, last = taken[k], taken[(k + 1) % len(nodes)]
+        length = math.dist(a, b)
+        start, end = _moved(a, along[k], first), _moved(b, along[k], -last)
+        if first + last and abs(length - first - last) <= min(tolerance, 1e-3 * length):
+            start = b if not last else a if not first else start
+            end = start
+        out.append(Leg(node.leg, start, end, along[k], length, (first, last)))
+    return tuple(out)
+
+
+@dataclass(frozen=True)
+class Rounding:
+    """An arc of `radius` (m) in place of the corner at (r, z), m, of which it takes `reach` (m) on
+    both sides. inner: whether it is a fillet, at an inner corner.
+    """
+
+    name: str
+    at: RZ
+    radius: float
+    reach: float
+    inner: bool
+
+
+def roundings(nodes: tuple[Node, ...], sides: tuple[Leg, ...]) -> tuple[Rounding, ...]:
+    """All arcs of an outline, in its order."""
+    return tuple(
+        Rounding(
+            node.arc,
+            node.at,
+            node.radius,
+            after.taken[0],
+            cross(before.along, after.along) < 0.0,
+        )
+        for node, before, after in zip(nodes, (sides[-1], *sides), sides, strict=False)
+        if after.taken[0] > 0.0
+    )
+
+
+def taken_by_unit(before: RZ, after: RZ) -> float:
+    """Length that rounding with radius 1 takes off both sides, of directions `before` and
+    `after`: tan(a / 2) for a turn by a; 1 exactly at a right angle.
+    """
+    return abs(cross(before, after)) / (1.0 + before[0] * after[0] + before[1] * after[1])
+
+
+def cross(a: RZ, b: RZ) -> float:
+    """Positive where b is to the left of a."""
+    return a[0] * b[1] - a[1] * b[0]
+
+
+def _unit(a: RZ, b: RZ) -> RZ:
+    length = math.dist(a, b)
+    return ((b[0] - a[0]) / length, (b[1] - a[1]) / length) if length else (0.0, 0.0)
+
+
+def _moved(at: RZ, along: RZ, by: float) -> RZ:
+    return (at[0] + by * along[0], at[1] + by * along[1]) if by else at

@@ -1,0 +1,206 @@
+"""A pin whose section is given by the corners of its outline, each with a radius to round it."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+from geometry.shape.pin import GeometryError, Pin
+from geometry.shape.polygon import turn_at
+from geometry.shape.segment import Segment
+from geometry.shape.tolerance import SAME, merged
+
+
+@dataclass(frozen=True)
+class Bend:
+    """A corner of the outline at (z, r), m, rounded to `radius` (m)."""
+
+    z: float
+    r: float
+    radius: float = 0.0
+
+
+@dataclass(frozen=True)
+class Stripe:
+    """A part of the outer surface with a name, from z0 to z1 (m); connection: whether a link of
+    that name bears on it.
+    """
+
+    name: str
+    z0: float
+    z1: float
+    connection: bool = True
+
+
+def pin_of_polyline(name: str, outside: Sequence[Bend], bore: Sequence[Bend] = ()) -> Pin:
+    """The pin between two outlines, each from z = 0 on to the other end; without a bore it is
+    solid.
+
+    Raises: GeometryError where an outline goes back in z, or has not the ends of the other; as Pin.
+    """
+    where = f"pin {name}"
+    _require_forward(f"{where}: meridian", outside)
+    least, end = 2.0 * SAME * min(bend.r for bend in outside), outside[-1].z
+    inside = bore or (Bend(0.0, 0.0), Bend(end, 0.0))
+    _require_forward(f"{where}: bore_meridian", inside)
+    for line, what in ((outside, "meridian"), (inside, "bore_meridian")):
+        if abs(line[0].z) > least or abs(line[-1].z - end) > least:
+            raise GeometryError(
+                f"{where}: {what} must begin at z = 0 and end where meridian does",
+                "not-whole",
+                ("key", what),
+            )
+    same = merged((bend.z for bend in (*outside, *inside)), least)
+    stations = sorted(set(same.values()))
+    outer, core = (
+        [_at([replace(bend, z=same[bend.z]) for bend in line], z) for z in stations]
+        for line in (outside, inside)
+    )
+    for places in (outer, core):
+        places[0] = places[0][0], places[0][0]
+    segments = [
+        _segment(b - a, outer[k : k + 2], core[k : k + 2])
+        for k, (a, b) in enumerate(pairwise(stations))
+    ]
+    for k in range(len(segments) - 1):
+        segments[k : k + 2] = _joined(segments[k], segments[k + 1], *outer[k + 1])
+    return Pin(name, tuple(segments))
+
+
+def _require_forward(where: str, line: Sequence[Bend]) -> None:
+    what = ("key", where.rsplit(" ", 1)[1])
+    if len(line) < 2:
+        raise GeometryError(f"{where} needs two corners at least", "too-few-corners", what)
+    for i, (a, b) in enumerate(pairwise(line), 1):
+        if b.z < a.z:
+            raise GeometryError(
+                f"{where} goes back from corner {i} to {i + 1}; z must not decrease",
+                "goes-back",
+                what,
+            )
+    for i, (a, b, c) in enumerate(zip(line, line[1:], line[2:], strict=False), 1):
+        if a.z == b.z == c.z:
+            raise GeometryError(
+                f"{where}: corners {i} to {i + 2} are at one z; two make a step",
+                "three-at-one-z",
+                what,
+            )
+    for (a, b), end in (((line[0], line[1]), "first"), ((line[-2], line[-1]), "last")):
+        if a.z == b.z:
+            raise GeometryError(
+                f"{where}: its {end} two corners are at one z; the end face is not part of it",
+                "face-in-outline",
+                what,
+            )
+
+
+def _at(line: Sequence[Bend], z: float) -> tuple[Bend, Bend]:
+    """The corners of an outline at z, the last before a step there and the first after it; of one
+    corner the second has no radius.
+    """
+    here = [bend for bend in line if bend.z == z]
+    if here:
+        return here[0], here[1] if here[1:] else replace(here[0], radius=0.0)
+    a, b = next((a, b) for a, b in pairwise(line) if a.z < z < b.z)
+    r = a.r if a.r == b.r else a.r + (z - a.z) / (b.z - a.z) * (b.r - a.r)
+    return Bend(z, r), Bend(z, r)
+
+
+def _segment(
+    length: float, outer: Sequence[tuple[Bend, Bend]], core: Sequence[tuple[Bend, Bend]]
+) -> Segment:
+    """Between two stations; the radii of its outer surface are those of `_joined`."""
+    (_, mouth), (far, _) = core
+    first, last = outer[0][1], outer[1][0]
+    plain = Segment(length, 2.0 * first.r, fillet=0.0, bore_radii=(mouth.radius, far.radius))
+    plain = replace(plain, edge_radii=(first.radius, last.radius))
+    return plain.with_diameters((2.0 * first.r, 2.0 * last.r), (2.0 * mouth.r, 2.0 * far.r))
+
+
+def _joined(left: Segment, right: Segment, one: Bend, other: Bend) -> list[Segment]:
+    """Two segments whose common corners are rounded: an inner one by a fillet."""
+    turn, rises = turn_at(left, right), one.r < other.r
+    fillet, ends = 0.0, [one.radius, other.radius]
+    if turn == "smooth":
+        ends = [0.0, 0.0]
+    elif turn != "edge":
+        inner = 0 if turn == "inner" or rises else 1
+        fillet, ends[inner] = ends[inner], 0.0
+    return [
+        replace(left, fillet=fillet, edge_radii=(left.edge_radii[0], ends[0])),
+        replace(right, edge_radii=(ends[1], right.edge_radii[1])),
+    ]
+
+
+def with_stripes(pin: Pin, stripes: Iterable[Stripe]) -> Pin:
+    """The pin with parts of its cylinders named; an end of a stripe within a rounding is at the
+    cylinder's.
+
+    Raises: GeometryError where a stripe is not on one cylinder; as Pin.
+    """
+    on: dict[int, list[Stripe]] = {}
+    for stripe in sorted(stripes, key=lambda stripe: stripe.z0):
+        i, whole = _on_cylinder(pin, stripe)
+        before = on.setdefault(i, [])
+        if before and whole.z0 < before[-1].z1 - pin.tolerance:
+            raise GeometryError(
+                f"pin {pin.name}: bands {before[-1].name} and {stripe.name} overlap",
+                "bands-overlap",
+                ("band", stripe.name),
+            )
+        before.append(whole)
+    segments: list[Segment] = []
+    for i, s in enumerate(pin.segments):
+        segments += _cut(s, pin.stations[i], on.get(i, []))
+    return replace(pin, segments=tuple(segments))
+
+
+def _on_cylinder(pin: Pin, stripe: Stripe) -> tuple[int, Stripe]:
+    """The segment on which it is, and its ends there (m), those of the segment where a rounding or
+    the tolerance makes them so.
+    """
+    what, at = f"pin {pin.name}: band {stripe.name}", ("band", stripe.name)
+    if not stripe.z0 < stripe.z1:
+        raise GeometryError(f"{what}: z = [a, b] requires a < b", "z-reversed", at)
+    middle, near = 0.5 * (stripe.z0 + stripe.z1), pin.tolerance
+    if stripe.z0 < -near or stripe.z1 > pin.length + near:
+        raise GeometryError(
+            f"{what} is not on the pin, which extends from z = 0 to {pin.length:.6g} m",
+            "band-not-found",
+            at,
+        )
+    i = bisect_right(pin.stations, middle) - 1
+    low, high = pin.stations[i], pin.stations[i + 1]
+    if pin.segments[i].cone:
+        raise GeometryError(
+            f"{what} is on a cone, where a link cannot bear; give it z on a cylinder",
+            "band-on-cone",
+            at,
+        )
+    straight = pin.bands[i]
+    if stripe.z0 < low - near or stripe.z1 > high + near or straight.length <= near:
+        raise GeometryError(
+            f"{what} is not on one cylinder, which here extends from z = {low:.6g} to {high:.6g} m",
+            "band-on-step",
+            at,
+        )
+    z0 = low if stripe.z0 <= straight.z0 + near else stripe.z0
+    z1 = high if stripe.z1 >= straight.z1 - near else stripe.z1
+    return i, replace(stripe, z0=z0, z1=z1)
+
+
+def _cut(segment: Segment, start: float, stripes: Sequence[Stripe]) -> Iterable[Segment]:
+    """A segment that begins at `start` (m), its stripes named."""
+    end = start + segment.length
+    cuts = sorted({start, end, *(z for s in stripes for z in (s.z0, s.z1))})
+    named = {s.z0: s for s in stripes}
+    for z, part in zip(cuts, segment.cut([z - start for z in cuts]), strict=False):
+        stripe = named.get(z)
+        if stripe is None:
+            yield part
+        elif stripe.connection:
+            yield replace(part, connection=stripe.name)
+        else:
+            yield replace(part, name=stripe.name)

@@ -1,0 +1,122 @@
+"""A segment of a pin's profile: a cylinder or a cone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+Pair = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Segment:
+    """A cylinder of the profile, or a cone; all in m.
+
+    bore: inner diameter, 0 for solid. connection: the connection whose link bears on it. fillet:
+    radius of the inner corner at its far end; None takes the pin's. end_diameter, end_bore: at the
+    far end, None where they are the same. edge_radii: to which the edges of its outer surface at
+    its two ends are rounded; bore_radii: the same of any corners of its bore.
+    """
+
+    length: float
+    diameter: float
+    bore: float = 0.0
+    name: str | None = None
+    connection: str | None = None
+    fillet: float | None = None
+    end_diameter: float | None = None
+    end_bore: float | None = None
+    edge_radii: Pair = (0.0, 0.0)
+    bore_radii: Pair = (0.0, 0.0)
+
+    @property
+    def diameters(self) -> Pair:
+        """At its two ends, m."""
+        return self.diameter, self.diameter if self.end_diameter is None else self.end_diameter
+
+    @property
+    def bores(self) -> Pair:
+        """At its two ends, m."""
+        return self.bore, self.bore if self.end_bore is None else self.end_bore
+
+    @property
+    def walls(self) -> Pair:
+        """Diameter less bore at its two ends, m."""
+        (d0, d1), (b0, b1) = self.diameters, self.bores
+        return d0 - b0, d1 - b1
+
+    @property
+    def mean_area(self) -> float:
+        """Volume without roundings over length, m^2 times 4 / pi."""
+        (d0, d1), (b0, b1) = self.diameters, self.bores
+        return (d0 * d0 + d0 * d1 + d1 * d1 - b0 * b0 - b0 * b1 - b1 * b1) / 3.0
+
+    def radii(self, z: float) -> Pair:
+        """Of bore and shaft, m, at z (m) from its start on."""
+        (d0, d1), (b0, b1), x = self.diameters, self.bores, z / self.length
+        return (b0 + x * (b1 - b0)) / 2.0, (d0 + x * (d1 - d0)) / 2.0
+
+    @property
+    def cone(self) -> bool:
+        """Whether its outer surface is one."""
+        return self.diameters[0] != self.diameters[1]
+
+    @property
+    def cylindrical(self) -> bool:
+        """Whether it has no cones and no rounded edges."""
+        tapered = self.cone or self.bores[0] != self.bores[1]
+        return not (tapered or any((*self.edge_radii, *self.bore_radii)))
+
+    def widened(self, change: Callable[[float], float]) -> Segment:
+        """The same with every dimension across changed: diameters, bores and radii."""
+        return replace(
+            self,
+            diameter=change(self.diameter),
+            bore=change(self.bore),
+            fillet=None if self.fillet is None else change(self.fillet),
+            end_diameter=None if self.end_diameter is None else change(self.end_diameter),
+            end_bore=None if self.end_bore is None else change(self.end_bore),
+            edge_radii=_both(self.edge_radii, change),
+            bore_radii=_both(self.bore_radii, change),
+        )
+
+    def cut(self, ends: Sequence[float]) -> tuple[Segment, ...]:
+        """Parts between `ends` (m), from 0 to its length, without names; what is at its own ends
+        stays there.
+        """
+        parts = []
+        for a, b in pairwise(ends):
+            (b0, r0), (b1, r1) = self.radii(a), self.radii(b)
+            plain = Segment(float(b - a), self.diameter, self.bore, fillet=0.0)
+            if not self.cylindrical:
+                plain = plain.with_diameters((2.0 * r0, 2.0 * r1), (2.0 * b0, 2.0 * b1))
+            parts.append(plain)
+        (edge, last), (mouth, far) = self.edge_radii, self.bore_radii
+        parts[0] = replace(parts[0], edge_radii=(edge, 0.0), bore_radii=(mouth, 0.0))
+        ends_of = parts[-1].edge_radii[0], parts[-1].bore_radii[0]
+        parts[-1] = replace(
+            parts[-1],
+            fillet=self.fillet,
+            edge_radii=(ends_of[0], last),
+            bore_radii=(ends_of[1], far),
+        )
+        return tuple(parts)
+
+    def scaled(self, factor: float) -> Segment:
+        """The same segment in another unit."""
+        return replace(self.widened(lambda x: x * factor), length=self.length * factor)
+
+    def with_diameters(self, outer: Pair, inner: Pair) -> Segment:
+        """The same with these at its two ends, m."""
+        return replace(
+            self,
+            diameter=outer[0],
+            end_diameter=None if outer[1] == outer[0] else outer[1],
+            bore=inner[0],
+            end_bore=None if inner[1] == inner[0] else inner[1],
+        )
+
+
+def _both(pair: Pair, change: Callable[[float], float]) -> Pair:
+    return change(pair[0]), change(pair[1])

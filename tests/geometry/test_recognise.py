@@ -1,0 +1,156 @@
+"""CAD bodies that are recognised as profiles with holes and flats, and those that are not."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from geometry import CutPin, Flat, Hole, Pin, Segment, meridian
+from geometry.imported.body_file import BodyFile
+from geometry.imported.recognise import NotTurnedError, Turned, turned
+from geometry.mesh.cut_solid import cut_solid
+from geometry.mesh.gmsh_session import gmsh_model
+from geometry.mesh.revolve import revolve
+from tests.support.errors import raises
+from tests.support.pin_files import MM
+
+PROFILES = {
+    "stepped": Pin("P", (Segment(20.0, 30.0), Segment(40.0, 20.0)), fillet=4.0),
+    "sharp": Pin("P", (Segment(20.0, 30.0), Segment(40.0, 20.0))),
+    "plain": Pin("P", (Segment(60.0, 20.0),)),
+    "cone": Pin("P", (Segment(9, 18, end_diameter=20), Segment(30, 20), Segment(9, 25)), fillet=1),
+    "tube": Pin("P", (Segment(30.0, 20.0, bore=8.0), Segment(30.0, 20.0, bore=12.0))),
+    "blind": Pin(
+        "P", (Segment(30, 20, bore=8), Segment(4, 20, bore=8, end_bore=0), Segment(9, 20))
+    ),
+    "bolt": Pin("P", (Segment(8, 30, edge_radii=(1, 2)), Segment(50, 20, edge_radii=(0, 10)))),
+    "groove": Pin(
+        "P", (Segment(9, 20, fillet=1.1), Segment(2.2, 17.8, fillet=1.1), Segment(9, 20))
+    ),
+    "rounded bore": Pin(
+        "P",
+        (
+            Segment(30.0, 20.0, bore=8.0, bore_radii=(1.0, 0.0)),
+            Segment(30.0, 20.0, bore=12.0, bore_radii=(0.5, 0.0)),
+        ),
+    ),
+}
+Change = Callable[[Any, int], object]
+
+
+def _as_drawn(gmsh: Any, solid: int) -> None:
+    pass
+
+
+def _turn(gmsh: Any, solid: int) -> None:
+    gmsh.model.occ.rotate([(3, solid)], 1, 2, 3, 0.3, 1, 0.2, 1.1)
+    gmsh.model.occ.translate([(3, solid)], 10, -20, 5)
+
+
+def step(pin: Pin | CutPin, path: Path, change: Change = _as_drawn) -> BodyFile:
+    """A STEP file of a pin in mm, changed before it is written."""
+    with gmsh_model("P") as gmsh:
+        if isinstance(pin, CutPin):
+            _, solid = cut_solid(gmsh, pin.profile, pin.holes, pin.flats)
+        else:
+            _, solid = revolve(gmsh, meridian(pin))
+        change(gmsh, solid)
+        gmsh.model.occ.synchronize()
+        gmsh.write(str(path))
+    return BodyFile("P", path, MM, ())
+
+
+def same(found: Turned, pin: Pin) -> None:
+    """The outline is the pin's: as long edge by edge, and as large."""
+    same_outline(found.pin("P"), pin.scaled(MM))
+
+
+def same_outline(made: Pin, wanted: Pin) -> None:
+    assert made.volume == pytest.approx(wanted.volume, rel=1e-9)
+    ours, theirs = ([(*e.start, *e.end) for e in meridian(p) if e.name] for p in (made, wanted))
+    near = [min(math.dist(a, b) for b in theirs) for a in ours]
+    assert max(near) < 1e-9
+
+
+@pytest.mark.parametrize("name", PROFILES)
+def test_a_turned_body_is_its_profile(name: str, tmp_path: Path) -> None:
+    same(turned(step(PROFILES[name], tmp_path / "pin.step")), PROFILES[name])
+
+
+@pytest.mark.parametrize("name", ["stepped", "cone", "tube"])
+def test_its_axis_may_lie_anyhow(name: str, tmp_path: Path) -> None:
+    """Either end may be the start, as nothing in the file says which."""
+    file = step(PROFILES[name], tmp_path / "pin.step", _turn)
+    with raises(NotTurnedError, "not-turned", "not the file's z-axis"):
+        turned(file)
+    found = turned(file, upright=False).pin("P")
+    assert found.volume == pytest.approx(PROFILES[name].volume * MM**3, rel=1e-8)
+    lengths = sorted(s.length / MM for s in found.segments)
+    assert lengths == pytest.approx(sorted(s.length for s in PROFILES[name].segments))
+
+
+def _halves(gmsh: Any, solid: int) -> None:
+    """Cylinders in two halves, as CAD programs write them."""
+    box = gmsh.model.occ.addBox(-50, -50, -100, 100, 50, 300)
+    gmsh.model.occ.fragment([(3, solid)], [(3, box)])
+    gmsh.model.occ.synchronize()
+    box_parts = [
+        v for v in gmsh.model.getEntities(3) if gmsh.model.occ.getMass(*v) > 50 * 100 * 200
+    ]
+    gmsh.model.occ.remove(box_parts, recursive=True)
+    gmsh.model.occ.synchronize()
+    halves = gmsh.model.getEntities(3)
+    gmsh.option.setNumber("Geometry.OCCUnionUnify", 0)
+    gmsh.model.occ.fuse(halves[:1], halves[1:])
+
+
+@pytest.mark.parametrize("name", ["stepped", "tube", "groove"])
+def test_faces_may_be_split(name: str, tmp_path: Path) -> None:
+    file = step(PROFILES[name], tmp_path / "pin.step", _halves)
+    assert file.path.read_text().count("ADVANCED_FACE") > len(meridian(PROFILES[name]))
+    same(turned(file), PROFILES[name])
+
+
+def test_holes_and_flats_become_features(tmp_path: Path) -> None:
+    hole, flat = Hole(30.0, 4.0, math.pi / 6.0), Flat(45.0, 55.0, 8.0, -math.pi / 3.0)
+    pin = CutPin(PROFILES["stepped"], (hole,), (flat,))
+    found = turned(step(pin, tmp_path / "pin.step"))
+    same(found, PROFILES["stepped"])
+    (a,), (b,) = found.holes, found.flats
+    assert (a.z, a.diameter, a.angle) == pytest.approx((0.03, 0.004, math.pi / 6.0))
+    assert (b.z0, b.z1, b.distance, b.angle) == pytest.approx((0.045, 0.055, 0.008, -math.pi / 3.0))
+
+
+def test_where_it_starts_and_what_its_cylinders_are_called(tmp_path: Path) -> None:
+    def lift(gmsh: Any, solid: int) -> None:
+        gmsh.model.occ.translate([(3, solid)], 0, 0, -12.5)
+
+    found = turned(step(PROFILES["sharp"], tmp_path / "pin.step", lift))
+    assert found.start == -12.5
+    first, second = sorted(found.surfaces.values())
+    assert (*first, *second) == pytest.approx((0.0, 0.02, 0.02, 0.06))
+
+
+def _box(gmsh: Any, solid: int) -> None:
+    box = gmsh.model.occ.addBox(5, 5, 5, 10, 10, 10)
+    gmsh.model.occ.fuse([(3, solid)], [(3, box)])
+
+
+def _blind_hole(gmsh: Any, solid: int) -> None:
+    drill = gmsh.model.occ.addCylinder(0, 0, 40, 20, 0, 0, 2)
+    gmsh.model.occ.cut([(3, solid)], [(3, drill)])
+
+
+def _off_axis(gmsh: Any, solid: int) -> None:
+    drill = gmsh.model.occ.addCylinder(5, 0, -10, 0, 0, 100, 1)
+    gmsh.model.occ.cut([(3, solid)], [(3, drill)])
+
+
+@pytest.mark.parametrize("change", [_box, _blind_hole, _off_axis])
+def test_other_bodies_are_not_turned(change: Change, tmp_path: Path) -> None:
+    with raises(NotTurnedError, "not-turned", "pin.step"):
+        turned(step(PROFILES["sharp"], tmp_path / "pin.step", change))
