@@ -13,7 +13,7 @@ from fea.core.mesh_result import MeshResult
 from fea.core.pin_loads import AnyLoads, PinLoads
 from fea.core.solution import Picture
 from fea.core.voigt import ENTRIES, TENSOR
-from fea.cut.local_fields import LocalFields, local_fields, mesh_of, section_points
+from fea.cut.local_fields import RATIO, LocalFields, local_fields, mesh_of, section_points
 from fea.cut.region import zone
 from fea.harmonic.evaluate import (
     FirstMesh,
@@ -30,7 +30,10 @@ from fea.solid.superposition import squares
 from geometry import Pin
 from geometry.arrays import Floats, Ints, Mask
 from geometry.mesh.cut_piece import Piece
+from geometry.mesh.sizing import Grade
 
+FINE = 0.25  # element of the first section about a cut, of its radius
+GROWTH = 0.5  # of that with the distance
 SECTORS = 48  # of the surface that is shown, away from the pieces
 
 
@@ -63,7 +66,7 @@ def cut_solution(
     points = [section_points(model) for model in models]
     section = harmonic_solution(
         pin, material, clamps, cases, singularities, level, ratio, before, first,
-        np.concatenate([NOWHERE, *points]),
+        np.concatenate([NOWHERE, *points]), [_fine(piece, level) for piece in pieces],
     )  # fmt: skip
     at = np.split(section.elsewhere, np.cumsum([len(p) for p in points])[:-1])
     units = _units(cases) or tuple((load, load.phases[0]) for load in section.fields.loads[:1])
@@ -73,6 +76,15 @@ def cut_solution(
     )
     fields = _without(section.fields, [zone(piece) for piece in pieces])
     return CutSolution(replace(section, fields=fields, elsewhere=NOWHERE), found)
+
+
+def _fine(piece: Piece, level: int) -> Grade:
+    """How fine the section is about a piece's cuts."""
+    radius = max(segment.diameter for segment in piece.profile.segments) / 2.0
+    low, high = zone(piece)
+    places = np.linspace(low, high, max(2, round((high - low) / radius)))
+    at = tuple((x * radius, float(z)) for z in places for x in (0.2, 0.8))
+    return Grade(at, radius * FINE / RATIO ** (level / 2.0), radius, GROWTH)
 
 
 def _units(cases: tuple[PinLoads, ...]) -> tuple[Unit, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -58,16 +58,15 @@ class LocalFields:
         return out
 
     @cached_property
-    def _read(self) -> Floats:
-        return self.stress[self.read]
+    def _squares(self) -> Callable[[Floats], Floats]:
+        return squares(self.stress[self.read])
 
     def largest(self, loads: AnyLoads) -> tuple[Floats, Ints]:
         """The largest von Mises stress (T,) Pa at every instant, and its point (T,)."""
-        found = squares(self._read)
         c, rows = self.coefficients(loads), np.flatnonzero(self.read)
         value, point = np.zeros(len(c)), np.zeros(len(c), dtype=np.int64)
         for k in range(0, len(c), 64):
-            here = found(c[k : k + 64])
+            here = self._squares(c[k : k + 64])
             point[k : k + 64] = rows[here.argmax(axis=0)]
             value[k : k + 64] = np.sqrt(np.maximum(here.max(axis=0), 0.0))
         return value, point
@@ -166,7 +165,7 @@ def local_fields(
     angle = np.arctan2(x[..., 1], x[..., 0])
     own = [fields.loads.index(load) for load, _ in units]
     stress = _cartesian(amplitude[..., own], angle, model.piece.angle, units)
-    read = model.solve(stress)
+    read = model.solve(stress, np.abs(fields.stress[..., own]).max(axis=(0, 1)))
     points = read.points @ _turn(model.piece.angle).T + [0.0, 0.0, model.piece.origin]
     flat_r, flat_z = r.ravel(), z.ravel()
     ends = [

@@ -34,7 +34,8 @@ from geometry.mesh.solid_mesh import SolidMesh
 
 NO_CLASS = 2e-4  # of the tractions: less of a class is the noise of the section's mesh
 LEAST = 1e-6  # of the tractions of a class: what less of them does is not solved
-UNBALANCED = 0.02  # of the tractions, by the section's mesh
+UNBALANCED = 0.1  # of the tractions, by the section's mesh
+FELT = 0.02  # of the pin's largest stress: less of it is not looked at
 ENDS = ("start", "end")
 
 
@@ -97,18 +98,20 @@ class LocalModel:
         """The points and their images, (G, P, 3)."""
         return np.asarray(self.parities.images[:, None] * self.points)
 
-    def solve(self, uncut: Floats) -> Read:
-        """Of the stress of the uncut pin at all images (G, P, 6, L), Pa, along x, y and z.
+    def solve(self, uncut: Floats, most: Floats | float = 0.0) -> Read:
+        """Of the stress of the uncut pin at all images (G, P, 6, L), Pa, along x, y and z; most: the
+        largest anywhere in the pin, (L,).
 
         Raises: SolveError.
         """
         by_class = self.parities.split(uncut)
-        largest = np.abs(by_class[:, self.cut]).max(axis=(0, 1, 2))
+        largest = np.maximum(np.abs(by_class[:, self.cut]).max(axis=(0, 1, 2)), FELT * most)
         scale = np.where(largest > 0.0, largest, 1.0)
         difference = np.zeros_like(by_class)
         forces = [self._forces(part / scale) for part in by_class]
-        most = max(float(np.linalg.norm(f)) for f in forces)
-        whole = np.sum(np.abs(forces), axis=0)
+        pressed = self._forces(_pressure(len(self.points)))
+        most = max(float(np.linalg.norm(f)) for f in (pressed, *forces))
+        whole = np.maximum(_size(pressed), np.sum([_size(f) for f in forces], axis=0))
         for c, parity in enumerate(self.parities.classes):
             if np.linalg.norm(forces[c]) > NO_CLASS * most:
                 u = self._displace(forces[c], parity, whole)
@@ -250,6 +253,17 @@ def turned(stress: Floats, directions: Floats) -> Floats:
     s = stress[:, TENSOR]  # (P, 3, 3, L)
     t = np.einsum("pia,pabl,pjb->pijl", directions, s, directions, optimize=True)
     return np.stack([t[:, 0, 0], t[:, 1, 1], t[:, 2, 2], t[:, 1, 2], t[:, 0, 2], t[:, 0, 1]], 1)
+
+
+def _pressure(count: int) -> Floats:
+    """A stress of one in all directions, (P, 6, 1)."""
+    return np.repeat([[1.0], [1.0], [1.0], [0.0], [0.0], [0.0]], count, axis=1).T[..., None]
+
+
+def _size(forces: Floats) -> Floats:
+    """The size of nodal forces (3 N, L) in place of their components."""
+    size = np.linalg.norm(forces.reshape(-1, 3, forces.shape[1]), axis=1)
+    return np.asarray(size.repeat(3, axis=0))
 
 
 def _rigid(nodes: Floats) -> Floats:

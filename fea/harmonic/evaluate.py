@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 
@@ -76,12 +76,13 @@ def harmonic_solution(
     before: Collection[MeshResult] = (),
     first: FirstMesh | None = None,
     elsewhere: Floats = NOWHERE,
+    grades: Sequence[Grade] = (),
 ) -> HarmonicSolution:
     """All unit loads of the cases on mesh number `level`, each `ratio` times finer than the one
     before, from which the mesh results `before` are: where these have high stresses, that is, and
     elsewhere by the root of that; all over, without mesh results before. first: where the first
     mesh is kept for other loads. elsewhere: points (P, 2), r and z in m, at which stress is read
-    too, but no maximum looked for.
+    too, but no maximum looked for; grades: how fine the mesh is there.
 
     Raises: MeshError, SolveError.
     """
@@ -91,7 +92,7 @@ def harmonic_solution(
     )
     spots = partial(_spots, pin, cases, singularities, close)
     high = dict.fromkeys(singularity for result in before for singularity in result.high)
-    finer = []
+    finer = list(grades)
     for singularity in high:
         coarse = size_at(pin, SIZE, spots(1.0), singularity)
         now = size_at(pin, SIZE.finer(ratio**level), spots(ratio**level), singularity)
@@ -109,7 +110,7 @@ def harmonic_solution(
 
         if level or first is None:
             return model().solve(loads, read, ends)
-        key = (size, tuple(places), quiet, read.tobytes(), ends)
+        key = (size, tuple(places), tuple(grades), quiet, read.tobytes(), ends)
         return first.model(model, *key).solve_more(loads, read, ends)
 
     quiet = crowd(pin)
