@@ -2,14 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from benchmarks.random_pins import Trial
 from fea.core.pin_loads import PinLoads
 from geometry import CutPin, Hole, Pin, Segment
 
 
-def cut_trials(count: int, seed: int) -> list[Trial]:
+@dataclass(frozen=True)
+class CutTrial:
+    """A pin with holes, what holds it, and one case of loads."""
+
+    pin: CutPin
+    clamps: tuple[str, ...]
+    loads: PinLoads
+
+
+def cut_trials(count: int, seed: int) -> list[CutTrial]:
     """Floating pins and cantilevers with a hole, or two, in a shaft, one in three next to a step
     with a fillet and one in four bored; loads in all directions.
     """
@@ -17,7 +27,7 @@ def cut_trials(count: int, seed: int) -> list[Trial]:
     return [_trial(rng, k) for k in range(count)]
 
 
-def _trial(rng: np.random.Generator, k: int) -> Trial:
+def _trial(rng: np.random.Generator, k: int) -> CutTrial:
     d = float(rng.uniform(0.01, 0.05))
     bore = float(rng.uniform(0.2, 0.5)) * d if k % 4 == 3 else 0.0
     step = k % 3 == 2
@@ -35,14 +45,14 @@ def _trial(rng: np.random.Generator, k: int) -> Trial:
     force = rng.normal(size=(1, 2, 3)) * [1.0, 1.0, 3.0] * 1e4
     couple = rng.normal(size=(1, 2, 3)) * [0.0, 0.0, 0.3] * 1e4 * d
     if k % 2:
-        return Trial(pin, ("start",), PinLoads("case", ("B",), force[:, :1], couple[:, :1]))
+        return CutTrial(pin, ("start",), PinLoads("case", ("B",), force[:, :1], couple[:, :1]))
     middle = [segments[0].length / 2.0 + rho / 2.0, pin.length - d / 2.0]
     across = force[:, 0, :2] * (middle[1] - middle[0])
     force[:, 1] = -force[:, 0]  # the couple of both is carried by moments
     couple[:, 0, :2] = 0.5 * np.stack([-across[:, 1], across[:, 0]], axis=1)
     couple[:, 1] = couple[:, 0] * [1.0, 1.0, 0.0]
     couple[:, 1, 2] = -couple[:, 0, 2]
-    return Trial(pin, (), PinLoads("case", ("A", "B"), force, couple))
+    return CutTrial(pin, (), PinLoads("case", ("A", "B"), force, couple))
 
 
 def _holes(

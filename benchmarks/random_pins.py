@@ -8,7 +8,7 @@ import numpy as np
 
 from fea.core.material import Material
 from fea.core.pin_loads import Distribution, PinLoads
-from geometry import Pin, PinLike, Segment
+from geometry import Pin, Segment
 
 STEEL = Material("steel", 2.0e11, 0.3, 7850.0, 1.0e9)
 
@@ -17,7 +17,7 @@ STEEL = Material("steel", 2.0e11, 0.3, 7850.0, 1.0e9)
 class Trial:
     """A pin, what holds it, and one case of loads."""
 
-    pin: PinLike
+    pin: Pin
     clamps: tuple[str, ...]
     loads: PinLoads
 

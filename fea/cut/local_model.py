@@ -99,8 +99,8 @@ class LocalModel:
         return np.asarray(self.parities.images[:, None] * self.points)
 
     def solve(self, uncut: Floats, most: Floats | float = 0.0) -> Read:
-        """Of the stress of the uncut pin at all images (G, P, 6, L), Pa, along x, y and z; most: the
-        largest anywhere in the pin, (L,).
+        """Of the stress of the uncut pin at all images (G, P, 6, L), Pa, along x, y and z. most:
+        the largest anywhere in the pin, (L,).
 
         Raises: SolveError.
         """
