@@ -21,7 +21,7 @@ import numpy as np
 import scipy.linalg
 import scipy.sparse as sp
 
-from fea.core.linear_solver import SolveError, factorize
+from fea.core.linear_solver import ConstrainedSystem, SolveError
 from fea.core.material import Material
 from fea.core.voigt import TENSOR
 from fea.cut.parity import AXES, Parities
@@ -169,20 +169,23 @@ class LocalModel:
         """Displacements (3 N, L) of a class, of as many fields as differ; balanced before. whole:
         the size of all classes' forces.
         """
-        fixed = self._fixed(parity)
-        free = np.setdiff1d(np.arange(self.unknowns), fixed)
+        free = np.ones(self.unknowns)
+        free[self._fixed(parity)] = 0.0
         if not self.clamps:
             modes = _rigid(self.space.nodes)[:, self.parities.rigid(parity)]
             forces = self._balanced(forces, modes, whole)
-            if modes.shape[1]:
-                _, _, pivot = scipy.linalg.qr(modes[free].T, mode="economic", pivoting=True)
-                free = np.delete(free, pivot[: modes.shape[1]])
-        K = self.stiffness[free][:, free]
-        left, size, right = scipy.linalg.svd(forces[free], full_matrices=False)
+            if count := modes.shape[1]:
+                at = np.flatnonzero(free)
+                _, _, pivot = scipy.linalg.qr(modes[at].T, mode="economic", pivoting=True)
+                free[at[pivot[:count]]] = 0.0
+        left, size, right = scipy.linalg.svd(free[:, None] * forces, full_matrices=False)
         rank = int(np.sum(size > LEAST * size[0]))
-        u = np.zeros_like(forces)
-        u[free] = factorize(K, free // 3)(left[:, :rank] * size[:rank]) @ right[:rank]
-        return u
+        found = self._system.solve(self.stiffness.copy(), free, left[:, :rank] * size[:rank])
+        return np.asarray(found @ right[:rank])
+
+    @cached_property
+    def _system(self) -> ConstrainedSystem:
+        return ConstrainedSystem(self.stiffness, np.arange(self.unknowns) // 3)
 
     @cached_property
     def stiffness(self) -> sp.csr_matrix:
