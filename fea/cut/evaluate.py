@@ -88,11 +88,15 @@ def _fine(piece: Piece, level: int) -> Grade:
 
 
 def _units(cases: tuple[PinLoads, ...]) -> tuple[Unit, ...]:
-    """Unit loads in the phases in which they ever act."""
+    """Unit loads in the phases in which they ever act, of a motion in all."""
     found: dict[Unit, None] = {}
     for case in cases:
         for load, amounts in case.coefficients().items():
-            found |= {(load, p): None for p in load.phases if amounts[:, p].any()}
+            found |= {
+                (load, p): None
+                for p in load.phases
+                if case.times is not None or amounts[:, p].any()
+            }
     return tuple(found)
 
 

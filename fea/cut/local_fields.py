@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from fea.core.material import Material
 from fea.core.mesh_result import Point
-from fea.core.pin_loads import AnyLoads
+from fea.core.pin_loads import AnyLoads, require_solved
 from fea.core.voigt import ENTRIES, TENSOR
 from fea.cut.local_model import LocalModel, turned
 from fea.harmonic.fields import MeridianFields
@@ -24,6 +24,7 @@ from geometry.mesh.cut_piece import Piece, Spots, piece_mesh
 RATIO = 2.0**0.75  # from one mesh to the next, where stress is high
 ELSEWHERE = 0.4  # power of that elsewhere
 HIGH, APART, MOST_HIGH = 0.95, 0.35, 4  # such places: of the maximum, of the hole apart, so many
+ROUND_OFF = 1e-9  # of a load's amounts
 ON_END = 1e-6  # of a piece's length: nodes on its end
 ENDED = (
     1.5  # stress at the maximum that an end changes, over what is left there, at most (1.2 seen)
@@ -50,11 +51,18 @@ class LocalFields:
     unknowns: int
 
     def coefficients(self, loads: AnyLoads) -> Floats:
-        """How much of each unit load acts at each instant, (T, L)."""
+        """How much of each unit load acts at each instant, (T, L).
+
+        Raises: ArgumentError when there is no field for a part of the loads.
+        """
         acting, out = loads.coefficients(), np.zeros((len(loads), len(self.units)))
-        for k, (load, phase) in enumerate(self.units):
-            if load in acting:
-                out[:, k] = acting[load][:, phase]
+        for load, amounts in acting.items():
+            least = ROUND_OFF * np.abs(amounts).max()
+            for phase in load.phases:
+                if (load, phase) in self.units:
+                    out[:, self.units.index((load, phase))] = amounts[:, phase]
+                elif np.abs(amounts[:, phase]).max() > least:
+                    require_solved(loads.case, (load,), ())
         return out
 
     @cached_property

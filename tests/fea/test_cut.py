@@ -15,11 +15,12 @@ from fea.cut.local_model import LocalModel, Read
 from fea.cut.parity import Parities
 from fea.cut.region import pieces, refused, zone
 from fea.solve_pin import Asked, solve_pin
-from geometry import CutPin, Flat, Hole, Pin, Segment
+from geometry import ArgumentError, CutPin, Flat, Hole, Pin, Segment
 from geometry.arrays import Floats
 from geometry.mesh.cut_piece import Piece, clipped, piece_mesh
 from geometry.mesh.solid_mesh import SolidMesh
 from geometry.mesh.tet10 import find_facets, quadratic
+from tests.support.errors import raises
 
 STEEL = Material("steel", 2.1e11, 0.3, yield_strength=5e8)
 D, d = 0.02, 0.004
@@ -216,6 +217,8 @@ def test_four_point_bending_with_the_hole_at_the_extreme_fibre() -> None:
     assert abs(peak.location[0]) > 0.9 * D / 2
     assert isinstance(first.answer, CutAnswer)
     assert first.answer.maxima(bending(-3000.0, 0.0))[0] == pytest.approx(2 * peak.max_von_mises)
+    with raises(ArgumentError, "missing-fields"):
+        first.answer.maxima(bending(1500.0, 0.5))
     turned = CutPin(SHAFT, (Hole(MIDDLE, d, 0.5),))
     (second,) = solve_pin(turned, STEEL, (), (bending(1500.0, 0.5),), Asked(0.01))
     assert second.peak.max_von_mises == pytest.approx(peak.max_von_mises, rel=1e-6)
