@@ -31,7 +31,7 @@ from fea.core.pin_loads import PinLoads
 from fea.core.solution import Answer
 from fea.cut.evaluate import CutAnswer, cut_result, cut_solution
 from fea.cut.local_fields import RATIO
-from fea.cut.region import at_corner, pieces, refused
+from fea.cut.region import BEYOND, LONGER, at_corner, pieces, refused
 from fea.harmonic.evaluate import (
     FirstMesh,
     HarmonicAnswer,
@@ -61,6 +61,7 @@ MOST_UNKNOWNS = {"harmonic": 400_000, LOCAL: 300_000, "solid": 300_000}
 GROWTH = {"harmonic": 2.0, LOCAL: 1.4, "solid": 3.0}  # power of the ratio with which unknowns grow
 AS_USUAL = Asked()
 NO_MOTION: Mapping[str, Between] = MappingProxyType({})
+TRUNCATED = 0.2  # of the tolerance: more of it makes local solids longer
 TELL = 1e-6  # of the largest load: smaller imbalances are not reported
 
 
@@ -142,7 +143,13 @@ class _Job:
     progress: Progress
     between: Mapping[str, Between]
     first: FirstMesh
-    pieces: tuple[Piece, ...] = ()
+    cut: CutPin | None = None
+    beyond: float = BEYOND
+
+    @property
+    def pieces(self) -> tuple[Piece, ...]:
+        """That are solid."""
+        return pieces(self.cut, self.constrained, self.beyond) if self.cut else ()
 
 
 def ratio_of(pin: PinLike, model: str) -> float:
@@ -257,8 +264,7 @@ def _with_local_solids(
     why = why or at_corner(pin, _singularities(local, cases))
     if why is None:
         try:
-            about = pieces(pin, job.constrained)
-            return _refined(replace(local, pieces=about), LOCAL, cases, notes), job
+            return _refined(replace(local, cut=pin), LOCAL, cases, notes), job
         except (MeshError, SolveError, GeometryError) as error:
             text = f"solid: a local solid about the cuts failed: {error}"
             why = Note(text, ("not-axisymmetric", "local-failed"))
@@ -283,7 +289,7 @@ def _refined(
         finer = unknowns_after(pin, model, largest)
         if level and finer > MOST_UNKNOWNS[model]:
             break
-        unit_loads = 0 if model == "solid" else count_loads(cases)
+        unit_loads = count_loads(cases) if model == "harmonic" else 0
         if level and (excess := too_much(finer, asked.memory, unit_loads)):
             text = f"; on the next mesh {excess}: allow more, or increase --tolerance"
             limit = Note(text, ("memory-limit",))
@@ -300,6 +306,8 @@ def _refined(
             start = end
         if all(enough(asked, job.material, s) for s in seen.values()):
             break
+        if any(_too_short(s.results[-1], asked.tolerance) for s in seen.values()):
+            job = replace(job, beyond=LONGER * job.beyond)
     why, out = reasons(asked, job.material, model), {}
     for case in cases:
         case, s = _at_crest(job, mesh, case, seen[case.case])
@@ -310,6 +318,11 @@ def _refined(
         peak = _because(peak, why(s))
         out[case.case] = Solution(peak, mesh.answers[case.case], case, instant)
     return out
+
+
+def _too_short(result: MeshResult, tolerance: float) -> bool:
+    """Whether the ends of local solids take much of the error that is allowed."""
+    return result.truncated > TRUNCATED * tolerance * result.maximum
 
 
 @dataclass(frozen=True)

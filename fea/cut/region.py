@@ -11,7 +11,8 @@ from fea.singular.singularities import Singularity
 from geometry import CutPin, Hole, Pin
 from geometry.mesh.cut_piece import Piece, clipped
 
-BEYOND = 1.4  # of the diameter, past a hole: what ends there changes stress at the hole by 0.1 %
+BEYOND = 1.4  # of the diameter, past a hole: in a shaft, ends there change stress by 0.1 %
+LONGER = 1.6  # times that, where it is seen not to be enough, as in tubes
 NEXT = 1.0  # of the diameter: holes closer to each other are in one piece
 LEFT = 0.25  # of the diameter: less than that beyond a piece is part of it
 CLEAR = 0.1  # of the diameter, at least between the end of a piece and a step
@@ -80,17 +81,19 @@ def zone(piece: Piece) -> tuple[float, float]:
     return low + piece.origin, high + piece.origin
 
 
-def pieces(pin: CutPin, clamps: tuple[str, ...]) -> tuple[Piece, ...]:
-    """One about each hole, or about holes that are close to each other, along the pin."""
+def pieces(pin: CutPin, clamps: tuple[str, ...], beyond: float = BEYOND) -> tuple[Piece, ...]:
+    """One about each hole, or about holes that are close to each other, along the pin; beyond: how
+    far past these, of the diameter.
+    """
     holes = sorted(pin.holes, key=lambda hole: hole.z)
     groups = [[holes[0]]]
     for before, hole in pairwise(holes):
-        near = NEXT * _diameter(pin.profile, before.z, hole.z)
+        near = NEXT * beyond / BEYOND * _diameter(pin.profile, before.z, hole.z)
         if _extent(hole)[0] - max(_extent(h)[1] for h in groups[-1]) < near:
             groups[-1].append(hole)
         else:
             groups.append([hole])
-    return tuple(_piece(pin.profile, group, clamps) for group in groups)
+    return tuple(_piece(pin.profile, group, clamps, beyond) for group in groups)
 
 
 def _diameter(pin: Pin, low: float, high: float) -> float:
@@ -99,10 +102,10 @@ def _diameter(pin: Pin, low: float, high: float) -> float:
     return max(s.diameter for s, a, b in ends if b >= low and a <= high)
 
 
-def _piece(pin: Pin, holes: list[Hole], clamps: tuple[str, ...]) -> Piece:
+def _piece(pin: Pin, holes: list[Hole], clamps: tuple[str, ...], beyond: float) -> Piece:
     low, high = min(_extent(h)[0] for h in holes), max(_extent(h)[1] for h in holes)
-    reach = BEYOND * _diameter(pin, low, high)
-    reach = BEYOND * _diameter(pin, max(low - reach, 0.0), min(high + reach, pin.length))
+    reach = beyond * _diameter(pin, low, high)
+    reach = beyond * _diameter(pin, max(low - reach, 0.0), min(high + reach, pin.length))
     z0, z1 = _end(pin, low - reach, -1.0), _end(pin, high + reach, 1.0)
     angle = holes[0].angle
     mirrors: tuple[str, ...] = ()

@@ -143,7 +143,8 @@ def local_reference(climb: Climb) -> tuple[Rung, Seen]:
     Raises: SolveError where it cannot be solved.
     """
     level, charted = _finest(climb, LOCAL)
-    found = climb.measure(MeasureJob(climb.problem, Rung(LOCAL, level=level + 1), charted[-1:], 1))
+    finer = Rung(LOCAL, level=level + 1)
+    found = climb.measure(MeasureJob(climb.problem, finer, charted[-1:], 1, reference=True))
     if found.result is None:
         raise SolveError(f"the reference: {found.failed}", code="no-reference")
     return Rung(LOCAL, level=level + 1), climb.seen(LOCAL, (*charted, found.result))
