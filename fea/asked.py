@@ -76,6 +76,9 @@ def _chosen(asked: Asked, model: str) -> Note:
         return Note(f"{model}: requested", ("requested",))
     if model == "solid":
         return Note("solid: the pin is not a body of revolution", ("not-axisymmetric",))
+    if model == "harmonic+local":
+        text = "only about its holes the pin is not a body of revolution"
+        return Note(f"harmonic, with a local solid about the holes: {text}", ("local-solid",))
     if asked.goal == "decide":
         text = "its error leaves open whether the required factor is reached"
         return Note(f"harmonic: beam rejected: {text}", ("beam-open",))

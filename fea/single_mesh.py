@@ -15,12 +15,15 @@ from fea.beam.model import BeamAnswer
 from fea.core.material import Material
 from fea.core.mesh_result import MeshResult
 from fea.core.pin_loads import PinLoads
+from fea.cut.evaluate import cut_result, cut_solution
+from fea.cut.local_fields import RATIO
+from fea.cut.region import pieces
 from fea.harmonic.evaluate import harmonic_result, harmonic_solution
 from fea.singular.singularities import Singularity
 from fea.solid.evaluate import solid_solution
 from fea.solid.superposition import envelope
-from fea.solve_pin import STEP, singularities_of
-from geometry import ArgumentError, Pin, PinLike
+from fea.solve_pin import LOCAL, STEP, singularities_of
+from geometry import ArgumentError, CutPin, Pin, PinLike
 from geometry.mesh.elements import Element
 from geometry.mesh.solid_mesh import MeshSize
 
@@ -46,17 +49,18 @@ class Problem:
 @dataclass(frozen=True)
 class Rung:
     """A mesh of a model. element: of the solid model; level: 0 is the first mesh of a run, each
-    further one finer by the square root of 2, those below 0 coarser.
+    further one finer by the square root of 2 (with local solids by fea.cut.local_fields.RATIO),
+    those below 0 coarser.
     """
 
-    model: Literal["beam", "harmonic", "solid"]
+    model: Literal["beam", "harmonic", "harmonic+local", "solid"]
     element: Element = "curved"
     level: int = 0
 
 
 def result_on(problem: Problem, rung: Rung, before: tuple[MeshResult, ...] = ()) -> MeshResult:
-    """The maximum on one mesh. before: the mesh result of the harmonic model at the level below,
-    where a run has one, by which it decides how fine its elements at singularities are.
+    """The maximum on one mesh. before: the mesh result of the harmonic model, with local solids or
+    not, at the level below, where a run has one, by which it decides where its elements are small.
 
     Raises: MeshError, SolveError; ValueError for a beam or section of a pin that is not a body of
     revolution and for loads that a beam cannot take.
@@ -64,6 +68,8 @@ def result_on(problem: Problem, rung: Rung, before: tuple[MeshResult, ...] = ())
     pin, material, clamps, loads = problem.pin, problem.material, problem.clamps, problem.loads
     if rung.model == "solid":
         return _solid_result(problem, rung)
+    if rung.model == LOCAL:
+        return _local_result(problem, rung.level, before)
     if not isinstance(pin, Pin):
         raise ArgumentError(f"pin {pin.name} is not a body of revolution", "not-axisymmetric")
     singularities = problem.singularities
@@ -73,6 +79,17 @@ def result_on(problem: Problem, rung: Rung, before: tuple[MeshResult, ...] = ())
         pin, material, clamps, (loads,), singularities, rung.level, STEP, before
     )
     return harmonic_result(section, singularities, loads)
+
+
+def _local_result(problem: Problem, level: int, before: tuple[MeshResult, ...]) -> MeshResult:
+    pin, material, clamps, loads = problem.pin, problem.material, problem.clamps, problem.loads
+    if not isinstance(pin, CutPin):
+        raise ArgumentError(f"pin {pin.name} has no holes", "no-cuts")
+    found = singularities_of(pin.profile, material, clamps, (loads,), problem.distance)
+    cut = cut_solution(
+        pin.profile, pieces(pin, clamps), material, clamps, (loads,), found, level, RATIO, before
+    )
+    return cut_result(cut, found, loads)
 
 
 def _solid_result(problem: Problem, rung: Rung) -> MeshResult:

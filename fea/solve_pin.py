@@ -2,6 +2,7 @@
 
 beam      where its error is enough to decide                   (fea.beam.error_model)
 harmonic  any body of revolution                                (fea.harmonic.evaluate)
+harmonic+local   such a body with holes, solid about these      (fea.cut.evaluate)
 solid     any other body, and to check the others               (fea.solid.evaluate)
 """
 
@@ -28,6 +29,9 @@ from fea.core.over_time import Between, rise_between, through_time, with_crest
 from fea.core.peak import NOTHING, Note, Peak
 from fea.core.pin_loads import PinLoads
 from fea.core.solution import Answer
+from fea.cut.evaluate import CutAnswer, cut_result, cut_solution
+from fea.cut.local_fields import RATIO
+from fea.cut.region import BEYOND, LONGER, at_corner, pieces, refused
 from fea.harmonic.evaluate import (
     FirstMesh,
     HarmonicAnswer,
@@ -37,7 +41,8 @@ from fea.harmonic.evaluate import (
 from fea.singular.singularities import Singularity, find_singularities, lug_edges
 from fea.solid.evaluate import SolidAnswer, solid_result, solid_solution
 from fea.verdict import Seen, judge
-from geometry import ArgumentError, Pin, PinLike
+from geometry import ArgumentError, CutPin, GeometryError, Pin, PinLike
+from geometry.mesh.cut_piece import Piece
 from geometry.mesh.solid_mesh import MeshError, MeshSize
 
 __all__ = [
@@ -46,14 +51,17 @@ __all__ = [
 ]  # fmt: skip
 
 Progress = Callable[[str], None]
+_Model = Literal["harmonic", "harmonic+local", "solid"]
 
 STEP = 2.0**0.5  # from one mesh to the next
 HALF = 2.0  # the same where the mesh is given
-MESHES = {"harmonic": 7, "solid": 4}
-MOST_UNKNOWNS = {"harmonic": 400_000, "solid": 300_000}
-GROWTH = {"harmonic": 2.0, "solid": 3.0}  # power of the ratio with which unknowns grow
+LOCAL: Literal["harmonic+local"] = "harmonic+local"
+MESHES = {"harmonic": 7, LOCAL: 5, "solid": 4}
+MOST_UNKNOWNS = {"harmonic": 400_000, LOCAL: 300_000, "solid": 300_000}
+GROWTH = {"harmonic": 2.0, LOCAL: 1.4, "solid": 3.0}  # power of the ratio with which unknowns grow
 AS_USUAL = Asked()
 NO_MOTION: Mapping[str, Between] = MappingProxyType({})
+TRUNCATED = 0.2  # of the tolerance: more of it makes local solids longer
 TELL = 1e-6  # of the largest load: smaller imbalances are not reported
 
 
@@ -104,12 +112,17 @@ def solve_pin(
             peak = Peak(pin.name, case.case, asked.model, "rigid", refusal, reasons=codes)
             out[case.case] = Solution(peak, None, case)
     live = tuple(c for c in cases if c.case not in out)
+    if live and isinstance(pin, CutPin) and not pin.revolved and asked.model == "auto":
+        found, job = _with_local_solids(job, pin, live, notes)
+        out |= found
+        live = tuple(c for c in live if c.case not in out)
     if isinstance(pin, Pin) and asked.model in ("auto", "beam"):
         out |= _beam(job, pin, live, notes)
         live = tuple(c for c in live if c.case not in out)
     if live:
-        model: Literal["harmonic", "solid"]
-        model = "solid" if asked.model == "solid" or not isinstance(pin, Pin) else "harmonic"
+        model: _Model = (
+            "solid" if asked.model == "solid" or not isinstance(pin, Pin) else "harmonic"
+        )
         try:
             out |= _refined(job, model, live, notes)
         except (MeshError, SolveError) as error:
@@ -130,16 +143,25 @@ class _Job:
     progress: Progress
     between: Mapping[str, Between]
     first: FirstMesh
+    cut: CutPin | None = None
+    beyond: float = BEYOND
+
+    @property
+    def pieces(self) -> tuple[Piece, ...]:
+        """That are solid."""
+        return pieces(self.cut, self.constrained, self.beyond) if self.cut else ()
 
 
-def ratio_of(pin: PinLike) -> float:
+def ratio_of(pin: PinLike, model: str) -> float:
     """From one mesh of a pin to the next."""
+    if model == LOCAL:
+        return RATIO
     return HALF if pin.meshed else STEP
 
 
 def unknowns_after(pin: PinLike, model: str, unknowns: int) -> float:
     """Of the mesh that comes after one with so many, roughly."""
-    grown: float = ratio_of(pin) ** GROWTH[model]
+    grown: float = ratio_of(pin, model) ** GROWTH[model]
     return unknowns * grown
 
 
@@ -230,15 +252,34 @@ def _instead(
     return out
 
 
+def _with_local_solids(
+    job: _Job, pin: CutPin, cases: tuple[PinLoads, ...], notes: dict[str, Note]
+) -> tuple[dict[str, Solution], _Job]:
+    """Of a pin with holes, none where it must be solid as a whole; and the job with the reason."""
+    local = replace(job, pin=pin.profile)
+    loaded = [name for case in cases for name in case.surfaces]
+    if not job.constrained:
+        loaded += pin.connections  # which react the imbalance
+    why = refused(pin, job.constrained, loaded)
+    why = why or at_corner(pin, _singularities(local, cases))
+    if why is None:
+        try:
+            return _refined(replace(local, cut=pin), LOCAL, cases, notes), job
+        except (MeshError, SolveError, GeometryError) as error:
+            text = f"solid: a local solid about the cuts failed: {error}"
+            why = Note(text, ("not-axisymmetric", "local-failed"))
+    return {}, replace(job, asked=replace(job.asked, because=why))
+
+
 def _refined(
     job: _Job,
-    model: Literal["harmonic", "solid"],
+    model: _Model,
     cases: tuple[PinLoads, ...],
     notes: dict[str, Note],
 ) -> dict[str, Solution]:
     """Finer and finer meshes until every case is converged or decided, or a limit is reached."""
     pin, asked = job.pin, job.asked
-    ratio = ratio_of(pin)
+    ratio = ratio_of(pin, model)
     singularities = _singularities(job, cases)
     own = {case.case: _singularities(job, (case,)) for case in cases}
     seen = {case.case: Seen(pin.name, case.case, model, (), (), ratio) for case in cases}
@@ -265,6 +306,8 @@ def _refined(
             start = end
         if all(enough(asked, job.material, s) for s in seen.values()):
             break
+        if any(_too_short(s.results[-1], asked.tolerance) for s in seen.values()):
+            job = replace(job, beyond=LONGER * job.beyond)
     why, out = reasons(asked, job.material, model), {}
     for case in cases:
         case, s = _at_crest(job, mesh, case, seen[case.case])
@@ -275,6 +318,11 @@ def _refined(
         peak = _because(peak, why(s))
         out[case.case] = Solution(peak, mesh.answers[case.case], case, instant)
     return out
+
+
+def _too_short(result: MeshResult, tolerance: float) -> bool:
+    """Whether the ends of local solids take much of the error that is allowed."""
+    return result.truncated > TRUNCATED * tolerance * result.maximum
 
 
 @dataclass(frozen=True)
@@ -288,33 +336,34 @@ class _Mesh:
 
 def _mesh(
     job: _Job,
-    model: Literal["harmonic", "solid"],
+    model: _Model,
     cases: tuple[PinLoads, ...],
     singularities: tuple[Singularity, ...],
     own: dict[str, tuple[Singularity, ...]],
     level: int,
     before: dict[str, MeshResult],
 ) -> _Mesh:
-    pin, ratio = job.pin, ratio_of(job.pin)
-    if model == "harmonic":
+    pin, ratio = job.pin, ratio_of(job.pin, model)
+    if model != "solid":
         assert isinstance(pin, Pin)
-        section = harmonic_solution(
-            pin,
-            job.material,
-            job.constrained,
-            cases,
-            singularities,
-            level,
-            ratio,
-            before.values(),
+        common = (
+            job.material, job.constrained, cases, singularities, level, ratio, before.values(),
             job.first,
+        )  # fmt: skip
+        answers: dict[str, Answer]
+        if model == LOCAL:
+            cut = cut_solution(pin, job.pieces, *common)
+            answers = {c: CutAnswer(cut, mine) for c, mine in own.items()}
+            return _Mesh(
+                singularities, lambda c: cut_result(cut, singularities, c, own[c.case]), answers
+            )
+        section = harmonic_solution(pin, *common)
+        answers = {c: HarmonicAnswer(section, mine) for c, mine in own.items()}
+        return _Mesh(
+            singularities,
+            lambda c: harmonic_result(section, singularities, c, own[c.case]),
+            answers,
         )
-        answers: dict[str, Answer] = {c: HarmonicAnswer(section, mine) for c, mine in own.items()}
-
-        def result(case: PinLoads) -> MeshResult:
-            return harmonic_result(section, singularities, case, own[case.case])
-
-        return _Mesh(singularities, result, answers)
     size, asked = MeshSize().finer(ratio**level), job.asked
     solid = solid_solution(
         pin,

@@ -8,15 +8,15 @@ import numpy as np
 
 from fea.core.pin_loads import PinLoads, UnitLoad
 from fea.core.solution import Answer
+from fea.cut.evaluate import CutAnswer
 from fea.harmonic.evaluate import HarmonicAnswer
 from fea.harmonic.superposition import EVEN, METRIC, Circumference
 from fea.singular.singularities import outside
-from fea.solid.boundary import SurfaceMesh
+from fea.solid.boundary import QUARTERS, SurfaceMesh
 from fea.solid.evaluate import SolidAnswer
 from geometry.arrays import Floats, Ints, Mask
 
 MOST_NODES = 6000  # of a surface of quadratic triangles, to show their middle nodes, too
-_QUARTERS = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])  # of a quadratic triangle
 _MERIDIAN = (True,) * EVEN + (False,) * (5 - EVEN) + (True, False, True)
 
 
@@ -60,6 +60,16 @@ def unit_surface(answer: Answer) -> UnitSurface | None:
             stress=METRIC @ fields.stress[: fields.skin],
             displacement=fields.displacement[: fields.skin],
         )
+    if isinstance(answer, CutAnswer):
+        cut = answer.surface
+        return UnitSurface(
+            points=cut.points,
+            triangles=cut.triangles,
+            n=np.zeros(cut.stress.shape[2], dtype=np.int64),
+            even=(True,) * 8,
+            stress=METRIC @ cut.stress,
+            displacement=cut.displacement,
+        )
     if isinstance(answer, SolidAnswer):
         solid = answer.solution.fields
         nodes, triangles = _shown(solid.surface)
@@ -76,8 +86,9 @@ def unit_surface(answer: Answer) -> UnitSurface | None:
 
 def amounts(answer: Answer, loads: PinLoads) -> Floats:
     """How much of each unit load of the surface acts at each instant, by phase: (T, K, 2)."""
-    if isinstance(answer, SolidAnswer):
-        one = answer.solution.fields.coefficients(loads)
+    if isinstance(answer, SolidAnswer | CutAnswer):
+        known = answer.solution.fields if isinstance(answer, SolidAnswer) else answer
+        one = known.coefficients(loads)
         return np.stack([one, np.zeros_like(one)], axis=2)
     assert isinstance(answer, HarmonicAnswer)
     acting: dict[UnitLoad, Floats] = loads.coefficients()
@@ -87,6 +98,8 @@ def amounts(answer: Answer, loads: PinLoads) -> Floats:
 
 def excluded(answer: Answer) -> Mask:
     """Which points of the surface (P,) lie in a singularity, where the maximum is not read."""
+    if isinstance(answer, CutAnswer):
+        return ~answer.surface.read
     if isinstance(answer, SolidAnswer):
         surface = answer.solution.fields.surface
         inside = ~answer.solution.outside[: len(surface.nodes)]
@@ -99,9 +112,12 @@ def largest_there(answer: Answer, loads: PinLoads, instant: int) -> Floats:
     """Von Mises stress (P,) Pa at the surface's points at an instant, of a meridian the largest
     about the axis.
     """
-    if isinstance(answer, SolidAnswer):
-        fields = answer.solution.fields
-        stress = METRIC @ fields.stress[_shown(fields.surface)[0]]
+    if isinstance(answer, SolidAnswer | CutAnswer):
+        if isinstance(answer, CutAnswer):
+            stress = METRIC @ answer.surface.stress
+        else:
+            fields = answer.solution.fields
+            stress = METRIC @ fields.stress[_shown(fields.surface)[0]]
         return np.asarray(np.linalg.norm(stress @ amounts(answer, loads)[instant, :, 0], axis=1))
     assert isinstance(answer, HarmonicAnswer)
     skin = np.arange(answer.fields.skin)
@@ -115,5 +131,5 @@ def _shown(surface: SurfaceMesh) -> tuple[Ints, Ints]:
     if len(surface.nodes) > MOST_NODES:
         corners = corners[:, :3]
     elif corners.shape[1] == 6:
-        corners = corners[:, _QUARTERS].reshape(-1, 3)
+        corners = corners[:, QUARTERS].reshape(-1, 3)
     return np.unique(corners), np.asarray(corners, dtype=np.int64)

@@ -101,6 +101,26 @@ def factorize(K: sp.csr_matrix, node: Ints) -> Solve:
     return Analysis(K, node).factorize(K)
 
 
+class ConstrainedSystem:
+    """Linear systems whose matrices have their entries in the same places, analysed once, of whose
+    unknowns any may be zero. node: as of Analysis.
+    """
+
+    def __init__(self, K: sp.csr_matrix, node: Ints | None = None) -> None:
+        self._row = np.repeat(np.arange(K.shape[0]), np.diff(K.indptr))
+        self._diagonal = np.flatnonzero(K.indices == self._row)
+        self._analysis = Analysis(K, node)
+
+    def solve(self, K: sp.csr_matrix, free: Floats, forces: Floats) -> Floats:
+        """Unknowns (n, K) under forces, zero where `free` (n,) is 0 and not 1; K is changed."""
+        fixed = self._diagonal[free == 0.0]
+        largest = K.data.max()
+        K.data *= free[self._row]
+        K.data *= free[K.indices]
+        K.data[fixed] = largest  # of no effect
+        return self._analysis.factorize(K)(forces * free[:, None])
+
+
 def has_cholmod() -> bool:
     """Whether its binding is there."""
     return offered("cvxopt.cholmod") is not None

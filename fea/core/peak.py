@@ -66,8 +66,8 @@ class SingularZone:
 @dataclass(frozen=True)
 class ErrorParts:
     """The parts of an error, Pa: from the mesh; from the time between instants; from the truncated
-    harmonics of a bearing pressure; from the beam model; from the cells of contact pressure. None
-    includes the modelling of the joint.
+    harmonics of a bearing pressure; from the beam model; from the cells of contact pressure; from
+    the ends of a local solid. None includes the modelling of the joint.
     """
 
     mesh: float
@@ -75,11 +75,12 @@ class ErrorParts:
     series: float = 0.0
     model: float = 0.0
     cells: float = 0.0
+    truncation: float = 0.0
 
     @property
     def total(self) -> float:
         """Their sum, Pa."""
-        return self.mesh + self.time + self.series + self.model + self.cells
+        return self.mesh + self.time + self.series + self.model + self.cells + self.truncation
 
 
 @dataclass(frozen=True)

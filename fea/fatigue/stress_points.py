@@ -10,6 +10,7 @@ import numpy as np
 from fea.beam.model import BeamAnswer
 from fea.core.pin_loads import PinLoads
 from fea.core.solution import Answer
+from fea.cut.evaluate import CutAnswer
 from fea.harmonic.evaluate import HarmonicAnswer
 from fea.harmonic.superposition import BACK
 from fea.joint.foundation.solve_on_foundations import FoundationAnswer
@@ -41,7 +42,14 @@ def stress_points(answer: Answer | None, loads: PinLoads) -> StressPoints | None
         return _harmonic(answer, loads)
     if isinstance(answer, BeamAnswer | FoundationAnswer):
         return _beam(answer.points, answer.harmonics(loads), len(loads))
-    return _solid(answer, loads) if isinstance(answer, SolidAnswer) else None
+    if isinstance(answer, CutAnswer):
+        cut = answer.surface
+        return _solid(cut.points, cut.stress, cut.read, answer.coefficients(loads))
+    if isinstance(answer, SolidAnswer):
+        fields, surface = answer.solution.fields, answer.solution.outside.copy()
+        surface[len(fields.surface.nodes) :] = False
+        return _solid(fields.points, fields.read, surface, fields.coefficients(loads))
+    return None
 
 
 def _harmonic(answer: HarmonicAnswer, loads: PinLoads) -> StressPoints:
@@ -77,16 +85,13 @@ def _beam(points: Floats, stress: Floats, count: int) -> StressPoints:
     return StressPoints(_at_zero(points), points[:, 0] > 0.0, True, count, at)
 
 
-def _solid(answer: SolidAnswer, loads: PinLoads) -> StressPoints:
-    fields = answer.solution.fields
-    amounts, read = fields.coefficients(loads), fields.read
+def _solid(points: Floats, stress: Floats, surface: Mask, amounts: Floats) -> StressPoints:
+    """Of unit stresses (S, 6, L) and their amounts (T, L)."""
 
     def at(rows: Ints, _: Floats, instants: Ints) -> Floats:
-        return np.asarray((read[rows] @ amounts[instants].T).swapaxes(1, 2))
+        return np.asarray((stress[rows] @ amounts[instants].T).swapaxes(1, 2))
 
-    surface = answer.solution.outside.copy()
-    surface[len(fields.surface.nodes) :] = False
-    return StressPoints(fields.points, surface, False, len(loads), at)
+    return StressPoints(points, surface, False, len(amounts), at)
 
 
 def _at_zero(points: Floats) -> Floats:

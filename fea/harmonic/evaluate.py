@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -40,12 +40,14 @@ PATCH = 2.0  # elements of the first mesh about such a place, in which all are r
 class HarmonicSolution:
     """Fields on one mesh, how fine (of the diameter) that mesh is at each singularity, and
     Poisson's ratio. quiet: fillets where the mesh is coarse (fea.harmonic.quiet_corners).
+    elsewhere: stress (P, 6, K) Pa at the points that were asked for.
     """
 
     fields: MeridianFields
     close: tuple[float, ...]
     nu: float
     quiet: tuple[int, ...] = ()
+    elsewhere: Floats = field(default_factory=lambda: np.zeros((0, 6, 0)))
 
 
 class FirstMesh:
@@ -73,11 +75,14 @@ def harmonic_solution(
     ratio: float,
     before: Collection[MeshResult] = (),
     first: FirstMesh | None = None,
+    elsewhere: Floats = NOWHERE,
+    grades: Sequence[Grade] = (),
 ) -> HarmonicSolution:
     """All unit loads of the cases on mesh number `level`, each `ratio` times finer than the one
     before, from which the mesh results `before` are: where these have high stresses, that is, and
     elsewhere by the root of that; all over, without mesh results before. first: where the first
-    mesh is kept for other loads.
+    mesh is kept for other loads. elsewhere: points (P, 2), r and z in m, at which stress is read
+    too, but no maximum looked for; grades: how fine the mesh is there.
 
     Raises: MeshError, SolveError.
     """
@@ -87,7 +92,7 @@ def harmonic_solution(
     )
     spots = partial(_spots, pin, cases, singularities, close)
     high = dict.fromkeys(singularity for result in before for singularity in result.high)
-    finer = []
+    finer = list(grades)
     for singularity in high:
         coarse = size_at(pin, SIZE, spots(1.0), singularity)
         now = size_at(pin, SIZE.finer(ratio**level), spots(ratio**level), singularity)
@@ -95,7 +100,7 @@ def harmonic_solution(
     factor = ratio ** (level * ELSEWHERE if high else level)
 
     def solved(size: SectionSize, grades: list[Grade], quiet: tuple[int, ...]) -> MeridianFields:
-        places, read = spots(factor), _rims(pin, singularities)
+        places, read = spots(factor), np.concatenate([elsewhere, _rims(pin, singularities)])
         loads = _unit_loads(cases)
         ends = _ends(pin, clamps, loads)
 
@@ -105,7 +110,7 @@ def harmonic_solution(
 
         if level or first is None:
             return model().solve(loads, read, ends)
-        key = (size, tuple(places), quiet, read.tobytes(), ends)
+        key = (size, tuple(places), tuple(grades), quiet, read.tobytes(), ends)
         return first.model(model, *key).solve_more(loads, read, ends)
 
     quiet = crowd(pin)
@@ -114,8 +119,17 @@ def harmonic_solution(
         quiet = (
             known[0] if known else quiet_corners(pin, solved(SIZE, [], quiet), cases, singularities)
         )
-    fields = solved(SIZE.finer(factor), finer, quiet)
-    return HarmonicSolution(fields, close, material.poisson_ratio, quiet)
+    fields, more = _apart(solved(SIZE.finer(factor), finer, quiet), len(elsewhere))
+    return HarmonicSolution(fields, close, material.poisson_ratio, quiet, more)
+
+
+def _apart(fields: MeridianFields, count: int) -> tuple[MeridianFields, Floats]:
+    """Without the first points after those that have a displacement, and the stress at these."""
+    first = len(fields.displacement)
+    here, rest = slice(first, first + count), np.r_[:first, first + count : len(fields.points)]
+    unread = np.flatnonzero(np.isin(rest, fields.unread))
+    kept = replace(fields, points=fields.points[rest], stress=fields.stress[rest], unread=unread)
+    return kept, fields.stress[here]
 
 
 def _unit_loads(cases: tuple[PinLoads, ...]) -> tuple[UnitLoad, ...]:

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 import scipy.sparse as sp
 
-from fea.core.linear_solver import Analysis, SolveError
+from fea.core.linear_solver import ConstrainedSystem, SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import UnitLoad
 from fea.core.tractions import ALONG_X, ALONG_Z, Traction, closing_tractions, tractions_of
@@ -45,7 +45,7 @@ class HarmonicBody:
         self.outline = Outline(self.space)
         self._materials = material
         # one for all harmonics: constrained unknowns stay in it
-        self._system: _System | None = None
+        self._system: ConstrainedSystem | None = None
 
     def forces(self, n: int, parts: Sequence[tuple[Traction, ...]]) -> Floats:
         """Forces on the unknowns (unknowns, K) of K sums of tractions of harmonic n."""
@@ -60,7 +60,7 @@ class HarmonicBody:
         free = np.ones(K.shape[0])
         free[fixed] = 0.0
         if self._system is None:
-            self._system = _System(K)
+            self._system = ConstrainedSystem(K)
         return self._system.solve(K, free, forces)
 
     def _require_equilibrium(self, K: sp.csr_matrix, n: int) -> None:
@@ -203,24 +203,6 @@ class HarmonicModel(HarmonicBody):
             )
         amplitude = self.material.density * (ALONG_X if n else ALONG_Z)
         return _generalised(around(n) * self.space.integrals[:, None] * amplitude)
-
-
-class _System:
-    """Linear systems whose matrices have their entries in the same places."""
-
-    def __init__(self, K: sp.csr_matrix) -> None:
-        self._row = np.repeat(np.arange(K.shape[0]), np.diff(K.indptr))
-        self._diagonal = np.flatnonzero(K.indices == self._row)
-        self._analysis = Analysis(K)
-
-    def solve(self, K: sp.csr_matrix, free: Floats, forces: Floats) -> Floats:
-        """Unknowns (n, K) under forces, zero where `free` (n,) is 0 and not 1; K is changed."""
-        fixed = self._diagonal[free == 0.0]
-        largest = K.data.max()
-        K.data *= free[self._row]
-        K.data *= free[K.indices]
-        K.data[fixed] = largest  # of no effect
-        return self._analysis.factorize(K)(forces * free[:, None])
 
 
 def _generalised(forces: Floats) -> Floats:

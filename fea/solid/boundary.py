@@ -15,6 +15,7 @@ from geometry.arrays import Floats, Ints, Mask
 _PLANE = 1e-6  # difference of unit normals on a plane facet, by round-off and gmsh's
 SMOOTH = 0.97  # cosine between a node's normals below which it sits on an edge of the body
 
+QUARTERS = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])  # of a quadratic triangle
 _NODES = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]])
 
 
@@ -39,6 +40,19 @@ def _slopes(x: Floats, y: Floats, nodes: int) -> Floats:
     by_x = [1 - 4 * w, 4 * x - 1, zero, 4 * (w - x), 4 * y, -4 * y]
     by_y = [1 - 4 * w, zero, 4 * y - 1, -4 * x, 4 * x, 4 * (w - y)]
     return np.stack([np.stack(by_x, 1), np.stack(by_y, 1)], 2)
+
+
+def slopes_at(x: Floats, y: Floats) -> tuple[Floats, Floats]:
+    """The six quadratic functions at points (Q,) of a facet, (Q, 6), and their derivatives, (Q, 6,
+    2).
+    """
+    return _shapes(x, y, 6), _slopes(x, y, 6)
+
+
+def quadrature() -> tuple[Floats, Floats]:
+    """Points (2, Q) of a facet and their weights (Q,), exact to the fourth degree."""
+    at, weight = get_quadrature(RefTri, 4)
+    return np.asarray(at), np.asarray(weight)
 
 
 @dataclass(frozen=True)
@@ -71,7 +85,7 @@ def surface(space: Discretisation) -> SurfaceMesh:
     if space.quadratic:
         corners = np.concatenate([vertices, mesh.nvertices + mesh.f2e[:, facets].T], axis=1)
     x = space.nodes[corners]
-    normals = _area_vectors(x, *_NODES[: corners.shape[1]].T)
+    normals = area_vectors(x, *_NODES[: corners.shape[1]].T)
     normals /= np.linalg.norm(normals, axis=2, keepdims=True)
     middle = space.nodes[space.elements[mesh.f2t[0, facets]][:, :4]].mean(axis=1)
     # by the plane between the corners: a curved facet may bulge past the middle of its element
@@ -98,8 +112,8 @@ class Patch:
         self.rows = np.flatnonzero(boundary.on(space, (name,)))
         self._corners = boundary.corners[self.rows]
         self._nodes = space.nodes
-        (x, y), weight = get_quadrature(RefTri, 4)
-        size = np.linalg.norm(_area_vectors(space.nodes[self._corners], x, y), axis=2) * weight
+        (x, y), weight = quadrature()
+        size = np.linalg.norm(area_vectors(space.nodes[self._corners], x, y), axis=2) * weight
         shapes = _shapes(x, y, self._corners.shape[1])
         self._mass = np.einsum("pq,qi,qj->pij", size, shapes, shapes)
         self.area = float(size.sum())
@@ -140,7 +154,7 @@ def resultants(nodes: Floats, forces: Floats, z: float = 0.0) -> Floats:
     return np.concatenate([forces.sum(axis=0), moments.sum(axis=0)])
 
 
-def _area_vectors(x: Floats, at_x: Floats, at_y: Floats) -> Floats:
+def area_vectors(x: Floats, at_x: Floats, at_y: Floats) -> Floats:
     """Cross products of the tangents of facets with nodes x (F, K, 3) at Q points, (F, Q, 3)."""
     tangents = np.einsum("qfc,tfa->tqca", _slopes(at_x, at_y, x.shape[1]), x)
     return np.cross(tangents[:, :, 0], tangents[:, :, 1])

@@ -64,7 +64,7 @@ def envelope(
     points, surface = fields.points, len(fields.surface.nodes)
     among = np.ones(len(points), dtype=bool) if outside is None else outside
     directions = directions if fields.revolved else 1
-    squares = _squares(fields.read)
+    found_by = squares(fields.read)
     turned = [
         fields.coefficients(loads.turned(2.0 * np.pi * k / directions)) for k in range(directions)
     ]
@@ -73,14 +73,14 @@ def envelope(
     for first in range(0, len(loads), BLOCK):
         here = slice(first, first + BLOCK)
         for k, c in enumerate(turned):
-            found = squares(c[here])
+            found = found_by(c[here])
             peaks[k, here] = found[among].max(axis=0)
             if not k:
                 np.maximum(largest, found.max(axis=1), out=largest)
     peaks = np.sqrt(np.maximum(peaks, 0.0))
     maxima = peaks.mean(axis=0)
     instant = int(maxima.argmax())
-    governing = squares(turned[0][instant : instant + 1])[:, 0]
+    governing = found_by(turned[0][instant : instant + 1])[:, 0]
 
     def place(here: Mask, values: Floats) -> Point:
         x, y, z = points[here][values[here].argmax()].tolist()
@@ -97,7 +97,7 @@ def envelope(
     )
 
 
-def _squares(stress: Floats) -> Callable[[Floats], Floats]:
+def squares(stress: Floats) -> Callable[[Floats], Floats]:
     """Von Mises squared (S, T) from loads (T, L), of unit stresses (S, 6, L)."""
     if stress.shape[2] > FEW:
 

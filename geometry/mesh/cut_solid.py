@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import Any
 
 import numpy as np
@@ -19,17 +19,20 @@ Holes = tuple[Hole, ...]
 Flats = tuple[Flat, ...]
 Off = Callable[[Floats], Floats]  # distances (P,) of points (P, 3) from a surface
 
+MIRRORS = {"mirror x": 0, "mirror y": 1}  # planes by the component that vanishes on them
 ASTRAY = 1e-4  # of the pin's size: OpenCASCADE's curves lie as far as 1e-5 off both their surfaces
 SAMPLES = (0.0, 0.21, 0.5, 0.77, 1.0)  # of an edge of a face
 
 
-def cut_solid(gmsh: Any, pin: Pin, holes: Holes, flats: Flats) -> tuple[int, int]:
-    """Make the solid in gmsh's model; its entity.
+def cut_solid(
+    gmsh: Any, pin: Pin, holes: Holes, flats: Flats, sector: float = 2.0 * math.pi
+) -> tuple[int, int]:
+    """Make the solid in gmsh's model, or a sector (rad, from x on) of it; its entity.
 
     Raises: GeometryError when the cuts leave several pieces or none.
     """
     occ = gmsh.model.occ
-    body = revolve(gmsh, meridian(pin))
+    body = revolve(gmsh, meridian(pin), sector)
     reach = 2.0 * pin.largest_diameter
     tools = [_drill(occ, hole, reach) for hole in holes]
     tools += [_mill(occ, flat, reach) for flat in flats]
@@ -56,9 +59,11 @@ def _mill(occ: Any, flat: Flat, reach: float) -> tuple[int, int]:
     return tool
 
 
-def name_faces(gmsh: Any, pin: Pin, holes: Holes, flats: Flats) -> dict[str, list[int]]:
+def name_faces(
+    gmsh: Any, pin: Pin, holes: Holes, flats: Flats, planes: Collection[str] = ()
+) -> dict[str, list[int]]:
     """Face tags by name: the profile's edges, "hole 1", "flat 1", and "flat 1 end" for the steps at
-    a flat's ends.
+    a flat's ends; of a sector also its `planes`, MIRRORS by name.
 
     Raises: GeometryError when a feature is cut away by others; MeshError.
     """
@@ -70,6 +75,7 @@ def name_faces(gmsh: Any, pin: Pin, holes: Holes, flats: Flats) -> dict[str, lis
         known.append((f"flat {i}", "Plane", _off_flat(flat)))
         known += [(f"flat {i} end", "Plane", _off_end(z)) for z in (flat.z0, flat.z1)]
     of_profile = [(e.name, _kind(e), _off_edge(e)) for e in meridian(pin) if e.name]
+    known += [(plane, "Plane", _off_mirror(MIRRORS[plane])) for plane in planes]
     known = of_profile + known  # a shoulder before the end of a flat in the same plane
     named: dict[str, list[int]] = {}
     for _, face in gmsh.model.getBoundary(gmsh.model.getEntities(3), oriented=False):
@@ -151,6 +157,10 @@ def _off_flat(flat: Flat) -> Off:
 
 def _off_end(z: float) -> Off:
     return lambda x: np.asarray(x[:, 2] - z)
+
+
+def _off_mirror(axis: int) -> Off:
+    return lambda x: np.asarray(x[:, axis])
 
 
 def grade(

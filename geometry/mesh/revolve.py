@@ -35,12 +35,12 @@ def draw(
     return curves
 
 
-def revolve(gmsh: Any, outline: tuple[Edge, ...]) -> tuple[int, int]:
-    """Turn a closed outline about the z-axis; the solid's entity."""
+def revolve(gmsh: Any, outline: tuple[Edge, ...], angle: float = 2.0 * math.pi) -> tuple[int, int]:
+    """Turn a closed outline about the z-axis, from the plane of x and z on; the solid's entity."""
     occ = gmsh.model.occ
     curves = draw(occ, outline, lambda rz: occ.addPoint(rz[0], 0.0, rz[1]))
     face = occ.addPlaneSurface([occ.addCurveLoop([curve for (curve,) in curves])])
-    made = occ.revolve([(2, face)], 0, 0, 0, 0, 0, 1, 2 * math.pi)
+    made = occ.revolve([(2, face)], 0, 0, 0, 0, 0, 1, angle)
     occ.remove([(2, face)])
     occ.synchronize()
     return next((int(d), int(tag)) for d, tag in made if d == 3)

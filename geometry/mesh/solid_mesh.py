@@ -114,7 +114,7 @@ def _mesh(
             outline = meridian(pin)
             revolve(gmsh, outline)
             surfaces = _name_surfaces(gmsh, pin, outline)
-        _set_sizes(gmsh, profile, size, edges, more)
+        set_sizes(gmsh, profile, size, edges, more)
         gmsh.model.mesh.generate(3)
         if element == "linear":
             return SolidMesh(collect(gmsh, surfaces).scaled(unit), 1.0, 0)
@@ -169,7 +169,7 @@ def _name_surfaces(gmsh: Any, pin: Pin, outline: tuple[Edge, ...]) -> dict[str, 
     return named
 
 
-def _set_sizes(
+def set_sizes(
     gmsh: Any, pin: Pin, size: MeshSize, edges: tuple[float, ...], more: list[int]
 ) -> None:
     """Element size as the least of graded fields about every feature circle, and `more` fields."""

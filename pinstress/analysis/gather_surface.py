@@ -9,6 +9,7 @@ import numpy as np
 
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.solution import Answer
+from fea.cut.evaluate import CutAnswer
 from fea.harmonic.evaluate import HarmonicAnswer
 from fea.harmonic.half_section import MeridianPlane
 from fea.joint.cell_pressure import CellPressure
@@ -45,6 +46,8 @@ def _unit_fields(answer: Answer | None) -> object:
     """What answers from one mesh share."""
     if isinstance(answer, SolidAnswer):
         return answer.solution.fields
+    if isinstance(answer, CutAnswer):
+        return answer.solution
     return answer.fields if isinstance(answer, HarmonicAnswer) else None
 
 
@@ -115,7 +118,7 @@ def _case(
 
 
 def _zones(answer: Answer) -> Floats:
-    found = answer.singularities if isinstance(answer, HarmonicAnswer) else ()
+    found = answer.singularities if isinstance(answer, HarmonicAnswer | CutAnswer) else ()
     return np.array([(p.r, p.z, p.radius) for p in found]).reshape(-1, 3)
 
 

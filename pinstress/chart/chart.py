@@ -13,7 +13,7 @@ from fea.joint.solve_in_lugs import InLugs, solve_in_lugs
 from fea.single_joint import JointProblem, JointRung
 from fea.single_limit import LimitProblem
 from fea.single_mesh import Problem, Rung
-from fea.solve_pin import Asked, Solution, solve_pin
+from fea.solve_pin import LOCAL, Asked, Solution, solve_pin
 from fea.verdict import Seen
 from geometry import Pin
 from geometry.mesh.elements import Element
@@ -27,8 +27,10 @@ from pinstress.chart.mesh_sequences import (
     Climb,
     chosen,
     climb_harmonic,
+    climb_local,
     climb_solid,
     harmonic_reference,
+    local_reference,
     solid_reference,
 )
 from pinstress.model.pins import pin as pin_of
@@ -41,6 +43,7 @@ from reports.data.chart import Chart, ChartPoint, Reference
 NAMES = {
     "beam": "Timoshenko beam",
     "harmonic": "quadratic triangles",
+    "harmonic+local": "triangles and local tetrahedra",
     "linear": "linear tetrahedra",
     "straight": "straight quadratic tetrahedra",
     "curved": "curved quadratic tetrahedra",
@@ -169,10 +172,15 @@ def _climbed(plan: ChartPlan, climb: Climb, meshes: int | None, calculix: bool) 
     else:
         other = Measured(None, failed=f"pin {pin.name} is not a body of revolution")
         climb.done += [(Rung("beam"), other), (Rung("harmonic"), other)]
+        if climb.auto == LOCAL:
+            climb_local(climb)
     elements: tuple[Element, ...] = ("linear", "straight", "curved")
     for element in elements:
         climb_solid(climb, element, meshes)
-    reference = harmonic_reference(climb) if isinstance(pin, Pin) else solid_reference(climb)
+    if isinstance(pin, Pin):
+        reference = harmonic_reference(climb)
+    else:
+        reference = local_reference(climb) if climb.auto == LOCAL else solid_reference(climb)
     return _joined(plan, climb, reference)
 
 

@@ -9,7 +9,7 @@ from fea.core.linear_solver import SolveError
 from fea.core.mesh_result import MeshResult
 from fea.single_joint import JointProblem, JointRung
 from fea.single_mesh import Problem, Rung
-from fea.solve_pin import MESHES, MOST_UNKNOWNS, STEP, Asked, enough
+from fea.solve_pin import LOCAL, MESHES, MOST_UNKNOWNS, STEP, Asked, enough, ratio_of
 from fea.verdict import Seen
 from geometry import Pin
 from geometry.mesh.elements import Element
@@ -23,7 +23,12 @@ MOST_BELOW_REFERENCE = 50_000
 MOST_OF_REFERENCE = 400_000
 ORDER = 10.0  # times the unknowns of the finest that is charted
 FEWEST_OF_REFERENCE = 3
-ADAPTED = "harmonic", "contact", "prescribed"  # models whose meshes are finer where stress is high
+ADAPTED = (
+    "harmonic",
+    LOCAL,
+    "contact",
+    "prescribed",
+)  # models whose meshes are finer where stress is high
 
 
 @dataclass
@@ -71,7 +76,7 @@ class Climb:
 
     def seen(self, model: str, results: tuple[MeshResult, ...], first: int = 0) -> Seen:
         """Successive meshes as a run sees them."""
-        ratio = 2.0 if self.problem.pin.meshed else STEP
+        ratio = ratio_of(self.problem.pin, model)
         name, case = self.problem.pin.name, self.problem.loads.case
         return Seen(name, case, model, results, (0.0,) * len(results), ratio, first)
 
@@ -90,6 +95,12 @@ def climb_harmonic(climb: Climb) -> None:
     ):
         level += 1
         found = climb.to(Rung("harmonic", level=level))
+
+
+def climb_local(climb: Climb) -> None:
+    """All meshes that a run may make."""
+    for level in range(MESHES[LOCAL]):
+        climb.to(Rung(LOCAL, level=level))
 
 
 def climb_solid(climb: Climb, element: Element, meshes: int | None) -> None:
@@ -124,6 +135,19 @@ def harmonic_reference(climb: Climb) -> tuple[Rung, Seen]:
             break
     first = level - len(results) + 1
     return Rung("harmonic", level=level), climb.seen("harmonic", tuple(results), first)
+
+
+def local_reference(climb: Climb) -> tuple[Rung, Seen]:
+    """A mesh more than is charted, which has nearly twice the unknowns of the last one.
+
+    Raises: SolveError where it cannot be solved.
+    """
+    level, charted = _finest(climb, LOCAL)
+    finer = Rung(LOCAL, level=level + 1)
+    found = climb.measure(MeasureJob(climb.problem, finer, charted[-1:], 1, reference=True))
+    if found.result is None:
+        raise SolveError(f"the reference: {found.failed}", code="no-reference")
+    return Rung(LOCAL, level=level + 1), climb.seen(LOCAL, (*charted, found.result))
 
 
 def solid_reference(climb: Climb) -> tuple[Rung, Seen]:
@@ -176,4 +200,4 @@ def chosen(climb: Climb) -> Rung | JointRung | None:
     for n, rung in enumerate(of_it, 1):
         if climb.enough(model, results[:n]):
             return rung
-    return of_it[-1] if model == "harmonic" and of_it else None
+    return of_it[-1] if model in ADAPTED and of_it else None

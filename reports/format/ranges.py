@@ -15,6 +15,7 @@ PARTS = {  # of an error, in words
     "series": "terms of the bearing pressure",
     "model": "beam",
     "cells": "cells of contact",
+    "truncation": "ends of the local solid",
 }
 
 

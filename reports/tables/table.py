@@ -26,9 +26,8 @@ DIMENSIONS = {
     **dict.fromkeys(("ax", "ay", "acceleration", "closed_form_acceleration"), "acceleration"),
     **dict.fromkeys(("max_von_mises", "error_estimate", "published_max_von_mises"), "stress"),
     **dict.fromkeys(("max_von_mises_low", "max_von_mises_high"), "stress"),
-    **dict.fromkeys(
-        ("error_mesh", "error_time", "error_series", "error_model", "error_cells"), "stress"
-    ),
+    **dict.fromkeys(("error_mesh", "error_time", "error_series"), "stress"),
+    **dict.fromkeys(("error_model", "error_cells", "error_truncation"), "stress"),
     **dict.fromkeys(("joint_low", "joint_high", "largest_pressure"), "stress"),
     **dict.fromkeys(("max_von_mises_same_mesh", "max_von_mises_calculix"), "stress"),
     **dict.fromkeys(("moment_even", "moment_concentrated", "moment_joint"), "moment"),

@@ -11,7 +11,11 @@ from reports.format.numbers import engineering, short
 
 LEAST = 1e-12  # replaces an error of zero
 ANOTHER_FORM = "foundation", "prescribed"  # whose error is not that of a mesh
-OURS = {"harmonic": "the harmonic model", "contact": "contact by the harmonic model"}
+OURS = {
+    "harmonic": "the harmonic model",
+    "harmonic+local": "the harmonic model with local solids",
+    "contact": "contact by the harmonic model",
+}
 THEIRS = {"solid": "the solid model", "calculix": "CalculiX"}
 SHORT = {
     "foundation": "foundation",
@@ -20,6 +24,7 @@ SHORT = {
     "calculix": "CalculiX",
     "Timoshenko beam": "beam",
     "quadratic triangles": "harmonic",
+    "triangles and local tetrahedra": "local solids",
     "linear tetrahedra": "solid, linear",
     "straight quadratic tetrahedra": "solid, straight",
     "curved quadratic tetrahedra": "solid, curved",

@@ -46,6 +46,7 @@ LATER = (
     *("error_mesh", "error_time", "error_series", "error_model"),
     *("error_cells", "joint_low", "joint_high", "joint_model", "joint_lugs"),
     *("outcome", "utilisation", "margin_of_safety"),
+    "error_truncation",
 )
 TEXTS = ("pin", "case", "result", "verdict", "model")
 OVER_JOINT = "joint_high"  # in whose place the whole range is shown

@@ -1,0 +1,260 @@
+"""Unit fields about a pin's cuts: stress on the surface there, of the pin with its cuts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from fea.core.material import Material
+from fea.core.mesh_result import Point
+from fea.core.pin_loads import AnyLoads, require_solved
+from fea.core.voigt import ENTRIES, TENSOR
+from fea.cut.local_model import LocalModel, turned
+from fea.harmonic.fields import MeridianFields
+from fea.singular.singularities import Singularity, outside
+from fea.solid.nodal_loads import Unit
+from fea.solid.superposition import squares
+from geometry.arrays import Floats, Ints, Mask
+from geometry.mesh.cut_piece import Piece, Spots, piece_mesh
+
+RATIO = 2.0**0.75  # from one mesh to the next, where stress is high
+ELSEWHERE = 0.4  # power of that elsewhere
+HIGH, APART, MOST_HIGH = 0.95, 0.35, 4  # such places: of the maximum, of the hole apart, so many
+ROUND_OFF = 1e-9  # of a load's amounts
+ON_END = 1e-6  # of a piece's length: nodes on its end
+ENDED = (
+    1.5  # stress at the maximum that an end changes, over what is left there, at most (1.2 seen)
+)
+NEAR = 3  # points of the section between which displacements are interpolated
+
+
+@dataclass(frozen=True)
+class LocalFields:
+    """On one mesh of a piece, in the pin's frame: points (P, 3) m of the surface, triangles (M, 3)
+    of them, stress (P, 6, L) Pa of L unit loads, each in one phase; displacement (P, 3, L) m of the
+    uncut pin. read: (P,) where the
+    maximum is looked for. ended: (E, 6, L) what the cuts change of the stress where the piece ends.
+    """
+
+    piece: Piece
+    units: tuple[Unit, ...]
+    points: Floats
+    triangles: Ints
+    stress: Floats
+    displacement: Floats
+    read: Mask
+    ended: Floats
+    unknowns: int
+
+    def coefficients(self, loads: AnyLoads) -> Floats:
+        """How much of each unit load acts at each instant, (T, L).
+
+        Raises: ArgumentError when there is no field for a part of the loads.
+        """
+        acting, out = loads.coefficients(), np.zeros((len(loads), len(self.units)))
+        for load, amounts in acting.items():
+            least = ROUND_OFF * np.abs(amounts).max()
+            for phase in load.phases:
+                if (load, phase) in self.units:
+                    out[:, self.units.index((load, phase))] = amounts[:, phase]
+                elif np.abs(amounts[:, phase]).max() > least:
+                    require_solved(loads.case, (load,), ())
+        return out
+
+    @cached_property
+    def _squares(self) -> Callable[[Floats], Floats]:
+        return squares(self.stress[self.read])
+
+    def largest(self, loads: AnyLoads) -> tuple[Floats, Ints]:
+        """The largest von Mises stress (T,) Pa at every instant, and its point (T,)."""
+        c, rows = self.coefficients(loads), np.flatnonzero(self.read)
+        value, point = np.zeros(len(c)), np.zeros(len(c), dtype=np.int64)
+        for k in range(0, len(c), 64):
+            here = self._squares(c[k : k + 64])
+            point[k : k + 64] = rows[here.argmax(axis=0)]
+            value[k : k + 64] = np.sqrt(np.maximum(here.max(axis=0), 0.0))
+        return value, point
+
+    def left_at_ends(self, loads: AnyLoads, instant: int) -> float:
+        """Of the error at an instant, Pa: what the ends of the piece do."""
+        c = self.coefficients(loads)[instant]
+        square = squares(self.ended)(c[None])
+        return ENDED * float(np.sqrt(max(square.max(initial=0.0), 0.0)))
+
+    def high(self, loads: AnyLoads, instant: int) -> tuple[Point, ...]:
+        """Points where stress is nearly the maximum at an instant, well apart."""
+        c = self.coefficients(loads)[instant]
+        value = np.sqrt(np.maximum(squares(self.stress)(c[None])[:, 0], 0.0)) * self.read
+        found: list[Floats] = []
+        apart = APART * min(hole.diameter for hole in self.piece.holes)
+        positive = _unmirrored(self.piece, self.points)
+        for k in np.argsort(-value, kind="stable"):
+            if value[k] < HIGH * value.max() or len(found) == MOST_HIGH:
+                break
+            if all(np.linalg.norm(positive[k] - positive[o]) > apart for o in found):
+                found.append(k)
+        return tuple(_point(self.points[k]) for k in found)
+
+
+def _point(x: Floats) -> Point:
+    a, b, c = x.tolist()
+    return a, b, c
+
+
+def _in_piece(piece: Piece, x: Floats) -> Floats:
+    """Points (P, 3) in the frame of a piece."""
+    c, s = np.cos(piece.angle), np.sin(piece.angle)
+    back = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    return np.asarray((x - [0.0, 0.0, piece.origin]) @ back)
+
+
+def _unmirrored(piece: Piece, x: Floats) -> Floats:
+    """The images of points (P, 3) that are meshed, in the frame of a piece."""
+    out = _in_piece(piece, x)
+    for mirror in piece.mirrors:
+        out[:, "xyz".index(mirror)] = np.abs(out[:, "xyz".index(mirror)])
+    return out
+
+
+def mesh_of(
+    piece: Piece, material: Material, clamps: tuple[str, ...], level: int, high: Sequence[Point]
+) -> LocalModel:
+    """Mesh number `level` of a piece, finer about points (m, in the pin's frame) where stress was
+    high on the meshes before.
+
+    Raises: MeshError.
+    """
+    here = [p for p in high if piece.z0 <= p[2] <= piece.z1]
+    spots: Spots = ()
+    if here:
+        spots = [_point(x) for x in _unmirrored(piece, np.array(here))]
+    mesh = piece_mesh(piece, RATIO ** (level * ELSEWHERE), spots, RATIO**level)
+    return LocalModel(piece, mesh, material, _within(piece, clamps))
+
+
+def _within(piece: Piece, clamps: tuple[str, ...]) -> tuple[str, ...]:
+    """Clamped surfaces that a piece has: its own ends are the pin's where they are at them."""
+    return tuple(
+        name
+        for name in clamps
+        if name in piece.profile.labels
+        or (name == "start" and not piece.open_ends[0])
+        or (name == "end" and not piece.open_ends[1])
+    )
+
+
+def section_points(model: LocalModel) -> Floats:
+    """(r, z), m, where the stress of the uncut pin is needed."""
+    x = model.images[:, model.cut].reshape(-1, 3)
+    return np.stack([np.hypot(x[:, 0], x[:, 1]), x[:, 2] + model.piece.origin], axis=1)
+
+
+def local_fields(
+    model: LocalModel,
+    fields: MeridianFields,
+    at_points: Floats,
+    units: tuple[Unit, ...],
+    singularities: Sequence[Singularity],
+) -> LocalFields:
+    """Of the uncut pin's fields, and their stress `at_points` (section_points, 6, K).
+
+    Raises: SolveError.
+    """
+    x = model.images
+    r, z = np.hypot(x[..., 0], x[..., 1]), x[..., 2] + model.piece.origin
+    amplitude = np.zeros((*r.shape, *fields.stress.shape[1:]))
+    amplitude[:, model.cut] = at_points.reshape(len(x), -1, *at_points.shape[1:])
+    profile = ~model.cut
+    amplitude[:, profile] = _on_skin(fields, r[:, profile], z[:, profile])
+    angle = np.arctan2(x[..., 1], x[..., 0])
+    own = [fields.loads.index(load) for load, _ in units]
+    stress = _cartesian(amplitude[..., own], angle, model.piece.angle, units)
+    read = model.solve(stress, np.abs(fields.stress[..., own]).max(axis=(0, 1)))
+    points = read.points @ _turn(model.piece.angle).T + [0.0, 0.0, model.piece.origin]
+    flat_r, flat_z = r.ravel(), z.ravel()
+    ends = [
+        e
+        for e, cut in zip((model.piece.z0, model.piece.z1), model.piece.open_ends, strict=True)
+        if cut
+    ]
+    length = model.piece.z1 - model.piece.z0
+    at_end = np.zeros(len(points), dtype=bool)
+    for end in ends:
+        at_end |= np.abs(points[:, 2] - end) < ON_END * length
+    moved = _displacement(fields, flat_r, flat_z, np.arctan2(points[:, 1], points[:, 0]), units)
+    return LocalFields(
+        model.piece,
+        units,
+        points,
+        model.triangles,
+        turned(read.stress, np.broadcast_to(_turn(model.piece.angle), (len(points), 3, 3))),
+        moved,
+        outside(singularities, flat_r, flat_z),
+        read.difference[at_end & ~read.cut],
+        model.unknowns,
+    )
+
+
+def _turn(angle: float) -> Floats:
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def _on_skin(fields: MeridianFields, r: Floats, z: Floats) -> Floats:
+    """Amplitudes (.., 6, K) on the outline at points (r, z), between the two nearest ones on it."""
+    skin = fields.points[: fields.skin]
+    at = np.stack([r, z], axis=-1)
+    near = np.asarray(cKDTree(skin).query(at, 4)[1])
+    first = near[..., 0]
+    step = skin[near] - skin[first][..., None, :]
+    apart = np.linalg.norm(step, axis=-1)
+    other = np.take_along_axis(
+        near, (apart > 1e-9 * np.ptp(skin[:, 1])).argmax(axis=-1)[..., None], -1
+    )[..., 0]
+    along = skin[other] - skin[first]
+    part = np.sum((at - skin[first]) * along, axis=-1) / np.maximum(
+        np.sum(along**2, axis=-1), 1e-300
+    )
+    part = np.clip(part, 0.0, 1.0)[..., None, None]
+    stress = fields.stress[: fields.skin]
+    return np.asarray((1.0 - part) * stress[first] + part * stress[other])
+
+
+def _cartesian(amplitude: Floats, angle: Floats, turned: float, units: tuple[Unit, ...]) -> Floats:
+    """Stress (.., 6, L) along x, y and z of a frame turned by an angle, at angles in that frame, of
+    amplitudes (.., 6, L) along r, theta and z.
+    """
+    n, phase = (np.array(found) for found in ([load.n for load, _ in units], [p for _, p in units]))
+    psi = n * (angle[..., None] + turned) - phase * np.pi / 2.0
+    polar = amplitude * np.cos(psi)[..., None, :]
+    polar[..., [3, 5], :] = amplitude[..., [3, 5], :] * np.sin(psi)[..., None, :]
+    turn = np.zeros((*angle.shape, 3, 3))
+    turn[..., 0, 0] = turn[..., 1, 1] = np.cos(angle)
+    turn[..., 1, 0] = np.sin(angle)
+    turn[..., 0, 1] = -np.sin(angle)
+    turn[..., 2, 2] = 1.0
+    tensor = polar[..., TENSOR, :]
+    found = np.einsum("...ai,...ijl,...bj->...abl", turn, tensor, turn, optimize=True)
+    return np.stack([found[..., a, b, :] for a, b in ENTRIES], axis=-2)
+
+
+def _displacement(
+    fields: MeridianFields, r: Floats, z: Floats, angle: Floats, units: tuple[Unit, ...]
+) -> Floats:
+    """Of the uncut pin, (P, 3, L) m, between the nearest of its points."""
+    known = fields.points[: len(fields.displacement)]
+    distance, near = (np.asarray(a) for a in cKDTree(known).query(np.stack([r, z], axis=1), NEAR))
+    weight = 1.0 / (distance + 1e-9 * np.ptp(known[:, 1]))
+    weight /= weight.sum(axis=1, keepdims=True)
+    own = [fields.loads.index(load) for load, _ in units]
+    amplitude = np.einsum("ps,psal->pal", weight, fields.displacement[near][..., own])
+    n, phase = (np.array(found) for found in ([load.n for load, _ in units], [p for _, p in units]))
+    psi = n * angle[:, None] - phase * np.pi / 2.0
+    radial, round_, along = np.moveaxis(amplitude, 1, 0)
+    radial, round_, along = radial * np.cos(psi), round_ * np.sin(psi), along * np.cos(psi)
+    c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
+    return np.stack([radial * c - round_ * s, radial * s + round_ * c, along], axis=1)

@@ -1,0 +1,84 @@
+"""Fields on a body with mirror planes, as sums of fields that are even or odd about each of them.
+
+For a mirror M and parity +1 or -1 a displacement is u(M x) = parity M u(x), a stress s(M x) =
+parity M s(x) M. So each of these needs only what lies on one side of the planes; on a plane u has
+no component across it if it is even, and none along it if it is odd.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from fea.core.voigt import ENTRIES
+from geometry.arrays import Floats, Mask
+
+AXES = "xyz"
+
+
+@dataclass(frozen=True)
+class Parities:
+    """mirrors: planes by the axis across them, each through the origin; G = 2^M images of a point
+    and as many classes of fields.
+    """
+
+    mirrors: tuple[str, ...]
+
+    @cached_property
+    def classes(self) -> tuple[tuple[int, ...], ...]:
+        """The parity about each mirror, class by class."""
+        return tuple(itertools.product((1, -1), repeat=len(self.mirrors)))
+
+    @cached_property
+    def images(self) -> Floats:
+        """(G, 3) factors of a point's coordinates; the first are ones."""
+        out = np.ones((len(self.classes), 3))
+        for g, crossed in enumerate(self.classes):
+            for mirror, sign in zip(self.mirrors, crossed, strict=True):
+                out[g, AXES.index(mirror)] = sign
+        return out
+
+    @cached_property
+    def characters(self) -> Floats:
+        """(C, G) factor of a class's field at an image, after the mirrors themselves."""
+        crossed = np.array(self.classes).reshape(len(self.classes), -1) < 0
+        odd = crossed  # of a class, where its parity is -1
+        return np.where((odd.astype(int) @ crossed.T.astype(int)) % 2, -1.0, 1.0)
+
+    @cached_property
+    def reflected(self) -> Floats:
+        """(G,) -1 for images that are left-handed."""
+        return np.asarray(self.images.prod(axis=1))
+
+    @cached_property
+    def stress_signs(self) -> Floats:
+        """(G, 6) by which the mirrors of an image change the components of a stress."""
+        return np.stack([self.images[:, a] * self.images[:, b] for a, b in ENTRIES], axis=1)
+
+    def split(self, stress: Floats) -> Floats:
+        """Of stress at all images (G, P, 6, L) the part of each class at the points themselves, (C,
+        P, 6, L).
+        """
+        back = stress * self.stress_signs[:, None, :, None]
+        return np.asarray(np.tensordot(self.characters, back, axes=1) / len(self.images))
+
+    def fixed(self, parity: tuple[int, ...]) -> dict[str, tuple[int, ...]]:
+        """Components that vanish on each mirror."""
+        out = {}
+        for mirror, sign in zip(self.mirrors, parity, strict=True):
+            across = AXES.index(mirror)
+            along = tuple(a for a in range(3) if a != across)
+            out[mirror] = (across,) if sign > 0 else along
+        return out
+
+    def rigid(self, parity: tuple[int, ...]) -> Mask:
+        """(6,) which of the shifts along and the turns about the axes belong to a class."""
+        out = np.ones(6, dtype=bool)
+        for mirror, sign in zip(self.mirrors, parity, strict=True):
+            across = np.arange(3) == AXES.index(mirror)
+            shift = np.where(across, -1, 1)
+            out &= np.concatenate([shift, -shift]) == sign
+        return out

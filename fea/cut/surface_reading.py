@@ -1,0 +1,126 @@
+"""Strain in the surface of a solid from the displacements there, at the nodes of its smooth faces.
+
+Displacements of quadratic tetrahedra are more exact than their derivatives by more than one order.
+So at a node of a face the cubic polynomial of the two coordinates in the tangent plane is taken
+that fits displacements at the nearest nodes of the face, or at their images in mirror planes, best
+(nearer ones count more), and its slopes are the gradient in the surface. With the traction on the
+face, which is known, that is all of the stress.
+
+Source: Zhang & Naga, SIAM J. Sci. Comput. 26 (2005) 1192 (polynomial preserving recovery), here on
+the surface alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.spatial import cKDTree
+
+from fea.cut.parity import Parities
+from fea.solid.assembly import Discretisation
+from fea.solid.boundary import SurfaceMesh
+from geometry.arrays import Floats, Ints
+
+NEIGHBOURS = 36  # nodes that a polynomial is fitted to; it has ten terms
+SAME_SIDE = 0.3  # least cosine between the normals of a node and such a neighbour
+_LITTLE = 1e-10  # added where neighbours leave a term open, of their number
+_POWERS = [(i, j) for n in range(4) for i, j in ((n - k, k) for k in range(n + 1))]
+
+
+@dataclass(frozen=True)
+class Face:
+    """A smooth face: rows of its facets (F,) among the boundary's; along: (P, 3) -> (P, 3), a
+    direction at points that is in the face, or nearly.
+    """
+
+    name: str
+    rows: Ints
+    axis: Floats | None
+
+    def along(self, x: Floats) -> Floats:
+        """The first direction at points (P, 3): of a hole's axis, or round the pin's."""
+        if self.axis is not None:
+            return np.broadcast_to(self.axis, x.shape)
+        r = np.hypot(x[:, 0], x[:, 1])[:, None]
+        return np.stack([-x[:, 1], x[:, 0], 0.0 * x[:, 0]], axis=1) / r
+
+
+@dataclass(frozen=True)
+class FaceReading:
+    """Nodes (P,) of a face and its directions there (P, 3, 3): two along it and its outward normal.
+    slopes: along both of the first, (P, G P) of what is at the nodes and their images.
+    """
+
+    face: Face
+    nodes: Ints
+    directions: Floats
+    slopes: tuple[sp.csr_matrix, sp.csr_matrix]
+
+    def strain(self, u: Floats, parities: Parities, character: Floats) -> Floats:
+        """Strain 11, 22, 12, (P, 3, L), of displacements (N, 3, L) of a class with characters
+        (G,).
+        """
+        here = u[self.nodes]
+        images = character[:, None] * parities.images  # (G, 3)
+        everywhere = np.einsum("ga,pal->gpal", images, here)
+        flat = everywhere.reshape(-1, 3 * here.shape[2])
+        slopes = [np.asarray(slope @ flat).reshape(here.shape) for slope in self.slopes]
+        (along, round_), one, two = slopes, self.directions[:, 0], self.directions[:, 1]
+
+        def part(direction: Floats, slope: Floats) -> Floats:
+            return np.asarray(np.einsum("pa,pal->pl", direction, slope))
+
+        shear = 0.5 * (part(one, round_) + part(two, along))
+        return np.stack([part(one, along), part(two, round_), shear], axis=1)
+
+
+def read_face(
+    space: Discretisation, surface: SurfaceMesh, face: Face, parities: Parities
+) -> FaceReading:
+    """Of a mesh of what is on the positive side of the mirrors."""
+    corners, normals = surface.corners[face.rows], surface.normals[face.rows]
+    nodes, where = np.unique(corners, return_inverse=True)
+    mean = np.zeros((len(nodes), 3))
+    np.add.at(mean, where.reshape(corners.shape), normals)
+    x = space.nodes[nodes]
+    directions = _directions(face.along(x), mean)
+    images, facing = (
+        (parities.images[:, None] * each).reshape(-1, 3) for each in (x, directions[:, 2])
+    )
+    return FaceReading(face, nodes, directions, _slopes(x, directions, images, facing))
+
+
+def _directions(along: Floats, normal: Floats) -> Floats:
+    n = normal / np.linalg.norm(normal, axis=1, keepdims=True)
+    first = along - np.sum(along * n, axis=1, keepdims=True) * n
+    first /= np.linalg.norm(first, axis=1, keepdims=True)
+    return np.stack([first, np.cross(n, first), n], axis=1)
+
+
+def _slopes(
+    x: Floats, directions: Floats, images: Floats, facing: Floats
+) -> tuple[sp.csr_matrix, sp.csr_matrix]:
+    """At nodes x (P, 3) with directions (P, 3, 3), from values at images (G P, 3) with normals."""
+    count = min(NEIGHBOURS, len(images))
+    distance, near = (np.asarray(found) for found in cKDTree(images).query(x, count))
+    same = np.einsum("psa,pa->ps", facing[near], directions[:, 2]) > SAME_SIDE
+    confidence = (1.0 - (distance / (1.001 * distance[:, -1:])) ** 2) * same
+    offsets = np.einsum("psa,pca->psc", images[near] - x[:, None], directions[:, :2])
+    reach = distance[:, -1]
+    a, b = np.moveaxis(offsets / reach[:, None, None], -1, 0)
+    terms = np.stack([a**i * b**j for i, j in _POWERS], axis=1) * confidence[:, None]
+    form = terms @ terms.swapaxes(1, 2)
+    definite = form + _LITTLE * form[:, :1, :1] * np.eye(len(_POWERS))
+    wanted = np.broadcast_to(np.eye(len(_POWERS))[:, 1:3], (*form.shape[:2], 2))
+    value = np.linalg.solve(definite, wanted)
+    value = value + np.linalg.solve(definite, wanted - form @ value)  # as if nothing were added
+    weights = value.swapaxes(1, 2) @ terms * confidence[:, None] / reach[:, None, None]
+    row = np.arange(len(x)).repeat(count)
+    shape = (len(x), len(images))
+    one, two = (
+        sp.csr_matrix((w.ravel(), (row, near.ravel())), shape=shape)
+        for w in np.moveaxis(weights, 1, 0)
+    )
+    return one, two
