@@ -94,6 +94,19 @@ def test_bands_carry_what_their_links_exert(sharp: LugSolution) -> None:
     assert 60.0 < bands["M"].contact_angle < 100.0
 
 
+def test_section_forces_along_the_pin_are_those_of_statics(sharp: LugSolution) -> None:
+    """Half of the force in the gaps, none at the ends, and the moment of the governing instant."""
+    joint = sharp.joint
+    assert joint is not None
+    assert joint.along is not None
+    along = joint.along
+    assert along.times is None
+    gap = (along.z > 0.0121) & (along.z < 0.0129)
+    assert along.shear[0, gap] == pytest.approx(FORCE / 2.0, rel=1e-3)
+    assert along.moment[0, [0, -1]] == pytest.approx(0.0, abs=1e-3)
+    assert along.moment.max() == pytest.approx(joint.bending_moment)
+
+
 def test_stress_is_in_proportion_without_clearance(sharp: LugSolution) -> None:
     """Also in what is asked for later, of which contact is not solved again."""
     given = InLugs(PIN, STEEL, LUGS, (STEADY,), besides={"pull": pull(np.array([[1.0, 0.0]]))})
@@ -139,6 +152,14 @@ def test_the_crest_of_a_motion_is_found_between_samples() -> None:
     assert peak.parts.time < 0.02 * 306.3e6
     assert peak.governing is not None
     assert peak.governing.surfaces == ("L", "M", "R")
+    joint = found.joint
+    assert joint is not None
+    assert joint.along is not None
+    assert joint.along.times is not None
+    assert set(np.linspace(0.0, 1.0, 5)) <= set(joint.along.times)
+    largest = joint.along.moment.max(axis=1)
+    assert joint.along.times[largest.argmax()] == pytest.approx(crest, abs=0.01)
+    assert largest.max() == pytest.approx(joint.bending_moment, rel=5e-3)
 
 
 def test_lugs_of_a_structure_share_what_the_link_leaves_over() -> None:

@@ -212,7 +212,8 @@ def test_past_yield_from_the_study_to_the_files(
     written = json.loads(Path("out/results.json").read_text())
     (limit,) = [p["limit_load"] for p in written["pins"]]
     assert (limit["method"], limit["carries"]) == ("solid", True)
-    assert 1.0 < limit["lower"] < limit["upper"] < 1.05 * limit["lower"]
+    assert 1.0 < limit["lower"] < limit["upper"]
+    assert limit["upper"] - limit["lower"] <= 0.025 * (limit["upper"] + limit["lower"])
     assert all(mesh["charge"] > 0.0 for mesh in limit["meshes"])
     (row,) = [m for m in written["margins"] if m["method"] == "limit load, collapse"]
     assert row["margin"] == pytest.approx(limit["lower"] / 1.5 - 1.0)
