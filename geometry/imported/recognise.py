@@ -255,7 +255,7 @@ def _require_volume(file: BodyFile, found: Turned, volume: float) -> None:
         if found.holes or found.flats:
             made = CutPin(profile, found.holes, found.flats).volume
     except (GeometryError, MeshError) as error:
-        raise _not(file, f"with cross holes and flats it cannot be modelled ({error})") from None
+        raise _not(file, f"as a profile with holes and flats it is impossible ({error})") from None
     if abs(made / volume - 1.0) > SAME_VOLUME:
         raise _not(
             file, f"a profile of its faces of revolution has {made / volume:.6g} times its volume"

@@ -12,7 +12,7 @@ Source: H. Pottmann & J. Wallner, Computational Line Geometry, Springer 2001, ch
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -103,11 +103,15 @@ def _sampled(gmsh: Any, tag: int, name: str) -> SampledFace:
     points = np.reshape(model.getValue(2, tag, at), (-1, 3))
     normals = np.reshape(model.getNormal(tag, at), (-1, 3))
     length = np.linalg.norm(normals, axis=1)
-    good = np.isfinite(length) & (length > 0.5)  # a pole of a sphere has none
+    inner = (GRID > 0.0) & (GRID < 1.0)
+    good = np.isfinite(length) & (length > 0.5) & np.outer(inner, inner).ravel()  # not at a pole
     rim = [np.zeros((0, 3))]
     for _, curve in model.getBoundary([(2, tag)], combined=False, oriented=False):
         first, last = model.getParametrizationBounds(1, curve)
         along = (first[0] + ALONG * (last[0] - first[0])).tolist()
         rim.append(np.reshape(model.getValue(1, curve, along), (-1, 3)))
     area = float(model.occ.getMass(2, tag))
-    return SampledFace(tag, name, points[good], normals[good], np.concatenate(rim), area)
+    face = SampledFace(tag, name, points[good], normals[good], np.concatenate(rim), area)
+    if face.plane:  # the parameters of which extend beyond it
+        return face
+    return replace(face, rim=np.concatenate([face.rim, points[~good]]))

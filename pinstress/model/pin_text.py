@@ -27,12 +27,11 @@ def imported_text(path: Path, name: str | None, unit: str, material: str) -> str
     and for a name that cannot be used.
     """
     name = path.stem if name is None else name
-    try:
-        usable_name(name)
-    except ValueError as error:
-        raise InputError(
-            f"the name of the pin: {error}; give --pin", code="unusable-name"
-        ) from None
+    for what, given in (("--pin", name), ("--material", material)):
+        try:
+            usable_name(given)
+        except ValueError as error:
+            raise InputError(f"{what}: {error}", code="unusable-name") from None
     file = BodyFile(name, path, METRES[unit], ())
     try:
         if not path.exists():
@@ -56,10 +55,11 @@ def imported_text(path: Path, name: str | None, unit: str, material: str) -> str
 def _text(file: BodyFile, found: Turned, unit: str, material: str) -> str:
     pin, head = found.pin(file.name), f"[pin.{_key(file.name)}]"
     lines = [
-        f"# From {file.path.name}: the axis is along {_vector(found.along)} of the file, and",
+        f"# From {json.dumps(file.path.name)}:",
+        f"# the axis is along {_vector(found.along)} of the file, and",
         f"# z = 0 is {found.start:g} {unit} along it; angles count from {_vector(found.x)}.",
         head,
-        f"material = {json.dumps(material)}  # the name of a [material] of the study",
+        f"material = {json.dumps(material, ensure_ascii=False)}  # a [material] of the study",
         "profile = [",
         *(f"  {{ {', '.join(_segment(s, file.unit, unit))} }}," for s in pin.segments),
         "]",

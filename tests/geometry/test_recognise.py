@@ -125,6 +125,20 @@ def test_holes_and_flats_become_features(tmp_path: Path) -> None:
     assert (b.z0, b.z1, b.distance, b.angle) == pytest.approx((0.045, 0.055, 0.008, -math.pi / 3.0))
 
 
+def test_a_dome_may_have_its_poles_aside(tmp_path: Path) -> None:
+    """A sphere's normals are undefined at its own poles, which are not on the pin's axis here."""
+    with gmsh_model("P") as gmsh:
+        occ = gmsh.model.occ
+        bar, ball = occ.addCylinder(0, 0, 0, 30, 0, 0, 5), occ.addSphere(30, 0, 0, 5)
+        occ.fuse([(3, bar)], [(3, ball)])
+        occ.synchronize()
+        gmsh.write(str(tmp_path / "dome.brep"))
+    found = turned(BodyFile("P", tmp_path / "dome.brep", MM, ()), upright=False)
+    (segment,) = found.pin("P").segments
+    assert (segment.length, segment.diameter) == pytest.approx((0.035, 0.01))
+    assert segment.edge_radii == pytest.approx((0.0, 0.005))
+
+
 def test_where_it_starts_and_what_its_cylinders_are_called(tmp_path: Path) -> None:
     def lift(gmsh: Any, solid: int) -> None:
         gmsh.model.occ.translate([(3, solid)], 0, 0, -12.5)

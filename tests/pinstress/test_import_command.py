@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -87,6 +88,16 @@ def test_holes_and_flats_are_written(
     assert "segment 2: diameter 20 mm, straight from z = 24 to 60 mm" in text
 
 
+def test_a_name_cannot_write_into_the_study(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = step(PROFILES["plain"], tmp_path / "pin.step").path
+    file = file.rename(tmp_path / "x\n[pin.evil] #\x7f.step")
+    capsys.readouterr()
+    text = imported(file, capsys, "--pin", "P")
+    assert list(tomllib.loads(text)["pin"]) == ["P"]
+
+
 @pytest.mark.parametrize(
     ("name", "more", "code"),
     [
@@ -96,7 +107,8 @@ def test_holes_and_flats_are_written(
         ("box.step", (), "geometry = "),
         ("pin.step", ("--pin", "a/b"), "cannot be part of a file name"),
         ("pin.step", ("--out", "text.step"), "exists already"),
-        (".", (), "give --pin"),
+        (".", (), "--pin: "),
+        ("pin.step", ("--material", "a\nb"), "--material: "),
     ],
 )
 def test_what_cannot_be_imported_is_one_message(
@@ -137,7 +149,7 @@ def test_a_run_takes_a_turned_body_as_a_profile(tmp_path: Path) -> None:
     [
         (USED.replace("[45, 60]", "[10, 30]"), _as_drawn, "band B is not on one cylinder"),
         (USED.replace('["start"]', '["face 3"]'), _as_drawn, "has no surface 'face 3'"),
-        (USED, _box, "with cross holes and flats it cannot be modelled"),
+        (USED, _box, "as a profile with holes and flats it is impossible"),
     ],
 )
 def test_otherwise_it_is_a_solid_and_says_why(
