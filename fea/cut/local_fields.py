@@ -14,6 +14,7 @@ from fea.core.mesh_result import Point
 from fea.core.pin_loads import AnyLoads, require_solved
 from fea.core.voigt import ENTRIES, TENSOR
 from fea.cut.local_model import LocalModel, turned
+from fea.cut.region import zone
 from fea.harmonic.fields import MeridianFields
 from fea.singular.singularities import Singularity, outside
 from fea.solid.nodal_loads import Unit
@@ -86,17 +87,22 @@ class LocalFields:
         return ENDED * float(np.sqrt(max(square.max(initial=0.0), 0.0)))
 
     def high(self, loads: AnyLoads, instant: int) -> tuple[Point, ...]:
-        """Points where stress is nearly the maximum at an instant, well apart."""
+        """Points near the cuts where stress is nearly the maximum at an instant, well apart; none
+        where it is lower there than elsewhere in the piece.
+        """
         c = self.coefficients(loads)[instant]
         value = np.sqrt(np.maximum(squares(self.stress)(c[None])[:, 0], 0.0)) * self.read
-        found: list[Floats] = []
-        apart = APART * min(hole.diameter for hole in self.piece.holes)
+        least, hole = HIGH * value.max(), min(hole.diameter for hole in self.piece.holes)
+        low, high = zone(self.piece)
+        value *= (self.points[:, 2] > low - hole) & (self.points[:, 2] < high + hole)
+        found: list[int] = []
+        apart = APART * hole
         positive = _unmirrored(self.piece, self.points)
         for k in np.argsort(-value, kind="stable"):
-            if value[k] < HIGH * value.max() or len(found) == MOST_HIGH:
+            if value[k] < least or len(found) == MOST_HIGH:
                 break
             if all(np.linalg.norm(positive[k] - positive[o]) > apart for o in found):
-                found.append(k)
+                found.append(int(k))
         return tuple(_point(self.points[k]) for k in found)
 
 
