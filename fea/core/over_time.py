@@ -14,10 +14,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from fea.core.chords import needed
 from fea.core.pin_loads import Amounts, PinLoads, off_chord
 from fea.core.solution import Answer
 from geometry.arrays import Floats, Ints
+from geometry.chords import needed
 
 Between = Callable[[Floats], PinLoads]  # a motion's loads at any times (T,) s
 

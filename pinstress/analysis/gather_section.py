@@ -6,9 +6,9 @@ from math import atan2, hypot
 
 import numpy as np
 
-from fea.core.chords import needed
 from fea.core.pin_loads import Floats, PinLoads
 from fea.harmonic.half_section import MeridianPlane
+from geometry.chords import needed
 from reports.data.surface import HalfSection, Mask
 
 STATIONS, ROWS = 200, 33  # at most 2.5 times as many stations, of which few are needed

@@ -26,7 +26,7 @@ PLUMBING = {  # without any rule of the physics, and not named on the page
     "fea/checks/calculix_joint_deck.py",
     "fea/checks/calculix_joint_mesh.py",
     "fea/checks/records.py",
-    "fea/core/chords.py",
+    "geometry/chords.py",
     "fea/core/sparsity.py",
     "fea/fatigue/records.py",
     "fea/harmonic/revolve.py",
