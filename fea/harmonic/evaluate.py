@@ -151,11 +151,14 @@ def _distances(singularity: Singularity) -> tuple[float, ...]:
 def _ends(
     pin: Pin, clamps: tuple[str, ...], loads: tuple[UnitLoad, ...]
 ) -> tuple[tuple[float, float], ...]:
-    """Where a pressure ends on a smooth surface, (r, z) in m."""
+    """Where a pressure ends on a smooth surface, (r, z) in m. That of contact does not end where a
+    cell does: its steps are those of the cells, and are not read.
+    """
     pushed = {name for load in loads if load.kind == "pressure" for name in load.surfaces}
     if not clamps and any(load.n <= 1 and not load.shears for load in loads):
         pushed |= set(pin.connections)  # which react the imbalance
-    return smooth_edges(pin, pushed, clamps)
+    cells = {name for load in loads if load.parts for name in load.surfaces}
+    return smooth_edges(pin, pushed, clamps, cells)
 
 
 def _spots(

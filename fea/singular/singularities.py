@@ -155,10 +155,10 @@ def outside(singularities: Iterable[Singularity], r: Floats, z: Floats) -> Mask:
 
 
 def smooth_edges(
-    pin: Pin, surfaces: Collection[str], clamps: Collection[str]
+    pin: Pin, surfaces: Collection[str], clamps: Collection[str], cells: Collection[str] = ()
 ) -> tuple[tuple[float, float], ...]:
-    """Rims (r, z), m, of surfaces (by the pin's names) that go on smoothly, neither side
-    clamped.
+    """Rims (r, z), m, of surfaces (by the pin's names) that go on smoothly, neither side clamped;
+    not between two cells of one pressure.
     """
     names, constrained = ({pin.surface(name) for name in found} for found in (surfaces, clamps))
     return tuple(
@@ -166,6 +166,7 @@ def smooth_edges(
         for v in vertices(pin)
         if names & set(v.between)
         and not constrained & set(v.between)
+        and not set(v.between) <= set(cells)
         and abs(v.angle - math.pi) <= SMOOTH
     )
 

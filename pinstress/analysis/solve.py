@@ -200,7 +200,11 @@ def _in_lugs(study: Study, task: Task, asked: Asked, tell: Tell) -> tuple[LugSol
     assert isinstance(task.pin, Pin)
     given = InLugs(task.pin, task.material, task.lugs, task.loads, task.between, task.ranges)
     joints = study.table.analysis.joints
-    return solve_joints(given, asked, "auto" if joints == "prescribed" else joints, tell)
+    if joints == "prescribed":
+        joints = "auto"
+    if joints == "auto" and study.table.fatigue is not None:
+        joints = "contact"  # damage depends on the stress itself, not on a limit of it
+    return solve_joints(given, asked, joints, tell)
 
 
 def _around(plan: Plan, task: Task, peaks: tuple[Peak, ...]) -> tuple[JointResult | None, ...]:
