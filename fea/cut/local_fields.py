@@ -113,9 +113,7 @@ def _point(x: Floats) -> Point:
 
 def _in_piece(piece: Piece, x: Floats) -> Floats:
     """Points (P, 3) in the frame of a piece."""
-    c, s = np.cos(piece.angle), np.sin(piece.angle)
-    back = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-    return np.asarray((x - [0.0, 0.0, piece.origin]) @ back)
+    return np.asarray((x - [0.0, 0.0, piece.origin]) @ _turn(piece.angle))
 
 
 def _unmirrored(piece: Piece, x: Floats) -> Floats:

@@ -10,13 +10,14 @@ from pinstress.cli.output_folder import replacing, require_replaceable
 from pinstress.cli.plots import PAINTERS
 from pinstress.cli.run import console
 from pinstress.cli.streams import unneeded
+from pinstress.cli.view import opened_results
 from pinstress.processes.pool import preload
 from pinstress.schema.units import SYSTEMS, UnitSystem
 from pinstress.study.errors import InputError
 from reports.data.comparison import DECISION, UNCHANGED, RunComparison, compared
 from reports.page.comparison import PicturePair, write_comparison
 from reports.text.comparison import print_comparison, write_markdown
-from reports.vtk.read_back import Opened, open_results
+from reports.vtk.read_back import Opened
 from reports.vtk.renderer import renderer_problem
 
 MARK = "comparison.html"
@@ -28,7 +29,7 @@ def compare(first: Path, second: Path, out: Path | None, pictures: bool) -> None
 
     Raises: InputError.
     """
-    opened = _opened(first), _opened(second)
+    opened = opened_results(first), opened_results(second)
     if pictures and out is None:
         raise InputError("--pictures: give a folder for them with --out", code="no-folder")
     found = _compared(*opened)
@@ -43,16 +44,6 @@ def compare(first: Path, second: Path, out: Path | None, pictures: bool) -> None
         drawn = _pictures(found, opened, staging) if pictures else ()
         write_comparison(found, staging / MARK, drawn)
     click.echo(f"Comparison: {out / MARK}", err=True)
-
-
-def _opened(directory: Path) -> Opened:
-    try:
-        return open_results(directory)
-    except FileNotFoundError:
-        text = f"{directory}: no results.json; name a folder that `pinstress run` wrote"
-        raise InputError(text, code="no-results") from None
-    except (OSError, ValueError) as error:
-        raise InputError(f"{directory}: {error}", code="unreadable-results") from None
 
 
 def _compared(a: Opened, b: Opened) -> RunComparison:

@@ -30,7 +30,7 @@ def view(
     screenshot: a PNG file to write instead of opening a window; force: overwrite it.
     Raises: InputError.
     """
-    opened = _opened(directory)
+    opened = opened_results(directory)
     try:
         row = opened.row(pin, case)
         field = opened.field(row)
@@ -83,15 +83,16 @@ def _remove(path: Path) -> None:
         ) from None
 
 
-def _opened(directory: Path) -> Opened:
+def opened_results(directory: Path) -> Opened:
+    """A folder that a run wrote. Raises: InputError."""
     try:
         return open_results(directory)
-    except OSError:
+    except (FileNotFoundError, NotADirectoryError):
         raise InputError(
             f"{directory}: contains no results.json; give a folder written by `pinstress run`",
             code="no-results",
         ) from None
-    except ValueError as error:
+    except (OSError, ValueError) as error:
         raise InputError(f"{directory}: {error}", code="unreadable-results") from None
 
 
