@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -62,6 +63,11 @@ class MeridianFields:
             work[np.ix_(here, here)] = self.forces[:, here].T @ moved[:, here]
         units = tuple((load, phase) for phase in (0, 1) for load in self.loads)
         return StrainEnergy(units, np.asarray(np.kron(np.eye(2), work), np.float64))
+
+    @cached_property
+    def found(self) -> dict[tuple[int, ...], Any]:
+        """What was found of some of the loads, by their numbers (fea.harmonic.superposition)."""
+        return {}
 
     def outside(self, singularities: Iterable[Singularity]) -> Mask:
         """Which of the points may have the maximum: read, and in none of the singularities."""

@@ -57,6 +57,25 @@ class Top:
     angle: float
 
 
+@dataclass(frozen=True)
+class _Numbers:
+    """Of K unit loads at points: their five numbers (S, 5, K) and the most that each of the loads
+    does, (S, K), Pa.
+    """
+
+    five: Floats
+    each: Floats
+
+
+def _numbers(fields: MeridianFields, at: tuple[int, ...]) -> _Numbers:
+    """Of some of the unit loads, by their numbers; found once for all instants of a case."""
+    if at not in fields.found:
+        five = METRIC @ fields.stress[:, :, at]
+        even, odd = (np.square(five[:, part]).sum(axis=1) for part in (_EVEN, _ODD))
+        fields.found[at] = _Numbers(five, np.sqrt(np.maximum(even, odd)))
+    return fields.found[at]
+
+
 class Circumference:
     """A case on the section's points."""
 
@@ -70,8 +89,9 @@ class Circumference:
         self.count = len(loads)
         self.points = len(fields.points)
         self._first, self._second = by_phase[..., 0], by_phase[..., 1]  # (T, K)
-        self._stress = fields.stress[:, :, [fields.loads.index(load) for load in units]]
-        self._five = METRIC @ self._stress  # (S, 5, K)
+        self._at = tuple(fields.loads.index(load) for load in units)
+        found = _numbers(fields, self._at)
+        self._fields, self._five, self._each = fields, found.five, found.each
         self._n = np.array([load.n for load in units], dtype=np.int64)
         starts = np.flatnonzero(np.diff(self._n, prepend=-1))
         self._kept: dict[int, tuple[Floats, Floats, Floats]] = {}
@@ -228,12 +248,6 @@ class Circumference:
         most = np.hypot(self._first[instants], self._second[instants]).T
         return np.asarray((self._each[points] @ most) * (1.0 + 1e-12))
 
-    @cached_property
-    def _each(self) -> Floats:
-        """The most that each unit load does at each point, (S, K) Pa."""
-        even, odd = (np.square(self._five[:, part]).sum(axis=1) for part in (_EVEN, _ODD))
-        return np.asarray(np.sqrt(np.maximum(even, odd)))
-
     def _worth(self, bound: Floats, best: Floats, together: bool) -> Iterator[tuple[Ints, Ints]]:
         """Pairs of points and instants whose bound (J, T) exceeds the best so far, both of which
         change meanwhile: the highest ones first, then more and more.
@@ -323,7 +337,7 @@ class Circumference:
         """Stress (J, A, 6) in Pa at points and angles (A,): rr, tt, zz, tz, rz, rt."""
         out = np.zeros((len(points), len(angles), 6))
         for wave in self._waves:
-            unit = self._stress[points, :, wave]
+            unit = self._fields.stress[points][:, :, self._at[wave]]
             first, second = (unit @ x[instant, wave] for x in (self._first, self._second))
             c, s = np.cos(self._n[wave.start] * angles), np.sin(self._n[wave.start] * angles)
             back = first[:, None] * c[:, None] + second[:, None] * s[:, None]

@@ -28,7 +28,7 @@ def on_coarser_cells(model: JointModel) -> tuple[ContactProblem, Floats]:
         fine.bands.link,
     )
     sectors = model.cells.sectors // 2
-    coarse = np.einsum("rc,nrs,sd->ncd", mean, model.flexibility[: WAVES * sectors], belongs)
+    coarse = mean.T @ model.flexibility[: WAVES * sectors] @ belongs
     tilt = [lug.tilt for lug in model.lugs]
     problem = ContactProblem(bands, coarse, model.tail[first], tilt, sectors)
     return problem, belongs

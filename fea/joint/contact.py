@@ -198,7 +198,7 @@ class ContactProblem:
         M, n = self.sectors, np.arange(len(flexibility))
         factors = np.where(n == 0, 1.0, 2.0) / M * np.sinc(n / M) ** 2
         waves = np.cos(np.outer(n, self.angles)) * factors[:, None]  # (N + 1, M)
-        apart = np.einsum("nd,nij->ijd", waves, flexibility)
+        apart = np.tensordot(flexibility, waves, (0, 0))  # (R, R, M)
         high = np.arange(len(flexibility), WAVES * M)
         weights = np.bincount(high % M, 2.0 / M * np.sinc(high / M) ** 2 / high, M)
         near = weights @ np.cos(np.outer(np.arange(M), self.angles))  # the same a turn further on

@@ -82,26 +82,27 @@ def half_plane(material: Material, radius: float) -> float:
     return 2.0 * (1.0 - nu * nu) * radius / E
 
 
-def wavy_flexibility(lug: Lug, pin: Material, radius: float, ends: Floats, waves: Ints) -> Floats:
-    """C_n (N, R, R), m/Pa, of a lug's rings with `ends` (R + 1,) m along z, for high harmonics
+def wavy_flexibility(
+    lug: Lug, pin: Material, radius: float, ends: Floats, waves: Ints
+) -> Floats:
+    """C_n (2, N, R, R), m/Pa, of a lug's rings with `ends` (R + 1,) m along z, for high harmonics
     `waves` (N,): of the pin as a half-space, and of the lug as one that its faces end.
     """
-    of_pin, of_lug = half_plane(pin, radius), half_plane(lug.bearing, radius)
-    out = []
-    for n in waves.tolist():
-        x = n * ends / radius
-        on, beyond = _half_space(x, x), _half_space(x, -x) + _half_space(x, 2.0 * x[-1] - x)
-        out.append((of_pin * on + of_lug * layered(lug, n / radius) * (on + beyond)) / n)
-    return np.stack(out)
+    x = waves[:, None] * ends / radius
+    on, n = _half_space(x, x), waves[:, None, None]
+    beyond = _half_space(x, -x) + _half_space(x, 2.0 * x[:, -1:] - x)
+    layer = np.array([layered(lug, k / radius) for k in waves.tolist()])[:, None, None]
+    of_lug = half_plane(lug.bearing, radius) * layer * (on + beyond) / n
+    return np.stack([half_plane(pin, radius) * on / n, of_lug])
 
 
 def _half_space(x: Floats, y: Floats) -> Floats:
-    """Mean over each ring of a pressure's response at wave number 1, over a plane's: (R, R), for
-    rings with ends x (R + 1,), under pressure on rings with ends y.
+    """Mean over each ring of a pressure's response at wave number 1, over a plane's: (N, R, R), for
+    rings with ends x (N, R + 1), under pressure on rings with ends y.
     """
-    twice = _integral_of_k0(np.abs(x[:, None] - y))
-    both = twice[1:, :-1] + twice[:-1, 1:] - twice[1:, 1:] - twice[:-1, :-1]
-    return np.asarray(np.abs(both) / (np.pi * np.diff(x)[:, None]))
+    twice = _integral_of_k0(np.abs(x[:, :, None] - y[:, None]))
+    both = twice[:, 1:, :-1] + twice[:, :-1, 1:] - twice[:, 1:, 1:] - twice[:, :-1, :-1]
+    return np.asarray(np.abs(both) / (np.pi * np.diff(x)[:, :, None]))
 
 
 def _integral_of_k0(x: Floats) -> Floats:

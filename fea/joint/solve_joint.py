@@ -124,14 +124,18 @@ class JointModel:
         self.rings = tuple(name for c, ends in self.ends.items() for name in rings(c, ends))
         self.of_pin = pin_flexibility(self.pin, self.rings, material, cells.across, cells.highest)
         self.of_lugs = np.zeros_like(self.of_pin)
-        equal: dict[tuple[object, ...], Floats] = {}
+        waves = np.arange(cells.highest + 1, WAVES * cells.sectors)
+        self.wavy = np.zeros((2, len(waves), *self.of_pin.shape[1:]))  # of the pin, of the lugs
+        equal: dict[tuple[object, ...], tuple[Floats, Floats]] = {}
         for own, lug, ends in self._by_lug():
             eye = annulus(pin, lug.connection, lug.outer_diameter, ends)
             size = np.round(np.append(ends, eye.segments[0].bore) / lug.outer_diameter, SAME_SIZE)
             key = (lug.outer_diameter, lug.material, lug.bushing, size.tobytes())
             if key not in equal:
-                equal[key] = lug_flexibility(eye, lug, cells.across, cells.highest)
-            self.of_lugs[:, own, own] = equal[key]
+                low = lug_flexibility(eye, lug, cells.across, cells.highest)
+                radius = pin.band(lug.connection).radius
+                equal[key] = low, wavy_flexibility(lug, material, radius, ends, waves)
+            self.of_lugs[:, own, own], self.wavy[:, :, own, own] = equal[key]
 
     def _by_lug(self) -> Iterator[tuple[slice, Lug, Floats]]:
         """Which rings are its, each lug, and their ends along its band."""
@@ -146,13 +150,7 @@ class JointModel:
         """Of pin and lugs on all rings, by harmonic, m/Pa; beyond `highest` of neighbouring rings
         alone, as half-spaces.
         """
-        low = self.of_pin + self.of_lugs
-        waves = np.arange(self.cells.highest + 1, WAVES * self.cells.sectors)
-        high = np.zeros((len(waves), *low.shape[1:]))
-        for own, lug, ends in self._by_lug():
-            radius = self.whole.band(lug.connection).radius
-            high[:, own, own] = wavy_flexibility(lug, self.material, radius, ends, waves)
-        return np.concatenate([low, high])
+        return np.concatenate([self.of_pin + self.of_lugs, self.wavy.sum(axis=0)])
 
     def varied(self, lugs: tuple[Lug, ...], softness: Sequence[float] = ()) -> JointModel:
         """The same pin in lugs of other clearance, edge radius and tilt, each so many times softer:
@@ -163,10 +161,14 @@ class JointModel:
         for known in ("contact", "flexibility", "edges"):
             other.__dict__.pop(known, None)
         other.lugs = tuple(softer(*both) for both in zip(lugs, softness, strict=True))
-        other.of_lugs = self.of_lugs * np.repeat(softness, self._rings_of_each)
         if set(softness) == {1.0}:
             tilts = [lug.tilt for lug in lugs]
+            other.__dict__["flexibility"] = self.flexibility
             other.__dict__["contact"] = self.contact.changed(other.gap, tilts)
+            return other
+        soft = np.repeat(softness, self._rings_of_each)
+        other.of_lugs = self.of_lugs * soft
+        other.wavy = np.stack([self.wavy[0], self.wavy[1] * soft])
         return other
 
     @property
