@@ -99,13 +99,18 @@ class Seen:
     @property
     def range(self) -> tuple[float, float]:
         """Bounds of the maximum, Pa: from its error; where stress is larger in an excluded zone,
-        from half and twice the excluded distance, with the error.
+        from half and twice the excluded distance, with the error, and with what both have changed
+        from the mesh before: so near to the zone they are known less well than the maximum.
         """
         last = self.results[-1]
         if not last.governed:
             return last.maximum - self.error, last.maximum + self.error
         low, high = last.interval or (last.maximum, last.maximum)
-        return low * max(0.0, 1.0 - self.relative), high * (1.0 + self.relative)
+        for before in self.results[-2:-1]:
+            if before.interval is not None:
+                low -= abs(low - before.interval[0])
+                high += abs(high - before.interval[1])
+        return max(0.0, low * (1.0 - self.relative)), high * (1.0 + self.relative)
 
     def known(self, tolerance: float) -> bool:
         """Whether the error is within `tolerance`."""
@@ -151,7 +156,10 @@ def judge(
     own = accuracy(seen.relative, tolerance, known)
     if len(seen.results) < FEWEST and not known:
         meshes = "one mesh was" if len(seen.results) == 1 else f"{len(seen.results)} meshes were"
-        own = Note(f"only {meshes} solved, too few to estimate the error", ("too-few-meshes",))
+        text = f"only {meshes} solved, too few to estimate the error"
+        if len(seen.results) == FEWEST - 1 and last.governed:
+            text = f"estimated error {seen.relative:.1%}, from two meshes only"
+        own = Note(text, ("too-few-meshes",))
     error, interval = seen.error, None
     if governing:
         verdict = "singular"

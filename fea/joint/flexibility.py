@@ -82,9 +82,7 @@ def half_plane(material: Material, radius: float) -> float:
     return 2.0 * (1.0 - nu * nu) * radius / E
 
 
-def wavy_flexibility(
-    lug: Lug, pin: Material, radius: float, ends: Floats, waves: Ints
-) -> Floats:
+def wavy_flexibility(lug: Lug, pin: Material, radius: float, ends: Floats, waves: Ints) -> Floats:
     """C_n (2, N, R, R), m/Pa, of a lug's rings with `ends` (R + 1,) m along z, for high harmonics
     `waves` (N,): of the pin as a half-space, and of the lug as one that its faces end.
     """

@@ -90,7 +90,8 @@ def test_a_bushing_of_the_lugs_material_is_none() -> None:
     assert same == pytest.approx(none, rel=3e-3, abs=3e-3 * none.max())
     waves = np.arange(13, 40)
     without, with_it = (
-        wavy_flexibility(x, STEEL, A, ends, waves).sum(axis=0) for x in (lug(None), lug(C - A, STEEL))
+        wavy_flexibility(x, STEEL, A, ends, waves).sum(axis=0)
+        for x in (lug(None), lug(C - A, STEEL))
     )
     assert with_it == pytest.approx(without, rel=1e-12)
 
