@@ -50,7 +50,7 @@ def enough(asked: Asked, material: Material, seen: Seen) -> bool:
     """Whether these meshes are accurate enough, or decide the required factor.
 
     Two meshes never tell how large a maximum is, for they can agree by chance. Where what is
-    excluded about the rounded edges of lugs makes it uncertain anyway, they may decide, by a margin.
+    excluded about rounded edges of lugs makes it uncertain anyway, they may decide, by a margin.
     """
     if len(seen.results) < FEWEST - 1:
         return False
