@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from fea.core.pin_loads import Floats, PinLoads
 from fea.harmonic.evaluate import HarmonicAnswer
 from fea.harmonic.superposition import Circumference
 from fea.joint.lugs.lug import Lug
+from fea.joint.solve_in_lugs import ROUGH_CELLS
 from fea.joint.solve_joint import Cells, JointModel
 from fea.solve_pin import Asked, solve_pin
 from geometry import Pin, Segment
@@ -39,7 +40,9 @@ MESHES = (
     Fineness(rings=6, sectors=16, eye=2, stiffness=STIFFNESS * 2.0),
     Fineness(rings=6, sectors=16, eye=2, scale=1.0),
 )
-CELLS = Cells(6, 24, 8), Cells(), Cells(10, 48, 16)
+CELLS = ROUGH_CELLS, Cells(6, 24, 8), Cells(), Cells(10, 48, 16)
+USUAL = 2  # of these
+INSTANTS = 201
 SHAPES = "plain", "stepped", "hollow"
 
 
@@ -87,12 +90,12 @@ class Ours:
 
 
 def joint_ccx() -> str:
-    """Four tables."""
+    """Five tables."""
     if not installed():
         return f"CalculiX is not installed (no {COMMAND}); {TO_GET}"
     joints = drawn(COUNT, SEED)
     parts = [_described(joints), _beside(joints), _meshes(joints[REFINED])]
-    return "\n\n".join([*parts, _ours(joints[REFINED])])
+    return "\n\n".join([*parts, _ours(joints[REFINED]), _motion(joints[REFINED])])
 
 
 def drawn(count: int, seed: int) -> list[Joint]:
@@ -205,7 +208,7 @@ def _theirs(joint: Joint, fineness: Fineness) -> tuple[JointOpinion, float] | Ca
     return found, used - before.children_user - before.children_system
 
 
-def ours(joint: Joint, cells: Cells = CELLS[1]) -> Ours:
+def ours(joint: Joint, cells: Cells = CELLS[USUAL]) -> Ours:
     """Contact, then stress to 2 %, of which the largest away from edges."""
     start = time.process_time()
     model = JointModel(joint.pin, STEEL, joint.lugs, cells)
@@ -258,6 +261,33 @@ def _meshes(joint: Joint) -> str:
     return table((*head, "governing point [MPa]", "unknowns", "processor [s]", "iterations"), rows)
 
 
+def _motion(joint: Joint) -> str:
+    """As many instants: forces that turn once and grow to twice theirs. Beside it so many times
+    what CalculiX takes for one of them.
+    """
+    turn = np.linspace(0.0, 2.0 * np.pi, INSTANTS)
+    size = (1.0 + turn / turn[-1])[:, None] * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    forces = np.zeros((INSTANTS, len(joint.lugs), 3))
+    forces[..., :2] = joint.loads.forces[0, :, 0, None] * size[:, None]
+    moving = replace(joint, loads=replace(joint.loads, forces=forces))
+    mine, rows = [ours(moving, cells) for cells in CELLS[: USUAL + 1]], []
+    for mesh in MESHES[:2]:
+        other = _theirs(joint, mesh)
+        if isinstance(other, CalculixError):
+            return str(other)
+        used = INSTANTS * other[1]
+        for cells, own in zip(CELLS, mine, strict=False):
+            spent = own.contact + own.stresses
+            ratio = f"{used / spent:,.0f}"
+            rows.append((_about(cells), f"{spent:.2f}", other[0].unknowns, f"{used:,.0f}", ratio))
+    head = (f"ours, joint 1, {INSTANTS} instants", "processor [s]", "unknowns of CalculiX")
+    return table((*head, f"{INSTANTS} times its processor [s]", "times ours"), rows)
+
+
+def _about(cells: Cells) -> str:
+    return f"{cells.rings} rings, {cells.sectors} sectors, n to {cells.highest}"
+
+
 def _iterations(found: JointOpinion) -> str:
     return f"{found.iterations}, with tension" if found.appended else str(found.iterations)
 
@@ -266,8 +296,7 @@ def _ours(joint: Joint) -> str:
     rows = []
     for cells in CELLS:
         mine = ours(joint, cells)
-        about = f"{cells.rings} rings, {cells.sectors} sectors, n to {cells.highest}"
         numbers = f"{mine.moment:.4g}", f"{mine.stress / 1e6:.1f}", mine.pressures
-        rows.append((about, *numbers, f"{mine.contact:.2f} + {mine.stresses:.2f}"))
+        rows.append((_about(cells), *numbers, f"{mine.contact:.2f} + {mine.stresses:.2f}"))
     head = (f"ours, joint {REFINED + 1}", "M [N m]", "governing point [MPa]", "pressures")
     return table((*head, "processor [s]"), rows)

@@ -69,11 +69,12 @@ class _Numbers:
 
 def _numbers(fields: MeridianFields, at: tuple[int, ...]) -> _Numbers:
     """Of some of the unit loads, by their numbers; found once for all instants of a case."""
-    if at not in fields.found:
+    found: _Numbers | None = fields.found.get(at)
+    if found is None:
         five = METRIC @ fields.stress[:, :, at]
         even, odd = (np.square(five[:, part]).sum(axis=1) for part in (_EVEN, _ODD))
-        fields.found[at] = _Numbers(five, np.sqrt(np.maximum(even, odd)))
-    return fields.found[at]
+        found = fields.found[at] = _Numbers(five, np.sqrt(np.maximum(even, odd)))
+    return found
 
 
 class Circumference:
