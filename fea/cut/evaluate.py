@@ -8,7 +8,6 @@ from functools import cached_property
 
 import numpy as np
 
-from fea.core.material import Material
 from fea.core.mesh_result import MeshResult
 from fea.core.pin_loads import AnyLoads, PinLoads
 from fea.core.solution import Picture
@@ -16,9 +15,9 @@ from fea.core.voigt import ENTRIES, TENSOR
 from fea.cut.local_fields import RATIO, LocalFields, local_fields, mesh_of, section_points
 from fea.cut.region import zone
 from fea.harmonic.evaluate import (
-    FirstMesh,
     HarmonicAnswer,
     HarmonicSolution,
+    SectionProblem,
     harmonic_result,
     harmonic_solution,
 )
@@ -27,7 +26,6 @@ from fea.harmonic.stress_recovery import NOWHERE
 from fea.singular.singularities import Singularity
 from fea.solid.nodal_loads import Unit
 from fea.solid.superposition import squares
-from geometry import Pin
 from geometry.arrays import Floats, Ints, Mask
 from geometry.mesh.cut_piece import Piece
 from geometry.mesh.sizing import Grade
@@ -46,32 +44,27 @@ class CutSolution:
 
 
 def cut_solution(
-    pin: Pin,
+    problem: SectionProblem,
     pieces: Sequence[Piece],
-    material: Material,
-    clamps: tuple[str, ...],
-    cases: tuple[PinLoads, ...],
-    singularities: tuple[Singularity, ...],
     level: int,
-    ratio: float,
     before: Collection[MeshResult] = (),
-    first: FirstMesh | None = None,
 ) -> CutSolution:
     """As fea.harmonic.evaluate.harmonic_solution, on mesh number `level` of section and pieces.
 
     Raises: MeshError, SolveError.
     """
+    material, clamps, cases = problem.material, problem.clamps, problem.cases
     high = [p for result in before for p in result.local_high]
     models = [mesh_of(piece, material, clamps, level, high) for piece in pieces]
     points = [section_points(model) for model in models]
     section = harmonic_solution(
-        pin, material, clamps, cases, singularities, level, ratio, before, first,
+        problem, level, RATIO, before,
         np.concatenate([NOWHERE, *points]), [_fine(piece, level) for piece in pieces],
     )  # fmt: skip
     at = np.split(section.elsewhere, np.cumsum([len(p) for p in points])[:-1])
     units = _units(cases) or tuple((load, load.phases[0]) for load in section.fields.loads[:1])
     found = tuple(
-        local_fields(model, section.fields, stress, units, singularities)
+        local_fields(model, section.fields, stress, units, problem.singularities)
         for model, stress in zip(models, at, strict=True)
     )
     fields = _without(section.fields, [zone(piece) for piece in pieces])
