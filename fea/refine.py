@@ -63,7 +63,7 @@ class Solution:
 
 
 @dataclass(frozen=True)
-class Job:
+class PinJob:
     """A pin to be solved, constrained at surfaces (by its own names). cut: the pin with its cuts,
     where `pin` is the one without; beyond: how far local solids reach past these
     (fea.cut.region.pieces).
@@ -123,13 +123,13 @@ def singularities_of(
     return (*found, *lug_edges(pin, edges, distance))
 
 
-def job_singularities(job: Job, cases: tuple[PinLoads, ...]) -> tuple[Singularity, ...]:
+def job_singularities(job: PinJob, cases: tuple[PinLoads, ...]) -> tuple[Singularity, ...]:
     """Zones of unbounded stress in any of the cases of a job."""
     return singularities_of(job.pin, job.material, job.constrained, cases, job.asked.distance)
 
 
 def refined(
-    job: Job,
+    job: PinJob,
     model: MeshedModel,
     cases: tuple[PinLoads, ...],
     notes: dict[str, Note],
@@ -192,7 +192,7 @@ class _Mesh:
 
 
 def _mesh(
-    job: Job,
+    job: PinJob,
     model: MeshedModel,
     cases: tuple[PinLoads, ...],
     singularities: tuple[Singularity, ...],
@@ -235,7 +235,7 @@ def _mesh(
     return _Mesh(solid.singularities, partial(solid_result, solid, before, ratio), answers)
 
 
-def _through_time(job: Job, mesh: _Mesh, case: PinLoads) -> PinLoads:
+def _through_time(job: PinJob, mesh: _Mesh, case: PinLoads) -> PinLoads:
     """A case's loads with the instants that matter according to the first mesh."""
     between = job.between.get(case.case)
     if between is None:
@@ -243,7 +243,7 @@ def _through_time(job: Job, mesh: _Mesh, case: PinLoads) -> PinLoads:
     return through_time(mesh.answers[case.case], case, between, job.asked.tolerance)
 
 
-def _at_crest(job: Job, mesh: _Mesh, case: PinLoads, seen: Seen) -> tuple[PinLoads, Seen]:
+def _at_crest(job: PinJob, mesh: _Mesh, case: PinLoads, seen: Seen) -> tuple[PinLoads, Seen]:
     """With the instant at which the last mesh has its maximum, and the rise between instants."""
     between, answer = job.between.get(case.case), mesh.answers[case.case]
     if between is None:

@@ -28,7 +28,7 @@ from fea.harmonic.evaluate import FirstMesh
 from fea.refine import (
     LOCAL,
     NO_MOTION,
-    Job,
+    PinJob,
     MeshedModel,
     Progress,
     Solution,
@@ -75,7 +75,7 @@ def solve_pin(
             "not-axisymmetric",
         )
     constrained = tuple(pin.surface(name) for name in clamps)
-    job = Job(pin, material, constrained, asked, progress, between, first or FirstMesh())
+    job = PinJob(pin, material, constrained, asked, progress, between, first or FirstMesh())
     balances = {} if clamps else {c.case: out_of_balance(pin, c, material.density) for c in cases}
     shares = {case: imbalance(pin, balance) for case, balance in balances.items()}
     notes = {case: _reacted(share) for case, share in shares.items() if share}
@@ -109,7 +109,7 @@ def solve_pin(
 
 
 def _beam(
-    job: Job, pin: Pin, cases: tuple[PinLoads, ...], notes: dict[str, Note]
+    job: PinJob, pin: Pin, cases: tuple[PinLoads, ...], notes: dict[str, Note]
 ) -> dict[str, Solution]:
     """The cases for which a beam is accurate enough; all if the beam model is requested."""
     asked = job.asked
@@ -137,7 +137,7 @@ def _beam(
     return out
 
 
-def _by_beam(job: Job, pin: Pin, case: PinLoads, notes: dict[str, Note]) -> Solution:
+def _by_beam(job: PinJob, pin: Pin, case: PinLoads, notes: dict[str, Note]) -> Solution:
     start, rise = time.perf_counter(), 0.0
     answer = BeamAnswer(pin, job.material, job.constrained, case)
     if between := job.between.get(case.case):
@@ -150,7 +150,7 @@ def _by_beam(job: Job, pin: Pin, case: PinLoads, notes: dict[str, Note]) -> Solu
 
 
 def _instead(
-    job: Job, pin: Pin, cases: tuple[PinLoads, ...], notes: dict[str, Note], failure: str
+    job: PinJob, pin: Pin, cases: tuple[PinLoads, ...], notes: dict[str, Note], failure: str
 ) -> dict[str, Solution]:
     """Beams, with their own error, where no harmonic mesh could be solved."""
     out = {}
@@ -163,8 +163,8 @@ def _instead(
 
 
 def _with_local_solids(
-    job: Job, pin: CutPin, cases: tuple[PinLoads, ...], notes: dict[str, Note]
-) -> tuple[dict[str, Solution], Job]:
+    job: PinJob, pin: CutPin, cases: tuple[PinLoads, ...], notes: dict[str, Note]
+) -> tuple[dict[str, Solution], PinJob]:
     """Of a pin with holes, none where it must be solid as a whole; and the job with the reason."""
     local = replace(job, pin=pin.profile)
     loaded = [name for case in cases for name in case.surfaces]
