@@ -66,7 +66,7 @@ class Solution:
 class PinJob:
     """A pin to be solved, constrained at surfaces (by its own names). cut: the pin with its cuts,
     where `pin` is the one without; beyond: how far local solids reach past these
-    (fea.cut.region.pieces).
+    (fea.cut.region.pieces); bands: loaded ones with cuts in them.
     """
 
     pin: PinLike
@@ -78,11 +78,14 @@ class PinJob:
     first: FirstMesh
     cut: CutPin | None = None
     beyond: float = BEYOND
+    bands: tuple[tuple[float, float], ...] = ()
 
     @property
     def pieces(self) -> tuple[Piece, ...]:
         """What is solid of it."""
-        return pieces(self.cut, self.constrained, self.beyond) if self.cut else ()
+        if self.cut is None:
+            return ()
+        return pieces(self.cut, self.constrained, self.beyond, self.bands)
 
 
 def ratio_of(pin: PinLike, model: str) -> float:
@@ -208,7 +211,7 @@ def _mesh(
         )
         answers: dict[str, Answer]
         if model == LOCAL:
-            cut = cut_solution(problem, job.pieces, level, before.values())
+            cut = cut_solution(problem, job.pieces, level, before.values(), job.bands)
             answers = {c: CutAnswer(cut, mine) for c, mine in own.items()}
             return _Mesh(
                 singularities, lambda c: cut_result(cut, singularities, c, own[c.case]), answers

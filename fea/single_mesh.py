@@ -16,7 +16,7 @@ from fea.core.material import Material
 from fea.core.mesh_result import MeshResult
 from fea.core.pin_loads import PinLoads
 from fea.cut.evaluate import cut_result, cut_solution
-from fea.cut.region import pieces
+from fea.cut.region import loaded_bands, pieces
 from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
 from fea.refine import LOCAL, STEP, singularities_of
 from fea.singular.singularities import Singularity
@@ -85,7 +85,8 @@ def _local_result(problem: Problem, level: int, before: tuple[MeshResult, ...]) 
         raise ArgumentError(f"pin {pin.name} has no holes", "no-cuts")
     found = singularities_of(pin.profile, material, clamps, (loads,), problem.distance)
     posed = SectionProblem(pin.profile, material, clamps, (loads,), found)
-    cut = cut_solution(posed, pieces(pin, clamps), level, before)
+    bands = loaded_bands(pin, loads.surfaces if clamps else pin.connections)
+    cut = cut_solution(posed, pieces(pin, clamps, bands=bands), level, before, bands)
     return cut_result(cut, found, loads)
 
 

@@ -23,7 +23,7 @@ from fea.core.material import Material
 from fea.core.over_time import Between, rise_between, through_time
 from fea.core.peak import NOTHING, Note, Peak
 from fea.core.pin_loads import PinLoads
-from fea.cut.region import at_corner, refused
+from fea.cut.region import at_corner, loaded_bands, refused
 from fea.harmonic.evaluate import FirstMesh
 from fea.refine import (
     LOCAL,
@@ -174,7 +174,8 @@ def _with_local_solids(
     why = why or at_corner(pin, job_singularities(local, cases))
     if why is None:
         try:
-            return refined(replace(local, cut=pin), LOCAL, cases, notes), job
+            local = replace(local, cut=pin, bands=loaded_bands(pin, loaded))
+            return refined(local, LOCAL, cases, notes), job
         except (MeshError, SolveError, GeometryError) as error:
             text = f"solid: a local solid about the cuts failed: {error}"
             why = Note(text, ("not-axisymmetric", "local-failed"))

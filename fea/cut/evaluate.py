@@ -48,14 +48,16 @@ def cut_solution(
     pieces: Sequence[Piece],
     level: int,
     before: Collection[MeshResult] = (),
+    bands: Sequence[tuple[float, float]] = (),
 ) -> CutSolution:
     """As fea.harmonic.evaluate.harmonic_solution, on mesh number `level` of section and pieces.
+    bands: loaded ones with holes in them (fea.cut.region.loaded_bands).
 
     Raises: MeshError, SolveError.
     """
     material, clamps, cases = problem.material, problem.clamps, problem.cases
     high = [p for result in before for p in result.local_high]
-    models = [mesh_of(piece, material, clamps, level, high) for piece in pieces]
+    models = [mesh_of(piece, material, clamps, level, high, bands) for piece in pieces]
     points = [section_points(model) for model in models]
     section = harmonic_solution(
         problem, level, RATIO, before,

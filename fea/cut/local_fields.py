@@ -14,6 +14,7 @@ from fea.core.mesh_result import Point
 from fea.core.pin_loads import AnyLoads, require_solved
 from fea.core.voigt import ENTRIES, TENSOR
 from fea.cut.local_model import LocalModel, turned
+from fea.cut.lost_loads import bearings
 from fea.cut.region import zone
 from fea.harmonic.fields import MeridianFields
 from fea.singular.singularities import Singularity, outside
@@ -125,10 +126,15 @@ def _unmirrored(piece: Piece, x: Floats) -> Floats:
 
 
 def mesh_of(
-    piece: Piece, material: Material, clamps: tuple[str, ...], level: int, high: Sequence[Point]
+    piece: Piece,
+    material: Material,
+    clamps: tuple[str, ...],
+    level: int,
+    high: Sequence[Point],
+    bands: Sequence[tuple[float, float]] = (),
 ) -> LocalModel:
     """Mesh number `level` of a piece, finer about points (m, in the pin's frame) where stress was
-    high on the meshes before.
+    high on the meshes before. bands: loaded ones of the pin, with holes in them.
 
     Raises: MeshError.
     """
@@ -137,7 +143,7 @@ def mesh_of(
     if here:
         spots = [_point(x) for x in _unmirrored(piece, np.array(here))]
     mesh = piece_mesh(piece, RATIO ** (level * ELSEWHERE), spots, RATIO**level)
-    return LocalModel(piece, mesh, material, _within(piece, clamps))
+    return LocalModel(piece, mesh, material, _within(piece, clamps), bearings(piece, bands))
 
 
 def _within(piece: Piece, clamps: tuple[str, ...]) -> tuple[str, ...]:
@@ -177,7 +183,8 @@ def local_fields(
     angle = np.arctan2(x[..., 1], x[..., 0])
     own = [fields.loads.index(load) for load, _ in units]
     stress = _cartesian(amplitude[..., own], angle, model.piece.angle, units)
-    read = model.solve(stress, np.abs(fields.stress[..., own]).max(axis=(0, 1)))
+    largest = np.abs(fields.stress[..., own]).max(axis=(0, 1))
+    read = model.solve(stress, largest, [load.shears for load, _ in units])
     points = read.points @ _turn(model.piece.angle).T + [0.0, 0.0, model.piece.origin]
     flat_r, flat_z = r.ravel(), z.ravel()
     ends = [
