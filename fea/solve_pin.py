@@ -28,8 +28,8 @@ from fea.harmonic.evaluate import FirstMesh
 from fea.refine import (
     LOCAL,
     NO_MOTION,
-    PinJob,
     MeshedModel,
+    PinJob,
     Progress,
     Solution,
     because,

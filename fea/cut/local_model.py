@@ -44,13 +44,16 @@ ENDS = ("start", "end")
 @dataclass(frozen=True)
 class Read:
     """At points (P, 3), m, of a piece, those of each image after the other: the stress of the cut
-    pin (P, 6, L), Pa, and by how much it is not that of the uncut one; which are on a cut.
+    pin (P, 6, L), Pa, and by how much it is not that of the uncut one; which are on a cut. moved:
+    (2, 6, L) by how much the piece's lower and upper ends move for the cuts, as a shift (m) and a
+    turn (rad) about the origin of its frame.
     """
 
     points: Floats
     stress: Floats
     difference: Floats
     cut: Mask
+    moved: Floats
 
 
 class LocalModel:
@@ -108,9 +111,7 @@ class LocalModel:
         """The points and their images, (G, P, 3)."""
         return np.asarray(self.parities.images[:, None] * self.points)
 
-    def solve(
-        self, uncut: Floats, most: Floats | float = 0.0, shears: Sequence[bool] = ()
-    ) -> Read:
+    def solve(self, uncut: Floats, most: Floats | float = 0.0, shears: Sequence[bool] = ()) -> Read:
         """Of the stress of the uncut pin at all images (G, P, 6, L), Pa, along x, y and z. most:
         the largest anywhere in the pin, (L,). shears: which loads shear the bands they act on, all
         by default.
@@ -123,20 +124,43 @@ class LocalModel:
         largest = np.maximum(np.abs(by_class[:, self.cut]).max(axis=(0, 1, 2)), FELT * most)
         scale = np.where(largest > 0.0, largest, 1.0)
         difference = np.zeros_like(by_class)
+        moved = np.zeros((2, 6, uncut.shape[3]))
         forces = [self._forces(part / scale) for part in by_class]
         pressed = self._forces(_pressure(len(self.points)))
         most = max(float(np.linalg.norm(f)) for f in (pressed, *forces))
         whole = np.maximum(_size(pressed), np.sum([_size(f) for f in forces], axis=0))
         for c, parity in enumerate(self.parities.classes):
             if np.linalg.norm(forces[c]) > NO_CLASS * most:
-                moved, spread = self._spread(by_class[c] / scale, parity, by_kind)
-                u = self._displace(forces[c] + moved, parity, whole)
+                more, spread = self._spread(by_class[c] / scale, parity, by_kind)
+                u = self._displace(forces[c] + more, parity, whole)
+                moved += self._moved(u, parity) * scale
                 difference[c] = self._stress(u, by_class[c] / scale, spread, c) * scale
         total = self._in_faces(by_class) + difference
         total[:, self.cut, 2:5] = 0.0
         whole, changed = (self._everywhere(x) for x in (total, difference))
         cut = np.tile(self.cut, len(by_class))
-        return Read(self.images.reshape(-1, 3), whole, changed, cut)
+        return Read(self.images.reshape(-1, 3), whole, changed, cut, moved)
+
+    def _moved(self, u: Floats, parity: tuple[int, ...]) -> Floats:
+        """The rigid motions (2, 6, L) of both ends by displacements (3 N, L) of a class. Of what
+        its mirror planes leave only those that belong to the class; about the origin.
+        """
+        out, boundaries = np.zeros((2, 6, u.shape[1])), self.space.mesh.boundaries
+        across = dict(zip(self.parities.mirrors, parity, strict=True))
+        around = Parities(tuple(m for m in across if m != "z"))
+        own = around.rigid(tuple(s for m, s in across.items() if m != "z"))
+        for e, name in enumerate(ENDS):
+            if name not in boundaries or (name == "start" and "z" in across):
+                continue
+            nodes = self.space.basis.get_dofs(boundaries[name]).flatten()
+            rows = (3 * nodes[:, None] + np.arange(3)).ravel()
+            modes = _rigid(self.space.nodes)[rows][:, own]
+            out[e, own] = np.linalg.lstsq(modes, u[rows])[0]
+        out[:, 3:] /= np.abs(self.space.nodes).max()
+        if "z" in across:  # u(M x) = parity M u(x): shifts but that along z, and the spin, as u
+            sign = across["z"] * np.array([1.0, 1.0, -1.0, -1.0, -1.0, 1.0])
+            out[0] = sign[:, None] * out[1]
+        return out
 
     def _everywhere(self, by_class: Floats) -> Floats:
         """Stress (C, P, 6, L) along the faces' directions along x, y, z at all images, (G P, 6,

@@ -26,23 +26,19 @@ def refused(pin: CutPin, clamps: tuple[str, ...], loaded: Sequence[str]) -> Note
     """
     if pin.flats:
         return _solid("flats have inner corners where stress is unbounded", "flat")
-    if len(clamps) > 1:
-        return _solid(
-            "several clamps share its loads by its stiffness, which cuts change", "clamps"
-        )
     for name in (*clamps, *loaded):
         if name.startswith("hole "):
             return _solid(f"{name} carries load", "hole-loaded")
     for i, hole in enumerate(pin.holes, 1):
         low, high = _extent(hole)
         for name in dict.fromkeys((*loaded, *clamps)):
-            z0, z1 = _surface(pin, name)
+            z0, z1 = surface_ends(pin, name)
             if not (low < z1 and z0 < high):
                 continue
             if name in clamps:
                 return _solid(f"hole {i} lies in the clamped surface {name}", "hole-in-clamped")
             if not _well_inside(hole, z0, z1):
-                return _solid(f"hole {i} lies at an end of the loaded surface {name}", "hole-at-end")
+                return _solid(f"hole {i} lies at an end of the band {name}", "hole-at-end")
     return None
 
 
@@ -54,10 +50,8 @@ def _well_inside(hole: Hole, z0: float, z1: float) -> bool:
 
 def loaded_bands(pin: CutPin, loaded: Sequence[str]) -> tuple[tuple[float, float], ...]:
     """The z of both ends, m, of loaded bands (by name) with holes in them."""
-    found = (_surface(pin, name) for name in dict.fromkeys(loaded) if name in pin.connections)
-    return tuple(
-        (z0, z1) for z0, z1 in found if any(_well_inside(h, z0, z1) for h in pin.holes)
-    )
+    found = (surface_ends(pin, name) for name in dict.fromkeys(loaded) if name in pin.connections)
+    return tuple((z0, z1) for z0, z1 in found if any(_well_inside(h, z0, z1) for h in pin.holes))
 
 
 def at_corner(pin: CutPin, singularities: Sequence[Singularity]) -> Note | None:
@@ -79,8 +73,8 @@ def _extent(hole: Hole) -> tuple[float, float]:
     return hole.z - hole.diameter / 2, hole.z + hole.diameter / 2
 
 
-def _surface(pin: CutPin, name: str) -> tuple[float, float]:
-    """z of both its ends, m; what is no band is somewhere on the pin."""
+def surface_ends(pin: CutPin, name: str) -> tuple[float, float]:
+    """z of both ends of a surface, m; what is no band is somewhere on the pin."""
     if name in ("start", "end"):
         z = 0.0 if name == "start" else pin.length
         return z, z
@@ -141,7 +135,7 @@ def _piece(
     if all(abs(math.sin(2.0 * (hole.angle - angle))) < SAME_ANGLE for hole in holes):
         mirrors = ("x", "y")
     middle = 0.5 * (low + high)
-    clamped = any(z0 <= b and a <= z1 for a, b in (_surface(CutPin(pin), c) for c in clamps))
+    clamped = any(z0 <= b and a <= z1 for a, b in (surface_ends(CutPin(pin), c) for c in clamps))
     parted = any(a < high and low < b and not (a < low and high < b) for a, b in bands)
     if not clamped and not parted and _even(pin, holes, z0, z1, middle):
         half = max(middle - z0, z1 - middle)

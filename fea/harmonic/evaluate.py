@@ -68,7 +68,8 @@ class FirstMesh:
 @dataclass(frozen=True)
 class SectionProblem:
     """A body of revolution of a material, clamped at surfaces (by name), in some cases, with the
-    singularities of any of these. first: where the first mesh is kept for other loads.
+    singularities of any of these. first: where the first mesh is kept for other loads. besides:
+    unit loads that are solved, too.
     """
 
     pin: Pin
@@ -77,6 +78,7 @@ class SectionProblem:
     cases: tuple[PinLoads, ...]
     singularities: tuple[Singularity, ...]
     first: FirstMesh | None = None
+    besides: tuple[UnitLoad, ...] = ()
 
 
 def harmonic_solution(
@@ -111,7 +113,7 @@ def harmonic_solution(
 
     def solved(size: SectionSize, grades: list[Grade], quiet: tuple[int, ...]) -> MeridianFields:
         places, read = spots(factor), np.concatenate([elsewhere, _rims(pin, singularities)])
-        loads = _unit_loads(cases)
+        loads = _unit_loads(cases) + problem.besides
         ends = _ends(pin, problem.clamps, loads)
 
         def model() -> HarmonicModel:
