@@ -13,8 +13,9 @@ from typing import Any
 from benchmarks.random_pins import STEEL, Trial, trials
 from benchmarks.timing import table
 from fea.core.material import Material
-from fea.harmonic.evaluate import harmonic_result, harmonic_solution
-from fea.solve_pin import STEP, Asked, Solution, singularities_of, solve_pin
+from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
+from fea.refine import STEP
+from fea.solve_pin import Asked, Solution, singularities_of, solve_pin
 
 Row = dict[str, Any]
 
@@ -37,7 +38,8 @@ def truth(trial: Trial, meshes: int, material: Material = STEEL, beyond: int = B
     constrained = tuple(trial.pin.surface(c) for c in trial.clamps)
     level = meshes - 1 + beyond
     loads = replace(trial.loads, terms=TERMS)
-    fine = harmonic_solution(trial.pin, material, constrained, (loads,), singularities, level, STEP)
+    problem = SectionProblem(trial.pin, material, constrained, (loads,), singularities)
+    fine = harmonic_solution(problem, level, STEP)
     return harmonic_result(fine, singularities, loads).maximum
 
 

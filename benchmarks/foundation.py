@@ -17,7 +17,7 @@ from benchmarks.timing import seconds, table
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.harmonic.evaluate import HarmonicAnswer, harmonic_solution
+from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
 from fea.joint.bending import shear_force
 from fea.joint.foundation.bounds import Bounded, bounded
 from fea.joint.foundation.foundation_model import (
@@ -77,7 +77,8 @@ def contact_maximum(model: JointModel, loads: PinLoads) -> float:
     """Largest von Mises stress by contact outside the excluded zones, Pa, of one instant."""
     found = model.solve(loads)
     singular = singularities_of(model.pin, model.material, (), (found.loads,))
-    section = harmonic_solution(model.pin, model.material, (), (found.loads,), singular, 1, 2**0.5)
+    problem = SectionProblem(model.pin, model.material, (), (found.loads,), singular)
+    section = harmonic_solution(problem, 1, 2**0.5)
     return float(HarmonicAnswer(section, singular).maxima(found.loads)[0])
 
 

@@ -11,8 +11,9 @@ from pathlib import Path
 from benchmarks.timing import seconds, table
 from fea.core.material import Material
 from fea.core.peak import Peak
-from fea.harmonic.evaluate import harmonic_result, harmonic_solution
-from fea.solve_pin import STEP, singularities_of, solve_pin
+from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
+from fea.refine import STEP
+from fea.solve_pin import singularities_of, solve_pin
 from geometry import Pin
 from pinstress import load_study
 from pinstress.analysis.plan import Plan, prepare
@@ -144,7 +145,8 @@ def _one(plan: Plan) -> list[tuple[object, ...]]:
 
         def solve(level: int = level, unknowns: list[int] = unknowns) -> None:
             held = tuple(pin.surface(c) for c in task.clamps)
-            solution = harmonic_solution(pin, steel, held, (loads,), singularities, level, STEP)
+            problem = SectionProblem(pin, steel, held, (loads,), singularities)
+            solution = harmonic_solution(problem, level, STEP)
             unknowns.append(harmonic_result(solution, singularities, loads).unknowns)
 
         spent = seconds(solve)

@@ -13,9 +13,10 @@ import numpy as np
 from benchmarks.timing import table
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.harmonic.evaluate import harmonic_result, harmonic_solution
+from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
 from fea.harmonic.superposition import Circumference
-from fea.solve_pin import STEP, Asked, singularities_of, solve_pin
+from fea.refine import STEP
+from fea.solve_pin import Asked, singularities_of, solve_pin
 from geometry import Pin
 from pinstress import load_study
 from pinstress.analysis.plan import prepare
@@ -75,7 +76,8 @@ def terms() -> str:
     for name, task in found.items():
         pin, loads = _revolved(task), replace(task.loads[0], terms=TRUE_TERMS)
         singularities = singularities_of(pin, steel, (), (loads,))
-        solution = harmonic_solution(pin, steel, (), (loads,), singularities, LEVEL, STEP)
+        problem = SectionProblem(pin, steel, (), (loads,), singularities)
+        solution = harmonic_solution(problem, LEVEL, STEP)
         true = harmonic_result(solution, singularities, loads).maximum
         few = (
             harmonic_result(solution, singularities, replace(loads, terms=n)).maximum for n in TERMS
@@ -97,7 +99,8 @@ def instants() -> str:
         pin = _revolved(task)
         cases = [task.between[CASE](np.linspace(start, end, n)) for n in counts]
         singularities = singularities_of(pin, steel, (), (cases[-1],))
-        solution = harmonic_solution(pin, steel, (), (cases[-1],), singularities, LEVEL, STEP)
+        problem = SectionProblem(pin, steel, (), (cases[-1],), singularities)
+        solution = harmonic_solution(problem, LEVEL, STEP)
         among = solution.fields.outside(singularities)
         *few, true = (Circumference(solution.fields, loads).top(among).value for loads in cases)
         rows.append((name, *(f"{100.0 * (value / true - 1.0):+.3f}" for value in few)))

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fea.core.pin_loads import PinLoads
 from geometry import CutPin, Hole, Pin, Segment
+
+KINDS = "clamped", "between", "held twice", "pressed"
 
 
 @dataclass(frozen=True)
@@ -20,8 +22,9 @@ class CutTrial:
 
 
 def cut_trials(count: int, seed: int) -> list[CutTrial]:
-    """Shafts with a hole, one in five with two, one in four bored; out of a thick root that is
-    clamped, with a band on a thick end, or plain ones between two bands. Loads in all directions.
+    """Shafts with a hole, one in five with two, one in four bored, in turn: out of a thick root
+    that is clamped; with bands on thick ends; clamped at both ends; pressed on the shaft itself,
+    where the hole is, and held by bands on thick ends. Loads in all directions.
     """
     rng = np.random.default_rng(seed)
     return [_trial(rng, k) for k in range(count)]
@@ -29,36 +32,51 @@ def cut_trials(count: int, seed: int) -> list[CutTrial]:
 
 def _trial(rng: np.random.Generator, k: int) -> CutTrial:
     d = float(rng.uniform(0.01, 0.05))
-    bore = float(rng.uniform(0.2, 0.5)) * d if k % 4 == 3 else 0.0
+    bore = float(rng.uniform(0.2, 0.5)) * d if (k // 4 + k) % 4 == 3 else 0.0
     thick = d * float(rng.uniform(1.4, 2.0))
     rho, shaft = 0.3 * (thick - d), d * float(rng.uniform(1.5, 4.0))
-    root, end = (
-        Segment(thick, thick, bore, name="root"),
-        Segment(thick, thick, bore, connection="B"),
+    size = d * float(rng.uniform(0.08, 0.35))
+    force = rng.normal(size=(1, 1, 3)) * 1e4 * np.array([1.0, 1.0, 3.0])
+    couple = rng.normal(size=(1, 1, 3)) * 1e4 * np.array([1.0, 1.0, 3.0]) * d
+    middle = Segment(shaft + 2.0 * rho, d, bore, name="shaft")
+    ends = {"connection": "A"}, {"connection": "B"}
+    kind = k % 4
+    if kind == 0:
+        ends = {"name": "root"}, {"connection": "B"}
+    elif kind == 2:
+        ends = {"name": "root"}, {"name": "tip"}
+    low, high = thick + rho + 0.7 * size, thick + rho + shaft - 0.7 * size
+    if kind >= 2:  # a band about the hole
+        middle = replace(middle, name=None, connection="C")
+    segments = (
+        Segment(thick, thick, bore, **ends[0]),
+        middle,
+        Segment(thick, thick, bore, **ends[1]),
     )
-    segments = (root, Segment(shaft + 2.0 * rho, d, bore, name="shaft"), end)
-    if k % 2:
-        segments = (Segment(thick, thick, bore, connection="A"), *segments[1:])
-    holes = _holes(rng, d, thick + rho, shaft, k)
-    pin = CutPin(Pin(f"cut {k}", segments, rho), holes)
-    size = 1e4 * np.array([1.0, 1.0, 3.0])
-    force = rng.normal(size=(1, 1, 3)) * size
-    couple = rng.normal(size=(1, 1, 3)) * size * d
-    if k % 2 == 0:
+    holes = _holes(rng, size, low, high, k)
+    pin = CutPin(Pin(f"cut {k} {KINDS[kind]}", segments, rho), holes)
+    if kind == 0:
         return CutTrial(pin, ("start",), PinLoads("case", ("B",), force, couple))
-    arm = pin.band("B").middle - pin.band("A").middle
-    x, y, _ = force[0, 0] * arm
-    other = -couple[0, 0] - np.array([-y, x, 0.0])
-    both = np.stack([-force[:, 0], force[:, 0]], axis=1)
-    return CutTrial(pin, (), PinLoads("case", ("A", "B"), both, np.stack([other, couple[0, 0]])))
+    if kind == 1:
+        arm = pin.band("B").middle - pin.band("A").middle
+        x, y, _ = force[0, 0] * arm
+        other = -couple[0, 0] - np.array([-y, x, 0.0])
+        both = np.stack([-force[:, 0], force[:, 0]], axis=1)
+        loads = PinLoads("case", ("A", "B"), both, np.stack([other, couple[0, 0]])[None])
+        return CutTrial(pin, (), loads)
+    across = force * np.array([1.0, 1.0, 0.0])
+    if kind == 2:
+        loads = PinLoads("case", ("C",), across, distribution="cosine")
+        return CutTrial(pin, ("start", "end"), loads)
+    three = np.concatenate([-0.5 * across, across, -0.5 * across], axis=1)
+    loads = PinLoads("case", ("A", "C", "B"), three, distribution="cosine")
+    return CutTrial(pin, (), loads)
 
 
 def _holes(
-    rng: np.random.Generator, d: float, start: float, shaft: float, k: int
+    rng: np.random.Generator, size: float, low: float, high: float, k: int
 ) -> tuple[Hole, ...]:
-    size = d * float(rng.uniform(0.08, 0.35))
     angle = float(rng.uniform(0.0, np.pi))
-    low, high = start + 0.7 * size, start + shaft - 0.7 * size
     z = float(rng.uniform(low, high))
     if k % 5 == 4 and high - z > 1.5 * size:
         return Hole(z, size, angle), Hole(z + 1.5 * size, size, angle + np.pi / 2.0)

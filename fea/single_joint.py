@@ -21,13 +21,13 @@ from fea.core.material import Material
 from fea.core.mesh_result import MeshResult
 from fea.core.pin_loads import Distribution, PinLoads
 from fea.core.voigt import von_mises
-from fea.harmonic.evaluate import harmonic_result, harmonic_solution
+from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
 from fea.joint.foundation.foundation_model import FoundationModel
 from fea.joint.lugs.fit import fitted, on_structure
 from fea.joint.lugs.lug import Lug
 from fea.joint.solve_joint import Cells, JointModel, edges_of
+from fea.refine import STEP, singularities_of
 from fea.singular.singularities import Singularity, outside
-from fea.solve_pin import STEP, singularities_of
 from geometry import Pin
 
 AS_USUAL = Cells()
@@ -90,7 +90,8 @@ def _harmonic(
     problem: JointProblem, pin: Pin, loads: PinLoads, level: int, before: tuple[MeshResult, ...]
 ) -> MeshResult:
     zones = problem.singularities
-    section = harmonic_solution(pin, problem.material, (), (loads,), zones, level, STEP, before)
+    posed = SectionProblem(pin, problem.material, (), (loads,), zones)
+    section = harmonic_solution(posed, level, STEP, before)
     return harmonic_result(section, zones, loads)
 
 

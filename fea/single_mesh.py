@@ -16,13 +16,12 @@ from fea.core.material import Material
 from fea.core.mesh_result import MeshResult
 from fea.core.pin_loads import PinLoads
 from fea.cut.evaluate import cut_result, cut_solution
-from fea.cut.local_fields import RATIO
-from fea.cut.region import pieces
-from fea.harmonic.evaluate import harmonic_result, harmonic_solution
+from fea.cut.region import loaded_bands, pieces
+from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
+from fea.refine import LOCAL, STEP, singularities_of
 from fea.singular.singularities import Singularity
 from fea.solid.evaluate import solid_solution
 from fea.solid.superposition import envelope
-from fea.solve_pin import LOCAL, STEP, singularities_of
 from geometry import ArgumentError, CutPin, Pin, PinLike
 from geometry.mesh.elements import Element
 from geometry.mesh.solid_mesh import MeshSize
@@ -75,9 +74,8 @@ def result_on(problem: Problem, rung: Rung, before: tuple[MeshResult, ...] = ())
     singularities = problem.singularities
     if rung.model == "beam":
         return BeamAnswer(pin, material, clamps, loads).result(singularities)
-    section = harmonic_solution(
-        pin, material, clamps, (loads,), singularities, rung.level, STEP, before
-    )
+    posed = SectionProblem(pin, material, clamps, (loads,), singularities)
+    section = harmonic_solution(posed, rung.level, STEP, before)
     return harmonic_result(section, singularities, loads)
 
 
@@ -86,9 +84,9 @@ def _local_result(problem: Problem, level: int, before: tuple[MeshResult, ...]) 
     if not isinstance(pin, CutPin):
         raise ArgumentError(f"pin {pin.name} has no holes", "no-cuts")
     found = singularities_of(pin.profile, material, clamps, (loads,), problem.distance)
-    cut = cut_solution(
-        pin.profile, pieces(pin, clamps), material, clamps, (loads,), found, level, RATIO, before
-    )
+    posed = SectionProblem(pin.profile, material, clamps, (loads,), found)
+    bands = loaded_bands(pin, loads.surfaces if clamps else pin.connections)
+    cut = cut_solution(posed, pieces(pin, clamps, bands=bands), level, before, bands)
     return cut_result(cut, found, loads)
 
 

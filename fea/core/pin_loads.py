@@ -27,14 +27,16 @@ from numpy.typing import NDArray
 from geometry import ArgumentError
 
 Floats = NDArray[np.float64]
-Kind = Literal["force", "moment", "pressure", "body"]
+Kind = Literal["force", "moment", "pressure", "body", "shift", "turn"]
 Distribution = Literal["uniform", "cosine"]
 
 BODY = ""  # the `surface` of a load on the whole pin
 
 
 class UnitLoad(NamedTuple):
-    """A load of one harmonic on a surface (by name): per N, N m, or (kind "body") m/s^2.
+    """A load of one harmonic on a surface (by name): per N, N m, or (kind "body") m/s^2; or (kinds
+    "shift" and "turn", as "force" and "moment") a rigid motion of a clamp, per m and rad about the
+    pin's origin.
 
     parts: instead, of a pressure on several surfaces, each with its amplitude, Pa.
     """
@@ -61,7 +63,7 @@ class UnitLoad(NamedTuple):
         """Which there are: two, but along the axis and for n = 0 pressure only 0, about it 1."""
         if self.n:
             return (0, 1)
-        return (1,) if self.kind == "moment" else (0,)
+        return (1,) if self.kind in ("moment", "turn") else (0,)
 
 
 class LugEdge(NamedTuple):

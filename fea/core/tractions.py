@@ -45,11 +45,11 @@ _NONE = np.zeros(3)
 
 
 def tractions_of(pin: PinLike, load: UnitLoad) -> tuple[Traction, ...]:
-    """The tractions of a unit load on bands; none of one on the whole pin."""
+    """The tractions of a unit load on bands; none of one on the whole pin, or of a clamp."""
     if load.parts:
         bands = [(pin.band(name), amplitude) for name, amplitude in load.parts]
         return tuple(Traction(b.name, b.middle, x * INWARDS, _NONE) for b, x in bands)
-    return () if load.kind == "body" else (traction(pin, load),)
+    return () if load.kind in ("body", "shift", "turn") else (traction(pin, load),)
 
 
 def traction(pin: PinLike, load: UnitLoad) -> Traction:

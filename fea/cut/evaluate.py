@@ -8,17 +8,17 @@ from functools import cached_property
 
 import numpy as np
 
-from fea.core.material import Material
 from fea.core.mesh_result import MeshResult
 from fea.core.pin_loads import AnyLoads, PinLoads
 from fea.core.solution import Picture
 from fea.core.voigt import ENTRIES, TENSOR
 from fea.cut.local_fields import RATIO, LocalFields, local_fields, mesh_of, section_points
-from fea.cut.region import zone
+from fea.cut.region import surface_ends, zone
+from fea.cut.supports import Reactions, Support, motions, reactions
 from fea.harmonic.evaluate import (
-    FirstMesh,
     HarmonicAnswer,
     HarmonicSolution,
+    SectionProblem,
     harmonic_result,
     harmonic_solution,
 )
@@ -27,7 +27,7 @@ from fea.harmonic.stress_recovery import NOWHERE
 from fea.singular.singularities import Singularity
 from fea.solid.nodal_loads import Unit
 from fea.solid.superposition import squares
-from geometry import Pin
+from geometry import CutPin
 from geometry.arrays import Floats, Ints, Mask
 from geometry.mesh.cut_piece import Piece
 from geometry.mesh.sizing import Grade
@@ -39,43 +39,55 @@ SECTORS = 48  # of the surface that is shown, away from the pieces
 
 @dataclass(frozen=True)
 class CutSolution:
-    """The uncut pin, whose stress where it is cut does not count, and the pieces about the cuts."""
+    """The uncut pin, whose stress where it is cut does not count, and the pieces about the cuts.
+    reactions: motions of redundant clamps that go with loads.
+    """
 
     section: HarmonicSolution
     pieces: tuple[LocalFields, ...]
+    reactions: Reactions
 
 
 def cut_solution(
-    pin: Pin,
+    problem: SectionProblem,
     pieces: Sequence[Piece],
-    material: Material,
-    clamps: tuple[str, ...],
-    cases: tuple[PinLoads, ...],
-    singularities: tuple[Singularity, ...],
     level: int,
-    ratio: float,
     before: Collection[MeshResult] = (),
-    first: FirstMesh | None = None,
+    bands: Sequence[tuple[float, float]] = (),
 ) -> CutSolution:
     """As fea.harmonic.evaluate.harmonic_solution, on mesh number `level` of section and pieces.
+    bands: loaded ones with holes in them (fea.cut.region.loaded_bands).
 
     Raises: MeshError, SolveError.
     """
+    material, clamps, cases = problem.material, problem.clamps, problem.cases
     high = [p for result in before for p in result.local_high]
-    models = [mesh_of(piece, material, clamps, level, high) for piece in pieces]
+    models = [mesh_of(piece, material, clamps, level, high, bands) for piece in pieces]
     points = [section_points(model) for model in models]
+    supports = _supports(problem)
+    moved = motions(supports)
     section = harmonic_solution(
-        pin, material, clamps, cases, singularities, level, ratio, before, first,
+        replace(problem, besides=tuple(dict.fromkeys(load for load, _ in moved))),
+        level, RATIO, before,
         np.concatenate([NOWHERE, *points]), [_fine(piece, level) for piece in pieces],
     )  # fmt: skip
     at = np.split(section.elsewhere, np.cumsum([len(p) for p in points])[:-1])
     units = _units(cases) or tuple((load, load.phases[0]) for load in section.fields.loads[:1])
+    units += moved
     found = tuple(
-        local_fields(model, section.fields, stress, units, singularities)
+        local_fields(model, section.fields, stress, units, problem.singularities)
         for model, stress in zip(models, at, strict=True)
     )
     fields = _without(section.fields, [zone(piece) for piece in pieces])
-    return CutSolution(replace(section, fields=fields, elsewhere=NOWHERE), found)
+    section = replace(section, fields=fields, elsewhere=NOWHERE)
+    return CutSolution(section, found, reactions(supports, found))
+
+
+def _supports(problem: SectionProblem) -> list[Support]:
+    """The clamps of a section in the order of z."""
+    cut = CutPin(problem.pin)
+    found = [Support(name, 0.5 * sum(surface_ends(cut, name))) for name in problem.clamps]
+    return sorted(found, key=lambda support: support.z)
 
 
 def _fine(piece: Piece, level: int) -> Grade:
@@ -129,12 +141,14 @@ class CutAnswer:
 
     def maxima(self, loads: AnyLoads, least: float = 0.0) -> Floats:
         """Largest von Mises stress (T,) Pa at every instant outside the singularities."""
+        loads = self.solution.reactions.held(loads)
         local = np.max([piece.largest(loads)[0] for piece in self.solution.pieces], axis=0)
         uncut = self.section.maxima(loads, max(least, float(local.min())))
         return np.asarray(np.maximum(local, uncut))
 
     def largest(self, loads: AnyLoads) -> tuple[float, int]:
         """The largest of these (Pa), and the number of its instant."""
+        loads = self.solution.reactions.held(loads)
         value, instant = self.section.largest(loads)
         for piece in self.solution.pieces:
             here, _ = piece.largest(loads)
@@ -160,7 +174,7 @@ class CutAnswer:
 
     def coefficients(self, loads: AnyLoads) -> Floats:
         """How much of each unit load of the surface acts at each instant, (T, L)."""
-        return self.solution.pieces[0].coefficients(loads)
+        return self.solution.pieces[0].coefficients(self.solution.reactions.held(loads))
 
     @cached_property
     def surface(self) -> CutSurface:
@@ -263,6 +277,9 @@ def cut_result(
     own: Collection[Singularity] | None = None,
 ) -> MeshResult:
     """Maximum outside the singularities, of the uncut pin away from its cuts and about these."""
+    held = solution.reactions.held(loads)
+    assert isinstance(held, PinLoads)
+    loads = held
     result = harmonic_result(solution.section, singularities, loads, own)
     high: list[tuple[float, float, float]] = []
     highest, whole = None, result.maximum

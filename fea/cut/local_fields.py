@@ -14,6 +14,7 @@ from fea.core.mesh_result import Point
 from fea.core.pin_loads import AnyLoads, require_solved
 from fea.core.voigt import ENTRIES, TENSOR
 from fea.cut.local_model import LocalModel, turned
+from fea.cut.lost_loads import bearings
 from fea.cut.region import zone
 from fea.harmonic.fields import MeridianFields
 from fea.singular.singularities import Singularity, outside
@@ -37,8 +38,9 @@ NEAR = 3  # points of the section between which displacements are interpolated
 class LocalFields:
     """On one mesh of a piece, in the pin's frame: points (P, 3) m of the surface, triangles (M, 3)
     of them, stress (P, 6, L) Pa of L unit loads, each in one phase; displacement (P, 3, L) m of the
-    uncut pin. read: (P,) where the
-    maximum is looked for. ended: (E, 6, L) what the cuts change of the stress where the piece ends.
+    uncut pin. read: (P,) where the maximum is looked for. ended: (E, 6, L) what the cuts change of
+    the stress where the piece ends; moved: (2, 6, L) by how much they move its ends, as a shift (m)
+    and a turn (rad) about the pin's origin.
     """
 
     piece: Piece
@@ -49,6 +51,7 @@ class LocalFields:
     displacement: Floats
     read: Mask
     ended: Floats
+    moved: Floats
     unknowns: int
 
     def coefficients(self, loads: AnyLoads) -> Floats:
@@ -56,15 +59,7 @@ class LocalFields:
 
         Raises: ArgumentError when there is no field for a part of the loads.
         """
-        acting, out = loads.coefficients(), np.zeros((len(loads), len(self.units)))
-        for load, amounts in acting.items():
-            least = ROUND_OFF * np.abs(amounts).max()
-            for phase in load.phases:
-                if (load, phase) in self.units:
-                    out[:, self.units.index((load, phase))] = amounts[:, phase]
-                elif np.abs(amounts[:, phase]).max() > least:
-                    require_solved(loads.case, (load,), ())
-        return out
+        return coefficients_of(loads, self.units)
 
     @cached_property
     def _squares(self) -> Callable[[Floats], Floats]:
@@ -106,6 +101,22 @@ class LocalFields:
         return tuple(_point(self.points[k]) for k in found)
 
 
+def coefficients_of(loads: AnyLoads, units: tuple[Unit, ...]) -> Floats:
+    """How much of each unit acts at each instant, (T, L).
+
+    Raises: ArgumentError when a part of the loads is not among them.
+    """
+    acting, out = loads.coefficients(), np.zeros((len(loads), len(units)))
+    for load, amounts in acting.items():
+        least = ROUND_OFF * np.abs(amounts).max()
+        for phase in load.phases:
+            if (load, phase) in units:
+                out[:, units.index((load, phase))] = amounts[:, phase]
+            elif np.abs(amounts[:, phase]).max() > least:
+                require_solved(loads.case, (load,), ())
+    return out
+
+
 def _point(x: Floats) -> Point:
     a, b, c = x.tolist()
     return a, b, c
@@ -125,10 +136,15 @@ def _unmirrored(piece: Piece, x: Floats) -> Floats:
 
 
 def mesh_of(
-    piece: Piece, material: Material, clamps: tuple[str, ...], level: int, high: Sequence[Point]
+    piece: Piece,
+    material: Material,
+    clamps: tuple[str, ...],
+    level: int,
+    high: Sequence[Point],
+    bands: Sequence[tuple[float, float]] = (),
 ) -> LocalModel:
     """Mesh number `level` of a piece, finer about points (m, in the pin's frame) where stress was
-    high on the meshes before.
+    high on the meshes before. bands: loaded ones of the pin, with holes in them.
 
     Raises: MeshError.
     """
@@ -137,7 +153,7 @@ def mesh_of(
     if here:
         spots = [_point(x) for x in _unmirrored(piece, np.array(here))]
     mesh = piece_mesh(piece, RATIO ** (level * ELSEWHERE), spots, RATIO**level)
-    return LocalModel(piece, mesh, material, _within(piece, clamps))
+    return LocalModel(piece, mesh, material, _within(piece, clamps), bearings(piece, bands))
 
 
 def _within(piece: Piece, clamps: tuple[str, ...]) -> tuple[str, ...]:
@@ -177,7 +193,8 @@ def local_fields(
     angle = np.arctan2(x[..., 1], x[..., 0])
     own = [fields.loads.index(load) for load, _ in units]
     stress = _cartesian(amplitude[..., own], angle, model.piece.angle, units)
-    read = model.solve(stress, np.abs(fields.stress[..., own]).max(axis=(0, 1)))
+    largest = np.abs(fields.stress[..., own]).max(axis=(0, 1))
+    read = model.solve(stress, largest, [load.shears for load, _ in units])
     points = read.points @ _turn(model.piece.angle).T + [0.0, 0.0, model.piece.origin]
     flat_r, flat_z = r.ravel(), z.ravel()
     ends = [
@@ -199,8 +216,18 @@ def local_fields(
         moved,
         outside(singularities, flat_r, flat_z),
         read.difference[at_end & ~read.cut],
+        _in_pin(read.moved, model.piece),
         model.unknowns,
     )
+
+
+def _in_pin(moved: Floats, piece: Piece) -> Floats:
+    """In the pin's frame, about its origin, rigid motions (2, 6, L) about that of a piece."""
+    turn = _turn(piece.angle)
+    shift, spin = (np.einsum("ab,ebl->eal", turn, x) for x in np.split(moved, 2, axis=1))
+    arm = np.array([0.0, 0.0, piece.origin])
+    shift = shift - np.cross(spin, arm[:, None], axisa=1, axisb=0, axisc=1)
+    return np.concatenate([shift, spin], axis=1)
 
 
 def _turn(angle: float) -> Floats:

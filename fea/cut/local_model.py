@@ -14,6 +14,7 @@ on one side of them is meshed, and factored once for each class that acts.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -24,6 +25,7 @@ import scipy.sparse as sp
 from fea.core.linear_solver import ConstrainedSystem, SolveError
 from fea.core.material import Material
 from fea.core.voigt import TENSOR
+from fea.cut.lost_loads import Bearing, trial_forces, trials
 from fea.cut.parity import AXES, Parities
 from fea.cut.surface_reading import Face, FaceReading, read_face
 from fea.solid.assembly import Discretisation
@@ -42,22 +44,33 @@ ENDS = ("start", "end")
 @dataclass(frozen=True)
 class Read:
     """At points (P, 3), m, of a piece, those of each image after the other: the stress of the cut
-    pin (P, 6, L), Pa, and by how much it is not that of the uncut one; which are on a cut.
+    pin (P, 6, L), Pa, and by how much it is not that of the uncut one; which are on a cut. moved:
+    (2, 6, L) by how much the piece's lower and upper ends move for the cuts, as a shift (m) and a
+    turn (rad) about the origin of its frame.
     """
 
     points: Floats
     stress: Floats
     difference: Floats
     cut: Mask
+    moved: Floats
 
 
 class LocalModel:
-    """A piece on one mesh. clamps: names of clamped surfaces of it."""
+    """A piece on one mesh. clamps: names of clamped surfaces of it. bearings: loaded bands with
+    cuts in them.
+    """
 
     def __init__(
-        self, piece: Piece, solid: SolidMesh, material: Material, clamps: tuple[str, ...] = ()
+        self,
+        piece: Piece,
+        solid: SolidMesh,
+        material: Material,
+        clamps: tuple[str, ...] = (),
+        bearings: tuple[Bearing, ...] = (),
     ) -> None:
         self.piece, self.material, self.clamps = piece, material, clamps
+        self.bearings = bearings
         self.space = Discretisation(solid.mesh)
         self.surface = surface(self.space)
         self.parities = Parities(piece.mirrors)
@@ -98,29 +111,56 @@ class LocalModel:
         """The points and their images, (G, P, 3)."""
         return np.asarray(self.parities.images[:, None] * self.points)
 
-    def solve(self, uncut: Floats, most: Floats | float = 0.0) -> Read:
+    def solve(self, uncut: Floats, most: Floats | float = 0.0, shears: Sequence[bool] = ()) -> Read:
         """Of the stress of the uncut pin at all images (G, P, 6, L), Pa, along x, y and z. most:
-        the largest anywhere in the pin, (L,).
+        the largest anywhere in the pin, (L,). shears: which loads shear the bands they act on, all
+        by default.
 
         Raises: SolveError.
         """
+        by_kind = np.ones(uncut.shape[3], dtype=bool)
+        by_kind[: len(shears)] = shears
         by_class = self.parities.split(uncut)
         largest = np.maximum(np.abs(by_class[:, self.cut]).max(axis=(0, 1, 2)), FELT * most)
         scale = np.where(largest > 0.0, largest, 1.0)
         difference = np.zeros_like(by_class)
+        moved = np.zeros((2, 6, uncut.shape[3]))
         forces = [self._forces(part / scale) for part in by_class]
         pressed = self._forces(_pressure(len(self.points)))
         most = max(float(np.linalg.norm(f)) for f in (pressed, *forces))
         whole = np.maximum(_size(pressed), np.sum([_size(f) for f in forces], axis=0))
         for c, parity in enumerate(self.parities.classes):
             if np.linalg.norm(forces[c]) > NO_CLASS * most:
-                u = self._displace(forces[c], parity, whole)
-                difference[c] = self._stress(u, by_class[c] / scale, c) * scale
+                more, spread = self._spread(by_class[c] / scale, parity, by_kind)
+                u = self._displace(forces[c] + more, parity, whole)
+                moved += self._moved(u, parity) * scale
+                difference[c] = self._stress(u, by_class[c] / scale, spread, c) * scale
         total = self._in_faces(by_class) + difference
         total[:, self.cut, 2:5] = 0.0
         whole, changed = (self._everywhere(x) for x in (total, difference))
         cut = np.tile(self.cut, len(by_class))
-        return Read(self.images.reshape(-1, 3), whole, changed, cut)
+        return Read(self.images.reshape(-1, 3), whole, changed, cut, moved)
+
+    def _moved(self, u: Floats, parity: tuple[int, ...]) -> Floats:
+        """The rigid motions (2, 6, L) of both ends by displacements (3 N, L) of a class. Of what
+        its mirror planes leave only those that belong to the class; about the origin.
+        """
+        out, boundaries = np.zeros((2, 6, u.shape[1])), self.space.mesh.boundaries
+        across = dict(zip(self.parities.mirrors, parity, strict=True))
+        around = Parities(tuple(m for m in across if m != "z"))
+        own = around.rigid(tuple(s for m, s in across.items() if m != "z"))
+        for e, name in enumerate(ENDS):
+            if name not in boundaries or (name == "start" and "z" in across):
+                continue
+            nodes = self.space.basis.get_dofs(boundaries[name]).flatten()
+            rows = (3 * nodes[:, None] + np.arange(3)).ravel()
+            modes = _rigid(self.space.nodes)[rows][:, own]
+            out[e, own] = np.linalg.lstsq(modes, u[rows])[0]
+        out[:, 3:] /= np.abs(self.space.nodes).max()
+        if "z" in across:  # u(M x) = parity M u(x): shifts but that along z, and the spin, as u
+            sign = across["z"] * np.array([1.0, 1.0, -1.0, -1.0, -1.0, 1.0])
+            out[0] = sign[:, None] * out[1]
+        return out
 
     def _everywhere(self, by_class: Floats) -> Floats:
         """Stress (C, P, 6, L) along the faces' directions along x, y, z at all images, (G P, 6,
@@ -144,8 +184,37 @@ class LocalModel:
         shift = first * np.arange(len(self.parities.images))
         return np.asarray((one + shift[:, None, None]).reshape(-1, 3))
 
-    def _forces(self, stress: Floats) -> Floats:
-        """Nodal forces (3 N, L) of the tractions that relieve cuts of a stress (P, 6, L)."""
+    def _spread(
+        self, stress: Floats, parity: tuple[int, ...], shears: Mask
+    ) -> tuple[Floats, Floats]:
+        """What of a class acted on bands where they are cut away, on the rest of them: nodal forces
+        (3 N, L), and tractions (P, 3, L) at the points.
+        """
+        forces = np.zeros((self.unknowns, stress.shape[2]))
+        at_points = np.zeros((len(self.points), 3, stress.shape[2]))
+        own = self.parities.rigid(parity)
+        modes = _rigid(self.space.nodes)[:, own]
+        for bearing in self.bearings if own.any() else ():
+            lost = modes.T @ self._forces(stress, bearing.cuts)
+            on = bearing.on(self.points, self.normals) & ~self.cut
+            for shear in (True, False):
+                here = np.flatnonzero(shears == shear)
+                trial = trial_forces(self.space, self.surface, bearing, shear)[:, own]
+                amount = -np.linalg.solve(modes.T @ trial, lost[:, here])
+                forces[:, here] += trial @ amount
+                t = trials(self.points[on], self.normals[on], shear)[..., own]
+                at_points[np.ix_(on, np.arange(3), here)] += t @ amount
+        return forces, at_points
+
+    @cached_property
+    def normals(self) -> Floats:
+        """At the points, outwards, (P, 3)."""
+        return np.concatenate([r.directions[:, 2] for r in self.readings])
+
+    def _forces(self, stress: Floats, only: tuple[str, ...] = ()) -> Floats:
+        """Nodal forces (3 N, L) of the tractions that relieve cuts, or some of them by name, of a
+        stress (P, 6, L).
+        """
         out = np.zeros((len(self.space.nodes), 3, stress.shape[2]))
         (x, y), weight = quadrature()
         shapes, _ = slopes_at(x, y)
@@ -153,7 +222,7 @@ class LocalModel:
         for r in self.readings:
             here = stress[first : first + len(r.nodes)]
             first += len(r.nodes)
-            if r.face.axis is None:
+            if r.face.axis is None or (only and r.face.name not in only):
                 continue
             corners = self.surface.corners[r.face.rows]
             area = area_vectors(self.space.nodes[corners], x, y)
@@ -225,9 +294,9 @@ class LocalModel:
         weight = there.repeat(3)[:, None] * modes
         return np.asarray(forces - weight @ np.linalg.solve(modes.T @ weight, modes.T @ forces))
 
-    def _stress(self, u: Floats, uncut: Floats, c: int) -> Floats:
+    def _stress(self, u: Floats, uncut: Floats, spread: Floats, c: int) -> Floats:
         """What a displacement (3 N, L) adds to the stress of the uncut pin (P, 6, L), along the
-        faces' directions.
+        faces' directions. spread: tractions (P, 3, L) that act besides.
         """
         E, nu, mu = self.material.youngs_modulus, self.material.poisson_ratio, self.material.lame[1]
         out, first = np.zeros((*uncut.shape[:2], u.shape[1])), 0
@@ -236,7 +305,8 @@ class LocalModel:
             here = slice(first, first + len(r.nodes))
             first += len(r.nodes)
             e = r.strain(u.reshape(-1, 3, u.shape[1]), self.parities, character)
-            normal = np.zeros_like(e[:, 0])
+            out[here, [4, 3, 2]] = np.einsum("pia,pal->pil", r.directions, spread[here])
+            normal = out[here, 2]
             if r.face.axis is not None:
                 normal = -turned(uncut[here], r.directions)[:, 2]
             plane = E / (1.0 - nu**2)

@@ -15,6 +15,7 @@ BEYOND = 1.4  # of the diameter, past a hole: in a shaft, ends there change stre
 LONGER = 1.6  # times that, where it is seen not to be enough, as in tubes
 NEXT = 1.0  # of the diameter: holes closer to each other are in one piece
 LEFT = 0.25  # of the diameter: less than that beyond a piece is part of it
+MARGIN = 0.1  # of a hole's diameter, at least to the end of a loaded band about it
 CLEAR = 0.1  # of the diameter, at least between the end of a piece and a step
 SAME_ANGLE = 1e-9
 
@@ -25,21 +26,32 @@ def refused(pin: CutPin, clamps: tuple[str, ...], loaded: Sequence[str]) -> Note
     """
     if pin.flats:
         return _solid("flats have inner corners where stress is unbounded", "flat")
-    if len(clamps) > 1:
-        return _solid(
-            "several clamps share its loads by its stiffness, which cuts change", "clamps"
-        )
     for name in (*clamps, *loaded):
         if name.startswith("hole "):
             return _solid(f"{name} carries load", "hole-loaded")
     for i, hole in enumerate(pin.holes, 1):
         low, high = _extent(hole)
         for name in dict.fromkeys((*loaded, *clamps)):
-            z0, z1 = _surface(pin, name)
-            if low < z1 and z0 < high:
-                what = "clamped" if name in clamps else "loaded"
-                return _solid(f"hole {i} lies in the {what} surface {name}", f"hole-in-{what}")
+            z0, z1 = surface_ends(pin, name)
+            if not (low < z1 and z0 < high):
+                continue
+            if name in clamps:
+                return _solid(f"hole {i} lies in the clamped surface {name}", "hole-in-clamped")
+            if not _well_inside(hole, z0, z1):
+                return _solid(f"hole {i} lies at an end of the band {name}", "hole-at-end")
     return None
+
+
+def _well_inside(hole: Hole, z0: float, z1: float) -> bool:
+    margin = MARGIN * hole.diameter
+    low, high = _extent(hole)
+    return low > z0 + margin and high < z1 - margin
+
+
+def loaded_bands(pin: CutPin, loaded: Sequence[str]) -> tuple[tuple[float, float], ...]:
+    """The z of both ends, m, of loaded bands (by name) with holes in them."""
+    found = (surface_ends(pin, name) for name in dict.fromkeys(loaded) if name in pin.connections)
+    return tuple((z0, z1) for z0, z1 in found if any(_well_inside(h, z0, z1) for h in pin.holes))
 
 
 def at_corner(pin: CutPin, singularities: Sequence[Singularity]) -> Note | None:
@@ -61,8 +73,8 @@ def _extent(hole: Hole) -> tuple[float, float]:
     return hole.z - hole.diameter / 2, hole.z + hole.diameter / 2
 
 
-def _surface(pin: CutPin, name: str) -> tuple[float, float]:
-    """z of both its ends, m; what is no band is somewhere on the pin."""
+def surface_ends(pin: CutPin, name: str) -> tuple[float, float]:
+    """z of both ends of a surface, m; what is no band is somewhere on the pin."""
     if name in ("start", "end"):
         z = 0.0 if name == "start" else pin.length
         return z, z
@@ -81,9 +93,14 @@ def zone(piece: Piece) -> tuple[float, float]:
     return low + piece.origin, high + piece.origin
 
 
-def pieces(pin: CutPin, clamps: tuple[str, ...], beyond: float = BEYOND) -> tuple[Piece, ...]:
+def pieces(
+    pin: CutPin,
+    clamps: tuple[str, ...],
+    beyond: float = BEYOND,
+    bands: Sequence[tuple[float, float]] = (),
+) -> tuple[Piece, ...]:
     """One about each hole, or about holes that are close to each other, along the pin; beyond: how
-    far past these, of the diameter.
+    far past these, of the diameter. bands: loaded ones with holes in them (loaded_bands).
     """
     holes = sorted(pin.holes, key=lambda hole: hole.z)
     groups = [[holes[0]]]
@@ -93,7 +110,7 @@ def pieces(pin: CutPin, clamps: tuple[str, ...], beyond: float = BEYOND) -> tupl
             groups[-1].append(hole)
         else:
             groups.append([hole])
-    return tuple(_piece(pin.profile, group, clamps, beyond) for group in groups)
+    return tuple(_piece(pin.profile, group, clamps, beyond, bands) for group in groups)
 
 
 def _diameter(pin: Pin, low: float, high: float) -> float:
@@ -102,7 +119,13 @@ def _diameter(pin: Pin, low: float, high: float) -> float:
     return max(max(s.diameters) for s, a, b in ends if b >= low and a <= high)
 
 
-def _piece(pin: Pin, holes: list[Hole], clamps: tuple[str, ...], beyond: float) -> Piece:
+def _piece(
+    pin: Pin,
+    holes: list[Hole],
+    clamps: tuple[str, ...],
+    beyond: float,
+    bands: Sequence[tuple[float, float]],
+) -> Piece:
     low, high = min(_extent(h)[0] for h in holes), max(_extent(h)[1] for h in holes)
     reach = beyond * _diameter(pin, low, high)
     reach = beyond * _diameter(pin, max(low - reach, 0.0), min(high + reach, pin.length))
@@ -112,8 +135,9 @@ def _piece(pin: Pin, holes: list[Hole], clamps: tuple[str, ...], beyond: float) 
     if all(abs(math.sin(2.0 * (hole.angle - angle))) < SAME_ANGLE for hole in holes):
         mirrors = ("x", "y")
     middle = 0.5 * (low + high)
-    clamped = any(z0 <= b and a <= z1 for a, b in (_surface(CutPin(pin), c) for c in clamps))
-    if not clamped and _even(pin, holes, z0, z1, middle):
+    clamped = any(z0 <= b and a <= z1 for a, b in (surface_ends(CutPin(pin), c) for c in clamps))
+    parted = any(a < high and low < b and not (a < low and high < b) for a, b in bands)
+    if not clamped and not parted and _even(pin, holes, z0, z1, middle):
         half = max(middle - z0, z1 - middle)
         z0, z1, mirrors = middle - half, middle + half, (*mirrors, "z")
     start = middle if "z" in mirrors else z0

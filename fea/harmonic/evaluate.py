@@ -65,27 +65,39 @@ class FirstMesh:
         return self._models[key]
 
 
+@dataclass(frozen=True)
+class SectionProblem:
+    """A body of revolution of a material, clamped at surfaces (by name), in some cases, with the
+    singularities of any of these. first: where the first mesh is kept for other loads. besides:
+    unit loads that are solved, too.
+    """
+
+    pin: Pin
+    material: Material
+    clamps: tuple[str, ...]
+    cases: tuple[PinLoads, ...]
+    singularities: tuple[Singularity, ...]
+    first: FirstMesh | None = None
+    besides: tuple[UnitLoad, ...] = ()
+
+
 def harmonic_solution(
-    pin: Pin,
-    material: Material,
-    clamps: tuple[str, ...],
-    cases: tuple[PinLoads, ...],
-    singularities: tuple[Singularity, ...],
+    problem: SectionProblem,
     level: int,
     ratio: float,
     before: Collection[MeshResult] = (),
-    first: FirstMesh | None = None,
     elsewhere: Floats = NOWHERE,
     grades: Sequence[Grade] = (),
 ) -> HarmonicSolution:
     """All unit loads of the cases on mesh number `level`, each `ratio` times finer than the one
     before, from which the mesh results `before` are: where these have high stresses, that is, and
-    elsewhere by the root of that; all over, without mesh results before. first: where the first
-    mesh is kept for other loads. elsewhere: points (P, 2), r and z in m, at which stress is read
-    too, but no maximum looked for; grades: how fine the mesh is there.
+    elsewhere by the root of that; all over, without mesh results before. elsewhere: points (P, 2),
+    r and z in m, at which stress is read too, but no maximum looked for; grades: how fine the mesh
+    is there.
 
     Raises: MeshError, SolveError.
     """
+    pin, cases, singularities = problem.pin, problem.cases, problem.singularities
     close = tuple(
         CLOSE[min(level, len(CLOSE) - 1) if _matters(k, before) else 0]
         for k in range(len(singularities))
@@ -101,17 +113,17 @@ def harmonic_solution(
 
     def solved(size: SectionSize, grades: list[Grade], quiet: tuple[int, ...]) -> MeridianFields:
         places, read = spots(factor), np.concatenate([elsewhere, _rims(pin, singularities)])
-        loads = _unit_loads(cases)
-        ends = _ends(pin, clamps, loads)
+        loads = _unit_loads(cases) + problem.besides
+        ends = _ends(pin, problem.clamps, loads)
 
         def model() -> HarmonicModel:
             section = meridian_mesh(pin, size, places, grades, quiet)
-            return HarmonicModel(pin, section, material, clamps)
+            return HarmonicModel(pin, section, problem.material, problem.clamps)
 
-        if level or first is None:
+        if level or problem.first is None:
             return model().solve(loads, read, ends)
         key = (size, tuple(places), tuple(grades), quiet, read.tobytes(), ends)
-        return first.model(model, *key).solve_more(loads, read, ends)
+        return problem.first.model(model, *key).solve_more(loads, read, ends)
 
     quiet = crowd(pin)
     if quiet:
@@ -120,7 +132,7 @@ def harmonic_solution(
             known[0] if known else quiet_corners(pin, solved(SIZE, [], quiet), cases, singularities)
         )
     fields, more = _apart(solved(SIZE.finer(factor), finer, quiet), len(elsewhere))
-    return HarmonicSolution(fields, close, material.poisson_ratio, quiet, more)
+    return HarmonicSolution(fields, close, problem.material.poisson_ratio, quiet, more)
 
 
 def _apart(fields: MeridianFields, count: int) -> tuple[MeridianFields, Floats]:

@@ -51,8 +51,8 @@ class HarmonicBody:
         """Forces on the unknowns (unknowns, K) of K sums of tractions of harmonic n."""
         return np.stack([_generalised(self.outline.forces(part, n)) for part in parts], axis=1)
 
-    def displace(self, n: int, forces: Floats) -> Floats:
-        """Unknowns (unknowns, K) of harmonic n under forces on them."""
+    def displace(self, n: int, forces: Floats, moved: Floats | None = None) -> Floats:
+        """Unknowns (unknowns, K) of harmonic n under forces on them, and motions of clamps."""
         fixed = np.concatenate([self._on_axis(n), self._constrained(n)])
         K = self.space.stiffness(self._materials, n)
         if n < 2:
@@ -61,7 +61,23 @@ class HarmonicBody:
         free[fixed] = 0.0
         if self._system is None:
             self._system = ConstrainedSystem(K)
-        return self._system.solve(K, free, forces)
+        if moved is None:
+            return self._system.solve(K, free, forces)
+        return self._system.solve(K, free, forces - K @ moved) + moved
+
+    def motions(self, n: int, surfaces: Sequence[str], turns: Sequence[bool]) -> Floats:
+        """Unknowns (unknowns, K) of harmonic n where clamps are shifted or turned by one; of no
+        surface ("") zero.
+        """
+        modes, out = rigid_motions(self.space.nodes, n), np.zeros((3 * len(self.space.nodes), 0))
+        for surface, turn in zip(surfaces, turns, strict=True):
+            mode = np.zeros(len(modes))
+            if surface:
+                nodes = np.unique(self.outline.nodes[self.outline.constrained((surface,))])
+                rows = (3 * nodes[:, None] + np.arange(3)).ravel()
+                mode[rows] = modes[rows, int(turn)] * (-1.0 if turn and n == 0 else 1.0)
+            out = np.column_stack([out, mode])
+        return out
 
     def _require_equilibrium(self, K: sp.csr_matrix, n: int) -> None:
         """A section that moves as a whole takes no force, so that whatever its displacements are,
@@ -157,7 +173,7 @@ class HarmonicModel(HarmonicBody):
             here = np.flatnonzero(harmonics == n)
             forces, tractions[..., here] = self._applied(n, [loads[k] for k in here])
             applied[:, :, here] = _polar(forces) * [[0.5], [0.5], [1.0]]
-            u[:, :, here] = _polar(self.displace(n, forces))
+            u[:, :, here] = _polar(self.displace(n, forces, self._moved(n, loads, here)))
         displacement, stress = read.of(harmonics, u, tractions)
         return MeridianFields(
             read.points,
@@ -170,6 +186,15 @@ class HarmonicModel(HarmonicBody):
             unread(read.jumps, read.points, read.skin),
             read.at_points(applied),
         )
+
+    def _moved(self, n: int, loads: tuple[UnitLoad, ...], here: Ints) -> Floats | None:
+        """Motions of clamps (unknowns, K); None where there are none."""
+        own = [loads[k] for k in here]
+        moves = [load.kind in ("shift", "turn") for load in own]
+        if not any(moves):
+            return None
+        names = [load.surface if move else "" for load, move in zip(own, moves, strict=True)]
+        return self.motions(n, names, [load.kind == "turn" for load in own])
 
     def _applied(self, n: int, loads: list[UnitLoad]) -> tuple[Floats, Floats]:
         """Nodal forces (unknowns, K) and tractions at the outline's nodes (E, 3, 3, K)."""

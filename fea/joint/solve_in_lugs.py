@@ -24,7 +24,7 @@ from fea.core.material import Material
 from fea.core.over_time import Between, knots
 from fea.core.peak import Note, Peak, decides
 from fea.core.pin_loads import Floats, PinLoads
-from fea.harmonic.evaluate import HarmonicAnswer, harmonic_solution
+from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
 from fea.joint.cell_pressure import CellPressure
 from fea.joint.contact import Pressed
 from fea.joint.lugs.lug import Lug
@@ -180,9 +180,8 @@ class _Contact:
         model, out = self.model, {}
         own = [singularities_of(model.pin, model.material, (), (x,), asked.distance) for x in loads]
         both = tuple(dict.fromkeys(zone for zones in own for zone in zones))
-        section = harmonic_solution(
-            model.pin, model.material, (), tuple(loads), both, 0, 1.0, (), model.first
-        )
+        problem = SectionProblem(model.pin, model.material, (), tuple(loads), both, model.first)
+        section = harmonic_solution(problem, 0, 1.0)
         for x, zones in zip(loads, own, strict=True):
             answer = HarmonicAnswer(section, zones)
             largest, instant = answer.largest(x)

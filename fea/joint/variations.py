@@ -17,7 +17,12 @@ from fea.asked import Asked, decided
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.harmonic.evaluate import HarmonicAnswer, harmonic_result, harmonic_solution
+from fea.harmonic.evaluate import (
+    HarmonicAnswer,
+    SectionProblem,
+    harmonic_result,
+    harmonic_solution,
+)
 from fea.joint.coarser_cells import on_coarser_cells
 from fea.joint.contact import ContactProblem
 from fea.joint.lugs.changes import changes
@@ -87,9 +92,8 @@ def compare(
     ]
     loads = stacked(list(itertools.chain(*each)))
     singular = singularities_of(model.pin, model.material, (), (loads,), asked.distance)
-    section = harmonic_solution(
-        model.pin, model.material, (), (loads,), singular, 0, 1.0, (), model.first
-    )
+    problem = SectionProblem(model.pin, model.material, (), (loads,), singular, model.first)
+    section = harmonic_solution(problem, 0, 1.0)
     maxima, out = HarmonicAnswer(section, singular).maxima(loads), []
     for contact, names, own, why in zip(at, over, each, missing, strict=True):
         first = float(maxima[0]) or 1.0  # nothing loads the pin

@@ -52,7 +52,7 @@ def find_facets(made: Quadratic, triangles: Ints) -> Ints:
     its boundary.
     """
     mesh, boundary = made.mesh, made.mesh.boundary_facets()
-    n = mesh.nvertices + 1
+    n = int(mesh.nvertices) + 1  # of 64 bits, for its square
     weigh = np.array([n * n, n, 1])
     key = np.sort(mesh.facets[:, boundary].T, axis=1) @ weigh
     found: Ints = boundary[np.isin(key, np.sort(made.vertex[triangles], axis=1) @ weigh)]

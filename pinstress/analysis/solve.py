@@ -15,7 +15,8 @@ from fea.joint.foundation.solve_on_foundations import solve_joints
 from fea.joint.foundation.variations import prescribed_ranges
 from fea.joint.records import JointResult
 from fea.joint.solve_in_lugs import InLugs, LugSolution
-from fea.solve_pin import MOST_UNKNOWNS, Asked, Solution, solve_pin
+from fea.refine import MOST_UNKNOWNS
+from fea.solve_pin import Asked, Solution, solve_pin
 from geometry import Pin
 from pinstress.analysis import checks, gather, gather_fields
 from pinstress.analysis.gather_surface import surfaces_of

@@ -13,7 +13,8 @@ from fea.core.peak import Peak
 from fea.fatigue.records import PointHistory
 from fea.joint.records import JointResult
 from fea.plastic.records import LimitLoad
-from fea.solve_pin import MESHES, MOST_UNKNOWNS, count_loads, unknowns_after
+from fea.refine import MESHES, MOST_UNKNOWNS
+from fea.solve_pin import count_loads, unknowns_after
 from geometry import CutPin, Pin, PinLike
 from loads import read_regular
 from pinstress.analysis.limits import limit_rung

@@ -10,10 +10,11 @@ from dataclasses import dataclass, replace
 from fea.core.peak import Peak
 from fea.joint.pressure_loads import PressureLoads
 from fea.joint.solve_in_lugs import InLugs, solve_in_lugs
+from fea.refine import LOCAL
 from fea.single_joint import JointProblem, JointRung
 from fea.single_limit import LimitProblem
 from fea.single_mesh import Problem, Rung
-from fea.solve_pin import LOCAL, Asked, Solution, solve_pin
+from fea.solve_pin import Asked, Solution, solve_pin
 from fea.verdict import Seen
 from geometry import Pin
 from geometry.mesh.elements import Element

@@ -7,9 +7,10 @@ from dataclasses import dataclass, field, replace
 
 from fea.core.linear_solver import SolveError
 from fea.core.mesh_result import MeshResult
+from fea.refine import LOCAL, MESHES, MOST_UNKNOWNS, STEP
 from fea.single_joint import JointProblem, JointRung
 from fea.single_mesh import Problem, Rung
-from fea.solve_pin import LOCAL, MESHES, MOST_UNKNOWNS, STEP, Asked, enough, ratio_of
+from fea.solve_pin import Asked, enough, ratio_of
 from fea.verdict import Seen
 from geometry import Pin
 from geometry.mesh.elements import Element

@@ -10,11 +10,12 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.harmonic.assembly import Section
 from fea.harmonic.boundary import Outline
-from fea.harmonic.evaluate import harmonic_result, harmonic_solution
+from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
 from fea.harmonic.model import HarmonicModel
 from fea.harmonic.pressure_edge import DIRECTIONS, jumps
 from fea.harmonic.superposition import Circumference
-from fea.solve_pin import STEP, Asked, solve_pin
+from fea.refine import STEP
+from fea.solve_pin import Asked, solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.section_mesh import meridian_mesh
 from geometry.mesh.sizing import SectionSize, Spot
@@ -72,7 +73,11 @@ def test_the_maximum_at_a_jump_is_that_of_far_finer_elements_near_it(steel: Mate
     come near that from below.
     """
     results = [
-        harmonic_result(harmonic_solution(PIN, steel, (), (SHEARED,), (), level, STEP), (), SHEARED)
+        harmonic_result(
+            harmonic_solution(SectionProblem(PIN, steel, (), (SHEARED,), ()), level, STEP),
+            (),
+            SHEARED,
+        )
         for level in range(3)
     ]
     units = tuple(SHEARED.coefficients())
@@ -105,7 +110,9 @@ def test_a_fillets_peak_beside_the_edge_of_a_pressure_is_read(steel: Material) -
     case = PinLoads("push", ("narrow",), np.array([[[500.0, 0.0, 0.0]]]), distribution="cosine")
     coarse, fine = (
         harmonic_result(
-            harmonic_solution(pin, steel, ("start",), (case,), (), level, STEP), (), case
+            harmonic_solution(SectionProblem(pin, steel, ("start",), (case,), ()), level, STEP),
+            (),
+            case,
         )
         for level in (0, 5)
     )

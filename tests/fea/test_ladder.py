@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fea import solve_pin as ladder
+from fea import refine as ladder
 from fea.core.material import Material
 from fea.core.memory import solid_memory
 from fea.core.pin_loads import PinLoads

@@ -12,9 +12,10 @@ from fea.core.material import Material
 from fea.core.memory import section_memory
 from fea.core.mesh_result import MeshResult
 from fea.core.pin_loads import PinLoads
-from fea.harmonic.evaluate import harmonic_result, harmonic_solution
+from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
 from fea.harmonic.quiet_corners import CROWD, crowd
-from fea.solve_pin import STEP, Asked, count_loads, singularities_of, solve_pin
+from fea.refine import STEP
+from fea.solve_pin import Asked, count_loads, singularities_of, solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.section_mesh import meridian_mesh
 from geometry.mesh.sizing import SectionSize, largest, stretches, triangles
@@ -104,7 +105,10 @@ def test_quiet_fillets_stay_coarse_and_the_others_do_not(steel: Material) -> Non
     results: tuple[MeshResult, ...] = ()
     for level in range(2):
         solution = harmonic_solution(
-            pin, steel, ("start",), (loads,), singularities, level, STEP, results[-1:]
+            SectionProblem(pin, steel, ("start",), (loads,), singularities),
+            level,
+            STEP,
+            results[-1:],
         )
         results += (harmonic_result(solution, singularities, loads),)
     first, second = results

@@ -1,0 +1,119 @@
+"""Redundant supports of a pin with cuts: by how much what cuts change of its compliance changes
+their reactions.
+
+The local solid about a cut is free at its ends, which its cut moves rigidly against each other
+(fea.cut.local_model). Between two clamps nothing may move: the clamp beyond is moved back as much.
+So the uncut pin has unit loads more, rigid motions of all its clamps but the first, the cuts answer
+these like any others, and the motions that close all gaps are in proportion to the other loads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from fea.core.linear_solver import SolveError
+from fea.core.pin_loads import Amounts, AnyLoads, PinLoads, UnitLoad
+from fea.cut.local_fields import LocalFields, coefficients_of
+from fea.solid.nodal_loads import Unit
+from geometry.arrays import Floats
+
+LARGEST = 1e8  # condition of the gaps' equations
+
+
+@dataclass(frozen=True)
+class Support:
+    """A clamped surface by its name, and z (m) of its middle."""
+
+    name: str
+    z: float
+
+
+@dataclass(frozen=True)
+class HeldLoads(PinLoads):
+    """Loads with the motions of clamps that go with them, among `acting` (T, 2) by unit load."""
+
+    acting: dict[UnitLoad, Floats] = field(default_factory=dict)
+
+    def coefficients(self) -> dict[UnitLoad, Floats]:
+        """How much of each unit load acts, (T, 2) by phase."""
+        return self.acting
+
+
+def motions(supports: Sequence[Support]) -> tuple[Unit, ...]:
+    """Rigid motions of all clamps but the first: along x, y, z, about x (backwards), y, z."""
+    out: list[Unit] = []
+    for s in supports[1:]:
+        shift, turn = UnitLoad(s.name, "shift", 1), UnitLoad(s.name, "turn", 1)
+        along, about = UnitLoad(s.name, "shift", 0), UnitLoad(s.name, "turn", 0)
+        out += [(shift, 0), (shift, 1), (along, 0), (turn, 1), (turn, 0), (about, 1)]
+    return tuple(out)
+
+
+BACKWARDS = np.array([1.0, 1.0, 1.0, -1.0, 1.0, 1.0])  # of these motions, the sign
+
+
+@dataclass(frozen=True)
+class Reactions:
+    """motions: of clamps, as unit loads; amounts: (M, L) of them per unit of each of the units of
+    loads.
+    """
+
+    units: tuple[Unit, ...]
+    motions: tuple[Unit, ...]
+    amounts: Floats
+
+    def held(self, loads: AnyLoads) -> AnyLoads:
+        """Loads with the motions that go with them."""
+        if not self.motions:
+            return loads
+        q = coefficients_of(loads, self.units) @ self.amounts.T
+        acting = dict(loads.coefficients())
+        for (unit, phase), amount in zip(self.motions, q.T, strict=True):
+            both = acting.setdefault(unit, np.zeros((len(loads), 2)))
+            both[:, phase] += amount
+        if isinstance(loads, Amounts):
+            return Amounts(loads.case, acting, len(loads))
+        return HeldLoads(
+            loads.case, loads.surfaces, loads.forces, loads.moments, loads.distribution,
+            loads.body, loads.terms, loads.times, loads.lug_edges, acting,
+        )  # fmt: skip
+
+
+def reactions(supports: Sequence[Support], pieces: Sequence[LocalFields]) -> Reactions:
+    """Of pieces under all units, the motions of clamps among them last.
+
+    Raises: SolveError where the gaps cannot be closed.
+    """
+    units, moved = pieces[0].units, motions(supports)
+    first = len(units) - len(moved)
+    if not moved:
+        return Reactions(units, (), np.zeros((0, first)))
+    reached = [_reached(s, pieces) for s in supports]
+    gap = np.concatenate([BACKWARDS[:, None] * (x - reached[0]) for x in reached[1:]])
+    system = np.eye(len(moved)) + gap[:, first:]
+    scale = np.tile(
+        np.repeat([1.0, pieces[0].piece.profile.largest_diameter], 3), len(supports) - 1
+    )
+    if not np.linalg.cond(system * scale[:, None] / scale) < LARGEST:
+        raise SolveError(
+            f"pin {pieces[0].piece.profile.name}: the reactions of its clamps cannot be found from "
+            "local solids",
+            "reactions-unknown",
+        )
+    return Reactions(units[:first], moved, -np.linalg.solve(system, gap[:, :first]))
+
+
+def _reached(support: Support, pieces: Sequence[LocalFields]) -> Floats:
+    """The rigid motion of the place of a clamp against the pin's start by all cuts before it,
+    (6, L): a shift and a turn about the pin's origin.
+    """
+    out = np.zeros((6, len(pieces[0].units)))
+    for p in pieces:
+        if support.z > p.piece.z1:
+            out += p.moved[1] - p.moved[0]
+        elif support.z > p.piece.z0:  # in the piece, where it is clamped
+            out -= p.moved[0]
+    return out
