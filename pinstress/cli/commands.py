@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from pinstress.cli.designs.commands import sweep
 from pinstress.cli.more_commands import (
     compare_runs,
     completion,
@@ -334,5 +335,5 @@ def check(study: Path) -> int:
     return NOT_REACHED if unheld else REACHED
 
 
-for _command in (compare_runs, import_, init, pdf_of, plots, schema, size, view, completion):
+for _command in (compare_runs, import_, init, pdf_of, plots, schema, size, sweep, view, completion):
     commands.add_command(_command)

@@ -94,9 +94,7 @@ def solved(
     """
     require_count("jobs", jobs)
     empty = table_of(sweep.study, sweep.parameters, [])
-    done = {
-        i - 1 for part in store.read(empty.schema) for i in part["design"].unique().to_pylist()
-    }
+    done = {i - 1 for part in store.read(empty.schema) for i in part["design"].unique().to_pylist()}
     total, count = len(sweep.values), len(done)
     report(count, total)
 

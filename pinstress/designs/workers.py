@@ -187,8 +187,8 @@ def _short(error: BaseException) -> str:
 @contextmanager
 def _silent() -> Iterator[None]:
     """Without what dask logs of connections that end."""
-    names = ("distributed", "distributed.worker", "distributed.nanny", "distributed.scheduler",
-             "distributed.core", "distributed.comm", "distributed.client", "tornado", "asyncio")  # fmt: skip
+    parts = "worker", "nanny", "scheduler", "core", "comm", "client"
+    names = ("distributed", *(f"distributed.{part}" for part in parts), "tornado", "asyncio")
     found = [logging.getLogger(name) for name in names]
     before = [each.level for each in found]
     for each in found:
