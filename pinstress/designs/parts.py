@@ -78,6 +78,11 @@ class Parts:
                 path.unlink(missing_ok=True)
         return found
 
+    @property
+    def count(self) -> int:
+        """How many batches there are."""
+        return len(list(self.folder.glob(f"*{SUFFIX}")))
+
     def remove(self) -> None:
         """Remove the files and the folder, when the whole table is written."""
         for path in (*self.folder.glob(f"*{SUFFIX}*"), *self.folder.glob(f"{STATED}*")):

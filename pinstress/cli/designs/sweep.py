@@ -22,6 +22,7 @@ from pinstress.designs.sweep import Report, planned, solved
 from pinstress.designs.table import write_table
 from pinstress.processes import interrupts
 from pinstress.processes.folder_lock import Release, lock
+from pinstress.processes.interrupts import Unfinished
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study
 
@@ -58,8 +59,9 @@ def sweep_and_write(
         try:
             with progress(way.quiet) as report:
                 table = solved(sweep, parts, way.jobs, way.scheduler, report)
-        except KeyboardInterrupt:
-            _tell_unfinished(study, directory, parts)
+        except BaseException as error:
+            if isinstance(error, KeyboardInterrupt) or interrupts.came():
+                raise Unfinished(_kept(study, directory, parts)) from None
             raise
         _write(directory, table)
         parts.remove()
@@ -129,13 +131,10 @@ def _claimed(directory: Path, parts: Parts, resume: bool) -> Iterator[None]:
             release()
 
 
-def _tell_unfinished(study: Study, directory: Path, parts: Parts) -> None:
-    with interrupts.deferred():
-        kept = len(list(parts.folder.glob("*.parquet")))
-    click.echo(
-        f"{kept:,} batches are kept; go on with: pinstress sweep {study.path} --out {directory} "
-        "--resume",
-        err=True,
+def _kept(study: Study, directory: Path, parts: Parts) -> str:
+    return (
+        f"{parts.count} batches are kept. Go on with: pinstress sweep {study.path} --out "
+        f"{directory} --resume"
     )
 
 
