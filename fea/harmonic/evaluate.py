@@ -52,7 +52,7 @@ class HarmonicSolution:
 
 
 Key = tuple[object, ...]
-# Unit loads, points (P, 2) to read stress at, and ends of pressures, as HarmonicModel.solve has them.
+# Unit loads, points (P, 2) to read stress at, and ends of pressures, as of HarmonicModel.solve.
 UnitFields = tuple[tuple[UnitLoad, ...], Floats, tuple[tuple[float, float], ...]]
 
 

@@ -84,8 +84,8 @@ class Recent(Generic[K, V]):
 
 class Evaluator:
     """A study whose numbers change. pins, cases: names; all by default. parameters: in the order of
-    the values of `rows`. table: the (pin, case) of a design's rows, in their order. meshes: what was
-    solved of pins that are not in contact.
+    the values of `rows`. table: the (pin, case) of a design's rows, in their order. meshes: what
+    was solved of pins that are not in contact.
 
     Raises: InputError where the study as it is cannot be run.
     """
