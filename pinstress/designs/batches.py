@@ -28,7 +28,7 @@ Rows = list[list[DesignRow]]
 
 
 @dataclass(frozen=True)
-class Problem:
+class DesignProblem:
     """All that a process needs to solve designs of a study, as text: small, and the same for all
     versions of the libraries between.
     """
@@ -47,7 +47,7 @@ class Problem:
         numbers: Sequence[Number],
         pins: Sequence[str] | None = None,
         cases: Sequence[str] | None = None,
-    ) -> Problem:
+    ) -> DesignProblem:
         """The problem of a study, whose files are named by absolute paths."""
         names = [None if x is None else tuple(x) for x in (pins, cases)]
         return cls(study.path.absolute(), study.text, study.located, tuple(numbers), *names)
@@ -78,7 +78,7 @@ class Done:
     seconds: float
 
 
-def solve_batch(problem: Problem, batch: Batch) -> Done:
+def solve_batch(problem: DesignProblem, batch: Batch) -> Done:
     """Solve the designs of a batch, with one thread in each numeric library."""
     from threadpoolctl import threadpool_limits
 
@@ -90,7 +90,7 @@ def solve_batch(problem: Problem, batch: Batch) -> Done:
 
 
 @lru_cache(1)
-def evaluator_of(problem: Problem) -> Evaluator:
+def evaluator_of(problem: DesignProblem) -> Evaluator:
     """One in a process, which remembers what it solved."""
     study = parse_study(problem.path, problem.text, problem.located)
     return Evaluator(study, problem.numbers, problem.pins, problem.cases)
