@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Protocol
 
-from pinstress.designs.batches import Batches, Done, DesignProblem, evaluator_of
+from pinstress.designs.batches import Batches, DesignProblem, Done, evaluator_of
 from pinstress.designs.correlations import correlations_of
 from pinstress.designs.laws import Floats
 from pinstress.designs.parameters import Parameter, parameters_of

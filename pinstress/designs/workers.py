@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from pinstress.designs.batches import Batch, Batches, Done, DesignProblem, solve_batch
+from pinstress.designs.batches import Batch, Batches, DesignProblem, Done, solve_batch
 from pinstress.designs.evaluate import DesignRow
 from pinstress.processes.threads import hold_threads
 from pinstress.study.errors import InputError
