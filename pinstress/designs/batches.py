@@ -7,6 +7,8 @@ their pins are meshed once.
 
 from __future__ import annotations
 
+import math
+import threading
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -23,6 +25,8 @@ from pinstress.study.file import Study, parse_study
 AIM = 2.0  # s of work in a batch
 MOST = 1000  # designs in a batch
 UNSHAPED = ("yield_strength", "ultimate_strength", "shear_strength", "bearing_strength")
+
+_ONE_AT_A_TIME = threading.Lock()  # workers of a user's cluster may have several threads
 
 Rows = list[list[DesignRow]]
 
@@ -83,7 +87,7 @@ def solve_batch(problem: DesignProblem, batch: Batch) -> Done:
     from threadpoolctl import threadpool_limits
 
     start = time.perf_counter()
-    with threadpool_limits(1):
+    with _ONE_AT_A_TIME, threadpool_limits(1):
         evaluator = evaluator_of(problem)
         rows = [evaluator.rows(values) for values in batch.values]
     return Done(batch, rows, time.perf_counter() - start)
@@ -146,7 +150,7 @@ class Batches:
         """
         size = 1
         if self.each is not None:
-            size = min(int(AIM / max(self.each, 1e-9)) + 1, MOST)
+            size = min(math.ceil(AIM / max(self.each, 1e-9)), MOST)
             size = max(1, min(size, -(-len(self._left) // (2 * self._at_once))))
         taken = [self._left.pop() for _ in range(min(size, len(self._left)))]
         rows = tuple(tuple(float(x) for x in self._values[i]) for i in taken)
