@@ -37,6 +37,7 @@ from benchmarks import (
     shapes,
     shoulders,
     speed,
+    sweep,
     tension,
 )
 from benchmarks.record import record
@@ -73,6 +74,7 @@ TIMES = {
     "shapes": shapes.shapes,
     "models": models.models,
     "shoulders": shoulders.shoulders,
+    "sweep": sweep.sweep,
     "calculix": calculix.calculix,
     "ngsolve": ngsolve_peer.ngsolve,
     "peers-motion": peers_motion.peers_motion,

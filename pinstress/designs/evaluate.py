@@ -136,7 +136,7 @@ class Evaluator:
 
     def _moves(self, number: Number) -> bool:
         """Whether loads depend on a number: those of the mechanism and the cases, and what gives
-        mass to the pins that nothing holds.
+        mass to floating pins.
         """
         table, *inner = number.path
         if table not in WITHOUT_LOADS:

@@ -90,7 +90,7 @@ def processes_of(client: Client) -> int:
 
 @contextmanager
 def local(jobs: int) -> Iterator[Client]:
-    """A cluster of so many processes on this machine, which end with the block."""
+    """A cluster of `jobs` processes on this machine, which end with the block."""
     import dask
     from distributed import Client, LocalCluster
 
