@@ -58,9 +58,18 @@ class Designs:
     texts: dict[str, Column]  # by the names in ROW
 
     @property
+    def failed_rows(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
+        """Which rows have no maximum, and a reason for it."""
+        lacking = np.isfinite(self.texts["reason"].values)
+        for column in self.results:
+            if column.key == "max_von_mises":
+                lacking &= ~np.isfinite(column.values)
+        return lacking
+
+    @property
     def failed(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
-        """Which designs (D,) have a row with a reason why it has no result."""
-        rows = np.isfinite(self.texts["reason"].values)
+        """Which designs (D,) have such a row."""
+        rows = self.failed_rows
         return np.logical_or.reduceat(rows, self.first[:-1]) if len(rows) else rows
 
 
@@ -82,7 +91,7 @@ def designs_of(table: pa.Table) -> Designs:
         if name != "design"
     }
     return Designs(
-        study=str(told.get("study", "")),
+        study=str(told.get("title") or told.get("study", "")),
         required=told.get("required_safety_factor"),
         numbers=numbers.astype(np.int64),
         first=ends,

@@ -34,7 +34,6 @@ def render_designs(designs: Designs) -> str:
     return template.render(
         study=designs.study,
         summary=summary(designs),
-        moved=[*designs.parameters, *designs.results],
         columns=column_grid(designs),
         reasons=reason_grid(designs),
         meaning={k: MEANING[k] for k in _verdicts(designs)},
@@ -103,12 +102,12 @@ def reason_grid(designs: Designs) -> Grid:
     reason, code = designs.texts["reason"], designs.texts["code"]
     counts: Counter[str] = Counter()
     example: dict[str, str] = {}
-    for why, of in zip(reason.values, code.values, strict=True):
-        if np.isfinite(why):
-            text = (reason.names or ())[int(why)]
-            name = (code.names or ())[int(of)] if np.isfinite(of) else text
-            counts[name] += 1
-            example.setdefault(name, text)
+    rows = designs.failed_rows
+    for why, of in zip(reason.values[rows], code.values[rows], strict=True):
+        text = (reason.names or ())[int(why)]
+        name = (code.names or ())[int(of)] if np.isfinite(of) else text
+        counts[name] += 1
+        example.setdefault(name, text)
     body = [[f"{n:,}", example[name]] for name, n in counts.most_common(MOST_REASONS)]
     if len(counts) > MOST_REASONS:
         rest = sum(counts.values()) - sum(n for _, n in counts.most_common(MOST_REASONS))

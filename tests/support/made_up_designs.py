@@ -30,16 +30,11 @@ def made_up_designs(
     keys = [f"pin.B.profile[{k + 1}].diameter" for k in range(parameters)]
     values = random.uniform(10.0, 30.0, (count, parameters))
     failed = random.random(count) < failing
-    each = [
-        _row(d, values[d], pin, case, random)
-        for d in range(count)
-        for pin, case in (rows if not failed[d] else rows[:1])
-    ]
-    blank = {"pin": None, "case": None, "reason": FAILING[0], "code": FAILING[1]}
+    each = [_row(d, values[d], pin, case, random) for d in range(count) for pin, case in rows]
     for row in each:
-        row |= blank if failed[row["design"] - 1] else {}
-        if row["reason"]:
-            row |= dict.fromkeys(RESULTS)
+        if failed[row["design"] - 1]:
+            row |= dict.fromkeys(RESULTS) | {"reason": FAILING[0], "code": FAILING[1]}
+            row["verdict"] = "failed"
         row |= dict(zip(keys, values[row["design"] - 1].tolist(), strict=True))
     laws = {key: {"unit": "mm", "law": "uniform 10 to 30"} for key in keys}
     return table_of(each, keys, laws, study)
@@ -51,6 +46,7 @@ UNITS = {"max_von_mises": "MPa", "error_estimate": "MPa", "governing_time": "s",
 
 def _row(d: int, values: Floats, pin: str, case: str, random: Any) -> dict[str, Any]:
     rest = 1.0 + 0.02 * float(np.sin(values[1:]).sum()) + 0.1 * random.random()
+    verdict = ("converged", "converged", "unconverged", "singular")[random.integers(4)]
     stress = 1.5e6 * rest / float(values[0]) ** 3 * (1.0 if pin == "B" else 0.8)
     return {
         "design": d + 1,
@@ -59,11 +55,11 @@ def _row(d: int, values: Floats, pin: str, case: str, random: Any) -> dict[str, 
         "max_von_mises": stress,
         "error_estimate": 0.01 * stress,
         "safety_factor": YIELD / stress,
-        "verdict": ("converged", "converged", "unconverged", "singular")[random.integers(4)],
+        "verdict": verdict,
         "governing_time": float(random.integers(5)),
         "mass": 1e-3 * float((values**2).sum()),
-        "reason": None,
-        "code": None,
+        "reason": "" if verdict == "converged" else "made up",
+        "code": "" if verdict == "converged" else verdict,
     }
 
 

@@ -46,7 +46,7 @@ const linesOf = (host, model, on) => {
     for (let i = 0; i < out.length; i++) {
       const v = counts[i];
       if (!v) { out[i] = every[i] ? grey : empty; continue; }
-      const n = Math.floor(v / SHARE), w = rest[i], g = Math.floor(w / SHARE), s = strength[n < 4095 ? n : 4095], t = s / n, u = 1 - s;
+      const n = (v / SHARE) | 0, w = rest[i], g = (w / SHARE) | 0, s = strength[n < 4095 ? n : 4095], t = s / n, u = 1 - s;
       const under = every[i] ? look.faint : look.paper;
       out[i] = (255 << 24) | ((u * under[2] + t * (w - g * SHARE)) << 16) | ((u * under[1] + t * g) << 8) | (u * under[0] + t * (v - n * SHARE));
     }
@@ -104,8 +104,8 @@ const linesOf = (host, model, on) => {
     svg.setAttribute("height", tall);
     names.style.width = `${wide}px`;
     names.replaceChildren(...axes.map((c, k) => {
-      const name = document.createElement("div"), { title, unit } = model.columns[c];
-      name.textContent = unit ? `${title} [${unit}]` : title;
+      const name = document.createElement("div");
+      name.textContent = titled(model.columns[c]).replace(/([.\]_])(?=\w)/g, "$1\u200b"); // where it may break
       name.style.left = `${SIDE + k * step}px`;
       name.style.width = `${Math.min(2 * SIDE, Math.max(step, LEAST)) - 6}px`;
       return name;

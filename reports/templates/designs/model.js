@@ -1,7 +1,7 @@
 // The designs: values of all columns for one pin and case, scales, selection, Pareto front.
 // reports/designs/page.py packs the arrays.
 
-const FAILED = "failed"; // of designs without results, next to the verdicts
+const FAILED = "failed"; // of designs without result or verdict, next to the verdicts
 const HIGHER = new Set(["safety_factor"]); // the others are better when lower
 
 // Of texts: their names and each row's place in them, NaN for none.
@@ -35,19 +35,37 @@ const rowsOf = (model, { pin, load }) => {
   for (let d = 0; d < count; d++) {
     for (let r = first[d]; r < first[d + 1] && !failed[d]; r++) {
       if (!fits(texts.pin.at[r], pin) || !fits(texts.case.at[r], load)) continue;
-      if (texts.reason.at[r] >= 0) failed[d] = 1;
+      if (texts.reason.at[r] >= 0 && !(stress && Number.isFinite(stress[r]))) failed[d] = 1;
       if (failed[d] || row[d] < 0 || worse(r, row[d])) row[d] = r;
     }
   }
   return { row, failed };
 };
 
+// Of every design the mass of all its pins; NaN where one is not known.
+const massesOf = ({ count, first, texts, byKey }) => Float64Array.from({ length: count }, (_, d) => {
+  const each = new Map();
+  for (let r = first[d]; r < first[d + 1]; r++) {
+    const pin = texts.pin.at[r], mass = byKey.mass.all[r];
+    if (!Number.isFinite(each.get(pin))) each.set(pin, mass);
+  }
+  return [...each.values()].reduce((sum, mass) => sum + mass, 0);
+});
+
 // The values of every column in a view; results of failed designs are none.
 const viewed = (model, view) => {
-  const { row, failed } = rowsOf(model, view), { count, texts } = model;
+  const { row, failed } = rowsOf(model, view), { count, texts, byKey } = model;
   const pick = (all) => Float64Array.from({ length: count }, (_, d) => (row[d] < 0 || failed[d] ? NaN : all[row[d]]));
   const values = model.columns.map((c) => (c.of === "design" ? c.all : pick(c.all)));
-  const verdict = Int16Array.from({ length: count }, (_, d) => (failed[d] ? texts.verdict.names.length : row[d] < 0 || !(texts.verdict.at[row[d]] >= 0) ? -1 : texts.verdict.at[row[d]]));
+  const several = view.pin < 0 && texts.pin.names.length > 1;
+  if (byKey.mass) {
+    if (several) values[byKey.mass.index] = massesOf(model).map((mass, d) => (failed[d] ? NaN : mass));
+    byKey.mass.title = several ? "mass of all pins" : "mass";
+  }
+  const verdict = Int16Array.from({ length: count }, (_, d) => {
+    const told = row[d] < 0 ? NaN : texts.verdict.at[row[d]];
+    return told >= 0 ? told : failed[d] ? texts.verdict.names.length : -1;
+  });
   return { row, failed, values, verdict };
 };
 

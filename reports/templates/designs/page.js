@@ -36,7 +36,7 @@ const explore = (model) => {
     const plain = series[0], none = rgb(of("quiet")).reduce((sum, v) => (sum << 8) | v, 0);
     let colours;
     if (c === -1) colours = new Uint32Array(model.count).fill(plain);
-    else if (c === -2) colours = Uint32Array.from(now.verdict, (v) => (v < 0 ? none : v === verdicts.length ? series[6] : series[v % 6]));
+    else if (c === -2) colours = Uint32Array.from(now.verdict, (v, d) => (now.failed[d] ? series[6] : v < 0 ? none : series[v % 6]));
     else if (model.columns[c].names) colours = Uint32Array.from(now.values[c], (v) => (v >= 0 ? series[v % 6] : none));
     else colours = Uint32Array.from(now.values[c], (v) => (Number.isFinite(v) ? RAMP[Math.round(255 * scales[c].at(v))] : none));
     look = { of: colours, series, none, paper: rgb(of("paper")), faint: rgb(dark ? "#34383f" : "#e3e6ea"), ink: of("ink"), quiet: of("quiet"), rule: of("rule"), accent: of("accent"), hot: of("hot"), halo: of("paper"), brush: dark ? "#6cb2f522" : "#0b5cad18", colorScheme: style.colorScheme };
@@ -116,6 +116,7 @@ const explore = (model) => {
   };
   const view = () => {
     now = viewed(model, model.views[Number(by("view").value)]);
+    if (model.byKey.mass) for (const id of ["x", "y", "a", "b", "colour"]) by(id).querySelector(`[value="${model.byKey.mass.index}"]`).textContent = titled(model.byKey.mass);
     failures();
     lay();
   };
@@ -170,7 +171,7 @@ const explore = (model) => {
       const label = element("label"), box = element("input", undefined, { type: "checkbox" });
       box.checked = Boolean(wanted[k]);
       box.addEventListener("change", () => { wanted[k] = box.checked ? 1 : 0; later(); });
-      label.append(box, ` ${name === FAILED ? "failed (no result)" : name} (${sums[k].toLocaleString("en-US")})`);
+      label.append(box, ` ${name} (${sums[k].toLocaleString("en-US")})`);
       if (model.meaning[name]) label.title = model.meaning[name];
       return label;
     }).filter((_, k) => sums[k]);
@@ -194,7 +195,7 @@ const explore = (model) => {
       label.append(box, element("span", text, { class: "unseen" }));
       return label;
     };
-    row.append(element("th", column.unit ? `${column.title} [${column.unit}]` : column.title, { scope: "row" }));
+    row.append(element("th", titled(column), { scope: "row" }));
     cell(check(`axis of ${column.title}`, shown.axes.includes(c), (is) => {
       const set = new Set(shown.axes);
       if (is) set.add(c);
@@ -227,7 +228,7 @@ const explore = (model) => {
     shown.axes = [...moving, ...results];
     if (!shown.axes.length) shown.axes = columns.slice(0, 1).map((c) => c.index);
     const x = known("mass") ?? moving[0] ?? 0, y = known("safety_factor") ?? known("max_von_mises") ?? moving[1] ?? x;
-    const titles = columns.map((c) => [c.index, c.unit ? `${c.title} [${c.unit}]` : c.title]);
+    const titles = columns.map((c) => [c.index, titled(c)]);
     const better = (c) => (HIGHER.has(columns[c].key) ? "higher" : "lower");
     options("view", model.views.map((v, k) => [k, v.title]), 0);
     options("x", titles, x);

@@ -2,20 +2,35 @@
 
 const scatterOf = (host, model, on) => {
   const [base, over] = host.querySelectorAll("canvas"), EDGE = { left: 64, top: 14, right: 16, foot: 46, lane: 18 };
-  let W = 0, H = 0, wide = 0, tall = 0, ratio = 1, x = 0, y = 0, px, py, scales, look, lanes = [0, 0], size = 3, stamp = [];
+  let W = 0, H = 0, wide = 0, tall = 0, ratio = 1, x = 0, y = 0, px, py, scales, look, lanes = [0, 0], size = 3, stamp, under, image;
 
   const across = (p) => EDGE.left + lanes[0] + p * (wide - EDGE.left - lanes[0] - EDGE.right);
   const upward = (p) => tall - EDGE.foot - lanes[1] - p * (tall - EDGE.foot - lanes[1] - EDGE.top);
   const spot = (d) => [px[d], py[d]];
 
-  // Coverage of the pixels of a dot, by their place from its middle.
+  // Pixels of a dot by their place in the picture from its middle: whole ones, then those of its rim
+  // with their coverage in 1/256.
   const dot = (r) => {
-    const found = [];
+    const whole = [], rim = [], cover = [];
     for (let j = -Math.ceil(r); j <= Math.ceil(r); j++) for (let i = -Math.ceil(r); i <= Math.ceil(r); i++) {
-      const cover = Math.min(1, Math.max(0, r + 0.5 - Math.hypot(i, j)));
-      if (cover > 0.05) found.push([i, j, cover]);
+      const part = Math.min(1, r + 0.5 - Math.hypot(i, j));
+      if (part > 0.9) whole.push(j * W + i);
+      else if (part > 0.1) { rim.push(j * W + i); cover.push(Math.round(256 * part)); }
     }
-    return found;
+    return { whole: Int32Array.from(whole), rim: Int32Array.from(rim), cover: Int32Array.from(cover) };
+  };
+  const dots = (out, which, colour) => {
+    const { whole, rim, cover } = stamp;
+    for (let d = 0; d < model.count; d++) {
+      if (!which(d)) continue;
+      const at = Math.round(py[d]) * W + Math.round(px[d]), c = colour(d), r = (c >> 16) & 255, g = (c >> 8) & 255, b = c & 255;
+      const full = (255 << 24) | (b << 16) | (g << 8) | r;
+      for (let k = 0; k < whole.length; k++) out[at + whole[k]] = full;
+      for (let k = 0; k < rim.length; k++) {
+        const old = out[at + rim[k]], s = cover[k], u = 256 - s;
+        out[at + rim[k]] = (255 << 24) | (((s * b + u * ((old >> 16) & 255)) >> 8) << 16) | (((s * g + u * ((old >> 8) & 255)) >> 8) << 8) | ((s * r + u * (old & 255)) >> 8);
+      }
+    }
   };
 
   const lay = (chosen, now, of, colours) => {
@@ -38,27 +53,17 @@ const scatterOf = (host, model, on) => {
     const n = model.count;
     size = n < 300 ? 4.5 : n < 3000 ? 3 : n < 30000 ? 2 : 1.2;
     stamp = dot(size * ratio);
+    image = new ImageData(W, H);
+    under = new Uint32Array(W * H);
+    const [pr, pg, pb] = look.paper, [fr, fg, fb] = look.faint, faint = (fr << 16) | (fg << 8) | fb;
+    under.fill((255 << 24) | (pb << 16) | (pg << 8) | pr);
+    dots(under, (d) => !now.failed[d], () => faint);
   };
 
   const draw = (mask, now, front) => {
-    const flat = base.getContext("2d"), image = new ImageData(W, H), out = new Uint32Array(image.data.buffer), bytes = image.data;
-    const [pr, pg, pb] = look.paper;
-    out.fill((255 << 24) | (pb << 16) | (pg << 8) | pr);
-    const put = (d, r, g, b, strength) => {
-      const at = (Math.round(py[d]) * W + Math.round(px[d])) * 4;
-      for (const [i, j, cover] of stamp) {
-        const k = at + 4 * (j * W + i), s = cover * strength;
-        bytes[k] += s * (r - bytes[k]);
-        bytes[k + 1] += s * (g - bytes[k + 1]);
-        bytes[k + 2] += s * (b - bytes[k + 2]);
-      }
-    };
-    const [fr, fg, fb] = look.faint;
-    for (let d = 0; d < model.count; d++) if (!mask[d] && !now.failed[d]) put(d, fr, fg, fb, 0.8);
-    for (let d = 0; d < model.count; d++) {
-      const c = look.of[d];
-      if (mask[d] && !now.failed[d]) put(d, (c >> 16) & 255, (c >> 8) & 255, c & 255, 0.85);
-    }
+    const flat = base.getContext("2d"), out = new Uint32Array(image.data.buffer);
+    out.set(under);
+    dots(out, (d) => mask[d] && !now.failed[d], (d) => look.of[d]);
     flat.putImageData(image, 0, 0);
     flat.save();
     flat.scale(ratio, ratio);
@@ -84,7 +89,7 @@ const scatterOf = (host, model, on) => {
   };
 
   const furniture = (flat) => {
-    const foot = tall - EDGE.foot, title = (c) => `${model.columns[c].title}${model.columns[c].unit ? ` [${model.columns[c].unit}]` : ""}`;
+    const foot = tall - EDGE.foot, title = (c) => titled(model.columns[c]);
     const line = (colour, dash, ...ends) => {
       flat.strokeStyle = colour;
       flat.setLineDash(dash);

@@ -9,6 +9,8 @@ const element = (name, text, attributes = {}) => {
   return made;
 };
 
+const titled = ({ title, unit }) => (unit ? `${title} [${unit}]` : title);
+
 // A value of a column for reading; the file has all digits.
 const worded = (column, value, digits = 6) => {
   if (column.names) return value >= 0 ? column.names[value] : "–";
@@ -45,6 +47,7 @@ const card = (host, model, now, d, kept) => {
     const needed = model.required === null || !Number.isFinite(factor) ? "" : ` The safety factor is ${factor < model.required ? "below" : "not below"} the required ${short(model.required, 4)}.`;
     const meant = model.meaning[verdict] ? `${verdict}: ${model.meaning[verdict]}` : verdict;
     told.push(element("p", `Pin ${nameOf(texts.pin, row)}, case ${nameOf(texts.case, row)}. ${meant}${needed}`, { class: "quiet" }));
+    if (nameOf(texts.reason, row)) told.push(element("p", `Note: ${nameOf(texts.reason, row)}`, { class: "quiet" }));
   }
   if (model.first[d + 1] - model.first[d] > 1) told.push(everyRow(model, d, row));
   host.replaceChildren(...told);
@@ -70,7 +73,7 @@ const tableColumns = (model, now) => [
   { key: "design", title: "design", numeric: true, of: (d) => model.numbers[d], text: (d) => String(model.numbers[d]), exact: (d) => String(model.numbers[d]) },
   ...["pin", "case"].map((key) => textColumn(model, now, key)),
   ...model.columns.map((c) => ({
-    key: c.key, title: c.unit ? `${c.title} [${c.unit}]` : c.title, numeric: !c.names,
+    key: c.key, title: titled(c), numeric: !c.names,
     of: (d) => now.values[c.index][d],
     text: (d) => worded(c, now.values[c.index][d], c.key === "error_estimate" ? 2 : 6),
     exact: (d) => exact(c, now.values[c.index][d]),
