@@ -42,8 +42,8 @@ LAW = {"a": {"unit": "mm", "law": "from 1 to 3"}}
 
 def some(*rows: dict[str, Any], values: tuple[Any, ...] | None = None) -> pa.Table:
     """A table of one design for each row, with one parameter, the design's number by default."""
-    found = values or tuple(float(k) for k in range(1, len(rows) + 1))
-    numbered = [{"design": k, "a": a, **row} for k, (a, row) in enumerate(zip(found, rows), 1)]
+    found = values or tuple(float(k + 1) for k in range(len(rows)))
+    numbered = [{"design": k + 1, "a": found[k], **row} for k, row in enumerate(rows)]
     return table_of(numbered, ["a"], LAW)
 
 

@@ -82,7 +82,12 @@ def table_of(
             kind = pa.string()
         unit = laws[name]["unit"] if name in laws else UNITS.get(name, "")
         fields.append(pa.field(name, kind, metadata={"unit": unit}))
-    told = {"study": study, "hash": "0" * 64, "units": "mm-N-s", "parameters": laws}
+    told: dict[str, object] = {
+        "study": study,
+        "hash": "0" * 64,
+        "units": "mm-N-s",
+        "parameters": laws,
+    }
     told |= {"required_safety_factor": required}
     schema = pa.schema(fields, metadata={"pinstress": json.dumps(told)})
     return pa.Table.from_pylist([{name: row[name] for name in order} for row in rows], schema)

@@ -187,8 +187,8 @@ const linesOf = (host, model, on) => {
       if (Math.abs(q - p) * TALL > 3) drag.moved = true;
       if (!drag.moved) return;
       const both = within ? ends.map((end) => end + q - p) : [Math.min(fixed, q), Math.max(fixed, q)];
-      on.brush(c, both.map(scale.back));
-    }, end: () => { if (!drag.moved) on.brush(c, null); } };
+      on.brush(c, both.map(scale.back), true);
+    }, end: () => (drag.moved ? on.release() : on.brush(c, null)) };
     svg.setPointerCapture(event.pointerId);
     event.preventDefault();
   });
@@ -198,7 +198,7 @@ const linesOf = (host, model, on) => {
     on.point(event.clientX - box.left, event.clientY - box.top);
   });
   svg.addEventListener("pointerup", () => { drag?.end(); drag = null; });
-  svg.addEventListener("pointercancel", () => { drag = null; });
+  svg.addEventListener("pointercancel", () => { if (drag) on.release(); drag = null; });
   svg.addEventListener("pointerleave", () => on.leave());
   svg.addEventListener("click", (event) => { if (!event.target.closest(".grab")) on.keep(); });
 

@@ -74,18 +74,21 @@ const explore = (model) => {
     lines.brushes(ranges);
     scatter.mark(ranges, design());
   };
-  // After a change of the selection: everything that shows it, in one frame. whole: from nothing.
-  const redraw = (whole = false) => {
+  // After a change of the selection: everything that shows it, in one frame. whole: from nothing;
+  // held: by a pointer that is still down, so the table waits.
+  const redraw = (whole = false, held = false) => {
     choose();
     lines.update(mask, counts.count, whole);
     scatter.draw(mask, now, { designs: front, axes: objectives(), signs: signs() });
     marks();
     by("count").textContent = `${counts.count.toLocaleString("en-US")} of ${model.count.toLocaleString("en-US")} designs selected`;
     clearTimeout(waiting);
-    waiting = setTimeout(list, 120);
+    if (!held) waiting = setTimeout(list, 120);
   };
-  const later = () => {
-    if (!pending) pending = requestAnimationFrame(() => { pending = 0; redraw(); });
+  let held = false;
+  const later = (is = false) => {
+    held = is;
+    if (!pending) pending = requestAnimationFrame(() => { pending = 0; redraw(false, held); });
   };
   // What waits until the pointer rests: the table, the ranges as numbers, what a screen reader says.
   const list = () => {
@@ -134,12 +137,12 @@ const explore = (model) => {
     tell();
     marks();
   };
-  const brush = (c, range) => {
+  const brush = (c, range, is = false) => {
     if (range) ranges.set(c, range);
     else ranges.delete(c);
-    later();
+    later(is);
   };
-  const on = { brush, range: (c) => ranges.get(c), leave: () => point(-1), keep: () => keep() };
+  const on = { brush, release: () => later(), range: (c) => ranges.get(c), leave: () => point(-1), keep: () => keep() };
   const lines = linesOf(by("lines"), model, { ...on, point: (x, y) => point(lines.nearest(mask, x, y)) });
   const scatter = scatterOf(by("scatter"), model, { ...on, point: (x, y) => point(scatter.nearest(mask, x, y)) });
 

@@ -230,11 +230,15 @@ const scatterOf = (host, model, on) => {
     if (Math.hypot(to[0] - drag.from[0], to[1] - drag.from[1]) > 4) drag.moved = true;
     if (!drag.moved) return;
     const a = parts(drag.from), b = parts(to);
-    on.brush(x, [Math.min(a[0], b[0]), Math.max(a[0], b[0])].map(scales[0].back));
-    if (x !== y) on.brush(y, [Math.min(a[1], b[1]), Math.max(a[1], b[1])].map(scales[1].back));
+    on.brush(x, [Math.min(a[0], b[0]), Math.max(a[0], b[0])].map(scales[0].back), true);
+    if (x !== y) on.brush(y, [Math.min(a[1], b[1]), Math.max(a[1], b[1])].map(scales[1].back), true);
   });
-  over.addEventListener("pointerup", () => { if (drag && !drag.moved) on.keep(); drag = null; });
-  over.addEventListener("pointercancel", () => { drag = null; });
+  over.addEventListener("pointerup", () => {
+    if (drag?.moved) on.release();
+    else if (drag) on.keep();
+    drag = null;
+  });
+  over.addEventListener("pointercancel", () => { if (drag) on.release(); drag = null; });
   over.addEventListener("pointerleave", () => on.leave());
 
   // Selected designs from left to right, for the keyboard.
