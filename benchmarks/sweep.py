@@ -24,6 +24,7 @@ from pinstress.designs.workers import failed_rows, local, solve_on
 
 COUNTS = 500, 2_000, 10_000
 JOBS = 2
+MANY = 2_000  # designs by which kinds of sweeps are compared
 COMPARED = 400  # designs by which one process and two are compared
 TASKS = 2_000  # that do nothing, by which the scheduler is measured
 WORKERS = 1_000
@@ -122,11 +123,10 @@ def _measured(study: Study, jobs: int) -> Measured:
 
 def _kinds() -> str:
     """What makes a sweep quicker than distinct shapes."""
-    count = 2_000
     rows = []
     for name, study in (
-        ("every shape another", _study(count)),
-        ('the same, goal = "decide"', _decided(_study(count))),
+        ("every shape another", _study(MANY)),
+        ('the same, goal = "decide"', _decided(_study(MANY))),
         ("a grid of 1 diameter, 50 forces, 40 strengths", _study(0, 1)),
         ("a grid of 5 diameters, 50 forces, 40 strengths", _study(0, 5)),
     ):

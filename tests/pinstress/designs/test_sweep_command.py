@@ -34,7 +34,9 @@ def test_a_sweep_writes_its_table_and_says_what_is_in_it(tmp_path: Path) -> None
     assert "fillet-too-large: for instance design" in made.stdout
     assert "Table: out/study-sweep/designs.parquet" in made.stderr
     out = tmp_path / "out" / "study-sweep"
-    assert sorted(p.name for p in out.iterdir()) == [".pinstress.json", "designs.parquet"]
+    assert sorted(p.name for p in out.iterdir()) == [
+        ".pinstress.json", "designs.html", "designs.parquet",
+    ]  # fmt: skip
     assert parquet.read_table(out / "designs.parquet").num_rows == 6
     first = (out / "designs.parquet").read_bytes()
     again = run_here("sweep", "study.toml", "--jobs", "1", "--quiet", cwd=tmp_path)
