@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from pinstress.cli.designs.commands import sweep
 from pinstress.cli.more_commands import (
     compare_runs,
     completion,
@@ -24,7 +25,7 @@ from pinstress.cli.more_commands import (
 from pinstress.cli.shared import example, names, read_study
 from pinstress.processes import interrupts
 from pinstress.processes.environment import settle_surroundings
-from pinstress.processes.interrupts import INTERRUPTED
+from pinstress.processes.interrupts import INTERRUPTED, Unfinished
 from pinstress.study.choices import ChoiceError
 from pinstress.study.errors import InputError, clipped
 
@@ -48,7 +49,9 @@ def run_command_line(arguments: list[str]) -> int:
         if ended is None:
             raise
         if ended == INTERRUPTED:
-            click.echo("Interrupted; nothing was written.", err=True)
+            why = error.__cause__ or error  # click raises its own
+            left = str(why) if isinstance(why, Unfinished) else "nothing was written"
+            click.echo(f"Interrupted; {left}.", err=True)
         return ended
     finally:
         interrupts.forget()
@@ -334,5 +337,5 @@ def check(study: Path) -> int:
     return NOT_REACHED if unheld else REACHED
 
 
-for _command in (compare_runs, import_, init, pdf_of, plots, schema, size, view, completion):
+for _command in (compare_runs, import_, init, pdf_of, plots, schema, size, sweep, view, completion):
     commands.add_command(_command)
