@@ -23,7 +23,7 @@ from fea.singular.probes import rim
 from fea.singular.singularities import VARIED, Singularity, smooth_edges
 from geometry import Pin
 from geometry.arrays import Floats, Mask
-from geometry.mesh.section_mesh import meridian_mesh
+from geometry.mesh.section_mesh import MeridianMesh, meridian_mesh
 from geometry.mesh.sizing import Grade, SectionSize, Spot, size_at
 
 SIZE = SectionSize()  # of the first mesh
@@ -40,12 +40,15 @@ PATCH = 2.0  # elements of the first mesh about such a place, in which all are r
 class HarmonicSolution:
     """Fields on one mesh, how fine (of the diameter) that mesh is at each singularity, and
     Poisson's ratio. quiet: fillets where the mesh is coarse (fea.harmonic.quiet_corners).
-    elsewhere: stress (P, 6, K) Pa at the points that were asked for.
+    elsewhere: stress (P, 6, K) Pa at the points that were asked for. mesh: of the section; ends:
+    where pressures end on its outline, (r, z) in m.
     """
 
     fields: MeridianFields
     close: tuple[float, ...]
     nu: float
+    mesh: MeridianMesh
+    ends: tuple[tuple[float, float], ...] = ()
     quiet: tuple[int, ...] = ()
     elsewhere: Floats = field(default_factory=lambda: np.zeros((0, 6, 0)))
 
@@ -99,28 +102,36 @@ def harmonic_solution(
         finer.append(Grade((singularity,), now, PATCH * coarse, SIZE.growth))
     factor = ratio ** (level * ELSEWHERE if high else level)
 
-    def solved(size: SectionSize, grades: list[Grade], quiet: tuple[int, ...]) -> MeridianFields:
+    ends = _ends(pin, clamps, _unit_loads(cases))
+
+    def solved(
+        size: SectionSize, grades: list[Grade], quiet: tuple[int, ...]
+    ) -> tuple[MeridianFields, MeridianMesh]:
         places, read = spots(factor), np.concatenate([elsewhere, _rims(pin, singularities)])
         loads = _unit_loads(cases)
-        ends = _ends(pin, clamps, loads)
 
         def model() -> HarmonicModel:
             section = meridian_mesh(pin, size, places, grades, quiet)
             return HarmonicModel(pin, section, material, clamps)
 
         if level or first is None:
-            return model().solve(loads, read, ends)
+            made = model()
+            return made.solve(loads, read, ends), made.space.section
         key = (size, tuple(places), tuple(grades), quiet, read.tobytes(), ends)
-        return first.model(model, *key).solve_more(loads, read, ends)
+        made = first.model(model, *key)
+        return made.solve_more(loads, read, ends), made.space.section
 
     quiet = crowd(pin)
     if quiet:
         known = [result.quiet for result in before]
         quiet = (
-            known[0] if known else quiet_corners(pin, solved(SIZE, [], quiet), cases, singularities)
+            known[0]
+            if known
+            else quiet_corners(pin, solved(SIZE, [], quiet)[0], cases, singularities)
         )
-    fields, more = _apart(solved(SIZE.finer(factor), finer, quiet), len(elsewhere))
-    return HarmonicSolution(fields, close, material.poisson_ratio, quiet, more)
+    found, mesh = solved(SIZE.finer(factor), finer, quiet)
+    fields, more = _apart(found, len(elsewhere))
+    return HarmonicSolution(fields, close, material.poisson_ratio, mesh, ends, quiet, more)
 
 
 def _apart(fields: MeridianFields, count: int) -> tuple[MeridianFields, Floats]:
@@ -206,7 +217,8 @@ class HarmonicAnswer:
     """What a solution says of any loads made of its unit loads (fea.core.solution)."""
 
     def __init__(self, solution: HarmonicSolution, singularities: tuple[Singularity, ...]) -> None:
-        self.fields, self.singularities = solution.fields, singularities
+        self.solution, self.singularities = solution, singularities
+        self.fields = solution.fields
 
     def maxima(self, loads: AnyLoads, least: float = 0.0) -> Floats:
         """Largest von Mises stress (T,) Pa at every instant outside the singularities; `least`
