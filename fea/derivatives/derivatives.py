@@ -19,60 +19,42 @@ Structural Sensitivity Analysis and Optimization 1, ch. 6 (shape).
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
 from fea.core.material import Material
-from fea.core.pin_loads import PinLoads, UnitLoad
-from fea.derivatives.governing import Column, by_loads, columns_of
-from fea.derivatives.reading_point import (
-    AtJump,
-    FromInside,
-    ReadingPoint,
-    Samples,
-    State,
-    at_node,
-    at_rough,
-    nearest,
-    on_axis,
-    on_skin,
-)
-from fea.derivatives.records import Derivatives
-from fea.derivatives.virtual_work import COLUMNS, Interior, integral_rates, shape_gradient, work
-from fea.harmonic.assembly import Section, elasticity
-from fea.harmonic.evaluate import HarmonicSolution
+from fea.core.pin_loads import UnitLoad
+from fea.derivatives.governing import Wave, by_loads, waves_of
+from fea.derivatives.governing_point import point_of
+from fea.derivatives.reading_point import SectionState
+from fea.derivatives.records import Derivatives, SolvedCase
+from fea.derivatives.ties import tied_places, tied_times
+from fea.derivatives.virtual_work import COLUMNS, Interior, integral_rate, shape_gradient, work
+from fea.harmonic.assembly import elasticity
+from fea.harmonic.boundary import Outline
 from fea.harmonic.model import HarmonicModel, applied, generalised
-from fea.harmonic.pressure_edge import DIRECTIONS, jumps
 from fea.harmonic.stress_recovery import points_of_nodes
 from fea.harmonic.superposition import Circumference
-from fea.harmonic.surface_stress import AT
-from fea.singular.singularities import Singularity
 from geometry import Pin
 from geometry.arrays import Floats
-from geometry.mesh.outline_motion import OtherShapeError, OutlineNodes, Reach, rate
+from geometry.mesh.outline_motion import (
+    PLACES,
+    NodeMotion,
+    OtherShapeError,
+    OutlineNodes,
+    Reach,
+    rate,
+    rate_of,
+)
 from geometry.shape.dimensions import Dimension
 
 POISSON = 1e-3  # step of Poisson's ratio
 OTHER = "with a little more or less of it the section has other edges"
 
 
-@dataclass(frozen=True)
-class Solved:
-    """A pin of a material, clamped at surfaces (by the pin's names), as it was solved on one mesh
-    under loads of one instant; zones: the singularities that are left out.
-    """
-
-    pin: Pin
-    material: Material
-    clamps: tuple[str, ...]
-    loads: PinLoads
-    solution: HarmonicSolution
-    zones: tuple[Singularity, ...]
-
-
-def derivatives(solved: Solved, dimensions: Iterable[Dimension]) -> Derivatives:
+def derivatives(solved: SolvedCase, dimensions: Iterable[Dimension]) -> Derivatives:
     """Of the maximum at the only instant of the loads.
 
     Raises: SolveError.
@@ -83,17 +65,17 @@ def derivatives(solved: Solved, dimensions: Iterable[Dimension]) -> Derivatives:
 class _Adjoint:
     """All at the governing point and angle."""
 
-    def __init__(self, solved: Solved) -> None:
+    def __init__(self, solved: SolvedCase) -> None:
         self.solved = solved
         self.fields = solved.solution.fields
         self.model = HarmonicModel(solved.pin, solved.solution.mesh, solved.material, solved.clamps)
         self.space, self.outline = self.model.space, self.model.outline
-        around = Circumference(self.fields, solved.loads)
-        self.top = around.top(self.fields.outside(solved.zones))
-        self.columns, self.weight = columns_of(self.fields_at, solved.loads, self.top)
-        self.n = np.array([column.n for column in self.columns])
+        self.around = Circumference(self.fields, solved.loads)
+        self.top = self.around.top(self.fields.outside(solved.zones))
+        self.waves, self.weight = waves_of(self.fields_at, solved.loads, self.top)
+        self.n = np.array([wave.n for wave in self.waves])
         self.traction = self._traction(solved.pin, self.outline)
-        self.point = _point(self)
+        self.point = point_of(self.model, solved, self.traction, self.top.point)
         self._lambda = self._solve()
 
     @cached_property
@@ -104,26 +86,26 @@ class _Adjoint:
 
     @cached_property
     def u(self) -> Floats:
-        """(N, 3, K) m, of the columns."""
+        """(N, 3, K) m, of the waves."""
         rows = points_of_nodes(self.outline, len(self.space.nodes))
         index = {load: k for k, load in enumerate(self.fields.loads)}
-        amounts = np.zeros((len(index), len(self.columns)))
-        for k, column in enumerate(self.columns):
-            for load, amount in column.amounts.items():
+        amounts = np.zeros((len(index), len(self.waves)))
+        for k, wave in enumerate(self.waves):
+            for load, amount in wave.amounts.items():
                 amounts[index[load], k] = amount
         return np.asarray((self.fields.displacement @ amounts)[rows])
 
     def _forces(
-        self, column: Column, pin: Pin, outline: object, integrals: Floats | None = None
+        self, wave: Wave, pin: Pin, outline: Outline, integrals: Floats | None = None
     ) -> tuple[Floats, Floats]:
-        """Of a column: on the unknowns (3 N,), and tractions (E, 3, 3)."""
-        loads = tuple(column.amounts)
-        amounts = np.array([column.amounts[load] for load in loads])
-        forces, tractions = applied(self.model, pin, outline, column.n, loads, integrals)  # type: ignore[arg-type]
+        """Of a wave: on the unknowns (3 N,), and tractions (E, 3, 3)."""
+        loads = tuple(wave.amounts)
+        amounts = np.array([wave.amounts[load] for load in loads])
+        forces, tractions = applied(self.model, pin, outline, wave.n, loads, integrals)
         return forces @ amounts, tractions @ amounts
 
-    def _traction(self, pin: Pin, outline: object) -> Floats:
-        found = [self._forces(column, pin, outline)[1] for column in self.columns]
+    def _traction(self, pin: Pin, outline: Outline) -> Floats:
+        found = [self._forces(wave, pin, outline)[1] for wave in self.waves]
         return np.stack(found, axis=-1)
 
     @cached_property
@@ -132,18 +114,18 @@ class _Adjoint:
         return np.array([[p.r, p.z, p.radius] for p in self.solved.zones]).reshape(-1, 3)
 
     @cached_property
-    def state(self) -> State:
-        return State(self.space.nodes, self.traction, self.places)
+    def state(self) -> SectionState:
+        return SectionState(self.space.nodes, self.traction, self.places)
 
-    def read(self, state: State, material: Material | None = None) -> float:
+    def read(self, state: SectionState, material: Material | None = None) -> float:
         """Von Mises stress to first order, of displacements as they are."""
         u = self.u[self.point.nodes]
         found = self.point.stress(material or self.solved.material, state, self.n, u)
-        return float(sum(c.weight @ found[:, k] for k, c in enumerate(self.columns)))
+        return float(sum(c.weight @ found[:, k] for k, c in enumerate(self.waves)))
 
     def _solve(self) -> Floats:
         """Adjoints (3 N, K)."""
-        L, K = len(self.point.nodes), len(self.columns)
+        L, K = len(self.point.nodes), len(self.waves)
         unit = np.eye(3 * L).reshape(L, 3, 3 * L)
         out = np.zeros((self.space.unknowns, K))
         forces = np.zeros((len(self.space.nodes), 3, K))
@@ -152,7 +134,7 @@ class _Adjoint:
             here = np.flatnonzero(self.n == n)
             found = self.point.stress(self.solved.material, still, np.full(3 * L, n), unit)
             for k in here:
-                forces[self.point.nodes, :, k] = (self.columns[k].weight @ found).reshape(L, 3)
+                forces[self.point.nodes, :, k] = (self.waves[k].weight @ found).reshape(L, 3)
             rhs = np.stack([generalised(forces[:, :, k]) for k in here], axis=1)
             out[:, here] = self.model.displace(int(n), rhs)
         return out
@@ -171,6 +153,8 @@ class _Adjoint:
             by_moment,
             self._by_poisson(),
             self._by_density(),
+            tied_places(self.around, self.fields, solved.zones, top, solved.error),
+            tied_times(solved, top.value),
         )
 
     def _by_dimension(
@@ -179,61 +163,61 @@ class _Adjoint:
         solved = self.solved
         reaches = [Reach((p.r, p.z), p.radius) for p in solved.zones]
         nodes = OutlineNodes(solved.solution.mesh, solved.pin, reaches)
-        moved: list[tuple[Dimension, float, Floats]] = []
+        motions: list[NodeMotion] = []
         without = {}
         for dimension in dimensions:
             try:
-                velocity, step = nodes.velocity(dimension)
-                moved.append((dimension, step, velocity))
+                motions.append(nodes.motion(dimension))
             except OtherShapeError:
                 without[dimension.key] = OTHER
-        if not moved:
+        if not motions:
             return {}, without
         interior = Interior(self.space, nodes.rows)
         gradient = sum(
             shape_gradient(self.space, self._D, c.n, self._unknowns(k), self._lambda[:, k])
-            for k, c in enumerate(self.columns)
+            for k, c in enumerate(self.waves)
         )
+        heavy = any(load.kind == "body" for c in self.waves for load in c.amounts)
         out = {}
-        for k in range(0, len(moved), COLUMNS):
-            some = moved[k : k + COLUMNS]
-            every = interior.velocity(np.stack([v for _, __, v in some], axis=2))
-            heavy = any(load.kind == "body" for c in self.columns for load in c.amounts)
-            grown = integral_rates(self.space, every) if heavy else None
-            for i, (dimension, step, _) in enumerate(some):
-                velocity = every[:, :, i]
-                given = self._given(
-                    dimension, step, velocity, None if grown is None else grown[:, i]
-                )
-                out[dimension.key] = given - float(np.sum(gradient * velocity))
+        for k in range(0, len(motions), COLUMNS):
+            some = motions[k : k + COLUMNS]
+            every = interior.velocity(np.stack([motion.velocity for motion in some], axis=2))
+            for i, motion in enumerate(some):
+                velocity = np.ascontiguousarray(every[:, :, i])
+                grown = integral_rate(self.space, velocity) if heavy else None
+                given = self._given(motion, velocity, grown)
+                out[motion.dimension.key] = given - float(np.sum(gradient * velocity))
         return out, without
 
-    def _given(
-        self, dimension: Dimension, step: float, velocity: Floats, grown: Floats | None
-    ) -> float:
+    def _given(self, motion: NodeMotion, velocity: Floats, grown: Floats | None) -> float:
         """What forces, tractions and the reading change, with displacements as they are."""
-
-        def at(x: float) -> Floats:
-            pin = dimension.changed(dimension.value + x)
-            nodes = self.space.nodes + x * velocity
+        values = []
+        for x, pin in zip(PLACES, motion.pins, strict=True):
+            step = x * motion.step
+            nodes = self.space.nodes + step * velocity
             outline = self.outline.moved(nodes)
-            integrals = None if grown is None else self.space.integrals + x * grown
+            integrals = None if grown is None else self.space.integrals + step * grown
             total, tractions = 0.0, []
-            for k, column in enumerate(self.columns):
-                forces, traction = self._forces(column, pin, outline, integrals)
-                total += float(self._lambda[:, k] @ forces)
+            for k, wave in enumerate(self.waves):
+                forces, traction = self._forces(wave, pin, outline, integrals)
+                total += float(np.sum(self._lambda[:, k] * forces))
                 tractions.append(traction)
-            state = State(nodes, np.stack(tractions, axis=-1), self._places_at(x, velocity))
-            return np.array(total + self.read(state))
+            state = SectionState(
+                nodes, np.stack(tractions, axis=-1), self._places_at(step, velocity)
+            )
+            values.append(np.array(total + self.read(state)))
+        return float(rate_of(values, motion.step))
 
-        return float(rate(at, step))
+    @cached_property
+    def _zone_nodes(self) -> list[int]:
+        """At which the zones are."""
+        nodes = self.space.nodes
+        return [int(np.hypot(*(nodes - place[:2]).T).argmin()) for place in self.places]
 
-    def _places_at(self, x: float, velocity: Floats) -> Floats:
+    def _places_at(self, step: float, velocity: Floats) -> Floats:
         out = self.places.copy()
-        for k, (r, z, radius) in enumerate(self.places):
-            node = int(np.hypot(*(self.space.nodes - [r, z]).T).argmin())
-            out[k, :2] += x * velocity[node]
-            out[k, 2] = radius * out[k, 0] / r
+        out[:, :2] += step * velocity[self._zone_nodes]
+        out[:, 2] *= out[:, 0] / self.places[:, 0]
         return out
 
     @property
@@ -241,7 +225,7 @@ class _Adjoint:
         return elasticity(self.solved.material)
 
     def _unknowns(self, k: int) -> Floats:
-        """(3 N,) p, m, w of column k."""
+        """(3 N,) p, m, w of wave k."""
         U, V, W = self.u[:, :, k].T
         return np.stack([(U + V) / 2.0, (U - V) / 2.0, W], axis=1).ravel()
 
@@ -250,53 +234,23 @@ class _Adjoint:
         nu = material.poisson_ratio
         step = min(POISSON, 0.1 * (0.5 - nu), 0.1 * (1.0 + nu))
 
-        def at(x: float) -> Floats:
-            other = replace(material, poisson_ratio=nu + x)
-            against = sum(
-                work(self.space, elasticity(other), c.n, self._unknowns(k), self._lambda[:, k])
-                for k, c in enumerate(self.columns)
-            )
-            return np.array(self.read(self.state, other) - against)
+        def other(x: float) -> Material:
+            return replace(material, poisson_ratio=nu + x)
 
-        return float(rate(at, step))
+        stiffer = rate(lambda x: elasticity(other(x)), step)
+        against = sum(
+            work(self.space, stiffer, c.n, self._unknowns(k), self._lambda[:, k])
+            for k, c in enumerate(self.waves)
+        )
+        return float(rate(lambda x: np.array(self.read(self.state, other(x))), step)) - against
 
     def _by_density(self) -> float:
         density = self.solved.material.density
         if not density:
             return 0.0
         total = 0.0
-        for column in self.columns:
-            own = [x for load, x in column.amounts.items() if load.kind == "body"]
-            at = [self.fields_at[load] for load in column.amounts if load.kind == "body"]
-            total += sum(x * float(column.weight @ s) for x, s in zip(own, at, strict=True))
+        for wave in self.waves:
+            own = [x for load, x in wave.amounts.items() if load.kind == "body"]
+            at = [self.fields_at[load] for load in wave.amounts if load.kind == "body"]
+            total += sum(x * float(wave.weight @ s) for x, s in zip(own, at, strict=True))
         return total / density
-
-
-def _point(job: _Adjoint) -> ReadingPoint:
-    """The governing one, by its number among those of fea.harmonic.stress_recovery."""
-    space, outline, number = job.space, job.outline, job.top.point
-    skin = job.fields.skin
-    if number < skin:
-        edge, at = divmod(number, len(AT))
-        clamped = outline.constrained(job.model.clamps)[edge]
-        if clamped or on_axis(space, float(job.fields.points[number, 0])):
-            return at_rough(space, outline, edge, at)
-        return on_skin(outline, job.traction, edge, at)
-    if number < len(job.fields.displacement):
-        inner = np.setdiff1d(np.arange(len(space.nodes)), outline.nodes)
-        return at_node(space, int(inner[number - skin]))
-    ends = job.solved.solution.ends
-    first = len(job.fields.points) - DIRECTIONS * len(ends)
-    if number >= first:
-        which, direction = divmod(number - first, DIRECTIONS)
-        (jump,) = jumps(space, outline, job.solved.material, ends[which : which + 1])
-        return AtJump(outline, jump, Samples(space, jump.samples), direction)
-    return _on_rim(space, job.solved.zones, job.fields.points[number])
-
-
-def _on_rim(space: Section, zones: tuple[Singularity, ...], at: Floats) -> FromInside:
-    """Of the zone on whose circle it is."""
-    off = [abs(np.hypot(at[0] - p.r, at[1] - p.z) / p.radius - 1.0) for p in zones]
-    zone = int(np.argmin(off))
-    p, (r, z) = zones[zone], (float(x) for x in at)
-    return FromInside(nearest(space, [at]), (1.0,), (), (r, z), zone, (p.r, p.z, p.radius))

@@ -19,7 +19,7 @@ By = dict[tuple[str, str], float]
 
 
 @dataclass(frozen=True)
-class Column:
+class Wave:
     """What goes as cos, or as sin, of psi at the governing angle, of one harmonic: amounts of unit
     loads, and what each stress (6,) of it adds to von Mises.
     """
@@ -29,9 +29,9 @@ class Column:
     weight: Floats
 
 
-def columns_of(
+def waves_of(
     at: dict[UnitLoad, Floats], loads: PinLoads, top: Top
-) -> tuple[tuple[Column, ...], Floats]:
+) -> tuple[tuple[Wave, ...], Floats]:
     """At the governing angle, without those that add nothing; and the gradient (6,) of von Mises
     stress there. at: stress (6,) Pa of each unit load at the governing point.
     """
@@ -47,7 +47,7 @@ def columns_of(
             stress += x * MASKS[part] * at[load]
     weight = von_mises_gradient(stress)
     found = sorted(amounts.items(), key=lambda item: item[0])
-    return tuple(Column(n, mine, MASKS[part] * weight) for (n, part), mine in found), weight
+    return tuple(Wave(n, mine, MASKS[part] * weight) for (n, part), mine in found), weight
 
 
 def _turned(n: int, both: Floats, angle: float) -> tuple[float, float]:

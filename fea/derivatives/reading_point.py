@@ -30,7 +30,7 @@ _TO_UNKNOWNS = np.array([[0.5, 0.5, 0.0], [0.5, -0.5, 0.0], [0.0, 0.0, 1.0]])
 
 
 @dataclass(frozen=True)
-class State:
+class SectionState:
     """A section with nodes (N, 2), m, and tractions (E, 3, 3, K), Pa, on its outline's edges.
     places: (Z, 3) r, z and radius of the excluded zones, m.
     """
@@ -46,7 +46,7 @@ class ReadingPoint(Protocol):
     @property
     def nodes(self) -> Ints: ...
 
-    def stress(self, material: Material, state: State, n: Ints, u: Floats) -> Floats:
+    def stress(self, material: Material, state: SectionState, n: Ints, u: Floats) -> Floats:
         """Amplitudes (6, K) Pa of displacements u (L, 3, K), m, of these nodes, of harmonics n
         (K,).
         """
@@ -72,7 +72,7 @@ class OnSkin:
     def _local(self) -> Ints:
         return np.searchsorted(self.nodes, self.outline.nodes[self.edges])
 
-    def stress(self, material: Material, state: State, n: Ints, u: Floats) -> Floats:
+    def stress(self, material: Material, state: SectionState, n: Ints, u: Floats) -> Floats:
         x = state.nodes[self.outline.nodes[self.edges]]
         traction = state.traction[self.edges]
         found = on_edges(material, n, x, u[self._local], traction, self.neighbours)
@@ -161,7 +161,7 @@ class FromInside:
     def nodes(self) -> Ints:
         return np.unique(np.concatenate([s.nodes for s in self.samples]))
 
-    def stress(self, material: Material, state: State, n: Ints, u: Floats) -> Floats:
+    def stress(self, material: Material, state: SectionState, n: Ints, u: Floats) -> Floats:
         out = np.zeros((6, u.shape[2]))
         places = [state.nodes[k] for k in self.on] or [self._on_rim(state)]
         for samples, share, place in zip(self.samples, self.shares, places, strict=True):
@@ -172,7 +172,7 @@ class FromInside:
             out += share * np.einsum("s,sck->ck", weights, found)
         return out
 
-    def _on_rim(self, state: State) -> Floats:
+    def _on_rim(self, state: SectionState) -> Floats:
         if self.zone < 0:
             return np.array(self.place)
         r, z, radius = self.zone_at
@@ -194,7 +194,7 @@ class AtJump:
     def nodes(self) -> Ints:
         return self.samples.nodes
 
-    def stress(self, material: Material, state: State, n: Ints, u: Floats) -> Floats:
+    def stress(self, material: Material, state: SectionState, n: Ints, u: Floats) -> Floats:
         before, after = self.jump.before, self.jump.after
         edges = self.outline.nodes
         x = state.nodes[[edges[before, 0], edges[before, 1], edges[after, 1]]]

@@ -78,18 +78,16 @@ def _conjugate(D: Floats, n: int, G: Floats) -> Floats:
     return np.asarray((G.reshape(-1, 9) @ (E.T @ D @ E)).reshape(G.shape))
 
 
-def integral_rates(space: Section, velocity: Floats) -> Floats:
-    """Rates (N, P) of Section.integrals, m^3 per unit, with the nodes' velocities (N, 2, P)."""
+def integral_rate(space: Section, velocity: Floats) -> Floats:
+    """Rate (N,) of Section.integrals, m^3 per unit, with the nodes' velocities (N, 2)."""
     gradients, weights = space.quadrature
-    out = np.zeros((len(space.nodes), velocity.shape[2]))
     value = gradients[:, :, 2] * space.radii[..., None]
-    for k in range(velocity.shape[2]):
-        v = velocity[space.elements, :, k]
-        rate = np.einsum("mqai,mia->mq", gradients[:, :, :2], v)
-        rate += np.einsum("mqi,mi->mq", gradients[:, :, 2], v[..., 0])
-        found = np.einsum("mq,mqi->mi", weights * rate, value)
-        out[:, k] = np.bincount(space.elements.ravel(), found.ravel(), len(out))
-    return out
+    v = velocity[space.elements]
+    rate = np.einsum("mqai,mia->mq", gradients[:, :, :2], v)
+    rate += np.einsum("mqi,mi->mq", gradients[:, :, 2], v[..., 0])
+    found = np.einsum("mq,mqi->mi", weights * rate, value)
+    count = len(space.nodes)
+    return np.bincount(space.elements.ravel(), found.ravel(), count).astype(np.float64)
 
 
 class Interior:

@@ -261,25 +261,27 @@ def harmonic_result(
             for p, close in zip(singularities, solution.close, strict=True)
         ),
         left_out=_left_out(around, loads, top),
-        high=_high(around, fields.points, among, top),
+        high=high_places(around, fields.points, among, top),
         quiet=solution.quiet,
         energy=fields.energy,
     )
     return replace(result, interval=interval(fields, around, mine)) if result.governed else result
 
 
-def _high(
-    around: Circumference, points: Floats, among: Mask, top: Top
+def high_places(
+    around: Circumference, points: Floats, among: Mask, top: Top, least: float = HIGH
 ) -> tuple[tuple[float, float], ...]:
-    """Points (r, z) where stress is nearly the maximum, the highest first, well apart."""
+    """Points (r, z) where stress is nearly the maximum, `least` of it at least, the highest first,
+    well apart.
+    """
     rows = np.flatnonzero(among)
     now = slice(top.instant, top.instant + 1)
     for bound in (around.reach, around.bound):
-        rows = rows[bound(rows, now)[:, 0] >= HIGH * top.value]
+        rows = rows[bound(rows, now)[:, 0] >= least * top.value]
     value, _ = around.round(rows, np.full(len(rows), top.instant))
     found: list[Floats] = []
     for k in np.argsort(-value, kind="stable"):
-        if value[k] < HIGH * top.value or len(found) == MOST_HIGH:
+        if value[k] < least * top.value or len(found) == MOST_HIGH:
             break
         at = points[rows[k]]
         if all(np.hypot(*(at - other)) > APART * at[0] for other in found):

@@ -10,7 +10,7 @@ the same edges; the rate is by differences of fourth order, to 1e-10.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,10 +37,30 @@ class OtherShapeError(Exception):
     """With the dimension a little larger or smaller the outline has other edges."""
 
 
+PLACES = -2.0, -1.0, 1.0, 2.0  # steps at which differences are taken
+
+
 def rate(at: Callable[[float], Floats], step: float) -> Floats:
     """Derivative at 0 by central differences of fourth order."""
-    near, far = at(step) - at(-step), at(2.0 * step) - at(-2.0 * step)
-    return np.asarray((8.0 * near - far) / (12.0 * step))
+    return rate_of([at(x * step) for x in PLACES], step)
+
+
+def rate_of(values: Sequence[Floats], step: float) -> Floats:
+    """The same of values at the places."""
+    first, second, third, fourth = values
+    return np.asarray((8.0 * (third - second) - (fourth - first)) / (12.0 * step))
+
+
+@dataclass(frozen=True)
+class NodeMotion:
+    """Of the outline's nodes, (B, 2) m per m of a dimension. pins: with the dimension at PLACES
+    times `step` (m) more.
+    """
+
+    dimension: Dimension
+    velocity: Floats
+    pins: tuple[Pin, ...]
+    step: float
 
 
 class OutlineNodes:
@@ -70,17 +90,19 @@ class OutlineNodes:
             raise OtherShapeError
         return np.concatenate([p.at(outline[p.edge], self._of(p, outline)) for p in self._places])
 
-    def velocity(self, dimension: Dimension) -> tuple[Floats, float]:
-        """Of every node, (B, 2), per length of a dimension; and the step (m) of the differences.
+    def motion(self, dimension: Dimension) -> NodeMotion:
+        """Of every node with a dimension.
 
-        Raises: OtherShapeError where there is no such pin on both sides of the dimension.
+        Raises: OtherShapeError where there is no such pin on both sides of it.
         """
         for part in STEPS:
             step = part * dimension.value
             try:
-                return rate(lambda x: self.at(dimension.changed(dimension.value + x)), step), step
+                pins = tuple(dimension.changed(dimension.value + x * step) for x in PLACES)
+                velocity = rate_of([self.at(pin) for pin in pins], step)
             except (GeometryError, OtherShapeError):
                 continue
+            return NodeMotion(dimension, velocity, pins, step)
         raise OtherShapeError
 
     def _cuts(self, edge: Edge) -> list[tuple[int, float]]:

@@ -21,7 +21,10 @@ from pinstress.analysis.plan import Plan
 from pinstress.model.tasks import Task
 from reports.data.changes import Change
 from reports.data.results import Field, LandingRange
+from reports.data.sensitivities import PinSensitivities
 from reports.data.surface import Surface
+
+DRAWN = "profile", "meridian", "bore_meridian", "band"  # whose keys sensitivities have
 
 
 @dataclass(frozen=True)
@@ -29,7 +32,8 @@ class Solved:
     """A task's peaks in the order of its cases, and what else reports and CalculiX have to say.
     joints: in the same order, empty where nothing is in contact. change: what would make the pin
     reach its factor, if it does not. histories: of stress at its critical points. before: whether
-    an earlier run found it. limits: limit loads, in the order of the cases too.
+    an earlier run found it. limits: limit loads, in the order of the cases too. sensitivities: of
+    the worst case, or of all.
     """
 
     peaks: tuple[Peak, ...]
@@ -42,6 +46,7 @@ class Solved:
     histories: tuple[PointHistory, ...] = ()
     before: bool = False
     limits: tuple[LimitLoad | None, ...] = ()
+    sensitivities: tuple[PinSensitivities, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -66,6 +71,7 @@ def question(plan: Plan, task: Task) -> object:
     check = study.table.beam_check if task is plan.checked else None
     return (
         _shape(task.pin),
+        study.table.pin[task.pin.name].model_dump(include=set(DRAWN)),
         task.clamps,
         task.lugs,
         task.surroundings,
