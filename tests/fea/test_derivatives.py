@@ -210,10 +210,9 @@ def test_of_bars(force: tuple[float, ...], moment: tuple[float, ...], power: int
     powers = {
         one.key: one.value / ours.maximum * ours.by_dimension[one.key] for one in dimensions(pin)
     }
-    assert abs(powers.pop("profile[1].length")) < 1e-5
-    length = powers.pop("profile[2].length")
-    assert abs(length) < 1e-2  # the load begins near the fillet
-    assert sum(powers.values()) == pytest.approx(power, abs=abs(length) + 1e-5)
+    for length in ("profile[1].length", "profile[2].length"):
+        assert abs(powers.pop(length)) < 0.01, length  # what stretching the mesh does
+    assert sum(powers.values()) == pytest.approx(power, abs=0.02)
     assert power - 1.0 < powers["profile[1].diameter"] < power + 0.5
     assert powers["fillet"] < -0.05
 
