@@ -63,7 +63,7 @@ def _section(size: SectionSize) -> tuple[int, float, float, float]:
     averaged, fitted = (
         (matrix @ sampled)[:, :, None]
         for matrix in (
-            extension(space.elements, space._samples, ElementTriP2.doflocs.T),
+            extension(space.elements, space.sampled_at, ElementTriP2.doflocs.T),
             continuation(space.samples, space.nodes),
         )
     )

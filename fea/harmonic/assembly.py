@@ -40,9 +40,9 @@ class Section:
 
     def __init__(self, section: MeridianMesh, parts: Ints | None = None) -> None:
         self.section, self._parts = section, parts
-        self._samples = get_quadrature(RefTri, 2)[0]  # three, where strains are most exact
+        self.sampled_at = get_quadrature(RefTri, 2)[0]  # three, where strains are most exact
         X, W = get_quadrature(RefTri, 4)
-        points = np.hstack([X, self._samples]), np.append(W, np.zeros(self._samples.shape[1]))
+        points = np.hstack([X, self.sampled_at]), np.append(W, np.zeros(self.sampled_at.shape[1]))
         self.basis = Basis(section.mesh, ElementTriP2(), quadrature=points)
         self._quadrature, self._sampled_points = slice(0, len(W)), slice(len(W), None)
 
@@ -76,8 +76,21 @@ class Section:
         """Areas times r at all points of the basis (M, Q), m^3."""
         return np.asarray(self.basis.dx * self._singularities[0])
 
+    @property
+    def quadrature(self) -> tuple[Floats, Floats]:
+        """Where integrals are taken, Q points of each element: N,r N,z and N / r there (M, Q, 3, 6)
+        in 1/m, and the areas times r (M, Q), m^3, that count for them.
+        """
+        here = self._quadrature
+        return self._gradients[:, here], self._weights[:, here]
+
+    @property
+    def radii(self) -> Floats:
+        """r of those points, (M, Q), m."""
+        return np.asarray(self._singularities[0][:, self._quadrature])
+
     @cached_property
-    def _pattern(self) -> Pattern:
+    def pattern(self) -> Pattern:
         return Pattern(self.elements, int(self.basis.N))
 
     def stiffness(self, materials: Material | Sequence[Material], n: int) -> sp.csr_matrix:
@@ -86,11 +99,11 @@ class Section:
         """
         each = (materials,) if isinstance(materials, Material) else materials
         E = strain_map(n)
-        blocks = np.zeros((len(self._pattern), 9))
+        blocks = np.zeros((len(self.pattern), 9))
         for products, material in zip(self._products, each, strict=True):
             by = np.einsum("sca,st,tdb->abcd", E, around(n) * elasticity(material), E)
             blocks += products @ by.reshape(9, 9)
-        return self._pattern.matrix(blocks.reshape(-1, 3, 3))
+        return self.pattern.matrix(blocks.reshape(-1, 3, 3))
 
     @cached_property
     def _products(self) -> list[Floats]:
@@ -102,10 +115,10 @@ class Section:
         x = parts.reshape(len(parts), -1, 3, 6).transpose(0, 3, 2, 1).reshape(len(parts), 18, -1)
         products = (x @ x.swapaxes(1, 2)).reshape(-1, 6, 3, 6, 3).swapaxes(2, 3)
         if self._parts is None:
-            return [self._pattern.sums(products).reshape(-1, 9)]
+            return [self.pattern.sums(products).reshape(-1, 9)]
         masks = (self._parts == k for k in range(int(self._parts.max()) + 1))
         each = (products * mask[:, None, None, None, None] for mask in masks)
-        return [self._pattern.sums(own).reshape(-1, 9) for own in each]
+        return [self.pattern.sums(own).reshape(-1, 9) for own in each]
 
     @cached_property
     def integrals(self) -> Floats:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from copy import copy
+
 import numpy as np
 
 from fea.core.tractions import Traction
@@ -37,6 +39,17 @@ class Outline:
             name: np.arange(end - len(found), end)
             for (name, found), end in zip(edges.items(), ends, strict=True)
         }
+
+    def moved(self, nodes: Floats) -> Outline:
+        """The same edges on a section whose nodes are elsewhere, (N, 2), m."""
+        other = copy(self)
+        other._nodes, other._kept = nodes, {}
+        return other
+
+    @property
+    def every_node(self) -> Floats:
+        """Of the section, (N, 2): r, z in m."""
+        return self._nodes
 
     def constrained(self, surfaces: tuple[str, ...]) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
         """(E,) which edges are on one of the surfaces."""

@@ -41,12 +41,14 @@ PATCH = 2.0  # elements of the first mesh about such a place, in which all are r
 class HarmonicSolution:
     """Fields on one mesh, how fine (of the diameter) that mesh is at each singularity, and
     Poisson's ratio. quiet: fillets where the mesh is coarse (fea.harmonic.quiet_corners).
-    elsewhere: stress (P, 6, K) Pa at the points that were asked for.
+    elsewhere: stress (P, 6, K) Pa at the points that were asked for. ends: where pressures end on
+    the outline, (r, z) in m.
     """
 
     fields: MeridianFields
     close: tuple[float, ...]
     nu: float
+    ends: tuple[tuple[float, float], ...] = ()
     quiet: tuple[int, ...] = ()
     elsewhere: Floats = field(default_factory=lambda: np.zeros((0, 6, 0)))
 
@@ -154,10 +156,11 @@ def harmonic_solution(
         finer.append(Grade((singularity,), now, PATCH * coarse, SIZE.growth))
     factor = ratio ** (level * ELSEWHERE if high else level)
 
+    loads = _unit_loads(cases) + problem.besides
+    ends = _ends(pin, problem.clamps, loads)
+
     def solved(size: SectionSize, grades: list[Grade], quiet: tuple[int, ...]) -> MeridianFields:
         places, read = spots(factor), np.concatenate([elsewhere, _rims(pin, singularities)])
-        loads = _unit_loads(cases) + problem.besides
-        ends = _ends(pin, problem.clamps, loads)
 
         def model() -> HarmonicModel:
             section = meridian_mesh(pin, size, places, grades, quiet)
@@ -175,7 +178,7 @@ def harmonic_solution(
             known[0] if known else quiet_corners(pin, solved(SIZE, [], quiet), cases, singularities)
         )
     fields, more = _apart(solved(SIZE.finer(factor), finer, quiet), len(elsewhere))
-    return HarmonicSolution(fields, close, material.poisson_ratio, quiet, more)
+    return HarmonicSolution(fields, close, material.poisson_ratio, ends, quiet, more)
 
 
 def _apart(fields: MeridianFields, count: int) -> tuple[MeridianFields, Floats]:
@@ -264,7 +267,8 @@ class HarmonicAnswer:
     """What a solution says of any loads made of its unit loads (fea.core.solution)."""
 
     def __init__(self, solution: HarmonicSolution, singularities: tuple[Singularity, ...]) -> None:
-        self.fields, self.singularities = solution.fields, singularities
+        self.solution, self.singularities = solution, singularities
+        self.fields = solution.fields
 
     def maxima(self, loads: AnyLoads, least: float = 0.0) -> Floats:
         """Largest von Mises stress (T,) Pa at every instant outside the singularities; `least`
@@ -307,25 +311,27 @@ def harmonic_result(
             for p, close in zip(singularities, solution.close, strict=True)
         ),
         left_out=_left_out(around, loads, top),
-        high=_high(around, fields.points, among, top),
+        high=high_places(around, fields.points, among, top),
         quiet=solution.quiet,
         energy=fields.energy,
     )
     return replace(result, interval=interval(fields, around, mine)) if result.governed else result
 
 
-def _high(
-    around: Circumference, points: Floats, among: Mask, top: Top
+def high_places(
+    around: Circumference, points: Floats, among: Mask, top: Top, least: float = HIGH
 ) -> tuple[tuple[float, float], ...]:
-    """Points (r, z) where stress is nearly the maximum, the highest first, well apart."""
+    """Points (r, z) where stress is nearly the maximum, `least` of it at least, the highest first,
+    well apart.
+    """
     rows = np.flatnonzero(among)
     now = slice(top.instant, top.instant + 1)
     for bound in (around.reach, around.bound):
-        rows = rows[bound(rows, now)[:, 0] >= HIGH * top.value]
+        rows = rows[bound(rows, now)[:, 0] >= least * top.value]
     value, _ = around.round(rows, np.full(len(rows), top.instant))
     found: list[Floats] = []
     for k in np.argsort(-value, kind="stable"):
-        if value[k] < HIGH * top.value or len(found) == MOST_HIGH:
+        if value[k] < least * top.value or len(found) == MOST_HIGH:
             break
         at = points[rows[k]]
         if all(np.hypot(*(at - other)) > APART * at[0] for other in found):

@@ -14,6 +14,7 @@ from fea.core.pin_loads import UnitLoad
 from fea.core.strain_energy import StrainEnergy
 from fea.singular.singularities import Singularity, outside
 from geometry.arrays import Floats, Ints, Mask
+from geometry.mesh.section_mesh import MeridianMesh
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,7 @@ class MeridianFields:
     triangles: (M, 3) of points, which fill the section, if the model has such. unread: points whose
     stress is too rough to look for a maximum among (fea.harmonic.pressure_edge). forces: (3 D, K)
     of those D points along r, theta and z, N, that did the work of the loads, integrated about the
-    axis.
+    axis. mesh: of the section, if the model has one.
     """
 
     points: Floats
@@ -39,6 +40,7 @@ class MeridianFields:
     triangles: Ints = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int64))
     unread: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     forces: sp.csc_matrix | None = None
+    mesh: MeridianMesh | None = None
 
     def joined(self, other: MeridianFields) -> MeridianFields:
         """With other loads' fields on the same points."""

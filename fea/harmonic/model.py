@@ -49,7 +49,7 @@ class HarmonicBody:
 
     def forces(self, n: int, parts: Sequence[tuple[Traction, ...]]) -> Floats:
         """Forces on the unknowns (unknowns, K) of K sums of tractions of harmonic n."""
-        return np.stack([_generalised(self.outline.forces(part, n)) for part in parts], axis=1)
+        return np.stack([generalised(self.outline.forces(part, n)) for part in parts], axis=1)
 
     def displace(self, n: int, forces: Floats, moved: Floats | None = None) -> Floats:
         """Unknowns (unknowns, K) of harmonic n under forces on them, and motions of clamps."""
@@ -185,6 +185,7 @@ class HarmonicModel(HarmonicBody):
             read.triangles,
             unread(read.jumps, read.points, read.skin),
             read.at_points(applied),
+            self.space.section,
         )
 
     def _moved(self, n: int, loads: tuple[UnitLoad, ...], here: Ints) -> Floats | None:
@@ -198,39 +199,57 @@ class HarmonicModel(HarmonicBody):
 
     def _applied(self, n: int, loads: list[UnitLoad]) -> tuple[Floats, Floats]:
         """Nodal forces (unknowns, K) and tractions at the outline's nodes (E, 3, 3, K)."""
-        parts = [tractions_of(self.pin, load) for load in loads]
-        forces, tractions = self._forces(n, parts)
-        for k, load in enumerate(loads):
-            if load.kind == "body":
-                forces[:, k] = self._body_force(n)
-        if self.clamps or n > 1:
-            return forces, tractions
-        modes = rigid_motions(self.space.nodes, n)
-        for shears in (True, False):
-            here = [k for k, load in enumerate(loads) if load.shears == shears]
-            phases = (0,) if n else (0, 1)
-            closing = [c for p in phases for c in closing_tractions(self.pin, n, p, not shears)]
-            against, spread = self._forces(n, closing)
-            share = -np.linalg.solve(modes.T @ against, modes.T @ forces[:, here])
-            forces[:, here] += against @ share
-            tractions[..., here] += spread @ share
+        return applied(self, self.pin, self.outline, n, loads)
+
+
+def applied(
+    model: HarmonicModel,
+    pin: Pin,
+    outline: Outline,
+    n: int,
+    loads: Sequence[UnitLoad],
+    integrals: Floats | None = None,
+) -> tuple[Floats, Floats]:
+    """Nodal forces (unknowns, K) and tractions at the outline's nodes (E, 3, 3, K) of unit loads of
+    harmonic n on a pin like the model's and its section, whose nodes are elsewhere. integrals: of
+    its shape functions (Section.integrals); those of the model by default.
+    """
+
+    def spread(parts: Sequence[tuple[Traction, ...]]) -> tuple[Floats, Floats]:
+        forces = [generalised(outline.forces(part, n)) for part in parts]
+        return np.stack(forces, axis=1), np.stack([outline.traction(p) for p in parts], axis=3)
+
+    forces, tractions = spread([tractions_of(pin, load) for load in loads])
+    for k, load in enumerate(loads):
+        if load.kind == "body":
+            within = model.space.integrals if integrals is None else integrals
+            forces[:, k] = body_force(model.material, n, within)
+    if model.clamps or n > 1:
         return forces, tractions
-
-    def _forces(self, n: int, parts: Sequence[tuple[Traction, ...]]) -> tuple[Floats, Floats]:
-        return self.forces(n, parts), np.stack([self.outline.traction(p) for p in parts], axis=3)
-
-    def _body_force(self, n: int) -> Floats:
-        """Of the pin's mass in a field of 1 m/s^2 along x, or along z where n = 0."""
-        if self.material.density is None:
-            raise SolveError(
-                f"material {self.material.name} has no density, which weight and inertia need",
-                "no-density",
-            )
-        amplitude = self.material.density * (ALONG_X if n else ALONG_Z)
-        return _generalised(around(n) * self.space.integrals[:, None] * amplitude)
+    modes = rigid_motions(outline.every_node, n)
+    for shears in (True, False):
+        here = [k for k, load in enumerate(loads) if load.shears == shears]
+        phases = (0,) if n else (0, 1)
+        closing = [c for p in phases for c in closing_tractions(pin, n, p, not shears)]
+        against, over = spread(closing)
+        share = -np.linalg.solve(modes.T @ against, modes.T @ forces[:, here])
+        forces[:, here] += against @ share
+        tractions[..., here] += over @ share
+    return forces, tractions
 
 
-def _generalised(forces: Floats) -> Floats:
+def body_force(material: Material, n: int, integrals: Floats) -> Floats:
+    """Of a pin's mass in a field of 1 m/s^2 along x, or along z where n = 0."""
+    if material.density is None:
+        raise SolveError(
+            f"material {material.name} has no density, which weight and inertia need",
+            "no-density",
+        )
+    amplitude = material.density * (ALONG_X if n else ALONG_Z)
+    return generalised(around(n) * integrals[:, None] * amplitude)
+
+
+def generalised(forces: Floats) -> Floats:
     """Forces on the unknowns p, m, w of nodal forces (N, 3) along r, theta and z."""
     R, T, Z = forces.T
     return np.stack([R + T, R - T, Z], axis=1).ravel()

@@ -91,20 +91,30 @@ def _jump(space: Section, outline: Outline, material: Material, before: int) -> 
         [outline.nodes[before, 0], outline.nodes[before, 1], outline.nodes[after, 1]]
     ]
     spacing = float(max(np.linalg.norm(singularity - first), np.linalg.norm(last - singularity)))
-    along = (last - first) / np.linalg.norm(last - first)
-    normal = np.array([along[1], -along[0]])
     distance = np.hypot(*(space.samples - singularity).T)
     far = np.flatnonzero(distance > TOUCHED * spacing)
     nearest = far[np.argsort(distance[far], kind="stable")[:SAMPLES]]
-    weights = at_one_place(space.samples[nearest] - singularity, np.ones(len(nearest)))
-    x, y = np.stack([along, -normal]) @ (space.samples[nearest] - singularity).T
-    nu = material.poisson_ratio
+    normal, weights, field = at_edge(
+        (first, singularity, last), space.samples[nearest], material.poisson_ratio
+    )
+    r, z = (float(x) for x in singularity)
+    return Jump(r, z, before, after, normal, UNREAD * spacing, nearest, weights, field)
+
+
+def at_edge(
+    nodes: tuple[Floats, Floats, Floats], samples: Floats, nu: float
+) -> tuple[Floats, Floats, Floats]:
+    """Normal (2,), weights (S,) and field (D, 6), as a Jump has them, where the middle one of three
+    nodes is, each (2,), m, of samples (S, 2), m.
+    """
+    first, middle, last = nodes
+    along = (last - first) / np.linalg.norm(last - first)
+    normal = np.array([along[1], -along[0]])
+    weights = at_one_place(samples - middle, np.ones(len(samples)))
+    x, y = np.stack([along, -normal]) @ (samples - middle).T
     there = _field(np.arctan2(y, x), along, nu)
     field = _field(np.linspace(0.0, np.pi, DIRECTIONS), along, nu)
-    r, z = (float(x) for x in singularity)
-    return Jump(
-        r, z, before, after, normal, UNREAD * spacing, nearest, weights, field - weights @ there
-    )
+    return normal, weights, field - weights @ there
 
 
 def _field(chi: Floats, along: Floats, nu: float) -> Floats:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
@@ -62,15 +63,10 @@ class Reading:
         stresses.extend(jump.stress(sampled, traction) for jump in self.jumps)
         return np.concatenate(displacements), np.concatenate(stresses)
 
-    @property
+    @cached_property
     def rows(self) -> Ints:
         """(N,) which of the points is at each node."""
-        row = np.zeros(len(self.space.nodes), dtype=np.int64)
-        row[self.inner] = self.skin + np.arange(len(self.inner))
-        first = len(AT) * np.arange(len(self.outline.nodes))
-        for node, at in ((2, len(AT) // 2), (1, len(AT) - 1), (0, 0)):
-            row[self.outline.nodes[:, node]] = first + at
-        return row
+        return points_of_nodes(self.outline, len(self.space.nodes))
 
     def at_points(self, forces: Floats) -> sp.csc_matrix:
         """Forces (N, 3, K) on the nodes as forces (3 D, K) on the points that have a
@@ -85,6 +81,17 @@ class Reading:
     def triangles(self) -> Ints:
         """(M, 3) of the points, which fill the section."""
         return np.asarray(self.rows[self.space.elements[:, :3]])
+
+
+def points_of_nodes(outline: Outline, count: int) -> Ints:
+    """(N,) which of a reading's points is at each of `count` nodes."""
+    row = np.zeros(count, dtype=np.int64)
+    inner = np.setdiff1d(np.arange(count), outline.nodes)
+    row[inner] = len(AT) * len(outline.nodes) + np.arange(len(inner))
+    first = len(AT) * np.arange(len(outline.nodes))
+    for node, at in ((2, len(AT) // 2), (1, len(AT) - 1), (0, 0)):
+        row[outline.nodes[:, node]] = first + at
+    return row
 
 
 def reading(

@@ -50,20 +50,36 @@ def skin(
     Pa, at the ends and middle of the outline's edges. On an axis (r = 0) stresses are finite and
     mean nothing.
     """
-    x, moved = space.nodes[outline.nodes], u[outline.nodes]
+    x = space.nodes[outline.nodes]
+    return on_edges(
+        material, n, x, u[outline.nodes], traction, smooth_neighbours(outline, x, traction)
+    )
+
+
+def on_edges(
+    material: Material,
+    n: Ints | int,
+    x: Floats,
+    moved: Floats,
+    traction: Floats,
+    neighbours: tuple[Ints, Ints],
+) -> Skin:
+    """The same of edges (E, 3, 2) whose nodes are `moved` (E, 3, 3, K), with those that go on
+    smoothly before and after each (`smooth_neighbours`).
+    """
     at = np.einsum("qi,eia->eqa", shapes(AT), x)
     tangent = np.einsum("qi,eia->eqa", slopes(AT), x)
     tangent /= np.linalg.norm(tangent, axis=2, keepdims=True)
     U = np.einsum("qi,eiak->eqak", shapes(AT), moved)
     r = np.maximum(at[..., 0], 1e-6 * at[..., 0].max())[..., None]
-    stretch, shear = _strains(outline, n, x, moved, traction)
+    stretch, shear = _strains(neighbours, n, x, moved)
     e_tt = (U[..., 0, :] + n * U[..., 1, :]) / r
     applied = np.einsum("qi,eiak->eqak", shapes(AT), traction)
     return Skin(at, tangent, U, _stress(material, tangent, stretch, e_tt, shear, applied))
 
 
 def _strains(
-    outline: Outline, n: Ints | int, x: Floats, moved: Floats, traction: Floats
+    neighbours: tuple[Ints, Ints], n: Ints | int, x: Floats, moved: Floats
 ) -> tuple[Floats, Floats]:
     """e_ss and 2 e_st at the points, (E, 5, K) each; both are zero in rigid motions."""
     at = np.array([-_GAUSS, _GAUSS])
@@ -81,7 +97,7 @@ def _strains(
     weights = np.stack([(1.0 - AT / _GAUSS) / 2.0, (1.0 + AT / _GAUSS) / 2.0], axis=1)
     out = np.einsum("pq,eqck->epck", weights, value)
     half = np.linalg.norm(np.einsum("qi,eia->eqa", slopes(np.zeros(1)), x), axis=2)[:, 0]
-    before, after = _neighbours(outline, x, traction)
+    before, after = neighbours
     a, c = half * _GAUSS, half * (1.0 - _GAUSS)
     left, right = before >= 0, after >= 0
 
@@ -103,7 +119,7 @@ def _strains(
     return out[:, :, 0], out[:, :, 1]
 
 
-def _neighbours(outline: Outline, x: Floats, traction: Floats) -> tuple[Ints, Ints]:
+def smooth_neighbours(outline: Outline, x: Floats, traction: Floats) -> tuple[Ints, Ints]:
     """Edges before and after each (E,) across which the surface and its load go on smoothly; -1
     where they do not.
     """

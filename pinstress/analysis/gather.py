@@ -31,6 +31,7 @@ from pinstress.study.inputs import inputs
 from pinstress.study.published_tables import Published, read_published
 from reports.data import results as plain
 from reports.data.changes import Change
+from reports.data.sensitivities import PinSensitivities
 
 
 def results_of(plan: Plan, found: list[Solved]) -> plain.Results:
@@ -68,6 +69,7 @@ def results_of(plan: Plan, found: list[Solved]) -> plain.Results:
         landing=tuple(r for made in found for r in made.landing),
         surfaces=tuple(surface for made in found for surface in made.surfaces),
         changes=_worst_changes(found),
+        sensitivities=_in_order(found, pins, cases, plan.sensitive),
         histories=tuple(history for made in found for history in made.histories),
         fatigue=fatigue,
         margins=(*results.margins, *fatigue_margins(fatigue)),
@@ -79,6 +81,16 @@ def _worst_changes(found: list[Solved]) -> tuple[Change, ...]:
     """One for each pin, for the worst of its cases; the pin with the worst first."""
     rows = sorted((x.change for x in found if x.change), key=lambda change: change.load_factor)
     return tuple({change.pin: change for change in reversed(rows)}.values())[::-1]
+
+
+def _in_order(
+    found: list[Solved], pins: list[str], cases: list[str], every: bool
+) -> tuple[PinSensitivities, ...]:
+    """As the rows are; without `every` one for each pin, for the worst of its cases."""
+    rows = [row for made in found for row in made.sensitivities]
+    if not every:
+        rows = list({row.pin: row for row in sorted(rows, key=lambda row: row.maximum)}.values())
+    return tuple(sorted(rows, key=lambda row: (pins.index(row.pin), cases.index(row.case))))
 
 
 def _in_study_units(results: plain.Results, study: Study) -> plain.Results:

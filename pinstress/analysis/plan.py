@@ -41,8 +41,8 @@ class Plan:
     """All that is known before anything is solved: every input is read and found usable.
 
     checked: the task whose pin the beam check compares, if any. also: which fields are wanted
-    in addition to those of the model at the governing instant. sensitive: whether to find what
-    dimensions do to the factors of pins that fail.
+    in addition to those of the model at the governing instant. sensitive: whether sensitivities of
+    all cases are wanted, and not of each pin's worst one alone.
     """
 
     study: Study

@@ -29,6 +29,7 @@ from pinstress.model.pins import shape_notes
 from pinstress.model.tasks import Task
 from pinstress.processes.pool import Died, Job, Progress, Tell, side_by_side
 from pinstress.remedies.changes import change
+from pinstress.remedies.sensitivities import sensitivities
 from pinstress.study.file import Study
 from reports.data.in_units import Unit, in_units
 from reports.data.results import Field
@@ -181,8 +182,10 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
     surfaces = surfaces_of(plan.loads, task, found, pressures)
     histories = stress_histories(task.pin.name, found)
     tell(f"pin {task.pin.name}, what to change")
-    sensitive = plan.sensitive and study.table.pin[task.pin.name].profile is not None
-    to_do = change(plan.asked, task, found, STEPS[study.table.units] if sensitive else None)
+    to_do = change(plan.asked, task, found)
+    tell(f"pin {task.pin.name}, sensitivities")
+    step = STEPS[study.table.units]
+    sensitive = sensitivities(study, plan.asked, task, found, step, plan.sensitive)
     limits = limit_loads(plan, task, every, tell)
     return Solved(
         peaks,
@@ -193,6 +196,7 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
         change=to_do,
         histories=histories,
         limits=limits,
+        sensitivities=sensitive,
     )
 
 

@@ -22,7 +22,10 @@ from pinstress.analysis.plan import Plan
 from pinstress.model.tasks import Task
 from reports.data.changes import Change
 from reports.data.results import Field, LandingRange
+from reports.data.sensitivities import PinSensitivities
 from reports.data.surface import Surface
+
+DRAWN = "profile", "meridian", "bore_meridian", "band"  # whose keys sensitivities have
 
 
 @dataclass(frozen=True)
@@ -30,7 +33,8 @@ class Solved:
     """A task's peaks in the order of its cases, and what else reports and CalculiX have to say.
     joints: in the same order, empty where nothing is in contact. change: what would make the pin
     reach its factor, if it does not. histories: of stress at its critical points. before: whether
-    an earlier run found it. limits: limit loads, in the order of the cases too.
+    an earlier run found it. limits: limit loads, in the order of the cases too. sensitivities: of
+    the worst case, or of all.
     """
 
     peaks: tuple[Peak, ...]
@@ -43,6 +47,7 @@ class Solved:
     histories: tuple[PointHistory, ...] = ()
     before: bool = False
     limits: tuple[LimitLoad | None, ...] = ()
+    sensitivities: tuple[PinSensitivities, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -67,6 +72,7 @@ def question(plan: Plan, task: Task) -> object:
     check = study.table.beam_check if task is plan.checked else None
     return (
         shape_of(task.pin),
+        study.table.pin[task.pin.name].model_dump(include=set(DRAWN)),
         task.clamps,
         task.lugs,
         task.surroundings,

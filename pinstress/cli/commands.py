@@ -148,7 +148,7 @@ def commands() -> None:
 @click.option(
     "--sensitivities",
     is_flag=True,
-    help="Also find what a little more of each dimension does to the factors of pins that fail.",
+    help="Sensitivities of every pin in all cases, not only in its worst one.",
 )
 @click.option(
     "--fail-on-miss",

@@ -56,7 +56,7 @@ class Wanted:
     opinion; fields (vtk, as --vtk names them); results.json on stdout instead of the table; no
     progress and no notes; the report opened.
     jobs: number of parallel processes, default the number of cores. cached: whether results in the
-    user's cache may be reused. sensitive: whether to find what dimensions do to the factors.
+    user's cache may be reused. sensitive: whether sensitivities are found in all cases.
     strict: whether a pin that misses its requirements changes the exit status.
     """
 

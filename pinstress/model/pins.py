@@ -143,7 +143,7 @@ def outline(pin: PinLike) -> list[tuple[float, float, float, str, str]]:
 
 
 def _turned(name: str, p: PinTable) -> Pin | CutPin:
-    profile = _by_corners(name, p) if p.profile is None else _by_segments(name, p)
+    profile = by_corners(name, p) if p.profile is None else _by_segments(name, p)
     if not (p.hole or p.flat):
         return profile
     holes = tuple(Hole(h.z, h.diameter, h.angle) for h in p.hole)
@@ -172,7 +172,8 @@ def _at_ends(radius: float | tuple[float, float]) -> tuple[float, float]:
     return radius if isinstance(radius, tuple) else (0.0, radius)
 
 
-def _by_corners(name: str, p: PinTable) -> Pin:
+def by_corners(name: str, p: PinTable) -> Pin:
+    """A pin whose outline is given by its corners. Raises: GeometryError."""
     outside, bore = ([Bend(*x) for x in line or ()] for line in (p.meridian, p.bore_meridian))
     stripes = (Stripe(n, *b.z, b.connection) for n, b in p.band.items() if b.z is not None)
     return with_stripes(pin_of_polyline(name, outside, bore), stripes)

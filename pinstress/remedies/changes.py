@@ -21,7 +21,6 @@ from geometry import GeometryError, Pin
 from pinstress.model.pins import slenderness
 from pinstress.model.tasks import Task
 from pinstress.remedies.secant import NoSizeError, smallest
-from pinstress.remedies.sensitivities import sensitivities
 from reports.data.changes import Change
 
 FIRST = Rung("harmonic")
@@ -41,12 +40,9 @@ class Failing:
     part: float
 
 
-def change(
-    asked: Asked, task: Task, solutions: tuple[Solution, ...], step: float | None
-) -> Change | None:
+def change(asked: Asked, task: Task, solutions: tuple[Solution, ...]) -> Change | None:
     """What to change of a pin, for the worst of its cases; None where none is below the required
-    factor (below yield where none is required). step: of a dimension (m) for sensitivities, None
-    without them.
+    factor (below yield where none is required).
     """
     strength, required = task.material.yield_strength, asked.required or 1.0
     worst = max(solutions, key=lambda s: s.peak.max_von_mises or 0.0)
@@ -71,9 +67,6 @@ def change(
         impulse_time=None if impulse is None or not share else impulse.time / share,
         given_time=None if impulse is None else impulse.time,
         singular=peak.verdict == "singular",
-        sensitivities=sensitivities(problem, required * failing.part, step)
-        if step and problem
-        else (),
     )
 
 

@@ -1,117 +1,218 @@
-"""What a little more of each dimension of a pin does to its factor, by differences.
+"""What a little more of anything does to a pin's factor of safety: true derivatives.
 
-The pin is solved again at the governing instant with 5 % more and less of a dimension, on two
-meshes. Maxima of different shapes are read on different meshes, whose noise is in their difference;
-by how much the two meshes disagree is taken for the error, and a dimension whose effect is smaller
-than that is left out.
+They are of the reported maximum on its own mesh (fea.derivatives). Where a beam answers, those of
+the harmonic model's first mesh are taken, relative to its own maximum.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from itertools import groupby
-from typing import Any
 
-from fea.single_mesh import Problem, Rung, result_on
-from geometry import GeometryError, Pin
-from reports.data.changes import Sensitivity
+from fea.asked import Asked
+from fea.beam.model import BeamAnswer
+from fea.core.linear_solver import SolveError
+from fea.core.material import Material
+from fea.core.pin_loads import PinLoads
+from fea.derivatives.derivatives import derivatives
+from fea.derivatives.records import Derivatives, SolvedCase
+from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
+from fea.refine import STEP, Solution, singularities_of
+from fea.solve_pin import solve_pin
+from geometry import Pin
+from geometry.mesh.gmsh_session import MeshError
+from geometry.shape.dimensions import Dimension
+from pinstress.model.cases import case_loads
+from pinstress.model.mechanism.linkage import linkage
+from pinstress.model.pins import pin as pin_of
+from pinstress.model.tasks import Task, tasks
+from pinstress.remedies.dimensions import dimensions_of
+from pinstress.study.file import Study
+from reports.data.sensitivities import PinSensitivities, Sensitivity
 
-PART = 0.05  # of a dimension, more and less
-LEVELS = 0, 1
-LEAST = 0.01  # power of a dimension that matters
 MOST = 0.1  # of a dimension that its step is at most
+SMALL = 0.01  # step of any other parameter, of its value; of a force, of the largest
+POISSON = 0.01
+IN_LUGS = "in contact with lugs the pressure depends on the shape too; solve the changed study"
+NOT_REVOLVED = "only of bodies of revolution; solve the changed study"
+
+
+def sensitivities(
+    study: Study,
+    asked: Asked,
+    task: Task,
+    solutions: Iterable[Solution],
+    step: float,
+    every: bool = False,
+) -> tuple[PinSensitivities, ...]:
+    """Of a task's worst case, or of every one. step: of a dimension (m) whose effect is shown; a
+    tenth of it, or a hundredth, where that is no small part of the dimension.
+    """
+    found = sorted(
+        (s for s in solutions if s.peak.max_von_mises),
+        key=lambda s: -(s.peak.max_von_mises or 0.0),
+    )
+    dimensions = tuple(dimensions_of(study, task.pin))
+    return tuple(_of_case(asked, task, s, dimensions, step) for s in found[: None if every else 1])
+
+
+def by_key(study: Study, pin: str, case: str) -> dict[str, float]:
+    """The derivative of a pin's largest von Mises stress in a case with respect to each of its
+    dimensions, Pa/m, by their keys in the pin's table: "profile[2].diameter", "profile[1-3].bore"
+    of neighbours that have it in common, "fillet". Dimensions that have none are left out.
+
+    Raises: InputError for bad input; ArithmeticError where the pin cannot be solved; ValueError
+    for a pin in lugs or one that is not a body of revolution.
+    """
+    mechanism = linkage(study) if study.table.mechanism else None
+    (task,) = tasks(study, [pin_of(study, pin)], {case: case_loads(study, case, mechanism)})
+    if task.lugs or not isinstance(task.pin, Pin):
+        raise ValueError(f"pin {pin}: {IN_LUGS if task.lugs else NOT_REVOLVED}")
+    table = study.table.analysis
+    asked = Asked(
+        table.tolerance,
+        table.model,
+        table.goal,
+        table.required_safety_factor,
+        table.excluded_distance,
+    )
+    (found,) = solve_pin(
+        task.pin, task.material, task.clamps, task.loads, asked, between=task.between
+    )
+    made = differentiated(asked, task, found, tuple(dimensions_of(study, task.pin)))
+    return {} if made is None else made.by_dimension
+
+
+def differentiated(
+    asked: Asked, task: Task, solution: Solution, dimensions: tuple[Dimension, ...]
+) -> Derivatives | None:
+    """Of a solution's maximum; None where it has none. Raises: MeshError, SolveError."""
+    peak, pin, answer = solution.peak, task.pin, solution.answer
+    if not peak.max_von_mises or peak.governing is None or not isinstance(pin, Pin):
+        return None
+    clamps = tuple(pin.surface(name) for name in task.clamps)
+    error, history = (peak.own_error or 0.0) / peak.max_von_mises, None
+    if isinstance(answer, HarmonicAnswer):
+        section, zones, history = answer.solution, answer.singularities, solution.loads
+    elif isinstance(answer, BeamAnswer):
+        case = (peak.governing,)
+        zones = singularities_of(pin, task.material, clamps, case, asked.distance)
+        section = harmonic_solution(
+            SectionProblem(pin, task.material, clamps, case, zones), 0, STEP
+        )
+    else:
+        return None
+    solved = SolvedCase(pin, task.material, clamps, peak.governing, section, zones, error, history)
+    return scaled(derivatives(solved, dimensions), peak.max_von_mises)
+
+
+def scaled(found: Derivatives, maximum: float) -> Derivatives:
+    """With another maximum, Pa, and the same relative derivatives."""
+    times = maximum / found.maximum
+    if times == 1.0:
+        return found
+    return replace(
+        found,
+        maximum=maximum,
+        by_dimension={key: times * x for key, x in found.by_dimension.items()},
+        by_force={key: times * x for key, x in found.by_force.items()},
+        by_moment={key: times * x for key, x in found.by_moment.items()},
+        poisson_ratio=times * found.poisson_ratio,
+        density=times * found.density,
+    )
+
+
+def _of_case(
+    asked: Asked, task: Task, solution: Solution, dimensions: tuple[Dimension, ...], step: float
+) -> PinSensitivities:
+    peak = solution.peak
+    maximum = peak.max_von_mises or 0.0
+    factor = peak.safety_factor(task.material.yield_strength)
+    out = PinSensitivities(peak.pin, peak.case, maximum, factor)
+    if task.lugs or not isinstance(task.pin, Pin):
+        return replace(out, note=IN_LUGS if task.lugs else NOT_REVOLVED)
+    try:
+        found = differentiated(asked, task, solution, dimensions)
+    except (MeshError, SolveError) as error:
+        return replace(out, note=str(error))
+    if found is None or peak.governing is None:
+        return replace(out, note=f"not with the {peak.model} model")
+    rows = (
+        *_of_dimensions(found, dimensions, step),
+        *_of_loads(found, peak.governing),
+        *_of_material(found, task.material),
+    )
+    return replace(
+        out,
+        rows=tuple(each.sensitivity(factor) for each in sorted(rows, key=lambda x: -abs(x.effect))),
+        tied_places=found.tied_places,
+        tied_times=found.tied_times,
+        without=tuple(found.without.items()),
+    )
 
 
 @dataclass(frozen=True)
-class Dimension:
-    """A dimension by its key in the pin's table, m; changed: the pin with another value."""
+class _Parameter:
+    """As a Sensitivity; relative: derivative of the factor over the factor."""
 
     key: str
+    kind: str
     value: float
-    changed: Callable[[float], Pin]
+    step: float
+    stress: float
+    relative: float
+
+    @property
+    def effect(self) -> float:
+        """Of the step on the factor, relative."""
+        return self.relative * self.step
+
+    def sensitivity(self, factor: float | None) -> Sensitivity:
+        """Of this factor."""
+        of_factor = None if factor is None else factor * self.relative
+        after = None if factor is None else factor * (1.0 + self.effect)
+        return Sensitivity(
+            self.key, self.kind, self.value, self.step, self.stress, of_factor, after
+        )
 
 
-def sensitivities(problem: Problem, factor: float, step: float) -> tuple[Sensitivity, ...]:
-    """Of the pin's factor to its dimensions, where they exceed their error. step: of a dimension,
-    m; a tenth of it, or a hundredth, where that is no small part of the dimension.
-    """
-    assert isinstance(problem.pin, Pin)
-    found = []
-    for each in _dimensions(problem.pin):
-        try:
-            coarse, fine = (_power(problem, each, level) for level in LEVELS)
-        except (GeometryError, ArithmeticError):  # a shape that cannot be
-            continue
-        if abs(fine) <= max(abs(fine - coarse), LEAST):
-            continue
-        more = step
-        while more > MOST * each.value:
-            more /= 10.0
-        grown = 1.0 + more / each.value
-        error = abs(fine - coarse) * factor * (grown - 1.0)
-        found.append(Sensitivity(each.key, each.value, more, factor * grown**fine, error))
-    return tuple(found)
+def _of_dimensions(
+    found: Derivatives, dimensions: tuple[Dimension, ...], step: float
+) -> Iterator[_Parameter]:
+    for dimension in dimensions:
+        if dimension.key in found.by_dimension:
+            more = step
+            while more > MOST * dimension.value:
+                more /= 10.0
+            stress = found.by_dimension[dimension.key]
+            relative = -stress / found.maximum
+            yield _Parameter(dimension.key, "length", dimension.value, more, stress, relative)
 
 
-def _power(problem: Problem, of: Dimension, level: int) -> float:
-    """Of the dimension, with which the factor grows."""
-    more, less = 1.0 + PART, 1.0 - PART
-    high, low = (
-        result_on(replace(problem, pin=of.changed(times * of.value)), Rung("harmonic", level=level))
-        for times in (more, less)
-    )
-    return math.log(low.maximum / high.maximum) / math.log(more / less)
-
-
-def _dimensions(pin: Pin) -> Iterator[Dimension]:
-    """Those that are not zero; the diameter or bore of neighbours where it is equal is one."""
-    ends = [(k, end) for k in range(len(pin.segments)) for end in (0, 1)]
-    for key, pairs in (
-        ("diameter", [s.diameters for s in pin.segments]),
-        ("bore", [s.bores for s in pin.segments]),
+def _of_loads(found: Derivatives, loads: PinLoads) -> Iterator[_Parameter]:
+    for kind, derivatives_of, given in (
+        ("force", found.by_force, loads.forces[0]),
+        ("moment", found.by_moment, loads.moments[0]),
     ):
-        values = [value for pair in pairs for value in pair]
-        for value, run in groupby(range(len(ends)), values.__getitem__):
-            if value:
-                yield _across(pin, key, value, [ends[i] for i in run])
-    for key in ("length", "fillet"):
-        for k, segment in enumerate(pin.segments):
-            if value := getattr(segment, key):
-                yield _along(pin, key, value, k)
-    if pin.fillet:
-        yield Dimension("fillet", pin.fillet, lambda value: replace(pin, fillet=value))
+        for (surface, axis), stress in derivatives_of.items():
+            value = float(given[loads.surfaces.index(surface), "xyz".index(axis)])
+            step = SMALL * float(abs(given).max())
+            if step:
+                relative = -stress / found.maximum
+                yield _Parameter(f"{kind} {surface} {axis}", kind, value, step, stress, relative)
 
 
-def _across(pin: Pin, key: str, value: float, at: Sequence[tuple[int, int]]) -> Dimension:
-    """Of the ends of segments, (segment, end) from 0, that have it in common."""
-
-    def changed(new: float) -> Pin:
-        segments = list(pin.segments)
-        for k, s in enumerate(segments):
-            outer, inner = list(s.diameters), list(s.bores)
-            for end in (0, 1):
-                if (k, end) in at:
-                    (outer if key == "diameter" else inner)[end] = new
-            segments[k] = s.with_diameters((outer[0], outer[1]), (inner[0], inner[1]))
-        return replace(pin, segments=tuple(segments))
-
-    whole = sorted({k for k, _ in at if (k, 0) in at and (k, 1) in at})
-    if not whole:
-        k, end = at[-1]
-        return Dimension(f"profile[{k + 1}].{key}[{end + 1}]", value, changed)
-    where = f"{whole[0] + 1}" if len(whole) == 1 else f"{whole[0] + 1}-{whole[-1] + 1}"
-    return Dimension(f"profile[{where}].{key}", value, changed)
-
-
-def _along(pin: Pin, key: str, value: float, k: int) -> Dimension:
-    """Of segment k from 0."""
-
-    def changed(new: float) -> Pin:
-        changes: dict[str, Any] = {key: new}
-        segments = list(pin.segments)
-        segments[k] = replace(segments[k], **changes)
-        return replace(pin, segments=tuple(segments))
-
-    return Dimension(f"profile[{k + 1}].{key}", value, changed)
+def _of_material(found: Derivatives, material: Material) -> Iterator[_Parameter]:
+    rho, strength = material.density, material.yield_strength
+    for name, kind, value, step, stress in (
+        ("youngs_modulus", "stress", material.youngs_modulus, None, found.youngs_modulus),
+        ("poisson_ratio", "1", material.poisson_ratio, POISSON, found.poisson_ratio),
+        ("density", "density", rho, None, found.density),
+        ("yield_strength", "stress", strength, None, 0.0),
+    ):
+        if value is not None:
+            relative = 1.0 / value if name == "yield_strength" else 0.0 - stress / found.maximum
+            more = SMALL * value if step is None else step
+            yield _Parameter(
+                f"material.{material.name}.{name}", kind, value, more, stress, relative
+            )

@@ -5,20 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from shlex import quote
 
-from fea.core.dimensions import Length, Stress, Time
-
-
-@dataclass(frozen=True)
-class Sensitivity:
-    """How a factor changes with one dimension of a pin: `factor` with `step` more of it, and the
-    estimated error of the change. of: the dimension ("diameter of segment 2"), now `value`.
-    """
-
-    of: str
-    value: Length
-    step: Length
-    factor: float
-    error: float
+from fea.core.dimensions import Stress, Time
 
 
 @dataclass(frozen=True)
@@ -42,7 +29,6 @@ class Change:
     impulse_time: Time | None
     given_time: Time | None
     singular: bool
-    sensitivities: tuple[Sensitivity, ...] = ()
 
 
 def command(changes: tuple[Change, ...], study: str, required: float | None) -> str:

@@ -52,15 +52,16 @@ from reports.data.mechanics import (
     ReactionTable,
     shown_position,
 )
+from reports.data.sensitivities import PinSensitivities, Sensitivity
 from reports.data.surface import Surface
 
 __all__ = [
     "BandLoad", "BeamCheck", "Change", "Dimensioned", "DriveEffort", "DriveTable", "DropPeak",
     "DropRecord", "Extremes", "Fatigue", "Field", "Floats", "GoverningLoad", "GuideForces",
     "HandCheck", "LandingRange", "LegTable", "LinkageMotion", "MotionCheck", "PeakReaction",
-    "PinResult", "PinShape", "PitchCurve", "PointPath", "PowerLedger", "Provenance",
-    "PublishedValue", "ReactionTable", "Refinement", "Results", "SingularZone", "Still",
-    "Surface", "TitleBlock", "Units", "Volume",
+    "PinResult", "PinSensitivities", "PinShape", "PitchCurve", "PointPath", "PowerLedger",
+    "Provenance", "PublishedValue", "ReactionTable", "Refinement", "Results", "Sensitivity",
+    "SingularZone", "Still", "Surface", "TitleBlock", "Units", "Volume",
 ]  # fmt: skip
 
 
@@ -237,6 +238,7 @@ class Results:
     drops: tuple[DropRecord, ...] = ()
     surfaces: tuple[Surface, ...] = ()
     changes: tuple[Change, ...] = ()
+    sensitivities: tuple[PinSensitivities, ...] = ()
     margins: tuple[PinMargin, ...] = ()
     arms: tuple[BendingArms, ...] = ()
     histories: tuple[PointHistory, ...] = ()

@@ -10,13 +10,7 @@ from reports.data.decision import limit, outcome, utilisation, worst_first
 from reports.data.results import PinResult, Results
 from reports.format.words import RESULTS
 from reports.tables.published import published_maxima
-from reports.tables.strength.changes import (
-    DIMENSIONS,
-    INTRODUCTION,
-    change_notes,
-    changes_grid,
-    sensitivities_grid,
-)
+from reports.tables.strength.changes import INTRODUCTION, change_notes, changes_grid
 from reports.tables.strength.limit_load import INTRODUCTION as PAST_YIELD
 from reports.tables.strength.limit_load import LEFT_OUT, limit_grid, limit_notes
 from reports.tables.strength.safety_factors import (
@@ -27,6 +21,8 @@ from reports.tables.strength.safety_factors import (
     shown_columns,
     shown_rows,
 )
+from reports.tables.strength.sensitivities import INTRODUCTION as SENSITIVE
+from reports.tables.strength.sensitivities import sensitivities_grid, sensitivity_notes
 
 FULL = 2.0  # utilisation at the end of a bar
 
@@ -84,9 +80,15 @@ def change_part(results: Results) -> dict[str, Any] | None:
         "introduction": INTRODUCTION,
         "notes": change_notes(results),
         "command": command(results.changes, results.study, results.required_safety_factor),
-        "sensitivities": sensitivities_grid(results),
-        "sensitivities_introduction": DIMENSIONS,
     }
+
+
+def sensitivity_part(results: Results) -> dict[str, Any] | None:
+    """What a little more of each dimension does; None where no pin has a derivative."""
+    grid = sensitivities_grid(results)
+    if grid is None:
+        return None
+    return {"grid": grid, "introduction": SENSITIVE, "notes": sensitivity_notes(results)}
 
 
 def limit_part(results: Results) -> dict[str, Any] | None:

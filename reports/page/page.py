@@ -12,7 +12,7 @@ from reports.format.numbers import DASH, engineering, like, ratio, short
 from reports.format.ranges import error_words, factor_range
 from reports.format.template import environment
 from reports.format.words import BEYOND, MEANING, headline, verdict_words
-from reports.page.factors import change_part, factor_part, limit_part
+from reports.page.factors import change_part, factor_part, limit_part, sensitivity_part
 from reports.page.loads import load_part, timings
 from reports.page.motion import motion_parts
 from reports.page.paper import document
@@ -62,6 +62,7 @@ def render(results: Results, directory: Path) -> str:
         envelope=envelope_part(results),
         margins=margin_part(shown),
         change=change_part(shown),
+        sensitivities=sensitivity_part(shown),
         limits=limit_part(shown),
         fatigue=fatigue_part(shown),
         pins=pins,

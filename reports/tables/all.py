@@ -23,6 +23,7 @@ from reports.tables.strength.landing import landing_table
 from reports.tables.strength.limit_load import limit_load_table
 from reports.tables.strength.margins import arms_table, margins_table
 from reports.tables.strength.safety_factors import safety_factors_table
+from reports.tables.strength.sensitivities import sensitivities_table
 from reports.tables.stress.calculix import opinion_tables
 from reports.tables.stress.joint import joint_tables
 from reports.tables.stress.singular_zones import zones_table
@@ -60,7 +61,7 @@ def stress_tables(results: Results) -> list[Table]:
         landing_table(results),
     ]
     rest += [*joint_tables(results), *opinion_tables(results), *fatigue_tables(results)]
-    rest += [limit_load_table(results)]
+    rest += [limit_load_table(results), sensitivities_table(results)]
     rest += [] if check is None else [beam_check_table(check)]
     return [safety_factors_table(results), *(table for table in rest if table.rows)]
 

@@ -20,6 +20,7 @@ from reports.format.numbers import finite
 from reports.tables.strength.fatigue import fatigue_json
 from reports.tables.strength.limit_load import limit_load_json
 from reports.tables.strength.margins import margins_json
+from reports.tables.strength.sensitivities import sensitivities_json
 from reports.tables.stress.calculix import opinion_json
 from reports.tables.stress.joint import joint_json
 
@@ -40,6 +41,7 @@ def to_json(results: Results) -> dict[str, Any]:
         "pins": [_pin(pin) for pin in results.pins],
         "margins": margins_json(results),
         "changes": [asdict(change) for change in results.changes],
+        "sensitivities": sensitivities_json(results),
         "fatigue": fatigue_json(results.fatigue),
         "loads": [_loads(results, table) for table in results.reactions],
         "drops": [_drop(d) for d in results.drops],

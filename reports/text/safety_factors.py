@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from reports.data.changes import command
@@ -14,10 +15,11 @@ from reports.format.numbers import DASH, engineering, short
 from reports.format.ranges import factor_range, joint_range, margin_range, utilisation_range
 from reports.format.words import headline, result_words
 from reports.tables.published import published_maxima
-from reports.tables.strength.changes import change_notes, changes_grid, sensitivities_grid
+from reports.tables.strength.changes import change_notes, changes_grid
 from reports.tables.strength.fatigue import fatigue_sentence
 from reports.tables.strength.limit_load import limit_grid
 from reports.tables.strength.margins import not_made_briefly, worst_grid
+from reports.tables.strength.sensitivities import BRIEFLY, sensitivities_grid
 from reports.text.fitted_table import Column, fitted_table
 from reports.text.summary import summary
 
@@ -65,11 +67,17 @@ def _print_changes(results: Results, console: Console, study: str) -> None:
     console.print(fitted_table(_of_grid(changes_grid(results)), console.width))
     for note in change_notes(results):
         console.print(Text(note))
-    if grid := sensitivities_grid(results):
+    if grid := sensitivities_grid(_of_changes(results), BRIEFLY):
         console.print(Text("Sensitivities", "bold"))
         console.print(fitted_table(_of_grid(grid), console.width))
     if line := command(results.changes, study, results.required_safety_factor):
         console.print(Text(line), soft_wrap=True)  # to be copied
+
+
+def _of_changes(results: Results) -> Results:
+    """With the sensitivities of the pins alone that have to be changed."""
+    pins = [change.pin for change in results.changes]
+    return replace(results, sensitivities=tuple(x for x in results.sensitivities if x.pin in pins))
 
 
 def _columns(results: Results) -> list[Column]:

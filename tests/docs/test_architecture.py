@@ -28,6 +28,7 @@ PLUMBING = {  # without any rule of the physics, and not named on the page
     "fea/checks/records.py",
     "geometry/chords.py",
     "fea/core/sparsity.py",
+    "fea/derivatives/records.py",
     "fea/fatigue/records.py",
     "fea/harmonic/revolve.py",
     "fea/joint/records.py",

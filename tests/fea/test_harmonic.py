@@ -10,7 +10,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import BODY, Floats, PinLoads, UnitLoad
 from fea.core.tractions import closing_tractions
 from fea.harmonic.assembly import Section
-from fea.harmonic.model import HarmonicModel, rigid_motions
+from fea.harmonic.model import HarmonicModel, body_force, rigid_motions
 from fea.harmonic.stress_recovery import reading
 from fea.harmonic.superposition import Circumference
 from geometry import Pin, Segment
@@ -181,9 +181,9 @@ def test_inertia_sums_to_the_mass(section: MeridianMesh, steel: Material) -> Non
     model = HarmonicModel(PIN, section, steel, ("start",))
     assert steel.density is not None
     for n in (0, 1):
-        forces = model._body_force(n)
+        forces = body_force(model.material, n, model.space.integrals)
         total = rigid_motions(space.nodes, n).T @ forces
         assert total[0] == pytest.approx(steel.density * PIN.volume, rel=1e-5)
     weighed = 2.0 * np.pi * np.sum(space.integrals * z) / PIN.volume
-    across = rigid_motions(space.nodes, 1).T @ model._body_force(1)
+    across = rigid_motions(space.nodes, 1).T @ body_force(model.material, 1, model.space.integrals)
     assert across[1] / across[0] == pytest.approx(weighed, rel=1e-5)

@@ -8,7 +8,7 @@ import pytest
 from fea.core.material import Material
 from fea.core.tractions import Traction
 from fea.harmonic.assembly import around
-from fea.harmonic.model import HarmonicModel
+from fea.harmonic.model import HarmonicModel, body_force
 from fea.joint.flexibility import half_plane, lug_flexibility, pin_flexibility
 from fea.joint.foundation.plane_contact import (
     HIGHEST,
@@ -49,7 +49,10 @@ def test_a_section_held_by_a_body_force(pin: Pin, bore: float) -> None:
     """
     model = HarmonicModel(pin, meridian_mesh(pin, SectionSize(20.0)), EVEN, (), pivot=0.5)
     inwards = (Traction("A", 0.0, np.array([-1.0, 0.0, 0.0]), np.zeros(3)),)
-    pressure, body = model.forces(1, [inwards])[:, 0], model._body_force(1).ravel()
+    pressure, body = (
+        model.forces(1, [inwards])[:, 0],
+        body_force(model.material, 1, model.space.integrals).ravel(),
+    )
     factor = np.pi * 0.01 * 0.02 / (pin.volume * EVEN.density)  # type: ignore[operator]
     both = (pressure + factor * body)[:, None]
     work = float((both.T @ model.displace(1, both)).item()) / around(1)

@@ -5,16 +5,10 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import pinstress
-from fea.core.material import Material
-from fea.core.pin_loads import PinLoads
-from fea.single_mesh import Problem
-from geometry import Pin, Segment
 from pinstress.cli.commands import run_command_line
-from pinstress.remedies.sensitivities import sensitivities
 from reports.data.changes import Change
 from reports.data.results import Results
 from tests.conftest import ROOT
@@ -107,28 +101,8 @@ def test_the_command_and_the_files_say_it(
     (change,) = json.loads((folder / "results.json").read_text())["changes"]
     assert change["pin"] == "B"
     assert change["load_factor"] < 1.0
-    assert "profile[2].diameter" in {each["of"] for each in change["sensitivities"]}
+    assert "sensitivities" not in change
     assert "profile[2].diameter" in said
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert '<section id="change">' in page
     assert "--pins B</code>" in page
-
-
-def test_sensitivities_are_those_of_bending() -> None:
-    """A plain cantilever under a load on its outer half: the root's stress goes as the lever over
-    the cube of the diameter, which both segments share, so it is one dimension.
-    """
-    pin = Pin("P", (Segment(0.1, 0.02, name="a"), Segment(0.1, 0.02, connection="B")))
-    loads = PinLoads("c", ("B",), np.array([[[0.0, 1000.0, 0.0]]]))
-    problem = Problem(pin, Material("steel", 210e9, 0.3), ("start",), loads)
-    found = {s.of: s for s in sensitivities(problem, 5.0, 1e-3)}
-    assert "profile[1-2].diameter" in found
-    thicker, longer = found["profile[1-2].diameter"], found["profile[1].length"]
-    assert thicker.step == 1e-3
-    assert thicker.factor == pytest.approx(5.0 * (21.0 / 20.0) ** 3, rel=0.02)
-    assert longer.factor == pytest.approx(5.0 * 150.0 / 151.0, rel=2e-3)
-    for each in found.values():
-        assert abs(each.factor - 5.0) > each.error
-    assert {s.of: s.step for s in sensitivities(problem, 5.0, 5e-3)}[
-        "profile[1-2].diameter"
-    ] == pytest.approx(5e-4)

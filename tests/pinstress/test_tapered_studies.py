@@ -12,9 +12,9 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.plastic.solve import limit_load
 from geometry import Pin, Segment
+from geometry.shape.dimensions import dimensions
 from pinstress import load_study, run
 from pinstress.model.pins import far_ends, outline, pin
-from pinstress.remedies.sensitivities import _dimensions
 from pinstress.schema.units import SYSTEMS
 from pinstress.sizing.scaled_study import resized
 from reports.data.results import PinShape
@@ -72,13 +72,13 @@ def test_size_scales_all_that_lies_across(tmp_path: Path) -> None:
 
 def test_a_dimension_of_a_cone_is_its_neighbours(steel: Material) -> None:
     """So that a change makes no step."""
-    every = {d.key: d for d in _dimensions(CONE)}
+    every = {d.key: d for d in dimensions(CONE)}
     across = {key for key in every if "diameter" in key or "bore" in key}
     assert across == {f"profile[{k}].{x}" for k in (1, 3) for x in ("diameter", "bore")}
     wider = every["profile[3].diameter"].changed(0.024)
     assert [s.diameters for s in wider.segments] == [(0.03, 0.03), (0.03, 0.024), (0.024, 0.024)]
     thin = Pin("T", (Segment(1.0, 3.0, end_diameter=2.0), Segment(1.0, 2.0, end_diameter=1.0)))
-    keys = [d.key for d in _dimensions(thin) if "diameter" in d.key]
+    keys = [d.key for d in dimensions(thin) if "diameter" in d.key]
     assert keys == [f"profile[{k}].diameter[{end}]" for k, end in ((1, 1), (2, 1), (2, 2))]
 
 

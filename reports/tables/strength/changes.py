@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from reports.data.changes import Change, Sensitivity
+from reports.data.changes import Change
 from reports.data.results import Results
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering, short
@@ -11,10 +11,6 @@ INTRODUCTION = (
     "Each of these alone brings the pin to the required factor in the worst of its cases, if "
     "nothing else is changed. Larger diameters, with bores and fillets, are estimated to a few per "
     "cent on one mesh, under the same loads."
-)
-DIMENSIONS = (
-    "What a little more of a single dimension does to the factor, by differences at the governing "
-    "instant; ± is by how much two meshes disagree. Dimensions that do less than this are left out."
 )
 CONTACT = (
     "In contact with lugs stress is not quite proportional to loads: take the load as an estimate."
@@ -44,42 +40,6 @@ def changes_grid(results: Results) -> Grid:
         [list(row) for row in zip(*shown.values(), strict=True)],
         [False, False, *[True] * (len(shown) - 2)],
     )
-
-
-def sensitivities_grid(results: Results) -> Grid | None:
-    """A row for each dimension that matters, those with the largest effect of each pin first."""
-    length = results.units.length
-    rows = [
-        (change, each)
-        for change in results.changes
-        for each in sorted(change.sensitivities, key=lambda s: -abs(_effect(change, s)))
-    ]
-    if not rows:
-        return None
-    return Grid(
-        ["pin", "dimension", f"now [{length}]", f"more by [{length}]", "safety factor", "±"],
-        [
-            [
-                change.pin,
-                each.of,
-                short(each.value),
-                short(each.step),
-                f"{_effect(change, each):+.2%}".replace("-", "−").replace("%", " %"),
-                f"{each.error / _factor(change):.2%}".replace("%", " %"),
-            ]
-            for change, each in rows
-        ],
-        [False, False, True, True, True, True],
-    )
-
-
-def _factor(change: Change) -> float:
-    return change.load_factor * change.required
-
-
-def _effect(change: Change, of: Sensitivity) -> float:
-    """On the factor, relative."""
-    return of.factor / _factor(change) - 1.0
 
 
 def change_notes(results: Results) -> list[str]:

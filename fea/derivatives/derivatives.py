@@ -1,0 +1,258 @@
+"""Derivatives of the largest von Mises stress of a pin with respect to all that it depends on.
+
+At the governing point, instant and angle the stress is a function J of the nodes' coordinates x, of
+their displacements u and of the tractions t. With K u = f and the adjoint l, K l = dJ/du,
+
+    dJ/dp = J,x x' + J,t t' + l^T f' - (l^T K u),x x'
+
+for any parameter p, so that one solution l of each harmonic, with the stiffness that the stress
+itself took, serves all of them. Nodes move by x' as geometry.mesh.outline_motion says on the
+outline and harmonically inside. The maximum moves along the surface, over the circumference and in
+time too, but there it is stationary, or held by the edge of an excluded zone, which x' follows. So
+this is the derivative of the maximum on the mesh as it is moved, to round-off; its error is that of
+the mesh.
+
+Source: Haftka & Gurdal, Elements of Structural Optimization, ch. 7 (adjoint method); Choi & Kim,
+Structural Sensitivity Analysis and Optimization 1, ch. 6 (shape).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from functools import cached_property
+
+import numpy as np
+
+from fea.core.material import Material
+from fea.core.pin_loads import UnitLoad
+from fea.derivatives.governing import Wave, by_loads, waves_of
+from fea.derivatives.governing_point import point_of
+from fea.derivatives.reading_point import SectionState
+from fea.derivatives.records import Derivatives, SolvedCase
+from fea.derivatives.ties import tied_places, tied_times
+from fea.derivatives.virtual_work import COLUMNS, Interior, integral_rate, shape_gradient, work
+from fea.harmonic.assembly import elasticity
+from fea.harmonic.boundary import Outline
+from fea.harmonic.model import HarmonicModel, applied, generalised
+from fea.harmonic.stress_recovery import points_of_nodes
+from fea.harmonic.superposition import Circumference
+from geometry import Pin
+from geometry.arrays import Floats
+from geometry.mesh.outline_motion import (
+    PLACES,
+    NodeMotion,
+    OtherShapeError,
+    OutlineNodes,
+    Reach,
+    rate,
+    rate_of,
+)
+from geometry.shape.dimensions import Dimension
+
+POISSON = 1e-3  # step of Poisson's ratio
+OTHER = "with a little more or less of it the section has other edges"
+
+
+def derivatives(solved: SolvedCase, dimensions: Iterable[Dimension]) -> Derivatives:
+    """Of the maximum at the only instant of the loads.
+
+    Raises: SolveError.
+    """
+    return _Adjoint(solved).derivatives(tuple(dimensions))
+
+
+class _Adjoint:
+    """All at the governing point and angle."""
+
+    def __init__(self, solved: SolvedCase) -> None:
+        self.solved = solved
+        self.fields = solved.solution.fields
+        assert self.fields.mesh is not None
+        self.mesh = self.fields.mesh
+        self.model = HarmonicModel(solved.pin, self.mesh, solved.material, solved.clamps)
+        self.space, self.outline = self.model.space, self.model.outline
+        self.around = Circumference(self.fields, solved.loads)
+        self.top = self.around.top(self.fields.outside(solved.zones))
+        self.waves, self.weight = waves_of(self.fields_at, solved.loads, self.top)
+        self.n = np.array([wave.n for wave in self.waves])
+        self.traction = self._traction(solved.pin, self.outline)
+        self.point = point_of(self.model, solved, self.traction, self.top.point)
+        self._lambda = self._solve()
+
+    @cached_property
+    def fields_at(self) -> dict[UnitLoad, Floats]:
+        """Stress (6,) Pa at the governing point of each unit load."""
+        at = self.fields.stress[self.top.point]
+        return {load: at[:, k] for k, load in enumerate(self.fields.loads)}
+
+    @cached_property
+    def u(self) -> Floats:
+        """(N, 3, K) m, of the waves."""
+        rows = points_of_nodes(self.outline, len(self.space.nodes))
+        index = {load: k for k, load in enumerate(self.fields.loads)}
+        amounts = np.zeros((len(index), len(self.waves)))
+        for k, wave in enumerate(self.waves):
+            for load, amount in wave.amounts.items():
+                amounts[index[load], k] = amount
+        return np.asarray((self.fields.displacement @ amounts)[rows])
+
+    def _forces(
+        self, wave: Wave, pin: Pin, outline: Outline, integrals: Floats | None = None
+    ) -> tuple[Floats, Floats]:
+        """Of a wave: on the unknowns (3 N,), and tractions (E, 3, 3)."""
+        loads = tuple(wave.amounts)
+        amounts = np.array([wave.amounts[load] for load in loads])
+        forces, tractions = applied(self.model, pin, outline, wave.n, loads, integrals)
+        return forces @ amounts, tractions @ amounts
+
+    def _traction(self, pin: Pin, outline: Outline) -> Floats:
+        found = [self._forces(wave, pin, outline)[1] for wave in self.waves]
+        return np.stack(found, axis=-1)
+
+    @cached_property
+    def places(self) -> Floats:
+        """(Z, 3): r, z, radius of the zones, m."""
+        return np.array([[p.r, p.z, p.radius] for p in self.solved.zones]).reshape(-1, 3)
+
+    @cached_property
+    def state(self) -> SectionState:
+        return SectionState(self.space.nodes, self.traction, self.places)
+
+    def read(self, state: SectionState, material: Material | None = None) -> float:
+        """Von Mises stress to first order, of displacements as they are."""
+        u = self.u[self.point.nodes]
+        found = self.point.stress(material or self.solved.material, state, self.n, u)
+        return float(sum(c.weight @ found[:, k] for k, c in enumerate(self.waves)))
+
+    def _solve(self) -> Floats:
+        """Adjoints (3 N, K)."""
+        L, K = len(self.point.nodes), len(self.waves)
+        unit = np.eye(3 * L).reshape(L, 3, 3 * L)
+        out = np.zeros((self.space.unknowns, K))
+        forces = np.zeros((len(self.space.nodes), 3, K))
+        still = replace(self.state, traction=np.zeros((*self.traction.shape[:3], 3 * L)))
+        for n in np.unique(self.n):
+            here = np.flatnonzero(self.n == n)
+            found = self.point.stress(self.solved.material, still, np.full(3 * L, n), unit)
+            for k in here:
+                forces[self.point.nodes, :, k] = (self.waves[k].weight @ found).reshape(L, 3)
+            rhs = np.stack([generalised(forces[:, :, k]) for k in here], axis=1)
+            out[:, here] = self.model.displace(int(n), rhs)
+        return out
+
+    def derivatives(self, dimensions: tuple[Dimension, ...]) -> Derivatives:
+        by_dimension, without = self._by_dimension(dimensions)
+        top, solved = self.top, self.solved
+        r, z = (float(x) for x in self.fields.points[top.point])
+        by_force, by_moment = by_loads(self.fields_at, solved.loads, self.weight, top)
+        return Derivatives(
+            top.value,
+            (r * float(np.cos(top.angle)), r * float(np.sin(top.angle)), z),
+            by_dimension,
+            without,
+            by_force,
+            by_moment,
+            self._by_poisson(),
+            self._by_density(),
+            tied_places(self.around, self.fields, solved.zones, top, solved.error),
+            tied_times(solved, top.value),
+        )
+
+    def _by_dimension(
+        self, dimensions: tuple[Dimension, ...]
+    ) -> tuple[dict[str, float], dict[str, str]]:
+        solved = self.solved
+        reaches = [Reach((p.r, p.z), p.radius) for p in solved.zones]
+        nodes = OutlineNodes(self.mesh, solved.pin, reaches)
+        motions: list[NodeMotion] = []
+        without = {}
+        for dimension in dimensions:
+            try:
+                motions.append(nodes.motion(dimension))
+            except OtherShapeError:
+                without[dimension.key] = OTHER
+        if not motions:
+            return {}, without
+        interior = Interior(self.space, nodes.rows)
+        gradient = sum(
+            shape_gradient(self.space, self._D, c.n, self._unknowns(k), self._lambda[:, k])
+            for k, c in enumerate(self.waves)
+        )
+        heavy = any(load.kind == "body" for c in self.waves for load in c.amounts)
+        out = {}
+        for k in range(0, len(motions), COLUMNS):
+            some = motions[k : k + COLUMNS]
+            every = interior.velocity(np.stack([motion.velocity for motion in some], axis=2))
+            for i, motion in enumerate(some):
+                velocity = np.ascontiguousarray(every[:, :, i])
+                grown = integral_rate(self.space, velocity) if heavy else None
+                given = self._given(motion, velocity, grown)
+                out[motion.dimension.key] = given - float(np.sum(gradient * velocity))
+        return out, without
+
+    def _given(self, motion: NodeMotion, velocity: Floats, grown: Floats | None) -> float:
+        """What forces, tractions and the reading change, with displacements as they are."""
+        values = []
+        for x, pin in zip(PLACES, motion.pins, strict=True):
+            step = x * motion.step
+            nodes = self.space.nodes + step * velocity
+            outline = self.outline.moved(nodes)
+            integrals = None if grown is None else self.space.integrals + step * grown
+            total, tractions = 0.0, []
+            for k, wave in enumerate(self.waves):
+                forces, traction = self._forces(wave, pin, outline, integrals)
+                total += float(np.sum(self._lambda[:, k] * forces))
+                tractions.append(traction)
+            state = SectionState(
+                nodes, np.stack(tractions, axis=-1), self._places_at(step, velocity)
+            )
+            values.append(np.array(total + self.read(state)))
+        return float(rate_of(values, motion.step))
+
+    @cached_property
+    def _zone_nodes(self) -> list[int]:
+        """At which the zones are."""
+        nodes = self.space.nodes
+        return [int(np.hypot(*(nodes - place[:2]).T).argmin()) for place in self.places]
+
+    def _places_at(self, step: float, velocity: Floats) -> Floats:
+        out = self.places.copy()
+        out[:, :2] += step * velocity[self._zone_nodes]
+        out[:, 2] *= out[:, 0] / self.places[:, 0]
+        return out
+
+    @property
+    def _D(self) -> Floats:
+        return elasticity(self.solved.material)
+
+    def _unknowns(self, k: int) -> Floats:
+        """(3 N,) p, m, w of wave k."""
+        U, V, W = self.u[:, :, k].T
+        return np.stack([(U + V) / 2.0, (U - V) / 2.0, W], axis=1).ravel()
+
+    def _by_poisson(self) -> float:
+        material = self.solved.material
+        nu = material.poisson_ratio
+        step = min(POISSON, 0.1 * (0.5 - nu), 0.1 * (1.0 + nu))
+
+        def other(x: float) -> Material:
+            return replace(material, poisson_ratio=nu + x)
+
+        stiffer = rate(lambda x: elasticity(other(x)), step)
+        against = sum(
+            work(self.space, stiffer, c.n, self._unknowns(k), self._lambda[:, k])
+            for k, c in enumerate(self.waves)
+        )
+        return float(rate(lambda x: np.array(self.read(self.state, other(x))), step)) - against
+
+    def _by_density(self) -> float:
+        density = self.solved.material.density
+        if not density:
+            return 0.0
+        total = 0.0
+        for wave in self.waves:
+            own = [x for load, x in wave.amounts.items() if load.kind == "body"]
+            at = [self.fields_at[load] for load in wave.amounts if load.kind == "body"]
+            total += sum(x * float(wave.weight @ s) for x, s in zip(own, at, strict=True))
+        return total / density

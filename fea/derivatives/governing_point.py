@@ -1,0 +1,55 @@
+"""How stress is read at the governing point, by its number among those of a section's reading."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fea.derivatives.reading_point import (
+    AtJump,
+    FromInside,
+    ReadingPoint,
+    Samples,
+    at_node,
+    at_rough,
+    nearest,
+    on_axis,
+    on_skin,
+)
+from fea.derivatives.records import SolvedCase
+from fea.harmonic.assembly import Section
+from fea.harmonic.model import HarmonicModel
+from fea.harmonic.pressure_edge import DIRECTIONS, jumps
+from fea.harmonic.surface_stress import AT
+from fea.singular.singularities import Singularity
+from geometry.arrays import Floats
+
+
+def point_of(
+    model: HarmonicModel, solved: SolvedCase, traction: Floats, number: int
+) -> ReadingPoint:
+    """The point of a number (fea.harmonic.stress_recovery: Reading). traction: (E, 3, 3, K) Pa."""
+    space, outline, fields = model.space, model.outline, solved.solution.fields
+    if number < fields.skin:
+        edge, at = divmod(number, len(AT))
+        clamped = outline.constrained(model.clamps)[edge]
+        if clamped or on_axis(space, float(fields.points[number, 0])):
+            return at_rough(space, outline, edge, at)
+        return on_skin(outline, traction, edge, at)
+    if number < len(fields.displacement):
+        inner = np.setdiff1d(np.arange(len(space.nodes)), outline.nodes)
+        return at_node(space, int(inner[number - fields.skin]))
+    ends = solved.solution.ends
+    first = len(fields.points) - DIRECTIONS * len(ends)
+    if number >= first:
+        which, direction = divmod(number - first, DIRECTIONS)
+        (jump,) = jumps(space, outline, solved.material, ends[which : which + 1])
+        return AtJump(outline, jump, Samples(space, jump.samples), direction)
+    return _on_rim(space, solved.zones, fields.points[number])
+
+
+def _on_rim(space: Section, zones: tuple[Singularity, ...], at: Floats) -> FromInside:
+    """Of the zone on whose circle it is."""
+    off = [abs(np.hypot(at[0] - p.r, at[1] - p.z) / p.radius - 1.0) for p in zones]
+    zone = int(np.argmin(off))
+    p, (r, z) = zones[zone], (float(x) for x in at)
+    return FromInside(nearest(space, [at]), (1.0,), (), (r, z), zone, (p.r, p.z, p.radius))

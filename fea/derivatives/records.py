@@ -1,0 +1,54 @@
+"""What is differentiated, and the derivatives."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from fea.core.material import Material
+from fea.core.pin_loads import PinLoads
+from fea.harmonic.evaluate import HarmonicSolution
+from fea.singular.singularities import Singularity
+from geometry import Pin
+
+
+@dataclass(frozen=True)
+class SolvedCase:
+    """A pin of a material, clamped at surfaces (by the pin's names), as it was solved on one mesh
+    under loads of one instant; zones: the singularities that are left out. error: of the maximum,
+    relative. history: the loads at all instants of the case, if there are more.
+    """
+
+    pin: Pin
+    material: Material
+    clamps: tuple[str, ...]
+    loads: PinLoads
+    solution: HarmonicSolution
+    zones: tuple[Singularity, ...]
+    error: float = 0.0
+    history: PinLoads | None = None
+
+
+@dataclass(frozen=True)
+class Derivatives:
+    """Of the largest von Mises stress `maximum`, Pa, at `location` (x, y, z), m, at the governing
+    instant.
+
+    by_dimension: Pa/m, by the key of each dimension; without: why others have none. by_force,
+    by_moment: Pa/N and Pa/(N m), by surface and axis of the pin ("x", "y", "z"), the other loads as
+    they are. poisson_ratio: Pa; youngs_modulus: 0, because a pin under given loads has the same
+    stress with any; density: Pa/(kg/m^3), of its own weight. tied_places, tied_times: others, (r,
+    z) in m and s, whose stress is within the error of the maximum. One of them may govern as soon
+    as anything changes, so that the derivatives hold on one side only.
+    """
+
+    maximum: float
+    location: tuple[float, float, float]
+    by_dimension: dict[str, float]
+    without: dict[str, str]
+    by_force: dict[tuple[str, str], float]
+    by_moment: dict[tuple[str, str], float]
+    poisson_ratio: float
+    density: float
+    tied_places: tuple[tuple[float, float], ...] = ()
+    tied_times: tuple[float, ...] = ()
+    youngs_modulus: float = 0.0
