@@ -80,7 +80,7 @@ def prepare(
         )
     names = select(study.table.pin, pins, "pin")
     chosen = chosen_cases(study, cases)
-    asked = _asked(study, require_model(model), require_tolerance(tolerance), memory)
+    asked = asked_of(study, require_model(model), require_tolerance(tolerance), memory)
     wrong = Errors(study.path)
     published = wrong.attempt(lambda: read_published(study))
     loads = wrong.attempt(lambda: all_loads(study, chosen))
@@ -123,9 +123,13 @@ def _require_model(study: Study, model: Model, pin: str) -> None:
         )
 
 
-def _asked(
-    study: Study, model: Model | None, tolerance: float | None, memory: float | None
+def asked_of(
+    study: Study,
+    model: Model | None = None,
+    tolerance: float | None = None,
+    memory: float | None = None,
 ) -> Asked:
+    """What a study requests of a solution. model, tolerance, memory: as of `prepare`."""
     table = study.table.analysis
     return Asked(
         tolerance or table.tolerance,

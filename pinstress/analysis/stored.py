@@ -65,7 +65,7 @@ def question(plan: Plan, task: Task) -> object:
     study, cases = plan.study, [plan.loads[loads.case] for loads in task.loads]
     check = study.table.beam_check if task is plan.checked else None
     return (
-        _shape(task.pin),
+        shape_of(task.pin),
         task.clamps,
         task.lugs,
         task.surroundings,
@@ -85,7 +85,8 @@ def question(plan: Plan, task: Task) -> object:
     )
 
 
-def _shape(pin: PinLike) -> object:
+def shape_of(pin: PinLike) -> object:
+    """A pin's shape as what pinstress.cache.serialise takes, with the content of its file."""
     if isinstance(pin, Pin | CutPin):
         return pin
     from geometry.imported.imported_pin import SolidBody

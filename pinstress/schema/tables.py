@@ -23,6 +23,7 @@ from pinstress.schema.types import (
     PositiveLength,
     StrictTable,
 )
+from pinstress.schema.vary import VaryTable
 
 
 class AnalysisTable(StrictTable):
@@ -170,6 +171,8 @@ class StudyTable(StrictTable):
     """A comparison with the closed form of a lever."""
     published: PublishedTable | None = None
     """Published values for comparison."""
+    vary: VaryTable | None = None
+    """What `pinstress sweep` varies; `run` ignores it."""
     report: ReportTable = ReportTable()
     """The title block of the report."""
     assumptions: list[str] = []

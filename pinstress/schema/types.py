@@ -37,6 +37,12 @@ FORBIDDEN = '/\\:*?"<>|'  # in names of files, on some system
 LONGEST_NAME = 100  # characters as quoted: two names fit into a file name
 
 
+class Probe(float):
+    """A number that is put where a quantity is, to learn the `dimension` of what reads it."""
+
+    dimension = ""
+
+
 @dataclass(frozen=True)
 class Quantity:
     """Marks a float that is read from a number or a string with a unit, and kept in SI."""
@@ -54,6 +60,8 @@ class Quantity:
         return {"anyOf": [*plain, sourced(plain)], "dimension": self.dimension}
 
     def _read(self, value: object, info: core_schema.ValidationInfo) -> float:
+        if isinstance(value, Probe):
+            value.dimension = self.dimension
         system = (info.context or {}).get("system", SYSTEMS["m-N-s"])
         return to_si(value, self.dimension, system)
 
@@ -87,7 +95,7 @@ def described(table: type["StrictTable"]) -> dict[str, str]:
                     ast.AnnAssign(target=ast.Name(id=key)),
                     ast.Expr(value=ast.Constant(value=str(words))),
                 ):
-                    descriptions[key] = " ".join(words.split())
+                    descriptions[one.model_fields[key].alias or key] = " ".join(words.split())
     return descriptions
 
 
@@ -258,9 +266,10 @@ class StrictTable(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _known_keys(cls, data: Any) -> Any:
-        unknown = data.keys() - cls.model_fields.keys() if isinstance(data, dict) else ()
+        known = [field.alias or name for name, field in cls.model_fields.items()]
+        unknown = data.keys() - known if isinstance(data, dict) else ()
         if unknown:
-            wrong = [_unknown(key, list(cls.model_fields)) for key in data if key in unknown]
+            wrong = [_unknown(key, known) for key in data if key in unknown]
             raise ValidationError.from_exception_data(cls.__name__, wrong)
         return data
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -151,15 +151,8 @@ def parse_study(path: Path, text: str, located: bool = True) -> Study:
         for s in provenance
         if s.kind not in KINDS
     ]
-    units = raw.get("units")
-    system = SYSTEMS.get(units if isinstance(units, str) else "", SYSTEMS["m-N-s"])
-    try:
-        table = StudyTable.model_validate(raw, context={"system": system})
-    except ValidationError as error:
-        raise study_error(path, lines, wrong + explain(error)) from None
-    table = with_cases_of_tables(table, path.parent, wrong)
-    wrong += cross_references(table)
-    doubtful = questions(table, raw, system)
+    table = _table(path, lines, raw, wrong)
+    doubtful = questions(table, raw, _system(raw))
     if beyond := list(too_many(table)):
         wrong += [Wrong(text, code="too-large") for text in beyond]
         wrong += [Wrong(text, code="doubtful") for text in doubtful]  # a wrong unit may be why
@@ -169,6 +162,45 @@ def parse_study(path: Path, text: str, located: bool = True) -> Study:
     if wrong:
         raise study_error(path, lines, wrong)
     return Study(path, text, table, tuple(provenance), doubtful, located)
+
+
+def raw_study(study: Study) -> dict[str, Any]:
+    """What the study's file has, without provenance and notes."""
+    raw: dict[str, Any] = unwrapped(read_toml(study.path, study.text), "", [], [])
+    return raw
+
+
+def with_raw(study: Study, raw: Mapping[str, Any]) -> Study:
+    """The study with other numbers in what `raw_study` returned, validated without a way through
+    text; implausible ones are not looked for.
+
+    Raises: InputError as load_study.
+    """
+    lines = study.text if study.located else ""
+    wrong: list[Wrong] = []
+    table = _table(study.path, lines, raw, wrong)
+    wrong += [Wrong(text, code="too-large") for text in too_many(table)]
+    if wrong:
+        raise study_error(study.path, lines, wrong)
+    return replace(study, table=table, questions=())
+
+
+def _system(raw: Mapping[str, Any]) -> UnitSystem:
+    units = raw.get("units")
+    return SYSTEMS.get(units if isinstance(units, str) else "", SYSTEMS["m-N-s"])
+
+
+def _table(path: Path, lines: str, raw: Mapping[str, Any], wrong: list[Wrong]) -> StudyTable:
+    """The content in SI. wrong: earlier errors, to which those of references are added. Raises:
+    InputError for content of the wrong form.
+    """
+    try:
+        table = StudyTable.model_validate(raw, context={"system": _system(raw)})
+    except ValidationError as error:
+        raise study_error(path, lines, wrong + explain(error)) from None
+    table = with_cases_of_tables(table, path.parent, wrong)
+    wrong += cross_references(table)
+    return table
 
 
 def _written(value: Any) -> str:

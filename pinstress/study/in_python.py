@@ -49,7 +49,7 @@ def changed_study(study: Study, changes: Mapping[str, Any]) -> Study:
     """
     document: Any = tomlkit.parse(study.text)
     for key, value in changes.items():
-        *parents, last = _parts(study, key)
+        *parents, last = key_parts(study, key)
         table = document
         for part in parents:
             table = _inside(study, table, part, key)
@@ -59,8 +59,8 @@ def changed_study(study: Study, changes: Mapping[str, Any]) -> Study:
     return parse_study(study.path, tomlkit.dumps(document), study.located)
 
 
-def _parts(study: Study, key: str) -> list[str | int]:
-    """Names, and indices from 0."""
+def key_parts(study: Study, key: str) -> list[str | int]:
+    """The parts of a key: names, and indices from 0. Raises: InputError."""
     found: list[str | int] = []
     at = 0
     while at < len(key):

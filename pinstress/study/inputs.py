@@ -8,8 +8,7 @@ from typing import Any
 
 from loads import MB, FileError, read_regular
 from pinstress.schema.shown import in_toml
-from pinstress.study.file import LONGEST_PATH, Study, unwrapped
-from pinstress.study.toml_text import read_toml
+from pinstress.study.file import LONGEST_PATH, Study, raw_study
 
 LARGEST_TABLE = 256 * MB
 DIGITS = 12  # of the hash of a file
@@ -18,7 +17,7 @@ APART = "title", "report", "assumptions"  # texts that change no result
 
 def inputs(study: Study) -> dict[str, str]:
     """By key, as the study writes them; of a file that it names also the start of its SHA-256."""
-    raw = unwrapped(read_toml(study.path, study.text), "", [], [])
+    raw = raw_study(study)
     return {
         key: _written(study, value)
         for key, value in _leaves(raw, "")

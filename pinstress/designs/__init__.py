@@ -1,0 +1,1 @@
+"""Designs: a study with other numbers, sampled, solved and written as one table."""

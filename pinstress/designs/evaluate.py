@@ -1,0 +1,251 @@
+"""What a study with other numbers gives: a row for each of its pins in each of its cases.
+
+A design is solved as a run solves a study, so its rows are what `pinstress run` of the changed
+study finds. What does not change from one design to the next is not solved again: loads that depend
+on no changed number, pins whose shape, material and loads are those of an earlier design, and the
+unit loads of a pin that only loads or strength change.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections import OrderedDict
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Generic, TypeVar
+
+from fea.asked import Asked
+from fea.core.material import Material
+from fea.core.peak import Peak, Verdict
+from fea.joint.solve_in_lugs import LugSolution
+from geometry import ArgumentError
+from pinstress.analysis.plan import asked_of, prepare
+from pinstress.analysis.solve import solutions
+from pinstress.analysis.stored import shape_of
+from pinstress.cache.serialise import pack
+from pinstress.designs.laws import Floats
+from pinstress.designs.parameters import Number, Parameter, put
+from pinstress.model.cases import CaseLoads, case_loads
+from pinstress.model.mechanism.linkage import determined, linkage
+from pinstress.model.pins import pin as pin_of
+from pinstress.model.tasks import Task, tasks
+from pinstress.study.errors import InputError
+from pinstress.study.file import Study, raw_study, with_raw
+
+MOST_LOADS, MOST_PEAKS = 64, 4096  # that are remembered
+WITHOUT_LOADS = ("pin", "material", "analysis")  # tables of which loads do not depend
+APART = ("vary", "published", "beam_check", "motion_check", "report")
+
+K = TypeVar("K")
+V = TypeVar("V")
+
+
+@dataclass(frozen=True)
+class DesignRow:
+    """One pin in one case of a design, in SI. max_von_mises, error_estimate: Pa, None where there
+    is no maximum (verdict `failed` or `rigid`). governing_time: s, None without a motion. mass: kg,
+    None without a density. reason, code: why the verdict is not `converged`, for people and for
+    programs.
+    """
+
+    pin: str
+    case: str
+    max_von_mises: float | None
+    error_estimate: float | None
+    safety_factor: float | None
+    verdict: Verdict
+    governing_time: float | None = None
+    mass: float | None = None
+    reason: str = ""
+    code: str = ""
+
+
+class Recent(Generic[K, V]):
+    """The values of the keys that were asked for last, `most` of them."""
+
+    def __init__(self, most: int) -> None:
+        self._most, self._known = most, OrderedDict[K, V]()
+
+    def get(self, key: K) -> V | None:
+        """The value of a key, if it is remembered."""
+        if key in self._known:
+            self._known.move_to_end(key)
+        return self._known.get(key)
+
+    def put(self, key: K, value: V) -> V:
+        """Remember a value."""
+        self._known[key] = value
+        if len(self._known) > self._most:
+            self._known.popitem(last=False)
+        return value
+
+
+class Evaluator:
+    """A study whose numbers change. pins, cases: names; all by default. parameters: in the order of
+    the values of `rows`. table: the (pin, case) of a design's rows, in their order.
+
+    Raises: InputError where the study as it is cannot be run.
+    """
+
+    def __init__(
+        self,
+        study: Study,
+        parameters: Iterable[Parameter | Number],
+        pins: Iterable[str] | None = None,
+        cases: Iterable[str] | None = None,
+    ) -> None:
+        self.numbers = tuple(p.number if isinstance(p, Parameter) else p for p in parameters)
+        self._raw = {k: v for k, v in raw_study(study).items() if k not in APART}
+        self.study = with_raw(study, self._raw)
+        plan = prepare(self.study, pins=pins, cases=cases)
+        self._cases = tuple(plan.loads)
+        found = {(t.pin.name, case.case): None for t in plan.tasks for case in t.loads}
+        self._pins = tuple(dict.fromkeys(pin for pin, _ in found))
+        self.table = tuple(
+            (pin, case) for pin in self._pins for case in self._cases if (pin, case) in found
+        )
+        self._loads = Recent[tuple[float, ...], dict[str, CaseLoads | InputError]](MOST_LOADS)
+        self._peaks = Recent[str, tuple[Peak, ...]](MOST_PEAKS)
+        self._of_loads = [k for k, number in enumerate(self.numbers) if self._moves(number)]
+
+    def rows(self, values: Sequence[float] | Floats) -> list[DesignRow]:
+        """The rows of a design, one for each of `table`. values: of the parameters (p,), SI."""
+        numbers = [float(value) for value in values]
+        try:
+            study = self.changed(numbers)
+            loads = self._loads_of(study, numbers)
+        except InputError as error:
+            return [_failed(self.study, pin, case, error) for pin, case in self.table]
+        rows: dict[tuple[str, str], DesignRow] = {}
+        for pin in self._pins:
+            mine = [case for name, case in self.table if name == pin]
+            rows |= {(pin, case): row for case, row in self._of_pin(study, pin, mine, loads)}
+        return [rows[key] for key in self.table]
+
+    def changed(self, values: Sequence[float]) -> Study:
+        """The study with other values (SI) of its numbers. Raises: InputError."""
+        raw = self._raw
+        for number, value in zip(self.numbers, values, strict=True):
+            raw = put(raw, number.path, number.in_study(value / number.factor))
+        return with_raw(self.study, raw)
+
+    def _moves(self, number: Number) -> bool:
+        """Whether loads depend on a number: pins that nothing holds have mass in a mechanism."""
+        if number.path[0] not in WITHOUT_LOADS:
+            return True
+        mechanism = self.study.table.mechanism
+        if mechanism is None or number.path[0] == "analysis":
+            return False
+        return number.path[0] == "material" or number.path[1] in mechanism.joint
+
+    def _loads_of(self, study: Study, values: Sequence[float]) -> dict[str, CaseLoads | InputError]:
+        key = tuple(values[k] for k in self._of_loads)
+        known = self._loads.get(key)
+        if known is not None:
+            return known
+        mechanism = linkage(study) if study.table.mechanism else None
+        if mechanism is not None:
+            determined(study, mechanism)
+        found: dict[str, CaseLoads | InputError] = {}
+        for name in self._cases:
+            try:
+                found[name] = case_loads(study, name, mechanism)
+            except InputError as error:
+                found[name] = error
+        return self._loads.put(key, found)
+
+    def _of_pin(
+        self,
+        study: Study,
+        name: str,
+        cases: list[str],
+        loads: dict[str, CaseLoads | InputError],
+    ) -> Iterable[tuple[str, DesignRow]]:
+        wrong = {c: x for c in cases if isinstance(x := loads[c], InputError)}
+        right = {c: x for c in cases if not isinstance(x := loads[c], InputError)}
+        yield from ((c, _failed(study, name, c, error)) for c, error in wrong.items())
+        if not right:
+            return
+        try:
+            made = tasks(study, [pin_of(study, name)], right)
+        except (InputError, ArithmeticError) as error:
+            yield from ((c, _failed(study, name, c, error)) for c in right)
+            return
+        asked = asked_of(study)
+        for task in made:
+            yield from self._solved(study, task, asked)
+
+    def _solved(self, study: Study, task: Task, asked: Asked) -> Iterable[tuple[str, DesignRow]]:
+        material, density = task.material, task.material.density
+        mass = density * task.pin.volume if density else None
+        try:
+            peaks = self._peaks_of(study, task, asked)
+        except (InputError, ArgumentError, ArithmeticError, MemoryError) as error:
+            names = [loads.case for loads in task.loads]
+            yield from ((c, _failed(study, task.pin.name, c, error)) for c in names)
+            return
+        for peak in peaks:
+            good = peak.verdict == "converged"
+            yield (
+                peak.case,
+                DesignRow(
+                    peak.pin,
+                    peak.case,
+                    peak.max_von_mises,
+                    peak.error_estimate,
+                    peak.safety_factor(material.yield_strength),
+                    peak.verdict,
+                    peak.time,
+                    mass,
+                    "" if good else peak.note,
+                    "" if good else _code(peak),
+                ),
+            )
+
+    def _peaks_of(self, study: Study, task: Task, asked: Asked) -> tuple[Peak, ...]:
+        key = _question(study, task, asked)
+        known = self._peaks.get(key)
+        if known is not None:
+            return known
+        found = solutions(study, task, asked, lambda _: None)
+        peaks = (s.solution.peak if isinstance(s, LugSolution) else s.peak for s in found)
+        bare = tuple(replace(p, history=(), singular_at=()) for p in peaks)
+        return self._peaks.put(key, bare)
+
+
+def elastic(material: Material) -> Material:
+    """A material without its strengths, on which no stress depends."""
+    return Material(
+        material.name, material.youngs_modulus, material.poisson_ratio, material.density
+    )
+
+
+def _question(study: Study, task: Task, asked: Asked) -> str:
+    """Hash of all on which a pin's peaks depend in a study whose mechanism does not change."""
+    decides = asked.goal == "decide"
+    asks = (
+        shape_of(task.pin),
+        task.clamps,
+        task.lugs,
+        study.table.analysis.joints,
+        study.table.fatigue is not None,
+        task.loads,
+        task.ranges,
+        task.material if decides else elastic(task.material),
+        replace(asked, memory=None),
+    )
+    return hashlib.sha256(pack(asks)).hexdigest()
+
+
+def _code(peak: Peak) -> str:
+    return peak.reasons[0] if peak.verdict == "rigid" and peak.reasons else peak.verdict
+
+
+def _failed(study: Study, pin: str, case: str, error: BaseException) -> DesignRow:
+    """A row without a maximum; its reason names no file, whose place changes nothing."""
+    lines = error.lines if isinstance(error, InputError) else (str(error) or "out of memory",)
+    place = re.compile(rf"{re.escape(str(study.path))}(:\d+)?: ")
+    reason = "; ".join(place.sub("", line) for line in lines)
+    code = getattr(error, "code", "") or "failed"
+    return DesignRow(pin, case, None, None, None, "failed", reason=reason, code=code)

@@ -1,0 +1,176 @@
+"""How a number varies: laws of probability by their quantiles, in SI.
+
+A law that is cut off at limits has the probability between them, scaled to one.
+
+scipy is imported where it is used, so that `pinstress check` need not wait for it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Show = Callable[[float], str]
+
+
+@dataclass(frozen=True)
+class Uniform:
+    """Every value from `low` to `high` is equally likely."""
+
+    low: float
+    high: float
+
+    def quantile(self, u: Floats) -> Floats:
+        """The value below which a law stays with probabilities u (N,)."""
+        return np.asarray(self.low + np.asarray(u) * (self.high - self.low), np.float64)
+
+    def of_normal(self, z: Floats) -> Floats:
+        """The values that are as likely to be exceeded as z (N,) by a standard normal variable."""
+        return self.quantile(_ndtr(z))
+
+    def text(self, show: Show) -> str:
+        """The law in words. show: makes a text of a value."""
+        return f"uniform from {show(self.low)} to {show(self.high)}"
+
+
+@dataclass(frozen=True)
+class Normal:
+    """A normal law, cut off at `low` and `high`; `mean` and `deviation` are those without that."""
+
+    mean: float
+    deviation: float
+    low: float = -math.inf
+    high: float = math.inf
+
+    @property
+    def cut_off(self) -> bool:
+        """Whether it has limits."""
+        return math.isfinite(self.low) or math.isfinite(self.high)
+
+    @property
+    def within(self) -> float:
+        """The probability between the limits."""
+        ends = (np.array([self.low, self.high]) - self.mean) / self.deviation
+        low, high = _ndtr(ends if ends[0] <= 0.0 else -ends[::-1])
+        return float(high - low)
+
+    def quantile(self, u: Floats) -> Floats:
+        """As that of Uniform."""
+        from scipy.special import ndtri
+
+        u = np.asarray(u, np.float64)
+        if not self.cut_off:
+            return np.asarray(self.mean + self.deviation * ndtri(u), np.float64)
+        low, high = (np.array([self.low, self.high]) - self.mean) / self.deviation
+        if low > 0.0:  # in the upper tail, where 1 - p has the digits
+            z = -ndtri(_ndtr(-low) + u * (_ndtr(-high) - _ndtr(-low)))
+        else:
+            z = ndtri(_ndtr(low) + u * (_ndtr(high) - _ndtr(low)))
+        return np.asarray(np.clip(self.mean + self.deviation * z, self.low, self.high), np.float64)
+
+    def of_normal(self, z: Floats) -> Floats:
+        """As that of Uniform."""
+        if self.cut_off:
+            return self.quantile(_ndtr(z))
+        return np.asarray(self.mean + self.deviation * np.asarray(z), np.float64)
+
+    def text(self, show: Show) -> str:
+        """As that of Uniform."""
+        text = f"normal, mean {show(self.mean)}, deviation {show(self.deviation)}"
+        return text + _limits(self.low, self.high, show)
+
+
+@dataclass(frozen=True)
+class LogNormal:
+    """A law whose logarithm is normal, cut off at `low` and `high`; `mean` and `deviation` are of
+    the number itself, without that.
+    """
+
+    mean: float
+    deviation: float
+    low: float = 0.0
+    high: float = math.inf
+
+    @property
+    def logarithm(self) -> Normal:
+        """The law of its logarithm."""
+        variance = math.log1p((self.deviation / self.mean) ** 2)
+        centre = math.log(self.mean) - 0.5 * variance
+        low = math.log(self.low) if self.low > 0.0 else -math.inf
+        return Normal(centre, math.sqrt(variance), low, math.log(self.high))
+
+    @property
+    def within(self) -> float:
+        """The probability between the limits."""
+        return self.logarithm.within
+
+    def quantile(self, u: Floats) -> Floats:
+        """As that of Uniform."""
+        return np.asarray(np.clip(np.exp(self.logarithm.quantile(u)), self.low, self.high))
+
+    def of_normal(self, z: Floats) -> Floats:
+        """As that of Uniform."""
+        return np.asarray(np.clip(np.exp(self.logarithm.of_normal(z)), self.low, self.high))
+
+    def text(self, show: Show) -> str:
+        """As that of Uniform."""
+        text = f"lognormal, mean {show(self.mean)}, deviation {show(self.deviation)}"
+        low = self.low if self.low > 0.0 else -math.inf
+        return text + _limits(low, self.high, show)
+
+
+@dataclass(frozen=True)
+class Triangular:
+    """A density that rises straight from `low` to `mode` and falls to `high`."""
+
+    low: float
+    mode: float
+    high: float
+
+    def quantile(self, u: Floats) -> Floats:
+        """As that of Uniform."""
+        u = np.asarray(u, np.float64)
+        width, left = self.high - self.low, self.mode - self.low
+        rising = self.low + np.sqrt(u * width * left)
+        falling = self.high - np.sqrt((1.0 - u) * width * (width - left))
+        return np.asarray(np.where(u * width < left, rising, falling), np.float64)
+
+    def of_normal(self, z: Floats) -> Floats:
+        """As that of Uniform."""
+        return self.quantile(_ndtr(z))
+
+    def text(self, show: Show) -> str:
+        """As that of Uniform."""
+        return f"triangular from {show(self.low)} over {show(self.mode)} to {show(self.high)}"
+
+
+Law = Uniform | Normal | LogNormal | Triangular
+
+CAPABLE = 3.0  # standard deviations from the middle of a tolerance to its limits
+
+
+def of_tolerance(low: float, high: float) -> Normal:
+    """The law of a dimension that is made and inspected to lie between two limits."""
+    return Normal(0.5 * (low + high), 0.5 * (high - low) / CAPABLE, low, high)
+
+
+def cut_off(law: Normal | LogNormal, low: float, high: float) -> Normal | LogNormal:
+    """The same law between limits."""
+    return replace(law, low=low, high=high)
+
+
+def _ndtr(z: Floats | float) -> Floats:
+    from scipy.special import ndtr
+
+    return np.asarray(ndtr(z), np.float64)
+
+
+def _limits(low: float, high: float, show: Show) -> str:
+    if math.isfinite(low) and math.isfinite(high):
+        return f", cut off at {show(low)} and {show(high)}"
+    return ""
