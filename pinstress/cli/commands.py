@@ -17,6 +17,7 @@ from pinstress.cli.more_commands import (
     init,
     pdf_of,
     plots,
+    reliability,
     schema,
     size,
     view,
@@ -334,5 +335,16 @@ def check(study: Path) -> int:
     return NOT_REACHED if unheld else REACHED
 
 
-for _command in (compare_runs, import_, init, pdf_of, plots, schema, size, view, completion):
+for _command in (
+    compare_runs,
+    import_,
+    init,
+    pdf_of,
+    plots,
+    reliability,
+    schema,
+    size,
+    view,
+    completion,
+):
     commands.add_command(_command)

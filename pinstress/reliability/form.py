@@ -26,12 +26,24 @@ from scipy.special import ndtr, ndtri
 Array = NDArray[np.float64]
 LimitState = Callable[[Array], Array]  # at u (n, d): values (n,), failing where negative
 
-STEP = 0.01  # of differences, standard deviations
-ANGLE = 1e-3  # of the design point to the normal of the limit state
-ON_LIMIT = 1e-6  # of the limit state's value at the start
 FARTHEST = 10.0  # standard deviations: beyond, the probability is below 1e-23
 MOST = 30  # iterations
 HALVINGS = 12
+
+
+@dataclass(frozen=True)
+class Closeness:
+    """How closely a design point is found: step of differences, standard deviations; angle of the
+    point to the normal of the limit state; value there over that at the origin.
+    """
+
+    step: float = 0.01
+    angle: float = 1e-3
+    value: float = 1e-6
+
+
+SMOOTH = Closeness()
+NOISY = Closeness(0.3, 0.05, 1e-3)  # for limit states with the noise of meshes
 
 
 @dataclass(frozen=True)
@@ -85,13 +97,12 @@ class _Counted:
         return float(found[0]), (found[1 : d + 1] - found[d + 1 :]) / (2.0 * self._step)
 
 
-def design_point(limit: LimitState, start: Array, step: float = STEP) -> DesignPoint:
-    """The point nearest to the origin where `limit` is zero, from a start (d,). step: of
-    differences, standard deviations.
+def design_point(limit: LimitState, start: Array, close: Closeness = SMOOTH) -> DesignPoint:
+    """The point nearest to the origin where `limit` is zero, from a start (d,).
 
     A limit state with several such points needs several starts.
     """
-    g = _Counted(limit, step)
+    g = _Counted(limit, close.step)
     origin = g.at(np.zeros_like(start))
     if not np.isfinite(origin):
         return DesignPoint(start, np.nan, g.calls, "the design of the mean values fails")
@@ -103,7 +114,7 @@ def design_point(limit: LimitState, start: Array, step: float = STEP) -> DesignP
         why = _stuck(value, slope, scale, u)
         if why:
             return DesignPoint(u, np.nan, g.calls, why)
-        if abs(value) <= ON_LIMIT * scale and _aligned(u, gradient / slope):
+        if abs(value) <= close.value * scale and _aligned(u, gradient / slope, close.angle):
             return DesignPoint(u, sign * float(np.linalg.norm(u)), g.calls)
         if programmed:
             break
@@ -141,12 +152,10 @@ def _by_programming(g: _Counted, start: Array, scale: float) -> Array:
 
 
 def form_quantile(
-    limit: LimitState, probability: float, size: int, step: float = STEP
+    limit: LimitState, probability: float, size: int, close: Closeness = SMOOTH
 ) -> FormQuantile:
-    """The quantile of `limit` over d = size variables, by the first order. step: of differences,
-    standard deviations.
-    """
-    g = _Counted(limit, step)
+    """The quantile of `limit` over d = size variables, by the first order."""
+    g = _Counted(limit, close.step)
     radius = float(ndtri(probability))
     if abs(radius) > FARTHEST:
         return FormQuantile(np.nan, np.zeros(size), 0, "the probability is beyond 10 deviations")
@@ -158,7 +167,7 @@ def form_quantile(
         if why:
             return FormQuantile(np.nan, u, g.calls, why)
         target = radius * gradient / slope
-        if u.any() and float(np.linalg.norm(u - target)) <= ANGLE * abs(radius):
+        if u.any() and float(np.linalg.norm(u - target)) <= close.angle * abs(radius):
             return FormQuantile(value, u, g.calls)
         if radius == 0.0:
             return FormQuantile(value, u, g.calls)
@@ -186,9 +195,9 @@ def _stuck(value: float, slope: float, scale: float, u: Array) -> str:
     return ""
 
 
-def _aligned(u: Array, normal: Array) -> bool:
+def _aligned(u: Array, normal: Array, angle: float) -> bool:
     across = u - (u @ normal) * normal
-    return float(np.linalg.norm(across)) <= ANGLE * max(1.0, float(np.linalg.norm(u)))
+    return float(np.linalg.norm(across)) <= angle * max(1.0, float(np.linalg.norm(u)))
 
 
 def _within(target: Array) -> Array:
