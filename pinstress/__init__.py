@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from pinstress.analysis.plan import prepare
     from pinstress.analysis.results import Found, run, solve
+    from pinstress.designs.sweep import sweep
     from pinstress.study.errors import InputError
     from pinstress.study.file import Study, load_study
     from pinstress.study.in_python import changed_study, study_from
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 __all__ = [
     "Found", "InputError", "Study", "changed_study", "load_study", "prepare", "run",
-    "shipped_studies", "solve", "study_from",
+    "shipped_studies", "solve", "study_from", "sweep",
 ]  # fmt: skip
 
 _HOME = {
@@ -35,6 +36,7 @@ _HOME = {
     "shipped_studies": "pinstress.study.shipped",
     "solve": "pinstress.analysis.results",
     "study_from": "pinstress.study.in_python",
+    "sweep": "pinstress.designs.sweep",
 }
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections import OrderedDict
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import lru_cache, partial
 
 import numpy as np
 
@@ -50,6 +51,11 @@ class HarmonicSolution:
     elsewhere: Floats = field(default_factory=lambda: np.zeros((0, 6, 0)))
 
 
+Key = tuple[object, ...]
+# Unit loads, points (P, 2) to read stress at, and ends of pressures, as of HarmonicModel.solve.
+UnitFields = tuple[tuple[UnitLoad, ...], Floats, tuple[tuple[float, float], ...]]
+
+
 class FirstMesh:
     """What is solved on the first mesh of a pin, so that loads that come later are solved on it
     alone.
@@ -63,6 +69,42 @@ class FirstMesh:
         if key not in self._models:
             self._models[key] = make()
         return self._models[key]
+
+    def fields(
+        self, level: int, make: Callable[[], HarmonicModel], key: Key, asked: UnitFields
+    ) -> MeridianFields:
+        """What is asked of the model of a mesh, which `key` names and `make` makes."""
+        if level:
+            return make().solve(*asked)
+        return self.model(make, *key).solve_more(*asked)
+
+
+class EveryMesh(FirstMesh):
+    """Unit fields of all meshes that were solved last, of any pins, so that other amounts of the
+    same unit loads are superposed only. most: bytes of stress that are kept.
+    """
+
+    def __init__(self, most: int = 10**8) -> None:
+        super().__init__()
+        self._most, self._bytes = most, 0
+        self._fields: OrderedDict[Key, MeridianFields] = OrderedDict()
+        self.solved = 0  # meshes
+
+    def fields(
+        self, level: int, make: Callable[[], HarmonicModel], key: Key, asked: UnitFields
+    ) -> MeridianFields:
+        """As that of FirstMesh; what was kept is what would be found anew, to the last bit."""
+        loads, read, ends = asked
+        whole = (*key, loads, read.tobytes(), ends)
+        found = self._fields.pop(whole, None)
+        if found is None:
+            found = make().solve(*asked)
+            self.solved += 1
+            self._bytes += found.stress.nbytes
+        self._fields[whole] = found
+        while self._bytes > self._most and len(self._fields) > 1:
+            self._bytes -= self._fields.popitem(last=False)[1].stress.nbytes
+        return found
 
 
 def harmonic_solution(
@@ -108,10 +150,11 @@ def harmonic_solution(
             section = meridian_mesh(pin, size, places, grades, quiet)
             return HarmonicModel(pin, section, material, clamps)
 
-        if level or first is None:
-            return model().solve(loads, read, ends)
-        key = (size, tuple(places), tuple(grades), quiet, read.tobytes(), ends)
-        return first.model(model, *key).solve_more(loads, read, ends)
+        elastic = material.youngs_modulus, material.poisson_ratio, material.density
+        mesh = size, tuple(places), tuple(grades), quiet, read.tobytes(), ends
+        return (first or FirstMesh()).fields(
+            level, model, (pin, elastic, clamps, *mesh), (loads, read, ends)
+        )
 
     quiet = crowd(pin)
     if quiet:
@@ -125,6 +168,8 @@ def harmonic_solution(
 
 def _apart(fields: MeridianFields, count: int) -> tuple[MeridianFields, Floats]:
     """Without the first points after those that have a displacement, and the stress at these."""
+    if not count:
+        return fields, np.zeros((0, *fields.stress.shape[1:]))
     first = len(fields.displacement)
     here, rest = slice(first, first + count), np.r_[:first, first + count : len(fields.points)]
     unread = np.flatnonzero(np.isin(rest, fields.unread))
@@ -137,8 +182,9 @@ def _unit_loads(cases: tuple[PinLoads, ...]) -> tuple[UnitLoad, ...]:
     return loads or (UnitLoad(cases[0].surfaces[0], "force", 1),)  # whose coefficient is zero
 
 
+@lru_cache(64)
 def _rims(pin: Pin, singularities: tuple[Singularity, ...]) -> Floats:
-    """Points (P, 2) about singularities at which stress is read."""
+    """Points (P, 2) about singularities at which stress is read, on every mesh of a pin."""
     read = [rim(pin, p, d) for p in singularities for d in _distances(p)]
     return np.concatenate([NOWHERE, *read])
 

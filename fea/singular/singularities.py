@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -82,6 +83,7 @@ class Singularity:
         return times * (1.0 - self.torsion_theory) - 1.0
 
 
+@lru_cache(256)
 def find_singularities(
     pin: Pin,
     clamps: tuple[str, ...],

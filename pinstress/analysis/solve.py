@@ -11,6 +11,7 @@ from fea.core.memory import allowed_memory, solid_memory
 from fea.core.peak import Peak
 from fea.core.pin_loads import PinLoads
 from fea.fatigue.critical_points import stress_histories
+from fea.harmonic.evaluate import FirstMesh
 from fea.joint.foundation.solve_on_foundations import solve_joints
 from fea.joint.foundation.variations import prescribed_ranges
 from fea.joint.records import JointResult
@@ -138,14 +139,15 @@ def _failed(plan: Plan, task: Task, reason: str) -> Solved:
 
 
 def solutions(
-    study: Study, task: Task, asked: Asked, tell: Tell
+    study: Study, task: Task, asked: Asked, tell: Tell, first: FirstMesh | None = None
 ) -> tuple[Solution | LugSolution, ...]:
-    """Of a task's cases, in contact with lugs if these hold the pin.
+    """Of a task's cases, in contact with lugs if these hold the pin. first: what was solved before
+    of pins that are clamped, as solve_pin takes it.
 
     Raises: ArgumentError, MeshError, SolveError.
     """
     return _in_lugs(study, task, asked, tell) or solve_pin(
-        task.pin, task.material, task.clamps, task.loads, asked, tell, task.between
+        task.pin, task.material, task.clamps, task.loads, asked, tell, task.between, first
     )
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from pinstress.cli.designs.commands import sweep
 from pinstress.cli.more_commands import (
     compare_runs,
     completion,
@@ -25,7 +26,7 @@ from pinstress.cli.more_commands import (
 from pinstress.cli.shared import example, names, read_study
 from pinstress.processes import interrupts
 from pinstress.processes.environment import settle_surroundings
-from pinstress.processes.interrupts import INTERRUPTED
+from pinstress.processes.interrupts import INTERRUPTED, Unfinished
 from pinstress.study.choices import ChoiceError
 from pinstress.study.errors import InputError, clipped
 
@@ -49,7 +50,8 @@ def run_command_line(arguments: list[str]) -> int:
         if ended is None:
             raise
         if ended == INTERRUPTED:
-            click.echo("Interrupted; nothing was written.", err=True)
+            left = str(error) if isinstance(error, Unfinished) else "nothing was written"
+            click.echo(f"Interrupted; {left}.", err=True)
         return ended
     finally:
         interrupts.forget()
@@ -344,6 +346,7 @@ for _command in (
     reliability,
     schema,
     size,
+    sweep,
     view,
     completion,
 ):

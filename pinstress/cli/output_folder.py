@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import errno
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -23,9 +23,12 @@ from pinstress.study.errors import InputError
 MARK = "results.json"  # what a run and the loads alone write
 
 
-def require_replaceable(directory: Path, mark: str = MARK) -> None:
+def require_replaceable(
+    directory: Path, mark: str = MARK, also: Callable[[str], bool] = lambda _: False
+) -> None:
     """Raises: InputError if replacing `directory` would destroy files that are not ours, or results
-    of another command, which has no file `mark`.
+    of another command, which has no file `mark`. also: which entries are ours in addition to those
+    that are listed.
     """
     try:
         if directory.exists() and not directory.is_dir():
@@ -47,7 +50,7 @@ def require_replaceable(directory: Path, mark: str = MARK) -> None:
             "copied without that file; choose another folder, or delete this one",
             code="not-ours",
         )
-    if strange := there - (known or set()):
+    if strange := {name for name in there - (known or set()) if not also(name)}:
         raise InputError(
             f"--out: {directory} contains {_some(strange)}, which pinstress did not write and "
             "would delete; move them elsewhere or choose another folder",

@@ -18,6 +18,7 @@ from typing import Generic, TypeVar
 from fea.asked import Asked
 from fea.core.material import Material
 from fea.core.peak import Peak, Verdict
+from fea.harmonic.evaluate import EveryMesh
 from fea.joint.solve_in_lugs import LugSolution
 from geometry import ArgumentError
 from pinstress.analysis.plan import asked_of, prepare
@@ -83,7 +84,8 @@ class Recent(Generic[K, V]):
 
 class Evaluator:
     """A study whose numbers change. pins, cases: names; all by default. parameters: in the order of
-    the values of `rows`. table: the (pin, case) of a design's rows, in their order.
+    the values of `rows`. table: the (pin, case) of a design's rows, in their order. meshes: what
+    was solved of pins that are not in contact.
 
     Raises: InputError where the study as it is cannot be run.
     """
@@ -99,6 +101,7 @@ class Evaluator:
         self._raw = {k: v for k, v in raw_study(study).items() if k not in APART}
         self.study = with_raw(study, self._raw)
         plan = prepare(self.study, pins=pins, cases=cases)
+        self._memory = plan.asked.memory  # free when it began: to ask again takes a millisecond
         self._cases = tuple(plan.loads)
         found = {(t.pin.name, case.case): None for t in plan.tasks for case in t.loads}
         self._pins = tuple(dict.fromkeys(pin for pin, _ in found))
@@ -106,6 +109,7 @@ class Evaluator:
             (pin, case) for pin in self._pins for case in self._cases if (pin, case) in found
         )
         self._loads = Recent[tuple[float, ...], dict[str, CaseLoads | InputError]](MOST_LOADS)
+        self.meshes = EveryMesh()
         self._peaks = Recent[str, tuple[Peak, ...]](MOST_PEAKS)
         self._of_loads = [k for k, number in enumerate(self.numbers) if self._moves(number)]
 
@@ -172,7 +176,7 @@ class Evaluator:
         except (InputError, ArithmeticError) as error:
             yield from ((c, _failed(study, name, c, error)) for c in right)
             return
-        asked = asked_of(study)
+        asked = asked_of(study, memory=self._memory)
         for task in made:
             yield from self._solved(study, task, asked)
 
@@ -208,7 +212,7 @@ class Evaluator:
         known = self._peaks.get(key)
         if known is not None:
             return known
-        found = solutions(study, task, asked, lambda _: None)
+        found = solutions(study, task, asked, lambda _: None, self.meshes)
         peaks = (s.solution.peak if isinstance(s, LugSolution) else s.peak for s in found)
         bare = tuple(replace(p, history=(), singular_at=()) for p in peaks)
         return self._peaks.put(key, bare)

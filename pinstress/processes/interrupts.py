@@ -17,6 +17,10 @@ _came = False
 _deferred = False
 
 
+class Unfinished(KeyboardInterrupt):
+    """An interrupt of work that can go on later; the message says how."""
+
+
 def listen() -> None:
     """From now on interrupts raise KeyboardInterrupt, the first of them; forget earlier ones."""
     forget()

@@ -1,0 +1,53 @@
+"""The `sweep` command's options."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from pinstress.cli.shared import example, names, read_study
+
+
+@click.command(
+    short_help="Solve many designs: the numbers of a study that vary.",
+    help=example("pinstress sweep study.toml --out out/designs --jobs 4")
+    + "\nSolve the designs that the study's [vary] describes: a grid, a Sobol sequence, a Latin "
+    "hypercube or a random sample of any of its numbers. Writes designs.parquet, a row for each "
+    "design, pin and case; a design that fails is a row with its reason.\n\n"
+    "A sweep that was interrupted or killed goes on with --resume.\n\n"
+    "Exit status: 0 done; 1 done, but every design failed; 2 bad input; 130 interrupted.",
+)
+@click.argument("study", type=click.Path(path_type=Path))
+@click.option("--out", type=click.Path(path_type=Path), help="Output folder [out/<study>-sweep].")
+@click.option("--pins", callback=names, metavar="A,B", help="Only these pins.")
+@click.option("--cases", callback=names, metavar="X,Y", help="Only these cases.")
+@click.option(
+    "--jobs",
+    type=click.IntRange(1),
+    metavar="N",
+    help="Number of parallel processes [number of cores]; does not affect the results.",
+)
+@click.option(
+    "--scheduler",
+    metavar="ADDRESS",
+    help="Solve on your own cluster of dask, tcp://host:8786, instead of this machine.",
+)
+@click.option("--resume", is_flag=True, help="Go on with a sweep that did not end.")
+@click.option("--quiet", is_flag=True, help="No progress bar, no notes; errors are still reported.")
+def sweep(
+    study: Path,
+    out: Path | None,
+    pins: list[str] | None,
+    cases: list[str] | None,
+    jobs: int | None,
+    scheduler: str | None,
+    resume: bool,
+    quiet: bool,
+) -> int:
+    loaded = read_study(study)
+    from pinstress.cli.designs.sweep import Way, sweep_and_write
+
+    directory = out or Path("out") / f"{loaded.name}-sweep"
+    way = Way(jobs, scheduler, resume, quiet)
+    return sweep_and_write(loaded, directory, pins, cases, way)

@@ -1,0 +1,186 @@
+"""The `sweep` command: solve designs into a folder that keeps every batch, print what they say."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+from rich.console import Console
+
+from pinstress.cli import manifest
+from pinstress.cli.output_folder import require_replaceable
+from pinstress.cli.run import console
+from pinstress.cli.streams import unneeded
+from pinstress.designs.parts import FOLDER, STATED, Parts, identity, is_ours
+from pinstress.designs.summary import summary
+from pinstress.designs.sweep import Report, planned, solved
+from pinstress.designs.table import write_table
+from pinstress.processes import interrupts
+from pinstress.processes.folder_lock import Release, lock
+from pinstress.processes.interrupts import Unfinished
+from pinstress.study.errors import InputError
+from pinstress.study.file import Study
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+TABLE, PAGE = "designs.parquet", "designs.html"
+FILES = (TABLE, PAGE)
+
+
+@dataclass(frozen=True)
+class Way:
+    """How a sweep is done. jobs: processes on this machine, by default one for each core;
+    scheduler: address of a cluster instead. resume: whether to go on with what is there.
+    """
+
+    jobs: int | None = None
+    scheduler: str | None = None
+    resume: bool = False
+    quiet: bool = False
+
+
+def sweep_and_write(
+    study: Study, directory: Path, pins: list[str] | None, cases: list[str] | None, way: Way
+) -> int:
+    """Sweep a study into a folder; returns the exit status: 1 if every design failed.
+
+    Raises: InputError.
+    """
+    parts = Parts(directory, identity(study, pins, cases))
+    _require_usable(directory, parts, way.resume)
+    sweep = planned(study, pins, cases)
+    with _claimed(directory, parts, way.resume):
+        try:
+            with progress(way.quiet) as report:
+                table = solved(sweep, parts, way.jobs, way.scheduler, report)
+        except BaseException as error:
+            if isinstance(error, KeyboardInterrupt) or interrupts.came():
+                raise Unfinished(_kept(study, directory, parts)) from None
+            raise
+        _write(directory, table)
+        parts.remove()
+    with unneeded(directory):
+        summary(table, console())
+    if not way.quiet:
+        click.echo(f"Table: {directory / TABLE}", err=True)
+        if (directory / PAGE).is_file():
+            click.echo(f"Page: {directory / PAGE}", err=True)
+    verdicts = set(table["verdict"].unique().to_pylist())
+    return int(verdicts == {"failed"})
+
+
+def _write(directory: Path, table: pa.Table) -> None:
+    try:
+        manifest.add(directory, list(FILES))
+        write_table(table, directory / TABLE)
+    except OSError as error:  # a full disk
+        raise InputError(
+            f"--out: cannot write to {directory} ({error.strerror})", code="cannot-write"
+        ) from error
+
+
+def _require_usable(directory: Path, parts: Parts, resume: bool) -> None:
+    """Raises: InputError for a folder with other files than those of a sweep, with a sweep that did
+    not end and is not to be resumed, or with none to resume.
+    """
+    if directory.exists() and (not directory.is_dir() or manifest.entries(directory)):
+        begun = directory.is_dir() and (parts.folder / STATED).is_file()
+        mark = f"{FOLDER}/{STATED}" if begun else TABLE
+        require_replaceable(directory, mark, is_ours)
+    if resume:
+        parts.require_same()
+    elif parts.there():
+        raise InputError(
+            f"--out: {directory} has a sweep that did not end: go on with --resume, or delete its "
+            f"folder {FOLDER} to begin anew",
+            code="unfinished-sweep",
+        )
+
+
+@contextmanager
+def _claimed(directory: Path, parts: Parts, resume: bool) -> Iterator[None]:
+    """The folder made, listed as ours, and locked meanwhile."""
+    release: Release | None = None
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        release = lock(directory.resolve())
+        if not manifest.entries(directory):
+            manifest.begin(directory)
+        if not resume:
+            parts.begin()
+        yield
+    except BlockingIOError:
+        raise InputError(
+            f"--out: another sweep is writing {directory}; wait for it or choose another folder",
+            code="locked",
+        ) from None
+    except OSError as error:
+        if error.filename is None and error.errno is None:
+            raise
+        raise InputError(
+            f"--out: cannot write to {directory} ({error.strerror})", code="cannot-write"
+        ) from error
+    finally:
+        if release is not None:
+            release()
+
+
+def _kept(study: Study, directory: Path, parts: Parts) -> str:
+    return (
+        f"{parts.count} batches are kept. Go on with: pinstress sweep {study.path} --out "
+        f"{directory} --resume"
+    )
+
+
+@contextmanager
+def progress(quiet: bool) -> Iterator[Report]:
+    """A progress bar on stderr if it is a terminal, otherwise a line now and then."""
+    from rich import progress as rich
+
+    shown = Console(stderr=True)
+    columns = (
+        rich.TextColumn("designs"),
+        rich.BarColumn(),
+        rich.MofNCompleteColumn(),
+        rich.TimeElapsedColumn(),
+        rich.TextColumn("left"),
+        rich.TimeRemainingColumn(elapsed_when_finished=False),
+    )
+    lines = _Lines(quiet or shown.is_terminal)
+    with rich.Progress(
+        *columns, console=shown, transient=True, disable=quiet or not shown.is_terminal
+    ) as bar:
+        task = bar.add_task("designs", total=None)
+
+        def report(count: int, total: int) -> None:
+            bar.update(task, completed=count, total=total)
+            lines.tell(count, total)
+
+        yield report
+
+
+class _Lines:
+    """Progress where there is no terminal: a line every EVERY seconds."""
+
+    EVERY = 30.0
+
+    def __init__(self, silent: bool) -> None:
+        self._silent = silent
+        self._start = self._last = time.monotonic()
+        self._first: int | None = None
+
+    def tell(self, count: int, total: int) -> None:
+        now = time.monotonic()
+        if self._first is None:
+            self._first = count
+        if self._silent or now - self._last < self.EVERY or count == self._first:
+            return
+        self._last = now
+        left = (now - self._start) / (count - self._first) * (total - count)
+        click.echo(f"{count:,} of {total:,} designs, {left:,.0f} s left", err=True)
