@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pinstress.designs.batches import shapes
 from pinstress.designs.evaluate import Evaluator
 from pinstress.designs.parameters import Parameter
 from pinstress.processes.pool import Progress
@@ -123,8 +124,7 @@ class _Form:
 def _first_order(designs: Designs, sampled: Sample, row: int, asked: ReliabilityTable) -> _Form:
     """Design points of a row from the mean and from samples that fail in other directions."""
     size = designs.space.size
-    shaped = any(number.path[0] == "pin" for number in designs.evaluator.numbers)
-    close = NOISY if shaped else SMOOTH
+    close = NOISY if any(map(shapes, designs.evaluator.numbers)) else SMOOTH
     limit = designs.limit(row, asked.factor)
     points = [design_point(limit, np.zeros(size), close)]
     for start in _starts(sampled, row, asked.factor):

@@ -9,12 +9,12 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from pinstress.designs.correlations import correlations_of, root_of
 from pinstress.designs.evaluate import DesignRow, Evaluator
-from pinstress.designs.laws import Normal
 from pinstress.designs.parameters import Parameter, parameters_of
 from pinstress.processes.pool import Died, Job, Progress, side_by_side
 from pinstress.reliability.form import LimitState
-from pinstress.reliability.space import NormalSpace, normal_space
+from pinstress.reliability.space import NormalSpace
 from pinstress.study.file import Study
 
 Array = NDArray[np.float64]
@@ -58,24 +58,9 @@ def random_numbers(study: Study) -> tuple[tuple[Parameter, ...], NormalSpace]:
                 "deviation], or uniform = [least, largest] if all are equally likely",
                 code="no-law",
             )
-    correlation = np.eye(len(parameters))
-    known = {parameter.key: k for k, parameter in enumerate(parameters)}
-    for number, pair in enumerate(vary.correlations, start=1):
-        at = f"vary.correlations[{number}]"
-        for key in pair.between:
-            law = parameters[known[key]].law if key in known else None
-            if not isinstance(law, Normal) or law.cut_off:
-                what = "is not one of the parameters" if law is None else "has no plain normal law"
-                raise study.error(f"{at}: {key} {what}", code="no-normal-law")
-        i, j = (known[key] for key in pair.between)
-        if i == j:
-            raise study.error(f"{at}: names {pair.between[0]} twice", code="duplicate-parameter")
-        correlation[i, j] = correlation[j, i] = pair.coefficient
-    try:
-        space = normal_space([p.of_normal for p in parameters], correlation)
-    except ValueError as error:
-        raise study.error(f"vary.correlations: {error}", code="contradiction") from None
-    return parameters, space
+    matrix = correlations_of(study, parameters, sampled=False)
+    lower = None if matrix is None else root_of(matrix)
+    return parameters, NormalSpace(tuple(p.of_normal for p in parameters), lower)
 
 
 class Designs:

@@ -6,7 +6,7 @@ which is exact for normal variables). All others are independent.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +20,7 @@ Marginal = Callable[[Array], Array]  # values at standard normal deviates
 class NormalSpace:
     """d random variables: each a function of its own standard normal deviate.
 
-    lower: Cholesky factor (d, d) of the deviates' correlation; None where all are independent.
+    lower: L (d, d) with L L^T the correlation of the deviates; None where all are independent.
     """
 
     marginals: tuple[Marginal, ...]
@@ -40,17 +40,7 @@ class NormalSpace:
         unit direction; with correlation, of the variables' own deviates (Der Kiureghian's gamma).
         """
         if self.lower is not None:
-            direction = np.linalg.solve(self.lower.T, direction).astype(np.float64)
+            direction = np.linalg.lstsq(self.lower.T, direction)[0].astype(np.float64)
         squares: Array = direction**2
         part: Array = squares / squares.sum()
         return part
-
-
-def normal_space(marginals: Sequence[Marginal], correlation: Array | None = None) -> NormalSpace:
-    """correlation: (d, d) of the deviates. Raises: ValueError if it is not positive definite."""
-    if correlation is None or np.array_equal(correlation, np.eye(len(marginals))):
-        return NormalSpace(tuple(marginals))
-    try:
-        return NormalSpace(tuple(marginals), np.linalg.cholesky(correlation).astype(float))
-    except np.linalg.LinAlgError:
-        raise ValueError("the correlations contradict each other") from None

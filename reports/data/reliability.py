@@ -67,9 +67,10 @@ class Risk:
 
     verdict, factor: of the study as it is; None where it has no factor. sampled, weighted: the
     probability of failure by plain and by importance sampling, None without a design point.
-    failures: of the plain samples; unknown: of them without a result. quantile_sampled, quantile_weighted: the factor of
-    safety that is not reached with the stated probability. mesh: by the estimated error of the
-    stress, joint: by the range over the joint; None where not known. curve: of the distribution
+    failures: of the plain samples; unknown: of them without a result. quantile_sampled,
+    quantile_weighted: the factor of safety that is not reached with the stated probability. mesh:
+    by the estimated error of the stress, joint: by the range over the joint; None where not known.
+    curve: of the distribution
     (factor, probability to be lower, by plain (0) or importance sampling (1)).
     """
 

@@ -10,7 +10,7 @@ from reports.format.template import environment
 from reports.plots.draw import svg
 from reports.plots.reliability import distribution_plot
 from reports.plots.theme import on_paper
-from reports.tables.reliability import drivers_grid, risks_grid
+from reports.tables.reliability import drivers_grid, risks_grid, ways_grid
 from reports.text.reliability import remarks, sentence, solved
 
 MOST = 12  # plots
@@ -28,6 +28,7 @@ def write_reliability_page(found: Reliability, path: Path) -> None:
             sentence=sentence(found, found.risks[0]) if found.risks else "",
             sections=[
                 ("Pins and cases", risks_grid(found)),
+                ("By each way of finding it", ways_grid(found)),
                 ("What drives it", drivers_grid(found)),
                 ("Random numbers", laws),
             ],

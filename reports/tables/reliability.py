@@ -147,11 +147,9 @@ def risks_grid(found: Reliability) -> Grid:
     per_cent, p = f"{100.0 * found.confidence:g} %", chance(found.probability)
     head = ["pin", "case", "result", "FoS", f"FoS at probability {p} ({per_cent})",
             f"P(FoS < {engineering(found.limit, DIGITS)}) ({per_cent})", "by mesh error",
-            "over joint", "plain sampling", "importance sampling", "FORM", "index"]  # fmt: skip
-    body = []
-    for risk in found.risks:
-        form = risk.form
-        body.append([
+            "over joint"]  # fmt: skip
+    body = [
+        [
             risk.pin,
             risk.case,
             risk.result(found.probability),
@@ -159,12 +157,34 @@ def risks_grid(found: Reliability) -> Grid:
             factor_interval(risk.quantile),
             chance_range(risk.probability),
             *(_by_errors(each) for each in (risk.mesh, risk.joint)),
-            f"{chance_range(risk.sampled)}, {risk.failures:,} of {found.samples:,}",
+        ]
+        for risk in found.risks
+    ]
+    return Grid(head, body, [False, False, False, *[True] * 5])
+
+
+def ways_grid(found: Reliability) -> Grid:
+    """The same by each way of finding it."""
+    per_cent, p = f"{100.0 * found.confidence:g} %", chance(found.probability)
+    head = ["pin", "case", f"plain sampling ({per_cent})", "failures",
+            f"importance sampling ({per_cent})", "FORM", "reliability index",
+            f"FoS at {p}, plain", "FoS, importance", "FoS, FORM"]  # fmt: skip
+    body = []
+    for risk in found.risks:
+        form = risk.form
+        body.append([
+            risk.pin,
+            risk.case,
+            chance_range(risk.sampled),
+            f"{risk.failures:,} of {found.samples:,}",
             chance_range(risk.weighted),
             chance(form.probability) if form else DASH,
             engineering(finite(form.index), 4) if form else DASH,
+            factor_interval(risk.quantile_sampled),
+            factor_interval(risk.quantile_weighted),
+            engineering(finite(form.quantile), DIGITS) if form else DASH,
         ])  # fmt: skip
-    return Grid(head, body, [False, False, False, *[True] * 9])
+    return Grid(head, body, [False, False, *[True] * 8])
 
 
 def _by_errors(found: ByErrors | None) -> str:

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 from reports.data.reliability import Reliability, Risk
 from reports.format.grid import Grid
 from reports.format.numbers import engineering
-from reports.tables.reliability import chance, drivers_grid, remark, risks_grid
+from reports.tables.reliability import chance, drivers_grid, remark, risks_grid, ways_grid
 from reports.text.fitted_table import Column, fitted_table
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-RANKS = 0, 0, 0, 1, 2, 0, 3, 4, 6, 5, 7, 8  # of the columns of risks: which are left out first
+# Of the columns: which are left out first.
+RISKS, WAYS, DRIVERS = (0, 0, 0, 1, 2, 0, 3, 4), (0, 0, 0, 0, 0, 0, 1, 4, 3, 2), (0, 0, 0, 0, 1, 2)
 
 
 def sentence(found: Reliability, risk: Risk) -> str:
@@ -62,11 +63,16 @@ def print_reliability(found: Reliability, console: Console) -> None:
 
     for risk in found.risks[:1]:
         console.print(Text(sentence(found, risk), "bold"))
-    console.print(fitted_table(_columns(risks_grid(found), RANKS), console.width))
-    grid = drivers_grid(found)
-    if grid.body:
-        console.print(Text("What drives it", "bold"))
-        console.print(fitted_table(_columns(grid, (0, 0, 0, 0, 1, 2)), console.width))
+    for title, grid, ranks in (
+        ("", risks_grid(found), RISKS),
+        ("By each way of finding it", ways_grid(found), WAYS),
+        ("What drives it", drivers_grid(found), DRIVERS),
+    ):
+        if not grid.body:
+            continue
+        if title:
+            console.print(Text(title, "bold"))
+        console.print(fitted_table(_columns(grid, ranks), console.width))
     for line in (*remarks(found), solved(found)):
         console.print(Text(line))
 
