@@ -17,6 +17,7 @@ from reports.data.results import PinResult
 Array = NDArray[np.float64]
 
 CURVE = 80  # points of a distribution
+FEWEST = 10  # weighted samples below a point of it
 
 
 @dataclass(frozen=True)
@@ -124,8 +125,8 @@ def _curve(sample: Sample, row: Row, way: int) -> tuple[tuple[float, float, int]
     factors = 1.0 / used[known][order]
     below = np.cumsum(sample.draws.weights[known][order]) / len(used)
     inside = np.flatnonzero((below > 0.0) & (below < 1.0))
-    if way:
-        inside = inside[below[inside] < 0.5]  # beyond, few samples have large weights
+    if way:  # of weighted samples, where they are many: not far above the design points
+        inside = inside[(below[inside] < 0.5) & (inside >= FEWEST)]
     if not len(inside):
         return ()
     deviates = ndtri(below[inside])

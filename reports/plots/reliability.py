@@ -7,7 +7,7 @@ from statistics import NormalDist
 from reports.data.reliability import Reliability, Risk
 from reports.plots.spec import Plot, Spec, clipped, rows
 
-TICKS = (1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 0.01, 0.1, 0.5, 0.9, 0.99, 0.999, 0.9999)
+TICKS = (1e-8, 1e-6, 1e-5, 1e-4, 1e-3, 0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 0.999, 0.9999)
 WAYS = "plain sampling", "importance sampling"
 
 
@@ -26,7 +26,8 @@ def distribution_plot(found: Reliability, risk: Risk) -> Plot | None:
     x: Spec = {"field": "x", "type": "quantitative", "title": "factor of safety",
                "scale": {"zero": False, "nice": False}}  # fmt: skip
     y: Spec = {"field": "y", "type": "quantitative", "title": "probability of a lower factor",
-               "axis": {"values": [deviate(p) for p in ticks], "labelExpr": f"{named} : ''"},
+               "axis": {"values": [deviate(p) for p in ticks], "labelExpr": f"{named} : ''",
+                     "labelOverlap": False},
                "scale": {"zero": False}}  # fmt: skip
     colour: Spec = {"field": "way", "type": "nominal", "title": None,
                     "scale": {"domain": list(WAYS)}}  # fmt: skip
@@ -38,7 +39,7 @@ def distribution_plot(found: Reliability, risk: Risk) -> Plot | None:
          "mark": {"type": "rule", "style": "level"}, "encoding": {"x": None}},
     ]  # fmt: skip
     title = f"pin {clipped(risk.pin)}, {clipped(risk.case)}"
-    spec: Spec = {"title": title, "data": rows(data), "width": 420, "height": 260,
+    spec: Spec = {"title": title, "data": rows(data), "width": 420, "height": 320,
                   "encoding": {"x": x, "y": y}, "layer": layers}  # fmt: skip
     caption = (
         "Distribution of the factor of safety; a normal law would be a straight line. Dashed: the "

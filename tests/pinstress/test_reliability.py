@@ -14,40 +14,20 @@ from pinstress.reliability.designs import random_numbers
 from pinstress.reliability.drivers import base_samples, indices
 from pinstress.study.errors import InputError
 from pinstress.study.file import parse_study
+from tests.conftest import ROOT
 
 EXACT = 0.0291981946  # of tests/pinstress/test_reliability_mathematics.py
 
-BAR = """
-title = "Bar in tension"
-units = "mm-N-s"
-
-[material.steel]
-youngs_modulus = "210 GPa"
-poisson_ratio = 0.0           # so that the clamp does not disturb
-yield_strength = 300
-
-[pin.A]
-material = "steel"
-clamp = ["start"]
-profile = [
-  { length = 60, diameter = 20, fillet = 3000 },
-  { length = 240, diameter = [20, 26] },
-  { length = 40, diameter = 26, connection = "A" },
-]
-
-[case.pull]
-kind = "given"
-forces = { A = [0.0, 0.0, 75000.0] }
-
+PAGE = (ROOT / "docs" / "reliability.md").read_text(encoding="utf-8")
+SMALL = """
 [reliability]
 samples = 200
 importance_samples = 300
 sobol_samples = 16
 
-[vary.parameters]
-"material.steel.yield_strength" = { lognormal = [300, 30] }
-"case.pull.forces.A[3]" = { normal = ["75 kN", "5 kN"] }
 """
+# The page's own example, with fewer samples.
+BAR = PAGE.split("```toml\n")[1].split("```")[0].replace("[vary.", f"{SMALL}[vary.", 1)
 
 
 def _run(tmp_path: Path, text: str, *more: str) -> int:
@@ -73,7 +53,7 @@ def test_the_bar_through_the_whole_chain(
     for way in ("sampled", "weighted"):
         assert risk[way]["low"] < EXACT < risk[way]["high"]
     assert risk["by_weights"]
-    assert risk["weighted"]["high"] - risk["weighted"]["low"] < 0.4 * EXACT
+    assert risk["weighted"]["high"] - risk["weighted"]["low"] < 0.5 * EXACT
     # FORM errs by the curvature alone: it is that of the exact limit state to the mesh's error.
     assert risk["form"]["probability"] == pytest.approx(EXACT, rel=0.06)
     mesh = risk["mesh"]
@@ -166,8 +146,8 @@ def test_nothing_fails_gives_an_upper_bound_only(
     assert "Not decided: pin A, case pull" in printed.err
     (risk,) = json.loads((tmp_path / "out" / "reliability.json").read_text())["risks"]
     assert risk["sampled"] == {"value": 0.0, "low": 0.0, "high": pytest.approx(0.16843, rel=1e-4)}
-    # FORM is printed as such, never as the probability.
-    assert 0.0 < risk["form"]["probability"] < 1e-9 or risk["form"]["why"]
+    assert "10 standard deviations" in risk["form"]["why"]
+    assert risk["form"]["probability"] is None
 
 
 def test_the_study_s_correlation_reaches_the_space() -> None:
@@ -180,7 +160,7 @@ coefficient = 0.6
     assert len(parameters) == 2
     u = np.random.default_rng(1).standard_normal((20_000, 2))
     x = space.physical(u)
-    assert np.corrcoef(x.T)[0, 1] == pytest.approx(0.6, abs=0.02)
+    assert float(np.corrcoef(x[:, 0], x[:, 1]).ravel()[1]) == pytest.approx(0.6, abs=0.02)
     assert x.mean(axis=0) == pytest.approx([300e6, 75e3], rel=0.01)
     assert space.importance(np.array([1.0, 0.0])).sum() == pytest.approx(1.0)
 
