@@ -16,6 +16,7 @@ from benchmarks import (
     calculix,
     coverage,
     cut,
+    designs_page,
     failures,
     foundation,
     gear,
@@ -37,6 +38,7 @@ from benchmarks import (
     shapes,
     shoulders,
     speed,
+    sweep,
     tension,
 )
 from benchmarks.record import record
@@ -70,9 +72,11 @@ TIMES = {
     "cut": cut.cut,
     "demo": speed.demo,
     "page": page.page,
+    "designs-page": designs_page.designs_page,
     "shapes": shapes.shapes,
     "models": models.models,
     "shoulders": shoulders.shoulders,
+    "sweep": sweep.sweep,
     "calculix": calculix.calculix,
     "ngsolve": ngsolve_peer.ngsolve,
     "peers-motion": peers_motion.peers_motion,

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from functools import partial
 
 from fea.core.equilibrium import out_of_balance
 from geometry import PinLike
 from loads import Linkage
 from loads.closed_form.four_bar import four_bar
+from pinstress.designs.correlations import correlations_of
+from pinstress.designs.parameters import parameters_of
 from pinstress.model.cases import CaseLoads, case_loads
 from pinstress.model.lugs import lugs
 from pinstress.model.mechanism.drives import span
@@ -19,6 +22,7 @@ from pinstress.model.tasks import Task, tasks
 from pinstress.schema.cases import GivenCase, LegCase, MotionCase
 from pinstress.schema.landing import DropCase, GroundCase
 from pinstress.schema.pins import PinTable
+from pinstress.schema.vary import VaryTable
 from pinstress.study.errors import Errors
 from pinstress.study.file import Study
 from pinstress.study.published_tables import read_published
@@ -60,7 +64,18 @@ def describe(study: Study) -> tuple[str, list[str]]:
         f", required safety factor {a.required_safety_factor:g}" if a.required_safety_factor else ""
     )
     lines.append(f"model {a.model}, tolerance {a.tolerance:g}{goal}")
+    if table.vary is not None:
+        lines.append(_varied(study, table.vary))
     return "\n".join(lines), [line for task in todo for line in _unheld(task)]
+
+
+def _varied(study: Study, vary: VaryTable) -> str:
+    parameters = parameters_of(study)
+    correlations_of(study, parameters)
+    steps = math.prod(p.steps or 1 for p in parameters)
+    count = steps if vary.sample == "grid" else vary.count
+    many = f"{len(parameters)} number{'s' * (len(parameters) > 1)}"
+    return f"varies {many} in {count:,} design{'s' * (count > 1)} ({vary.sample})"
 
 
 def _unheld(task: Task) -> list[str]:

@@ -50,7 +50,8 @@ def run_command_line(arguments: list[str]) -> int:
         if ended is None:
             raise
         if ended == INTERRUPTED:
-            left = str(error) if isinstance(error, Unfinished) else "nothing was written"
+            why = error.__cause__ or error  # click raises its own
+            left = str(why) if isinstance(why, Unfinished) else "nothing was written"
             click.echo(f"Interrupted; {left}.", err=True)
         return ended
     finally:

@@ -7,6 +7,8 @@ their pins are meshed once.
 
 from __future__ import annotations
 
+import math
+import threading
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -24,11 +26,13 @@ AIM = 2.0  # s of work in a batch
 MOST = 1000  # designs in a batch
 UNSHAPED = ("yield_strength", "ultimate_strength", "shear_strength", "bearing_strength")
 
+_ONE_AT_A_TIME = threading.Lock()  # workers of a user's cluster may have several threads
+
 Rows = list[list[DesignRow]]
 
 
 @dataclass(frozen=True)
-class Problem:
+class DesignProblem:
     """All that a process needs to solve designs of a study, as text: small, and the same for all
     versions of the libraries between.
     """
@@ -47,7 +51,7 @@ class Problem:
         numbers: Sequence[Number],
         pins: Sequence[str] | None = None,
         cases: Sequence[str] | None = None,
-    ) -> Problem:
+    ) -> DesignProblem:
         """The problem of a study, whose files are named by absolute paths."""
         names = [None if x is None else tuple(x) for x in (pins, cases)]
         return cls(study.path.absolute(), study.text, study.located, tuple(numbers), *names)
@@ -78,19 +82,19 @@ class Done:
     seconds: float
 
 
-def solve_batch(problem: Problem, batch: Batch) -> Done:
+def solve_batch(problem: DesignProblem, batch: Batch) -> Done:
     """Solve the designs of a batch, with one thread in each numeric library."""
     from threadpoolctl import threadpool_limits
 
     start = time.perf_counter()
-    with threadpool_limits(1):
+    with _ONE_AT_A_TIME, threadpool_limits(1):
         evaluator = evaluator_of(problem)
         rows = [evaluator.rows(values) for values in batch.values]
     return Done(batch, rows, time.perf_counter() - start)
 
 
 @lru_cache(1)
-def evaluator_of(problem: Problem) -> Evaluator:
+def evaluator_of(problem: DesignProblem) -> Evaluator:
     """One in a process, which remembers what it solved."""
     study = parse_study(problem.path, problem.text, problem.located)
     return Evaluator(study, problem.numbers, problem.pins, problem.cases)
@@ -146,7 +150,7 @@ class Batches:
         """
         size = 1
         if self.each is not None:
-            size = min(int(AIM / max(self.each, 1e-9)) + 1, MOST)
+            size = min(math.ceil(AIM / max(self.each, 1e-9)), MOST)
             size = max(1, min(size, -(-len(self._left) // (2 * self._at_once))))
         taken = [self._left.pop() for _ in range(min(size, len(self._left)))]
         rows = tuple(tuple(float(x) for x in self._values[i]) for i in taken)

@@ -135,13 +135,23 @@ class Evaluator:
         return with_raw(self.study, raw)
 
     def _moves(self, number: Number) -> bool:
-        """Whether loads depend on a number: pins that nothing holds have mass in a mechanism."""
-        if number.path[0] not in WITHOUT_LOADS:
+        """Whether loads depend on a number: those of the mechanism and the cases, and what gives
+        mass to floating pins.
+        """
+        table, *inner = number.path
+        if table not in WITHOUT_LOADS:
             return True
-        mechanism = self.study.table.mechanism
-        if mechanism is None or number.path[0] == "analysis":
+        study, mechanism = self.study.table, self.study.table.mechanism
+        if mechanism is None or table == "analysis":
             return False
-        return number.path[0] == "material" or number.path[1] in mechanism.joint
+        free = [
+            name
+            for name, joint in mechanism.joint.items()
+            if name in study.pin and joint.fixed_in is None and joint.weight is None
+        ]
+        if table == "pin":
+            return inner[0] in free
+        return inner[-1] == "density" and any(study.pin[x].material == inner[0] for x in free)
 
     def _loads_of(self, study: Study, values: Sequence[float]) -> dict[str, CaseLoads | InputError]:
         key = tuple(values[k] for k in self._of_loads)

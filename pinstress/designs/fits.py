@@ -74,7 +74,7 @@ def _deviations(text: str, number: Number, system: UnitSystem) -> tuple[float, f
         size = _si(both[1], number, system)
         low, high = -size, size
     else:
-        parts = re.split(r"[\s/]+(?=[+-])", text)
+        parts = re.split(r"[\s/]+(?=[+-]|0(?![\d.]))", text)
         if len(parts) != 2 or not all(part[:1] in "+-0" for part in parts):
             raise LoadsArgumentError(f"cannot read {shown(text)}; {EXAMPLES}", "not-a-tolerance")
         low, high = sorted(_si(part, number, system) for part in parts)

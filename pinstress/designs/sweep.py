@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Protocol
 
-from pinstress.designs.batches import Batches, Done, Problem, evaluator_of
+from pinstress.designs.batches import Batches, DesignProblem, Done, evaluator_of
 from pinstress.designs.correlations import correlations_of
 from pinstress.designs.laws import Floats
 from pinstress.designs.parameters import Parameter, parameters_of
@@ -60,7 +60,7 @@ class Sweep:
     study: Study
     parameters: tuple[Parameter, ...]
     values: Floats
-    problem: Problem
+    problem: DesignProblem
 
 
 def planned(
@@ -74,7 +74,7 @@ def planned(
     correlations = correlations_of(study, parameters)
     assert study.table.vary is not None
     values = designs_of(study.table.vary, parameters, correlations)
-    problem = Problem.of(study, [p.number for p in parameters], pins, cases)
+    problem = DesignProblem.of(study, [p.number for p in parameters], pins, cases)
     evaluator_of(problem)
     return Sweep(study, parameters, values, problem)
 

@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from pinstress.designs.batches import Batch, Batches, Done, Problem, solve_batch
+from pinstress.designs.batches import Batch, Batches, DesignProblem, Done, solve_batch
 from pinstress.designs.evaluate import DesignRow
 from pinstress.processes.threads import hold_threads
 from pinstress.study.errors import InputError
@@ -27,10 +27,10 @@ WORKERS = 30.0  # s within which it must have a worker
 AHEAD = 2  # batches for each process: one that is solved and one that waits
 
 Keep = Callable[[Done], None]
-Solve = Callable[[Problem, Batch], Done]
+Solve = Callable[[DesignProblem, Batch], Done]
 
 
-def solve_here(problem: Problem, batches: Batches, keep: Keep) -> None:
+def solve_here(problem: DesignProblem, batches: Batches, keep: Keep) -> None:
     """Solve batches in this process, one after the other."""
     for batch in batches:
         done = solve_batch(problem, batch)
@@ -40,7 +40,7 @@ def solve_here(problem: Problem, batches: Batches, keep: Keep) -> None:
 
 def solve_on(
     client: Client,
-    problem: Problem,
+    problem: DesignProblem,
     batches: Batches,
     keep: Keep,
     lost: Callable[[Batch], Done],
@@ -90,7 +90,7 @@ def processes_of(client: Client) -> int:
 
 @contextmanager
 def local(jobs: int) -> Iterator[Client]:
-    """A cluster of so many processes on this machine, which end with the block."""
+    """A cluster of `jobs` processes on this machine, which end with the block."""
     import dask
     from distributed import Client, LocalCluster
 

@@ -33,7 +33,7 @@ from pinstress.schema.reliability import ReliabilityTable
 from pinstress.study.file import Study
 from reports.data.reliability import (
     SYSTEM,
-    Bounded,
+    Spread,
     Driver,
     FirstOrder,
     Reliability,
@@ -176,9 +176,7 @@ def _weighted(designs: Designs, centres: list[Array], asked: ReliabilityTable) -
     return Sample(draws, designs.at(draws.u, "importance sampling"))
 
 
-def _indices(
-    designs: Designs, asked: ReliabilityTable
-) -> list[list[tuple[Bounded, Bounded]]] | None:
+def _indices(designs: Designs, asked: ReliabilityTable) -> list[list[tuple[Spread, Spread]]] | None:
     """Of all rows and, last, of the system."""
     base = base_samples(asked.sobol_samples)
     if not base or designs.space.size < 2:
@@ -195,7 +193,7 @@ def _drivers(
     parameters: tuple[Parameter, ...],
     designs: Designs,
     form: _Form | None,
-    shares: list[tuple[Bounded, Bounded]] | None,
+    shares: list[tuple[Spread, Spread]] | None,
 ) -> tuple[Driver, ...]:
     nearest = form.nearest if form else None
     parts = None if nearest is None else designs.space.importance(nearest.direction)

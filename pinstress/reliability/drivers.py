@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.stats import norm, sobol_indices
 from scipy.stats import t as student
 
-from reports.data.reliability import Bounded
+from reports.data.reliability import Spread
 
 Array = NDArray[np.float64]
 
@@ -24,7 +24,7 @@ def base_samples(asked: int) -> int:
 
 def indices(
     factors: Callable[[Array], Array], size: int, base: int, seed: int, confidence: float
-) -> list[list[tuple[Bounded, Bounded]]] | None:
+) -> list[list[tuple[Spread, Spread]]] | None:
     """First-order and total indices of each output and each of d = size independent standard normal
     variables. factors: of designs (n, d), as (n, s); None where any is not finite.
     """
@@ -49,12 +49,12 @@ def indices(
     return [[(a, b) for a, b in zip(*rows, strict=True)] for rows in zip(*both, strict=True)]
 
 
-def _bounded(values: Array, confidence: float) -> list[list[Bounded]]:
+def _bounded(values: Array, confidence: float) -> list[list[Spread]]:
     """Of values (sets, s, d)."""
     mean = values.mean(axis=0)
     deviate = float(student.ppf(0.5 + 0.5 * confidence, SETS - 1))
     half = deviate * values.std(axis=0, ddof=1) / np.sqrt(SETS)
     return [
-        [Bounded(float(m), float(m - h), float(m + h)) for m, h in zip(*rows, strict=True)]
+        [Spread(float(m), float(m - h), float(m + h)) for m, h in zip(*rows, strict=True)]
         for rows in zip(mean, half, strict=True)
     ]

@@ -11,7 +11,7 @@ from scipy.special import ndtri
 from pinstress.reliability.designs import Answers
 from pinstress.reliability.sampling import Draws, Estimate, probability, quantile
 from pinstress.schema.reliability import ReliabilityTable
-from reports.data.reliability import Bounded, ByErrors, Driver, FirstOrder, Risk
+from reports.data.reliability import Spread, ByErrors, Driver, FirstOrder, Risk
 from reports.data.results import PinResult
 
 Array = NDArray[np.float64]
@@ -135,5 +135,5 @@ def _curve(sample: Sample, row: Row, way: int) -> tuple[tuple[float, float, int]
     return tuple((float(factors[k]), float(below[k]), way) for k in chosen)
 
 
-def _bounded(found: Estimate) -> Bounded:
-    return Bounded(found.value, found.low, found.high)
+def _bounded(found: Estimate) -> Spread:
+    return Spread(found.value, found.low, found.high)

@@ -75,7 +75,7 @@ PROVENANCE: dict[str, Any] = {
 def _complete(schema: dict[str, Any], table: type["StrictTable"]) -> None:
     """Descriptions and provenance for a table's JSON Schema."""
     for key, words in described(table).items():
-        schema["properties"][key]["description"] = words
+        schema["properties"][table.model_fields[key].alias or key]["description"] = words
     schema["properties"].update(PROVENANCE)
 
 
@@ -95,7 +95,7 @@ def described(table: type["StrictTable"]) -> dict[str, str]:
                     ast.AnnAssign(target=ast.Name(id=key)),
                     ast.Expr(value=ast.Constant(value=str(words))),
                 ):
-                    descriptions[one.model_fields[key].alias or key] = " ".join(words.split())
+                    descriptions[key] = " ".join(words.split())
     return descriptions
 
 

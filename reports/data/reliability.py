@@ -12,14 +12,14 @@ SYSTEM = "all"  # the pin and the case of the row for the lowest factor of all r
 
 
 @dataclass(frozen=True)
-class Bounded:
+class Spread:
     """A number with the ends of its confidence interval, infinite where samples do not bound it."""
 
     value: float
     low: float
     high: float
 
-    def apart(self, other: Bounded) -> bool:
+    def apart(self, other: Spread) -> bool:
         """Whether the intervals do not overlap."""
         return self.high < other.low or other.high < self.low
 
@@ -33,8 +33,8 @@ class Driver:
 
     parameter: str
     importance: float | None
-    first: Bounded | None = None
-    total: Bounded | None = None
+    first: Spread | None = None
+    total: Spread | None = None
 
 
 @dataclass(frozen=True)
@@ -57,8 +57,8 @@ class ByErrors:
     """
 
     part: float
-    lower: Bounded
-    higher: Bounded
+    lower: Spread
+    higher: Spread
 
 
 @dataclass(frozen=True)
@@ -78,12 +78,12 @@ class Risk:
     case: str
     verdict: str
     factor: float | None
-    sampled: Bounded
+    sampled: Spread
     failures: int
     unknown: int
-    quantile_sampled: Bounded
-    weighted: Bounded | None = None
-    quantile_weighted: Bounded | None = None
+    quantile_sampled: Spread
+    weighted: Spread | None = None
+    quantile_weighted: Spread | None = None
     form: FirstOrder | None = None
     mesh: ByErrors | None = None
     joint: ByErrors | None = None
@@ -106,13 +106,13 @@ class Risk:
         )
 
     @property
-    def probability(self) -> Bounded:
+    def probability(self) -> Spread:
         """Of failure, by the narrower interval; by plain sampling where they contradict."""
         best = self.weighted if self.by_weights else None
         return best or self.sampled
 
     @property
-    def quantile(self) -> Bounded:
+    def quantile(self) -> Spread:
         """The factor that is not reached with the stated probability, by the narrower interval."""
         plain, best = self.quantile_sampled, self.quantile_weighted
         if best is None or self.disagrees or best.apart(plain):

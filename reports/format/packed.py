@@ -10,12 +10,12 @@ import numpy as np
 
 
 def deflated(content: bytes) -> str:
-    """Compressed by zlib, in base64; `inflated` of report.js reads it."""
+    """Compressed by zlib, in base64; `inflated` of packed.js reads it."""
     return b64encode(zlib.compress(content, 9)).decode("ascii")
 
 
 def packed(values: np.ndarray[Any, Any], kind: str) -> dict[str, str]:
-    """Numbers of a type of numpy, little-endian; `unpacked` of view_field.js reads them.
+    """Numbers of a type of numpy, little-endian; `unpacked` of packed.js reads them.
 
     Of integers the differences of successive ones are stored, of all the first bytes, then the
     second ones, and so on: more of them are the same.

@@ -9,7 +9,7 @@ from dataclasses import asdict, is_dataclass
 from pathlib import Path
 from typing import Any
 
-from reports.data.reliability import Bounded, ByErrors, Reliability, Risk
+from reports.data.reliability import Spread, ByErrors, Reliability, Risk
 from reports.format.files.csv import Cell, write_csv
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering, finite
@@ -99,7 +99,7 @@ def remark(risk: Risk) -> str:
     return "; ".join(said)
 
 
-def _ends(value: Bounded | None) -> tuple[float | None, ...]:
+def _ends(value: Spread | None) -> tuple[float | None, ...]:
     if value is None:
         return None, None, None
     return finite(value.value), finite(value.low), finite(value.high)
@@ -123,7 +123,7 @@ def chance(value: float | None) -> str:
     return DASH if value is None or not math.isfinite(value) else f"{value:.{DIGITS}g}"
 
 
-def chance_range(value: Bounded | None) -> str:
+def chance_range(value: Spread | None) -> str:
     """A probability with its interval; only the upper end where nothing failed."""
     if value is None:
         return DASH
@@ -132,7 +132,7 @@ def chance_range(value: Bounded | None) -> str:
     return f"{chance(value.value)} ({chance(value.low)} to {chance(value.high)})"
 
 
-def factor_interval(value: Bounded | None) -> str:
+def factor_interval(value: Spread | None) -> str:
     """A factor with its interval."""
     if value is None or math.isnan(value.value):
         return DASH
@@ -209,5 +209,5 @@ def _per_cent(value: float | None) -> str:
     return DASH if value is None else f"{100.0 * value:.1f} %"
 
 
-def _share(value: Bounded | None) -> str:
+def _share(value: Spread | None) -> str:
     return DASH if value is None else f"{value.value:.2f} ± {0.5 * (value.high - value.low):.2f}"

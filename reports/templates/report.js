@@ -1,10 +1,5 @@
 // Table sorting, folded parts, light and dark colours, animation frames.
 
-// Bytes of a compressed text (reports/format/packed.py).
-const inflated = async (text) => {
-  const stream = new Blob([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))]).stream();
-  return new Uint8Array(await new Response(stream.pipeThrough(new DecompressionStream("deflate"))).arrayBuffer());
-};
 const old = !("DecompressionStream" in window);
 document.getElementById("old").hidden = !old;
 

@@ -1,21 +1,5 @@
 // The interactive 3D view of a pin. The maxima shown next to it are those of the analysis.
 
-// Number format of reports/format/numbers.py.
-const written = (value, digits = 4) => {
-  const rounded = Number(value.toPrecision(digits));
-  if (!rounded) return "0";
-  const size = Math.floor(Math.log10(Math.abs(rounded)) + 1e-9);
-  const plain = (x, s) => {
-    const d = Math.max(digits - 1 - s, 0);
-    return x.toLocaleString("en-US", { minimumFractionDigits: d, maximumFractionDigits: d }).replace("-", "−");
-  };
-  if (size >= -3 && size < 7) return plain(rounded, size);
-  const power = 3 * Math.floor(size / 3), raised = [...String(power)].map((c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]).join("");
-  return `${plain(rounded / 10 ** power, size - power)}×10${raised}`;
-};
-
-const short = (value, digits = 6) => written(value, digits).replace(/(\.\d*?)0+(?=×|$)/, "$1").replace(/\.(?=×|$)/, "");
-
 const product = (a, b) => a.map((row) => b[0].map((_, j) => row.reduce((sum, x, k) => sum + x * b[k][j], 0)));
 const applied = (a, x) => a.map((row) => row.reduce((sum, y, k) => sum + y * x[k], 0));
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
@@ -28,6 +12,7 @@ const about = (axis, angle) => {
   out[j][i] = s;
   return out;
 };
+
 // Rows right, up and towards the viewer, with z across the picture.
 const facing = (direction) => {
   const towards = unit(direction), up = unit(cross([0, 0, 1], towards));
@@ -123,7 +108,7 @@ const startView = (root, paint, data) => {
   const scale = () => {
     const shown = pressed() ? "contact pressure" : "von Mises stress", least = strength / top();
     one("unit").textContent = factors() ? `safety factor (${chosen.verdict})` : `${shown} [${units.stress}]`;
-    const ticks = factors() ? decadeTicks(least, least * 10 ** DECADES).map((f) => [along(strength / f), short(f, 3)]) : roundTicks(top()).map((s) => [along(s), short(s, 4)]);
+    const ticks = factors() ? decadeTicks(least, least * 10 ** DECADES).map((f) => [along(strength / f), short(f, 3)]) : roundTicks(0, top()).map((s) => [along(s), short(s, 4)]);
     const clear = ticks.filter(([at]) => at < 0.8).map(([at, text]) => tick(at, text));
     one("ticks").replaceChildren(...clear, tick(1, written(factors() ? least : top(), 3), "end"));
     const marks = pressed() || !strength ? [] : [[strength, "yield", "black"], ...(allowed ? [[allowed, `required factor ${short(data.required)}`, "white"]] : [])];

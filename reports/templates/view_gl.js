@@ -1,6 +1,5 @@
 // Draws surfaces with one WebGL context for all views: browsers limit the number of contexts.
 
-const STOPS = ["#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c", "#28ae80", "#5ec962", "#addc30", "#fde725"]; // viridis
 const DECADES = 2; // range of the safety factor scale, upwards from the minimum
 const ZONES = 64; // excluded circles at most
 

@@ -58,17 +58,3 @@ const largestForce = (chosen) => Math.max(0, ...chosen.loads.flatMap((load) => {
   for (let i = 0; i < load.forces.length; i += 3) sizes.push(Math.hypot(...load.forces.subarray(i, i + 3)));
   return sizes;
 }));
-
-// Round numbers from 0 to `high`; on a scale of decades 1, 2 and 5 times powers of ten.
-const roundTicks = (high, count = 5) => {
-  const rough = high / count, power = 10 ** Math.floor(Math.log10(rough));
-  const step = power * [1, 2, 2.5, 5, 10].find((m) => m * power >= rough * (1 - 1e-9));
-  return Array.from({ length: Math.floor(high / step + 1e-9) + 1 }, (_, k) => k * step);
-};
-const decadeTicks = (low, high) => {
-  const found = [];
-  for (let p = Math.floor(Math.log10(low)); p <= Math.log10(high); p++) {
-    for (const m of [1, 2, 5]) found.push(m * 10 ** p);
-  }
-  return found.filter((x) => x >= low && x <= high);
-};

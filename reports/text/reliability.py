@@ -31,7 +31,8 @@ def sentence(found: Reliability, risk: Risk) -> str:
             low, high = chance(errors.lower.value), chance(errors.higher.value)
             text += f"; {what} ±{100.0 * errors.part:.2g} % of stress: {low} to {high}"
     limit = engineering(found.limit, 3)
-    return f"{name(risk)}: the probability of a factor below {limit} is {text}; model form not included)."
+    text += "; model form not included)."
+    return f"{name(risk)}: the probability of a factor below {limit} is {text}"
 
 
 def name(risk: Risk) -> str:

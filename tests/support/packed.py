@@ -11,7 +11,7 @@ from reports.data.results import Floats
 
 
 def unpacked(data: dict[str, str]) -> Floats:
-    """As view_field.js does it."""
+    """As packed.js does it."""
     content = zlib.decompress(b64decode(data["packed"]))
     kind = np.dtype("<" + data["kind"])
     flat = np.frombuffer(content, np.uint8).reshape(kind.itemsize, -1).T.copy().view(kind)[:, 0]

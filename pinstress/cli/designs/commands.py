@@ -14,7 +14,8 @@ from pinstress.cli.shared import example, names, read_study
     help=example("pinstress sweep study.toml --out out/designs --jobs 4")
     + "\nSolve the designs that the study's [vary] describes: a grid, a Sobol sequence, a Latin "
     "hypercube or a random sample of any of its numbers. Writes designs.parquet, a row for each "
-    "design, pin and case; a design that fails is a row with its reason.\n\n"
+    "design, pin and case, and a page to explore them; a design that fails is a row with its "
+    "reason.\n\n"
     "A sweep that was interrupted or killed goes on with --resume.\n\n"
     "Exit status: 0 done; 1 done, but every design failed; 2 bad input; 130 interrupted.",
 )
@@ -34,6 +35,7 @@ from pinstress.cli.shared import example, names, read_study
     help="Solve on your own cluster of dask, tcp://host:8786, instead of this machine.",
 )
 @click.option("--resume", is_flag=True, help="Go on with a sweep that did not end.")
+@click.option("--open", "opens", is_flag=True, help="Open the page in the browser when done.")
 @click.option("--quiet", is_flag=True, help="No progress bar, no notes; errors are still reported.")
 def sweep(
     study: Path,
@@ -43,11 +45,12 @@ def sweep(
     jobs: int | None,
     scheduler: str | None,
     resume: bool,
+    opens: bool,
     quiet: bool,
 ) -> int:
     loaded = read_study(study)
     from pinstress.cli.designs.sweep import Way, sweep_and_write
 
     directory = out or Path("out") / f"{loaded.name}-sweep"
-    way = Way(jobs, scheduler, resume, quiet)
+    way = Way(jobs, scheduler, resume, opens, quiet)
     return sweep_and_write(loaded, directory, pins, cases, way)

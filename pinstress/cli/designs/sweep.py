@@ -15,6 +15,7 @@ from rich.console import Console
 from pinstress.cli import manifest
 from pinstress.cli.output_folder import require_replaceable
 from pinstress.cli.run import console
+from pinstress.cli.shared import open_page
 from pinstress.cli.streams import unneeded
 from pinstress.designs.parts import FOLDER, STATED, Parts, identity, is_ours
 from pinstress.designs.summary import summary
@@ -25,23 +26,26 @@ from pinstress.processes.folder_lock import Release, lock
 from pinstress.processes.interrupts import Unfinished
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study
+from reports.designs.page import write_designs_page
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
 TABLE, PAGE = "designs.parquet", "designs.html"
-FILES = (TABLE, PAGE)
+FILES = TABLE, PAGE, f"{TABLE}.partial", f"{PAGE}.partial"
 
 
 @dataclass(frozen=True)
 class Way:
     """How a sweep is done. jobs: processes on this machine, by default one for each core;
-    scheduler: address of a cluster instead. resume: whether to go on with what is there.
+    scheduler: address of a cluster instead. resume: whether to go on with what is there;
+    opens: whether to open the page.
     """
 
     jobs: int | None = None
     scheduler: str | None = None
     resume: bool = False
+    opens: bool = False
     quiet: bool = False
 
 
@@ -69,8 +73,9 @@ def sweep_and_write(
         summary(table, console())
     if not way.quiet:
         click.echo(f"Table: {directory / TABLE}", err=True)
-        if (directory / PAGE).is_file():
-            click.echo(f"Page: {directory / PAGE}", err=True)
+        click.echo(f"Page: {directory / PAGE}", err=True)
+    if way.opens:
+        open_page(directory / PAGE)
     verdicts = set(table["verdict"].unique().to_pylist())
     return int(verdicts == {"failed"})
 
@@ -79,6 +84,9 @@ def _write(directory: Path, table: pa.Table) -> None:
     try:
         manifest.add(directory, list(FILES))
         write_table(table, directory / TABLE)
+        partial = directory / f"{PAGE}.partial"
+        write_designs_page(table, partial)
+        partial.replace(directory / PAGE)
     except OSError as error:  # a full disk
         raise InputError(
             f"--out: cannot write to {directory} ({error.strerror})", code="cannot-write"

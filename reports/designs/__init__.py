@@ -1,0 +1,1 @@
+"""A page for exploring the designs of a sweep."""

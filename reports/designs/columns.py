@@ -1,0 +1,160 @@
+"""The columns of a sweep's table: parameters per design, results per row, texts as codes."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from reports.data.results import Floats
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+META = b"pinstress"
+ROW = ("pin", "case", "verdict", "reason", "code")  # texts of every row
+TITLES = {
+    "mass": "mass",
+    "max_von_mises": "maximum von Mises",
+    "error_estimate": "± of maximum",
+    "safety_factor": "safety factor",
+    "governing_time": "governing time",
+}
+
+
+@dataclass(frozen=True)
+class Column:
+    """Values (designs or rows,): NaN for none; of texts their place in `names`."""
+
+    key: str
+    title: str
+    unit: str
+    law: str
+    values: Floats
+    names: tuple[str, ...] | None
+
+    @property
+    def known(self) -> Floats:
+        """The finite values."""
+        return self.values[np.isfinite(self.values)]
+
+
+@dataclass(frozen=True)
+class Designs:
+    """The designs of a sweep, with rows sorted by them.
+
+    numbers (D,): of the designs, ascending; first (D + 1,): where the rows of each begin; required:
+    the safety factor, None for none.
+    """
+
+    study: str
+    required: float | None
+    numbers: np.ndarray[Any, np.dtype[np.int64]]
+    first: np.ndarray[Any, np.dtype[np.int64]]
+    parameters: tuple[Column, ...]
+    results: tuple[Column, ...]
+    texts: dict[str, Column]  # by the names in ROW
+
+    @property
+    def failed_rows(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
+        """Which rows have no maximum, and a reason for it."""
+        lacking = np.isfinite(self.texts["reason"].values)
+        for column in self.results:
+            if column.key == "max_von_mises":
+                lacking &= ~np.isfinite(column.values)
+        return lacking
+
+    @property
+    def failed(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
+        """Which designs (D,) have such a row."""
+        rows = self.failed_rows
+        return np.logical_or.reduceat(rows, self.first[:-1]) if len(rows) else rows
+
+
+def designs_of(table: pa.Table) -> Designs:
+    """The columns of a table as `pinstress sweep` writes it. Raises: ValueError."""
+    text = (table.schema.metadata or {}).get(META)
+    if text is None or "design" not in table.column_names:
+        raise ValueError("the table is not that of a sweep: no column design or no metadata")
+    told = json.loads(text)
+    number = table.column("design").to_numpy()
+    order = np.argsort(number, kind="stable")
+    numbers, first = np.unique(number[order], return_index=True)
+    ends = np.append(first, len(order)).astype(np.int64)
+    laws: dict[str, dict[str, Any]] = told.get("parameters", {})
+    keys = [key for key in laws if key in table.column_names]
+    every = {
+        name: _column(table, name, order, laws.get(name, {}))
+        for name in table.column_names
+        if name != "design"
+    }
+    return Designs(
+        study=str(told.get("title") or told.get("study", "")),
+        required=told.get("required_safety_factor"),
+        numbers=numbers.astype(np.int64),
+        first=ends,
+        parameters=tuple(_per_design(every[key], ends) for key in keys),
+        results=tuple(every[name] for name in _results(list(every), keys)),
+        texts={name: every.get(name, _nothing(name, len(order))) for name in ROW},
+    )
+
+
+def _results(names: list[str], parameters: list[str]) -> list[str]:
+    """Those that the page knows, in its order, then all others."""
+    known = [name for name in TITLES if name in names]
+    return known + [n for n in names if n not in {*parameters, *known, *ROW}]
+
+
+def _column(table: pa.Table, name: str, order: Any, law: dict[str, Any]) -> Column:
+    import pyarrow as pa
+
+    field, data = table.schema.field(name), table.column(name).combine_chunks()
+    if pa.types.is_dictionary(data.type):
+        data = data.dictionary_decode()
+    names = None
+    if name in ROW or not _numeric(data.type):
+        coded = _texts(data).dictionary_encode()
+        names = tuple(coded.dictionary.to_pylist())
+        data = coded.indices
+    values = data.cast(pa.float64()).to_numpy(zero_copy_only=False)[order]
+    unit = (field.metadata or {}).get(b"unit", b"").decode() or str(law.get("unit") or "")
+    title = TITLES.get(name, name)
+    return Column(name, title, unit, _law(law.get("law")), values.astype(np.float64), names)
+
+
+def _numeric(kind: Any) -> bool:
+    import pyarrow as pa
+
+    types = pa.types
+    return bool(types.is_integer(kind) or types.is_floating(kind) or types.is_null(kind))
+
+
+def _texts(data: Any) -> Any:
+    """As texts, the empty ones as none."""
+    import pyarrow as pa
+    from pyarrow import compute
+
+    texts = data.cast(pa.string())
+    return compute.if_else(compute.equal(texts, ""), pa.scalar(None, pa.string()), texts)
+
+
+def _law(law: object) -> str:
+    if isinstance(law, dict):
+        return ", ".join(f"{key} {value}" for key, value in law.items())
+    return "" if law is None else str(law)
+
+
+def _per_design(column: Column, ends: Any) -> Column:
+    """Of every design its one value. Raises: ValueError if it has two."""
+    values, starts = column.values, ends[:-1]
+    one = values[starts]
+    again = np.repeat(one, np.diff(ends))
+    if not np.array_equal(again, values, equal_nan=True):
+        raise ValueError(f"a design has two values of {column.key}")
+    return Column(column.key, column.title, column.unit, column.law, one, column.names)
+
+
+def _nothing(name: str, rows: int) -> Column:
+    return Column(name, name, "", "", np.full(rows, np.nan), ())

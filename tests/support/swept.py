@@ -1,0 +1,20 @@
+"""The shipped pin, with a [vary]."""
+
+from __future__ import annotations
+
+from pinstress import Study, shipped_studies, study_from
+
+ONE_PIN = shipped_studies()["one_pin"].read_text(encoding="utf-8")
+DIAMETER = "pin.B.profile[2].diameter"
+FORCE = "case.landing.forces.B[2]"
+STRENGTH = "material.AISI 4340.yield_strength"
+
+
+def varied(parameters: str, head: str = 'sample = "sobol"\ncount = 4', text: str = ONE_PIN) -> str:
+    """A study's text with [vary]: what comes before its parameters, and these."""
+    return f"{text}\n[vary]\n{head}\n\n[vary.parameters]\n{parameters}\n"
+
+
+def swept(parameters: str, head: str = 'sample = "sobol"\ncount = 4', text: str = ONE_PIN) -> Study:
+    """Such a study."""
+    return study_from(varied(parameters, head, text))
