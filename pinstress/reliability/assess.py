@@ -33,10 +33,10 @@ from pinstress.schema.reliability import ReliabilityTable
 from pinstress.study.file import Study
 from reports.data.reliability import (
     SYSTEM,
-    Spread,
     Driver,
     FirstOrder,
     Reliability,
+    Spread,
 )
 from reports.data.results import PinResult, Results
 

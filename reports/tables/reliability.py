@@ -9,7 +9,7 @@ from dataclasses import asdict, is_dataclass
 from pathlib import Path
 from typing import Any
 
-from reports.data.reliability import Spread, ByErrors, Reliability, Risk
+from reports.data.reliability import ByErrors, Reliability, Risk, Spread
 from reports.format.files.csv import Cell, write_csv
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering, finite
