@@ -18,6 +18,7 @@ from pinstress.cli.more_commands import (
     init,
     pdf_of,
     plots,
+    reliability,
     schema,
     size,
     view,
@@ -337,5 +338,17 @@ def check(study: Path) -> int:
     return NOT_REACHED if unheld else REACHED
 
 
-for _command in (compare_runs, import_, init, pdf_of, plots, schema, size, sweep, view, completion):
+for _command in (
+    compare_runs,
+    import_,
+    init,
+    pdf_of,
+    plots,
+    reliability,
+    schema,
+    size,
+    sweep,
+    view,
+    completion,
+):
     commands.add_command(_command)

@@ -14,15 +14,18 @@ from pinstress.study.file import Study
 NEGATIVE = 1e-12  # an eigenvalue of round-off
 
 
-def correlations_of(study: Study, parameters: Sequence[Parameter]) -> Floats | None:
+def correlations_of(
+    study: Study, parameters: Sequence[Parameter], sampled: bool = True
+) -> Floats | None:
     """The matrix (p, p) of the parameters' normal variables; None where all are independent.
+    sampled: whether [vary] says which designs to make of them.
 
     Raises: InputError for pairs that cannot be correlated, and for numbers that no variables have.
     """
     vary = study.table.vary
     if vary is None or not vary.correlations:
         return None
-    if vary.sample == "grid":
+    if sampled and vary.sample == "grid":
         raise study.error(
             "vary.correlations: a grid has all combinations, whatever their probability; choose "
             'another sample, such as sample = "sobol"',

@@ -104,9 +104,9 @@ class Parameter:
         return f"{self.source}: {text}" if self.source else text
 
 
-def parameters_of(study: Study) -> tuple[Parameter, ...]:
-    """The parameters of [vary] in their order. Raises: InputError with all that is wrong, also for
-    a study without [vary].
+def parameters_of(study: Study, sampled: bool = True) -> tuple[Parameter, ...]:
+    """The parameters of [vary] in their order. sampled: whether it must also say which designs to
+    make of them. Raises: InputError with all that is wrong, also for a study without [vary].
     """
     vary = study.table.vary
     if vary is None:
@@ -123,7 +123,7 @@ def parameters_of(study: Study) -> tuple[Parameter, ...]:
     made = tuple(p for p in found if p is not None)
     wrong.attempt(partial(_require_different, study, made))
     wrong.tell()
-    if vary.sample == "grid":
+    if sampled and vary.sample == "grid":
         _require_grid(study, made)
     return made
 

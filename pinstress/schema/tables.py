@@ -12,6 +12,7 @@ from pinstress.schema.landing import DropCase, GroundCase
 from pinstress.schema.leg import SpatialLegTable
 from pinstress.schema.mechanism import MechanismTable
 from pinstress.schema.pins import MaterialTable, PinTable
+from pinstress.schema.reliability import ReliabilityTable
 from pinstress.schema.sequence import SequenceTable
 from pinstress.schema.shown import shown
 from pinstress.schema.types import (
@@ -173,6 +174,8 @@ class StudyTable(StrictTable):
     """Published values for comparison."""
     vary: VaryTable | None = None
     """What `pinstress sweep` varies; `run` ignores it."""
+    reliability: ReliabilityTable = ReliabilityTable()
+    """What `pinstress reliability` finds; `run` ignores it."""
     report: ReportTable = ReportTable()
     """The title block of the report."""
     assumptions: list[str] = []

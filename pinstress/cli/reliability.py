@@ -1,0 +1,60 @@
+"""The `reliability` command: sample the designs, write the output folder, print the table."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from pinstress.analysis.results import run
+from pinstress.cli.output_folder import replacing, require_replaceable
+from pinstress.cli.run import SOLVERS, console, progress_bar
+from pinstress.cli.streams import unneeded
+from pinstress.processes.pool import preload, processes
+from pinstress.reliability.assess import assess
+from pinstress.reliability.designs import random_numbers
+from pinstress.study.file import Study
+from reports.data.decision import NOT_DECIDED
+from reports.data.reliability import Reliability
+from reports.page.reliability import write_reliability_page
+from reports.tables.reliability import write_reliability
+from reports.text.reliability import print_reliability
+
+MARK = "reliability.json"
+PAGE = "reliability.html"
+
+
+def reliability_and_write(
+    study: Study,
+    directory: Path,
+    pins: list[str] | None,
+    cases: list[str] | None,
+    jobs: int | None,
+    quiet: bool,
+) -> int:
+    """Assess a study into a folder; returns the exit status: 1 if for any row it is not decided
+    whether its probability of failure is within the allowed one. Raises: InputError.
+    """
+    require_replaceable(directory, MARK)
+    most = processes(jobs)
+    random_numbers(study)  # mistakes there should not wait for the stresses
+    with replacing(directory, MARK) as staging:
+        with progress_bar(alone=most == 1, quiet=quiet) as progress:
+            preload(*SOLVERS)
+            progress("the study as it is", 0.0)
+            nominal = run(study, pins=pins, cases=cases, jobs=most)
+            found = assess(study, nominal, most, progress, pins, cases)
+        write_reliability(found, staging)
+        write_reliability_page(found, staging / PAGE)
+    with unneeded(directory):
+        print_reliability(found, console())
+    if not quiet:
+        click.echo(f"Report: {directory / PAGE}", err=True)
+    return _status(found)
+
+
+def _status(found: Reliability) -> int:
+    open_ones = [r for r in found.risks if r.result(found.probability) == NOT_DECIDED]
+    for risk in open_ones:
+        click.echo(f"Not decided: pin {risk.pin}, case {risk.case}.", err=True)
+    return int(bool(open_ones))

@@ -1,0 +1,1 @@
+"""Probability of failure and the distribution of the factor of safety."""

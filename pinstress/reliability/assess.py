@@ -1,0 +1,229 @@
+"""Probabilities of failure of a study's pins, found in four ways that check each other.
+
+Plain sampling decides where enough samples fail; FORM finds where failure is most likely; designs
+sampled about these points weight far fewer of them into small probabilities. Every probability is
+one of designs that were solved as a run solves them: nothing is fitted or interpolated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pinstress.designs.batches import shapes
+from pinstress.designs.evaluate import Evaluator
+from pinstress.designs.parameters import Parameter
+from pinstress.processes.pool import Progress
+from pinstress.reliability.designs import Designs, random_numbers
+from pinstress.reliability.drivers import base_samples, indices
+from pinstress.reliability.form import (
+    NOISY,
+    SMOOTH,
+    DesignPoint,
+    design_point,
+    distinct,
+    form_quantile,
+)
+from pinstress.reliability.risk import Column, Row, Sample, risk_of
+from pinstress.reliability.sampling import importance_draws, plain_draws
+from pinstress.schema.reliability import ReliabilityTable
+from pinstress.study.file import Study
+from reports.data.reliability import (
+    SYSTEM,
+    Driver,
+    FirstOrder,
+    Reliability,
+    Spread,
+)
+from reports.data.results import PinResult, Results
+
+Array = NDArray[np.float64]
+
+STARTS = 3  # failing samples from which further design points are sought
+APART = 0.7  # cosine below which a sample's direction is another
+MOST_CENTRES = 40  # of importance sampling
+
+
+def assess(
+    study: Study,
+    nominal: Results,
+    jobs: int,
+    progress: Progress,
+    pins: Iterable[str] | None = None,
+    cases: Iterable[str] | None = None,
+) -> Reliability:
+    """Assess the pins of a study in its cases. nominal: the results of the study as it is.
+
+    Raises: InputError for a study without random numbers or without strengths.
+    """
+    asked = study.table.reliability
+    parameters, space = random_numbers(study)
+    evaluator = Evaluator(study, parameters, pins, cases)
+    _require_strengths(study, evaluator)
+    designs = Designs(evaluator, space, jobs, progress)
+    plain = plain_draws(asked.samples, space.size, asked.seed)
+    sampled = Sample(plain, designs.at(plain.u, "plain sampling"))
+    forms = [_first_order(designs, sampled, k, asked) for k in range(len(evaluator.table))]
+    centres = [c for form in forms for c in form.centres]
+    weighted = _weighted(designs, centres, asked)
+    shares = _indices(designs, asked) if space.lower is None else None
+    rows = {(p.pin, p.case): p for p in nominal.pins}
+    risks = []
+    for k, (pin, case) in enumerate(evaluator.table):
+        drivers = _drivers(parameters, designs, forms[k], shares[k] if shares else None)
+        found = Row(pin, case, Column(k), rows.get((pin, case)), forms[k].result, drivers)
+        risks.append(risk_of(found, sampled, weighted, asked))
+    if len(risks) > 1:
+        everything = _drivers(parameters, designs, None, shares[-1] if shares else None)
+        worst = Row(SYSTEM, SYSTEM, Column(None), _worst(nominal), None, everything)
+        risks.insert(0, risk_of(worst, sampled, weighted, asked))
+    vary = study.table.vary
+    assert vary is not None
+    return Reliability(
+        title=study.table.title,
+        study=str(study.path),
+        limit=asked.factor,
+        probability=asked.probability,
+        confidence=asked.confidence,
+        samples=asked.samples,
+        seed=asked.seed,
+        parameters=tuple((p.key, p.law_text) for p in parameters),
+        risks=tuple(risks),
+        correlations=tuple(
+            f"{c.between[0]} and {c.between[1]}: {c.coefficient:g}" for c in vary.correlations
+        ),
+        solved=dict(designs.solved),
+        reasons=dict(designs.reasons),
+        notes=tuple(_notes(nominal)),
+    )
+
+
+def _require_strengths(study: Study, evaluator: Evaluator) -> None:
+    for name in dict.fromkeys(pin for pin, _ in evaluator.table):
+        material = study.table.pin[name].material
+        if study.table.material[material].yield_strength is None:
+            raise study.error(
+                f"material.{material}: reliability needs its yield_strength, for the factors of "
+                f"pin {name}",
+                code="no-strength",
+            )
+
+
+@dataclass(frozen=True)
+class _Form:
+    """FORM's result of a row, the points about which to sample, and the nearest design point."""
+
+    result: FirstOrder
+    centres: tuple[Array, ...] = ()
+    nearest: DesignPoint | None = None
+
+
+def _first_order(designs: Designs, sampled: Sample, row: int, asked: ReliabilityTable) -> _Form:
+    """Design points of a row from the mean and from samples that fail in other directions."""
+    size = designs.space.size
+    close = NOISY if any(map(shapes, designs.evaluator.numbers)) else SMOOTH
+    limit = designs.limit(row, asked.factor)
+    points = [design_point(limit, np.zeros(size), close)]
+    for start in _starts(sampled, row, asked.factor):
+        known = [p.direction @ start for p in points if not p.why]
+        if all(cosine < APART * float(np.linalg.norm(start)) for cosine in known):
+            points.append(design_point(limit, start, close))
+    kept = distinct(points)
+    lowest = form_quantile(
+        lambda u: -designs.at(u, "FORM").used[:, row], asked.probability, size, close
+    )
+    value = -1.0 / lowest.value if lowest.value else np.inf
+    centres = [p.u for p in kept]
+    if not lowest.why:
+        centres += [lowest.u] if all(np.linalg.norm(lowest.u - c) > 1.0 for c in centres) else []
+    if not kept:
+        return _Form(FirstOrder(np.nan, np.nan, value, 0, points[0].why), tuple(centres))
+    nearest = kept[0]
+    result = FirstOrder(nearest.index, nearest.probability, value, len(kept))
+    return _Form(result, tuple(centres), nearest)
+
+
+def _starts(sampled: Sample, row: int, factor: float) -> list[Array]:
+    """Samples that fail, nearest to the mean first, in different directions; else the worst."""
+    u, used = sampled.draws.u, sampled.answers.used[:, row]
+    if np.isnan(used).all():
+        return []
+    failing = np.flatnonzero(factor * used > 1.0)
+    if not len(failing):
+        return [u[int(np.nanargmax(used))]]
+    order = failing[np.argsort(np.linalg.norm(u[failing], axis=1), kind="stable")]
+    kept: list[Array] = []
+    for at in order:
+        direction = u[at] / np.linalg.norm(u[at])
+        if all(direction @ k < APART * float(np.linalg.norm(k)) for k in kept):
+            kept.append(u[at])
+        if len(kept) == STARTS:
+            break
+    return kept
+
+
+def _weighted(designs: Designs, centres: list[Array], asked: ReliabilityTable) -> Sample | None:
+    kept: list[Array] = []
+    for centre in sorted(centres, key=lambda c: float(np.linalg.norm(c))):
+        if all(np.linalg.norm(centre - other) > 0.5 for other in kept):
+            kept.append(centre)
+    if not kept or not asked.importance_samples:
+        return None
+    draws = importance_draws(kept[:MOST_CENTRES], asked.importance_samples, asked.seed)
+    return Sample(draws, designs.at(draws.u, "importance sampling"))
+
+
+def _indices(designs: Designs, asked: ReliabilityTable) -> list[list[tuple[Spread, Spread]]] | None:
+    """Of all rows and, last, of the system."""
+    base = base_samples(asked.sobol_samples)
+    if not base or designs.space.size < 2:
+        return None
+
+    def factors(u: Array) -> Array:
+        found = designs.at(u, "Sobol indices")
+        return np.concatenate([found.factors, found.system.factors], axis=1)
+
+    return indices(factors, designs.space.size, base, asked.seed, asked.confidence)
+
+
+def _drivers(
+    parameters: tuple[Parameter, ...],
+    designs: Designs,
+    form: _Form | None,
+    shares: list[tuple[Spread, Spread]] | None,
+) -> tuple[Driver, ...]:
+    nearest = form.nearest if form else None
+    parts = None if nearest is None else designs.space.importance(nearest.direction)
+    return tuple(
+        Driver(
+            parameter.key,
+            None if parts is None else float(parts[k]),
+            *((None, None) if shares is None or np.isnan(shares[k][0].value) else shares[k]),
+        )
+        for k, parameter in enumerate(parameters)
+    )
+
+
+def _worst(nominal: Results) -> PinResult | None:
+    known = [p for p in nominal.pins if p.safety_factor is not None]
+    return min(known, key=lambda p: p.safety_factor or 0.0, default=None)
+
+
+def _notes(nominal: Results) -> Iterable[str]:
+    yield (
+        "Not included: the choice of the laws themselves, the model's idealisations (linear "
+        "elasticity, the shape as drawn), and whatever does not vary."
+    )
+    if any(p.verdict == "singular" for p in nominal.pins):
+        yield (
+            "Rows marked singular have unbounded stress at a sharp corner or the edge of a clamp; "
+            "their factors are those outside the excluded zones."
+        )
+    if any(p.joint and p.joint.range for p in nominal.pins):
+        yield (
+            "The range over the joint is that of the study as it is, relative to its maximum; the "
+            "links' own flexibility enters only there."
+        )

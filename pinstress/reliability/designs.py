@@ -1,0 +1,136 @@
+"""The factors of safety of many designs of a study with random numbers."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pinstress.designs.correlations import correlations_of, root_of
+from pinstress.designs.evaluate import DesignRow, Evaluator
+from pinstress.designs.parameters import Parameter, parameters_of
+from pinstress.processes.pool import Died, Job, Progress, side_by_side
+from pinstress.reliability.form import LimitState
+from pinstress.reliability.space import NormalSpace
+from pinstress.study.file import Study
+
+Array = NDArray[np.float64]
+
+CHUNK = 100  # designs in a job
+FEW = 200  # designs that this process solves itself
+
+
+@dataclass(frozen=True)
+class Answers:
+    """Of n designs, for each of r rows: used (n, r), one over the factor of safety, NaN where there
+    is no result; errors (n, r) of the stress, relative.
+    """
+
+    used: Array
+    errors: Array
+
+    @property
+    def factors(self) -> Array:
+        """The factors of safety (n, r), infinite without stress."""
+        with np.errstate(divide="ignore"):
+            return np.asarray(1.0 / self.used)
+
+    @property
+    def system(self) -> Answers:
+        """Of the row that is used most, as (n, 1); unknown where any row is."""
+        known = np.where(np.isnan(self.used), np.inf, self.used)
+        worst = np.argmax(known, axis=1)[:, None]
+        return Answers(*(np.take_along_axis(x, worst, axis=1) for x in (self.used, self.errors)))
+
+
+def random_numbers(study: Study) -> tuple[tuple[Parameter, ...], NormalSpace]:
+    """The random numbers of a study. Raises: InputError, also for numbers without a law."""
+    parameters, vary = parameters_of(study, sampled=False), study.table.vary
+    assert vary is not None
+    for key, table in vary.parameters.items():
+        if table.from_ is not None:
+            raise study.error(
+                f"vary.parameters.{key}: from and to say between what the number lies, not how "
+                "likely its values are; reliability needs a law, such as normal = [mean, "
+                "deviation], or uniform = [least, largest] if all are equally likely",
+                code="no-law",
+            )
+    matrix = correlations_of(study, parameters, sampled=False)
+    lower = None if matrix is None else root_of(matrix)
+    return parameters, NormalSpace(tuple(p.of_normal for p in parameters), lower)
+
+
+class Designs:
+    """The designs of a study at standard normal u, solved. jobs: number of parallel processes.
+
+    solved: how many designs by what for; reasons: why rows have no result, with how many.
+    """
+
+    def __init__(
+        self, evaluator: Evaluator, space: NormalSpace, jobs: int, progress: Progress
+    ) -> None:
+        self.evaluator, self.space = evaluator, space
+        self.solved, self.reasons = Counter[str](), Counter[str]()
+        self._jobs, self._progress = jobs, progress
+
+    def at(self, u: Array, purpose: str) -> Answers:
+        """Of designs u (n, d)."""
+        self.solved[purpose] += len(u)
+        values = self.space.physical(u)
+        parts = [values[k : k + CHUNK] for k in range(0, len(values), CHUNK)]
+        jobs = self._jobs if len(u) > FEW else 1
+        work = [
+            Job(f"{purpose}, {min((k + 1) * CHUNK, len(u)):,} of {len(u):,} designs", part)
+            for k, part in enumerate(partial(_solved, self.evaluator, p) for p in parts)
+        ]
+        progress = self._progress if len(u) > FEW else (lambda _, __: None)
+        found: list[list[list[DesignRow]]] = []
+        for part, made in zip(parts, side_by_side(work, jobs, progress), strict=True):
+            found.append(
+                [_lost(self.evaluator, made)] * len(part) if isinstance(made, Died) else made
+            )
+        return self._answers([rows for part in found for rows in part])
+
+    def limit(self, row: int, factor: float) -> LimitState:
+        """Of a row: one less factor times what is used, negative where it fails."""
+
+        def at(u: Array) -> Array:
+            return np.asarray(1.0 - factor * self.at(u, "FORM").used[:, row])
+
+        return at
+
+    def _answers(self, designs: list[list[DesignRow]]) -> Answers:
+        used = np.array([[_used(row) for row in rows] for rows in designs])
+        errors = np.array([[_error(row) for row in rows] for rows in designs])
+        for rows in designs:
+            for reason in {row.reason for row in rows if np.isnan(_used(row))}:
+                self.reasons[reason or "no result"] += 1
+        return Answers(used, errors)
+
+
+def _solved(evaluator: Evaluator, values: Array, _: object) -> list[list[DesignRow]]:
+    return [evaluator.rows(each) for each in values]
+
+
+def _lost(evaluator: Evaluator, died: Died) -> list[DesignRow]:
+    return [
+        DesignRow(pin, case, None, None, None, "failed", reason=died.reason)
+        for pin, case in evaluator.table
+    ]
+
+
+def _used(row: DesignRow) -> float:
+    if row.verdict in ("rigid", "failed") or row.max_von_mises is None:
+        return np.nan
+    if row.max_von_mises == 0.0:
+        return 0.0
+    return 1.0 / row.safety_factor if row.safety_factor else np.nan
+
+
+def _error(row: DesignRow) -> float:
+    if not row.max_von_mises or row.error_estimate is None:
+        return 0.0
+    return row.error_estimate / row.max_von_mises

@@ -1,0 +1,60 @@
+"""What drives the risk: Sobol indices of the factors of safety."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import norm, sobol_indices
+from scipy.stats import t as student
+
+from reports.data.reliability import Spread
+
+Array = NDArray[np.float64]
+
+SETS = 8  # independently scrambled, from whose scatter the intervals come
+
+
+def base_samples(asked: int) -> int:
+    """Of each set, a power of two; zero for fewer than a set needs."""
+    each = asked // SETS
+    return 2 ** (each.bit_length() - 1) if each >= 2 else 0
+
+
+def indices(
+    factors: Callable[[Array], Array], size: int, base: int, seed: int, confidence: float
+) -> list[list[tuple[Spread, Spread]]] | None:
+    """First-order and total indices of each output and each of d = size independent standard normal
+    variables. factors: of designs (n, d), as (n, s); None where any is not finite.
+    """
+    first, total = [], []
+    for k in range(SETS):
+        lost = False
+
+        def outputs(x: Array) -> Array:
+            nonlocal lost
+            found = factors(np.ascontiguousarray(x.T)).T
+            lost = lost or not np.isfinite(found).all()
+            return np.where(np.isfinite(found), found, 0.0)
+
+        rng = np.random.default_rng([seed, 2, k])
+        with np.errstate(invalid="ignore", divide="ignore"):  # of an output that does not vary
+            made = sobol_indices(func=outputs, n=base, dists=[norm()] * size, rng=rng)
+        if lost:
+            return None
+        first.append(np.atleast_2d(made.first_order))
+        total.append(np.atleast_2d(made.total_order))
+    both = [_bounded(np.stack(found), confidence) for found in (first, total)]
+    return [[(a, b) for a, b in zip(*rows, strict=True)] for rows in zip(*both, strict=True)]
+
+
+def _bounded(values: Array, confidence: float) -> list[list[Spread]]:
+    """Of values (sets, s, d)."""
+    mean = values.mean(axis=0)
+    deviate = float(student.ppf(0.5 + 0.5 * confidence, SETS - 1))
+    half = deviate * values.std(axis=0, ddof=1) / np.sqrt(SETS)
+    return [
+        [Spread(float(m), float(m - h), float(m + h)) for m, h in zip(*rows, strict=True)]
+        for rows in zip(mean, half, strict=True)
+    ]

@@ -1,0 +1,233 @@
+"""First-order reliability: the design point and the quantile, in standard normal space.
+
+The design point is the failing point nearest to the origin, found by the improved HLRF iteration:
+Hasofer, Lind, Rackwitz and Fiessler's step, shortened until the merit function of Zhang and Der
+Kiureghian (1995) decreases. Where the limit state is so curved that this converges slowly,
+sequential quadratic programming goes on from there. The point's distance is the reliability index,
+and Phi(-index) estimates the probability of failure, exactly where the limit state is a plane. The
+inverse problem, the lowest value on a sphere about the origin, gives a quantile in the same sense
+(Tu, Choi and Park 1999).
+
+Gradients are central differences. An error of the direction enters the index squared, so their
+steps may be wide where the noise of meshes would spoil small ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize
+from scipy.special import ndtr, ndtri
+
+Array = NDArray[np.float64]
+LimitState = Callable[[Array], Array]  # at u (n, d): values (n,), failing where negative
+
+FARTHEST = 10.0  # standard deviations: beyond, the probability is below 1e-23
+MOST = 30  # iterations
+HALVINGS = 12
+
+
+@dataclass(frozen=True)
+class Closeness:
+    """How closely a design point is found: step of differences, standard deviations; angle of the
+    point to the normal of the limit state; value there over that at the origin.
+    """
+
+    step: float = 0.01
+    angle: float = 1e-3
+    value: float = 1e-6
+
+
+SMOOTH = Closeness()
+NOISY = Closeness(0.3, 0.05, 1e-3)  # for limit states with the noise of meshes
+
+
+@dataclass(frozen=True)
+class DesignPoint:
+    """u (d,) and the reliability index, negative where the origin fails; with `why` it has not
+    converged and neither means anything. evaluations: of the limit state.
+    """
+
+    u: Array
+    index: float
+    evaluations: int
+    why: str = ""
+
+    @property
+    def probability(self) -> float:
+        return float(ndtr(-self.index))
+
+    @property
+    def direction(self) -> Array:
+        """Unit vector (d,) from the origin."""
+        length = float(np.linalg.norm(self.u))
+        return self.u / length if length else self.u
+
+
+@dataclass(frozen=True)
+class FormQuantile:
+    """The value of which the probability to be lower is as requested, by the first order, at u."""
+
+    value: float
+    u: Array
+    evaluations: int
+    why: str = ""
+
+
+class _Counted:
+    def __init__(self, limit: LimitState, step: float) -> None:
+        self._limit, self._step = limit, step
+        self.calls = 0
+
+    def at(self, u: Array) -> float:
+        return float(self.many(u[None, :])[0])
+
+    def many(self, u: Array) -> Array:
+        self.calls += len(u)
+        return self._limit(u)
+
+    def value_and_gradient(self, u: Array) -> tuple[float, Array]:
+        steps = self._step * np.eye(len(u))
+        found = self.many(np.concatenate([u[None, :], u + steps, u - steps]))
+        d = len(u)
+        return float(found[0]), (found[1 : d + 1] - found[d + 1 :]) / (2.0 * self._step)
+
+
+def design_point(limit: LimitState, start: Array, close: Closeness = SMOOTH) -> DesignPoint:
+    """The point nearest to the origin where `limit` is zero, from a start (d,).
+
+    A limit state with several such points needs several starts.
+    """
+    g = _Counted(limit, close.step)
+    origin = g.at(np.zeros_like(start))
+    if not np.isfinite(origin):
+        return DesignPoint(start, np.nan, g.calls, "the design of the mean values fails")
+    sign, scale = (1.0 if origin > 0.0 else -1.0), abs(origin) or 1.0
+    u, programmed = start, False
+    for k in range(MOST + 2):
+        value, gradient = g.value_and_gradient(u)
+        slope = float(np.linalg.norm(gradient))
+        why = _stuck(value, slope, scale, u)
+        if why:
+            return DesignPoint(u, np.nan, g.calls, why)
+        if abs(value) <= close.value * scale and _aligned(u, gradient / slope, close.angle):
+            return DesignPoint(u, sign * float(np.linalg.norm(u)), g.calls)
+        if programmed:
+            break
+        if k >= MOST:
+            u, programmed = _by_programming(g, u, scale), True
+        else:
+            target = (gradient @ u - value) * gradient / slope**2
+            weight = 2.0 * max(float(np.linalg.norm(target)), float(np.linalg.norm(u)), 1.0) / slope
+            u = _shortened(g, u, _within(target), weight, value)
+    return DesignPoint(u, np.nan, g.calls, "FORM does not converge")
+
+
+def _by_programming(g: _Counted, start: Array, scale: float) -> Array:
+    """The nearest point from a start near it, with the curvature of the limit state."""
+
+    def on_limit(u: Array) -> float:
+        value = g.at(u) / scale
+        return value if np.isfinite(value) else FARTHEST
+
+    def slope(u: Array) -> Array:
+        return np.nan_to_num(g.value_and_gradient(u)[1]) / scale
+
+    def half_square(u: Array) -> float:
+        return 0.5 * float(u @ u)
+
+    def itself(u: Array) -> Array:
+        return u
+
+    limit: Any = {"type": "eq", "fun": on_limit, "jac": slope}
+    few: Any = {"ftol": 1e-12, "maxiter": MOST}
+    found = minimize(
+        half_square, start.tolist(), jac=itself, constraints=limit, method="SLSQP", options=few
+    )
+    return np.asarray(found.x)
+
+
+def form_quantile(
+    limit: LimitState, probability: float, size: int, close: Closeness = SMOOTH
+) -> FormQuantile:
+    """The quantile of `limit` over d = size variables, by the first order."""
+    g = _Counted(limit, close.step)
+    radius = float(ndtri(probability))
+    if abs(radius) > FARTHEST:
+        return FormQuantile(np.nan, np.zeros(size), 0, "the probability is beyond 10 deviations")
+    u = np.zeros(size)
+    value, gradient = g.value_and_gradient(u)
+    for _ in range(MOST):
+        slope = float(np.linalg.norm(gradient))
+        why = _stuck(value, slope, abs(value) or 1.0, u * 0.0)
+        if why:
+            return FormQuantile(np.nan, u, g.calls, why)
+        target = radius * gradient / slope
+        if u.any() and float(np.linalg.norm(u - target)) <= close.angle * abs(radius):
+            return FormQuantile(value, u, g.calls)
+        if radius == 0.0:
+            return FormQuantile(value, u, g.calls)
+        u = _on_sphere(g, u, target, value, np.sign(radius)) if u.any() else target
+        value, gradient = g.value_and_gradient(u)
+    return FormQuantile(np.nan, u, g.calls, "FORM does not converge")
+
+
+def distinct(points: list[DesignPoint], cosine: float = 0.9) -> list[DesignPoint]:
+    """Those that converged, nearest first, without those in nearly the direction of a nearer."""
+    kept: list[DesignPoint] = []
+    for point in sorted((p for p in points if not p.why), key=lambda p: abs(p.index)):
+        if all(point.direction @ other.direction < cosine for other in kept):
+            kept.append(point)
+    return kept
+
+
+def _stuck(value: float, slope: float, scale: float, u: Array) -> str:
+    if not (np.isfinite(value) and np.isfinite(slope)):
+        return "a design near the design point fails"
+    if slope <= 1e-12 * scale:
+        return "nothing random changes the factor there"
+    if float(np.linalg.norm(u)) >= FARTHEST:
+        return f"no failure is found within {FARTHEST:g} standard deviations"
+    return ""
+
+
+def _aligned(u: Array, normal: Array, angle: float) -> bool:
+    across = u - (u @ normal) * normal
+    return float(np.linalg.norm(across)) <= angle * max(1.0, float(np.linalg.norm(u)))
+
+
+def _within(target: Array) -> Array:
+    """Not farther out than where the search ends."""
+    length = float(np.linalg.norm(target))
+    return target if length <= FARTHEST else target * (FARTHEST / length)
+
+
+def _shortened(g: _Counted, u: Array, target: Array, weight: float, value: float) -> Array:
+    """A part of the step to the target that decreases |u|^2 / 2 + weight |g|."""
+    before = 0.5 * float(u @ u) + weight * abs(value)
+    part = 1.0
+    for _ in range(HALVINGS):
+        trial = u + part * (target - u)
+        after = 0.5 * float(trial @ trial) + weight * abs(g.at(trial))
+        if after < before:  # not so where g is not a number
+            return trial
+        part /= 2.0
+    return u + part * (target - u)
+
+
+def _on_sphere(g: _Counted, u: Array, target: Array, value: float, sign: float) -> Array:
+    """A turn from u towards the target, on their sphere, that lowers g (raises it for sign 1)."""
+    radius, part = float(np.linalg.norm(u)), 1.0
+    for _ in range(HALVINGS):
+        trial = u + part * (target - u)
+        length = float(np.linalg.norm(trial))
+        if length:
+            trial = trial * (radius / length)
+            if sign * (g.at(trial) - value) > 0.0:
+                return trial
+        part /= 2.0
+    return u + part * (target - u)

@@ -1,0 +1,156 @@
+"""Probabilities of failure, and the factor of safety as a distribution."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from reports.data.decision import FAILS, NOT_DECIDED, SAFE
+
+SYSTEM = "all"  # the pin and the case of the row for the lowest factor of all rows
+
+
+@dataclass(frozen=True)
+class Spread:
+    """A number with the ends of its confidence interval, infinite where samples do not bound it."""
+
+    value: float
+    low: float
+    high: float
+
+    def apart(self, other: Spread) -> bool:
+        """Whether the intervals do not overlap."""
+        return self.high < other.low or other.high < self.low
+
+
+@dataclass(frozen=True)
+class Driver:
+    """How much a parameter matters to a factor of safety: the square of its part in the direction
+    of FORM's design point; the part of the factor's variance that is its own (first-order Sobol
+    index) and that it takes part in (total). None where it was not found.
+    """
+
+    parameter: str
+    importance: float | None
+    first: Spread | None = None
+    total: Spread | None = None
+
+
+@dataclass(frozen=True)
+class FirstOrder:
+    """FORM: the reliability index, the probability of failure and the quantile by it; NaN with
+    `why` where it does not converge. points: number of distinct design points found.
+    """
+
+    index: float
+    probability: float
+    quantile: float
+    points: int = 0
+    why: str = ""
+
+
+@dataclass(frozen=True)
+class ByErrors:
+    """Probabilities of failure with all stresses lower and higher by an error of the model, and
+    the largest part of the stress that this error is.
+    """
+
+    part: float
+    lower: Spread
+    higher: Spread
+
+
+@dataclass(frozen=True)
+class Risk:
+    """A pin in a case, or SYSTEM for the lowest factor of all rows.
+
+    verdict, factor: of the study as it is; None where it has no factor. sampled, weighted: the
+    probability of failure by plain and by importance sampling, None without a design point.
+    failures: of the plain samples; unknown: of them without a result. quantile_sampled,
+    quantile_weighted: the factor of safety that is not reached with the stated probability. mesh:
+    by the estimated error of the stress, joint: by the range over the joint; None where not known.
+    curve: of the distribution
+    (factor, probability to be lower, by plain (0) or importance sampling (1)).
+    """
+
+    pin: str
+    case: str
+    verdict: str
+    factor: float | None
+    sampled: Spread
+    failures: int
+    unknown: int
+    quantile_sampled: Spread
+    weighted: Spread | None = None
+    quantile_weighted: Spread | None = None
+    form: FirstOrder | None = None
+    mesh: ByErrors | None = None
+    joint: ByErrors | None = None
+    drivers: tuple[Driver, ...] = ()
+    curve: tuple[tuple[float, float, int], ...] = ()
+
+    @property
+    def disagrees(self) -> bool:
+        """Whether plain and importance sampling contradict each other."""
+        return self.weighted is not None and self.weighted.apart(self.sampled)
+
+    @property
+    def by_weights(self) -> bool:
+        """Whether importance sampling is the better estimate of the probability."""
+        best = self.weighted
+        if best is None or self.disagrees or best.value <= 0.0:
+            return False
+        return self.sampled.low <= 0.0 or (
+            math.log(best.high / best.low) < math.log(self.sampled.high / self.sampled.low)
+        )
+
+    @property
+    def probability(self) -> Spread:
+        """Of failure, by the narrower interval; by plain sampling where they contradict."""
+        best = self.weighted if self.by_weights else None
+        return best or self.sampled
+
+    @property
+    def quantile(self) -> Spread:
+        """The factor that is not reached with the stated probability, by the narrower interval."""
+        plain, best = self.quantile_sampled, self.quantile_weighted
+        if best is None or self.disagrees or best.apart(plain):
+            return plain
+        widths = (x.high - x.low for x in (best, plain))
+        return best if next(widths) < next(widths) else plain
+
+    def result(self, allowed: float) -> str:
+        """Whether the probability of failure is within the allowed one: decided by the interval,
+        with the error of the stress. A singular row cannot be safe.
+        """
+        ends = self.probability
+        low, high = ends.low, ends.high
+        if self.mesh is not None:
+            low, high = min(low, self.mesh.lower.low), max(high, self.mesh.higher.high)
+        if self.disagrees or (high <= allowed and self.verdict == "singular"):
+            return NOT_DECIDED
+        return SAFE if high <= allowed else FAILS if low > allowed else NOT_DECIDED
+
+
+@dataclass(frozen=True)
+class Reliability:
+    """A study whose numbers are random. limit: the factor of yield below which a pin fails.
+    probability: for which the factor is found, and that allowed. parameters: keys with their laws
+    as text. correlations: as text. solved: designs by what for; reasons: why designs failed, with
+    how many. notes: what the probabilities do not include, for people.
+    """
+
+    title: str
+    study: str
+    limit: float
+    probability: float
+    confidence: float
+    samples: int
+    seed: int
+    parameters: tuple[tuple[str, str], ...]
+    risks: tuple[Risk, ...]
+    correlations: tuple[str, ...] = ()
+    solved: Mapping[str, int] = field(default_factory=dict)
+    reasons: Mapping[str, int] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()

@@ -1,0 +1,45 @@
+"""reliability.html: probabilities of failure in one offline file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from reports.data.reliability import Reliability, Risk
+from reports.format.grid import Grid
+from reports.format.template import environment
+from reports.plots.draw import svg
+from reports.plots.reliability import distribution_plot
+from reports.plots.theme import on_paper
+from reports.tables.reliability import drivers_grid, risks_grid, ways_grid
+from reports.text.reliability import remarks, sentence, solved
+
+MOST = 12  # plots
+
+
+def write_reliability_page(found: Reliability, path: Path) -> None:
+    """Write the page."""
+    plots = (distribution_plot(found, risk) for risk in _worst_first(found)[:MOST])
+    laws = Grid(["number", "law"], [list(p) for p in found.parameters], [False, False])
+    text = (
+        environment()
+        .get_template("reliability.html.j2")
+        .render(
+            found=found,
+            sentence=sentence(found, found.risks[0]) if found.risks else "",
+            sections=[
+                ("Pins and cases", risks_grid(found)),
+                ("By each way of finding it", ways_grid(found)),
+                ("What drives it", drivers_grid(found)),
+                ("Random numbers", laws),
+            ],
+            remarks=[*remarks(found), solved(found)],
+            plots=[
+                (svg({**plot.spec, "config": on_paper()}), plot.caption) for plot in plots if plot
+            ],
+        )
+    )
+    path.write_text(text, encoding="utf-8", newline="\n")
+
+
+def _worst_first(found: Reliability) -> list[Risk]:
+    return sorted(found.risks, key=lambda risk: -risk.probability.value)
