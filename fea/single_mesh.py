@@ -84,11 +84,12 @@ def result_on(problem: Problem, rung: Rung, before: tuple[MeshResult, ...] = ())
 def _local_result(problem: Problem, level: int, before: tuple[MeshResult, ...]) -> MeshResult:
     pin, material, clamps, loads = problem.pin, problem.material, problem.clamps, problem.loads
     if not isinstance(pin, CutPin):
-        raise ArgumentError(f"pin {pin.name} has no holes", "no-cuts")
+        raise ArgumentError(f"pin {pin.name} has no cuts", "no-cuts")
     found = singularities_of(pin.profile, material, clamps, (loads,), problem.distance)
     cut = cut_solution(
-        pin.profile, pieces(pin, clamps), material, clamps, (loads,), found, level, RATIO, before
-    )
+        pin.profile, pieces(pin, clamps), material, clamps, (loads,), found, level, RATIO, before,
+        None, problem.distance,
+    )  # fmt: skip
     return cut_result(cut, found, loads)
 
 

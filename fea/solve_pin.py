@@ -352,10 +352,12 @@ def _mesh(
         )  # fmt: skip
         answers: dict[str, Answer]
         if model == LOCAL:
-            cut = cut_solution(pin, job.pieces, *common)
+            cut = cut_solution(pin, job.pieces, *common, job.asked.distance)
             answers = {c: CutAnswer(cut, mine) for c, mine in own.items()}
             return _Mesh(
-                singularities, lambda c: cut_result(cut, singularities, c, own[c.case]), answers
+                (*singularities, *cut.corners),
+                lambda c: cut_result(cut, singularities, c, own[c.case]),
+                answers,
             )
         section = harmonic_solution(pin, *common)
         answers = {c: HarmonicAnswer(section, mine) for c, mine in own.items()}
