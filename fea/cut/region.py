@@ -30,10 +30,10 @@ def refused(pin: CutPin, clamps: tuple[str, ...], loaded: Sequence[str]) -> Note
         if name.removesuffix(" end") in pin.cuts:
             return _solid(f"{name} carries load", f"{name.split()[0]}-loaded")
     for cut, feature in pin.cuts.items():
-        low, high = feature.opens(pin.profile)
+        low, high = feature.opens
         for name in dict.fromkeys((*loaded, *clamps)):
             z0, z1 = _surface(pin, name)
-            if low < z1 and z0 < high:
+            if (low < z1 and z0 < high) or name in feature.faces:
                 what = "clamped" if name in clamps else "loaded"
                 text = f"{cut} lies in the {what} surface {name}"
                 return _solid(text, f"{feature.what}-in-{what}")
@@ -43,7 +43,7 @@ def refused(pin: CutPin, clamps: tuple[str, ...], loaded: Sequence[str]) -> Note
 def at_corner(pin: CutPin, singularities: Sequence[Singularity]) -> Note | None:
     """The same, where a cut lies at one of the singularities of the pin without cuts."""
     for cut, feature in pin.cuts.items():
-        low, high = feature.opens(pin.profile)
+        low, high = feature.opens
         if any(low <= s.z <= high for s in singularities):
             return _solid(f"{cut} lies at a sharp corner", f"{feature.what}-at-corner")
     return None
@@ -111,7 +111,12 @@ def _piece(pin: Pin, cuts: dict[str, Cut], clamps: tuple[str, ...], beyond: floa
     middle = 0.5 * (low + high)
     clamped = any(z0 <= b and a <= z1 for a, b in (_surface(CutPin(pin), c) for c in clamps))
     amid = [cut.moved(middle, angle) for cut in cuts.values()]
-    if not clamped and not any(cut.undivided for cut in amid) and _even(pin, z0, z1, middle) and _symmetric(pin, amid, "z"):
+    if (
+        not clamped
+        and not any(cut.undivided for cut in amid)
+        and _even(pin, z0, z1, middle)
+        and _symmetric(pin, amid, "z")
+    ):
         half = max(middle - z0, z1 - middle)
         z0, z1, mirrors = middle - half, middle + half, (*mirrors, "z")
     start = middle if "z" in mirrors else z0

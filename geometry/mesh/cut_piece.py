@@ -14,6 +14,7 @@ from geometry.mesh.gmsh_session import formula_size, gmsh_model
 from geometry.mesh.gmsh_tetrahedra import collect, repair
 from geometry.mesh.scale import unit_of_solid
 from geometry.mesh.solid_mesh import MeshSize, SolidMesh, set_sizes, sound_mesh
+from geometry.shape.drilled import Passage
 from geometry.shape.features import Cut
 from geometry.shape.milled import Slot
 from geometry.shape.pin import Pin
@@ -27,7 +28,7 @@ ALONG = 2.0  # size at the edges of slots, which are long, over that
 ARC, ARC_ALONG = 4.0, 2.5  # elements on the quarter circle of a rounded corner; of slots
 CORNER = 0.07  # size at a sharp inner corner, of a cut's size
 FACE = 0.12  # size on a flat, of the pin's diameter
-WALL = 1.5  # size on its wall over that at its edge
+WALL, LONG_WALL = 1.5, 3.0  # size on its wall over that at its edge; of passages
 GROWTH = 0.45  # of the size with the distance from there
 REACH = 0.2  # of a cut's size: how far about a spot its elements are small
 ON = 1e-3  # of a cut's size: a spot on one of its surfaces
@@ -178,11 +179,14 @@ def _sizes(
         edges = sorted(rims & _curves(gmsh, every))
         if not math.isinf(cut.size):
             fields.append(near(gmsh, "CurvesList", edges, h, GROWTH))
-        fields.append(near(gmsh, "SurfacesList", every, WALL * h, GROWTH))
+        wall = (LONG_WALL if isinstance(cut, Passage) else WALL) * h
+        fields.append(near(gmsh, "SurfacesList", every, wall, GROWTH))
         for part, tags in own.items():
             if radii[part]:
                 arc = _arc_size(cut, radii[part]) / finer
-                fields.append(near(gmsh, "SurfacesList", tags, min(arc, WALL * h), GROWTH))
+                arc = min(arc, wall)
+                fields.append(near(gmsh, "SurfacesList", tags, arc, GROWTH))
+                fields.append(near(gmsh, "CurvesList", sorted(_curves(gmsh, tags)), arc, GROWTH))
         if not any(radii[part] for part in own):
             inner = [curve for curve in _curves(gmsh, every) if _shared(gmsh, curve, every)]
             if inner and len(own) > 1:

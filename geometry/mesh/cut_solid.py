@@ -33,8 +33,10 @@ def cut_solid(gmsh: Any, pin: Pin, cuts: Cuts, sector: float = 2.0 * math.pi) ->
     """
     occ, reach = gmsh.model.occ, 2.0 * pin.largest_diameter
     rounded = [c for c in cuts.values() if isinstance(c, Hole) and c.mouth_radius]
-    body = revolve(gmsh, meridian(pin), 2.0 * math.pi if rounded else sector)
-    if rounded:  # OpenCASCADE rounds whole edges only, which the body's seam must not cross
+    body = revolve(gmsh, meridian(pin), sector)
+    if (
+        rounded and sector == 2.0 * math.pi
+    ):  # OpenCASCADE rounds whole edges only, which the body's seam must not cross
         seams = np.linspace(0.0, math.pi, 13)
         off = [min(abs(math.sin(seam - hole.angle)) for hole in rounded) for seam in seams]
         occ.rotate([body], 0, 0, 0, 0, 0, 1, float(seams[int(np.argmax(off))]))
@@ -44,11 +46,6 @@ def cut_solid(gmsh: Any, pin: Pin, cuts: Cuts, sector: float = 2.0 * math.pi) ->
     if rounded and len(left) == 1:
         for hole in rounded:
             left = _round_mouths(gmsh, left, hole, pin)
-        if sector < 2.0 * math.pi:
-            low = 0.0 if sector < math.pi else -reach
-            box = occ.addBox(low, 0.0, -reach, reach - low, reach, pin.length + 2.0 * reach)
-            left, _ = occ.intersect(left, [(3, box)])
-            occ.synchronize()
     if len(left) != 1:
         raise GeometryError(
             f"pin {pin.name}: the cuts part the pin into {len(left)} pieces; move them or make "

@@ -12,10 +12,10 @@ import numpy as np
 from geometry.arrays import Floats
 from geometry.coded import Place
 from geometry.shape.features import Cut, CutSurface, Off, outer_radius, positive, radii, require
-from geometry.shape.pin import Pin
+from geometry.shape.pin import FACES, Pin
 from geometry.shape.profile import Arc, Edge, kind_of, off_edge
 
-FLAT = math.pi
+FLAT_TIP = math.pi
 POINTED = math.pi / 6.0  # rad: the least angle of a tip
 WIDER = 1.5  # of its radius: how far a rounded mouth reaches at most
 Mouth = Literal["start", "end", "both"]
@@ -44,16 +44,16 @@ class Bottom:
     which the corners there are rounded, m.
     """
 
-    tip: float = FLAT
+    tip: float = FLAT_TIP
     radius: float = 0.0
 
     def height(self, diameter: float) -> float:
         """Of the cone below the full diameter, m."""
-        return diameter / 2.0 / math.tan(self.tip / 2.0) if self.tip < FLAT else 0.0
+        return diameter / 2.0 / math.tan(self.tip / 2.0) if self.tip < FLAT_TIP else 0.0
 
     def check(self, diameter: float, what: str, at: Place) -> None:
         """Raises: GeometryError where the radius does not fit."""
-        in_range = POINTED <= self.tip <= FLAT + 1e-12
+        in_range = POINTED <= self.tip <= FLAT_TIP + 1e-12
         require(
             in_range,
             f"{what}: the tip's angle is {math.degrees(self.tip):.4g} deg and must be from 30 deg "
@@ -62,7 +62,7 @@ class Bottom:
             at,
         )
         half = self.tip / 2.0
-        taken = math.tan(half / 2.0) + (1.0 / math.tan(half) if self.tip < FLAT else 0.0)
+        taken = math.tan(half / 2.0) + (1.0 / math.tan(half) if self.tip < FLAT_TIP else 0.0)
         most = 0.98 * diameter / 2.0 / math.sin(half) / taken
         require(
             self.radius <= most,
@@ -75,14 +75,14 @@ class Bottom:
     def edges(self, a: float, floor: float) -> tuple[Edge, ...]:
         """From the axis to the wall (s = a), whose straight part begins at t >= floor, m."""
         half, rho = self.tip / 2.0, self.radius
-        s, c = math.sin(half), math.cos(half) if self.tip < FLAT else 0.0
+        s, c = math.sin(half), math.cos(half) if self.tip < FLAT_TIP else 0.0
         apex = (0.0, floor - self.height(2.0 * a))
         corner = (a, floor)
         out: list[Edge] = []
         if rho == 0.0:
             return (Edge("bottom", apex, corner),)
         first, back = apex, rho * math.tan(half / 2.0)
-        if self.tip < FLAT:
+        if self.tip < FLAT_TIP:
             on = rho / math.tan(half)
             top = (0.0, apex[1] + rho / s - rho)
             first = (on * s, apex[1] + on * c)
@@ -178,7 +178,7 @@ class Hole(Cut):
     @property
     def plain(self) -> bool:
         """Whether it is a cylinder through the pin and no more."""
-        return self.depth is None and not self.chamfer
+        return self.depth is None and not self.chamfer and not self.mouth_radius
 
     def lengths(self) -> tuple[str, ...]:
         """All but angles."""
@@ -344,12 +344,15 @@ class Passage(Cut):
         """On the axis."""
         return self.offset == 0.0
 
-    def opens(self, pin: Pin) -> tuple[float, float]:
-        """At the end faces; a blind one only at its own."""
-        low = -pin.length if self.mouth != "end" else pin.length
-        high = 2.0 * pin.length if self.mouth != "start" else 0.0
-        near = pin.tolerance
-        return (low, near) if self.mouth == "start" else (min(low, pin.length) - near, high)
+    @property
+    def opens(self) -> tuple[float, float]:
+        """Nowhere on the outer surface."""
+        return math.inf, -math.inf
+
+    @property
+    def faces(self) -> tuple[str, ...]:
+        """With its mouths."""
+        return FACES if self.mouth == "both" else (self.mouth,)
 
     def lengths(self) -> tuple[str, ...]:
         """All but angles."""

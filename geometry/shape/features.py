@@ -73,10 +73,15 @@ class Cut(ABC):
     def along(self, change: Callable[[float, float], tuple[float, float]]) -> Self:
         """The same with its two ends in z changed."""
 
-    def opens(self, pin: Pin) -> tuple[float, float]:
-        """Between which z, m, it takes from the outer surface or the end faces of a profile."""
-        del pin
+    @property
+    def opens(self) -> tuple[float, float]:
+        """Between which z, m, it takes from the outer surface."""
         return self.extent
+
+    @property
+    def faces(self) -> tuple[str, ...]:
+        """End faces from which it takes although they are not in its extent."""
+        return ()
 
     def scaled(self, factor: float) -> Self:
         """The same in another unit."""

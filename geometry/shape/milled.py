@@ -175,7 +175,7 @@ class Slot(Milled):
         for name, side in (("end", past), ("wall", aside)):
             out.append(CutSurface(name, "Plane", _on(both, side)))
             if self.radius:
-                out.append(CutSurface("fillet", "", _corner(side, below, self.radius), self.radius))
+                out.append(_fillet(side, below, self.radius))
         return tuple(out)
 
     def check(self, pin: Pin, name: str, at: Place) -> None:
@@ -277,6 +277,17 @@ def _corner(one: Off, other: Off, rho: float) -> Off:
     return off
 
 
+def _fillet(one: Off, other: Off, rho: float) -> CutSurface:
+    """What rounds the corner between two sides."""
+    whole = _corner(one, other, rho)
+
+    def off(x: Floats) -> Floats:
+        aside = np.maximum(-rho - one(x), 0.0) + np.maximum(-rho - other(x), 0.0)
+        return np.asarray(np.abs(whole(x)) + aside)
+
+    return CutSurface("fillet", "", off, rho)
+
+
 def _on(whole: Off, side: Off) -> Off:
     """How far points are off a side of the whole."""
     return lambda x: np.abs(whole(x)) + np.abs(side(x))
@@ -295,5 +306,5 @@ def _parts(
         out.append(CutSurface("floor", "Plane", _on(both, below)))
     out.append(CutSurface(wall, "", _on(both, beyond)))
     if radius:
-        out.append(CutSurface("fillet", "", both, radius))
+        out.append(_fillet(beyond, below, radius))
     return tuple(out)
