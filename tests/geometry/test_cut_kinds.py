@@ -126,15 +126,15 @@ def test_the_volume_of_a_cut(name: str) -> None:
 
 
 def test_a_rounded_mouth_takes_what_lies_outside_of_its_circles() -> None:
-    """Along the edge, where the material's angle changes, by Pappus; and a keyway's rounded bottom
-    leaves such a ring.
+    """Along the edge, where the material's angle changes, by Pappus, who does not know that the
+    edge is curved in space as well; and a keyway's rounded bottom leaves such a ring.
     """
     sharp, rounded = (made(Hole(0.03, 2 * a, mouth_radius=r)).volume for r in (0.0, RHO))
     phi = (np.arange(400) + 0.5) * 2.0 * math.pi / 400
     half = 0.5 * (math.pi / 2.0 - np.arcsin(a * np.abs(np.sin(phi)) / R) * np.abs(np.sin(phi)))
     corner = RHO**2 * (1.0 / np.tan(half) - (math.pi / 2.0 - half))
     along = a + 0.25 * RHO  # about where its centroid moves
-    assert sharp - rounded == pytest.approx(2.0 * np.mean(corner) * 2 * math.pi * along, rel=0.05)
+    assert sharp - rounded == pytest.approx(2.0 * np.mean(corner) * 2 * math.pi * along, rel=0.08)
     floor = [made(Slot(0.02, 0.04, 0.005, 0.003, 0.0, r)).volume for r in (0.0, RHO)]
     straight = 2.0 * 0.015 * RHO**2 * (1.0 - math.pi / 4.0)
     assert floor[1] - floor[0] == pytest.approx(straight + ring(RHO, 0.0025), rel=1e-4)
