@@ -88,8 +88,8 @@ def _chosen(asked: Asked, model: str) -> Note:
     if model == "solid":
         return Note("solid: the pin is not a body of revolution", ("not-axisymmetric",))
     if model == "harmonic+local":
-        text = "only about its holes the pin is not a body of revolution"
-        return Note(f"harmonic, with a local solid about the holes: {text}", ("local-solid",))
+        text = "only about its cuts the pin is not a body of revolution"
+        return Note(f"harmonic, with a local solid about the cuts: {text}", ("local-solid",))
     if asked.goal == "decide":
         text = "its error leaves open whether the required factor is reached"
         return Note(f"harmonic: beam rejected: {text}", ("beam-open",))

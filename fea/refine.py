@@ -211,10 +211,14 @@ def _mesh(
         )
         answers: dict[str, Answer]
         if model == LOCAL:
-            cut = cut_solution(problem, job.pieces, level, before.values(), job.bands)
+            cut = cut_solution(
+                problem, job.pieces, level, before.values(), job.bands, job.asked.distance
+            )
             answers = {c: CutAnswer(cut, mine) for c, mine in own.items()}
             return _Mesh(
-                singularities, lambda c: cut_result(cut, singularities, c, own[c.case]), answers
+                (*singularities, *cut.corners),
+                lambda c: cut_result(cut, singularities, c, own[c.case]),
+                answers,
             )
         section = harmonic_solution(problem, level, ratio, before.values())
         answers = {c: HarmonicAnswer(section, mine) for c, mine in own.items()}

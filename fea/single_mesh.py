@@ -82,11 +82,12 @@ def result_on(problem: Problem, rung: Rung, before: tuple[MeshResult, ...] = ())
 def _local_result(problem: Problem, level: int, before: tuple[MeshResult, ...]) -> MeshResult:
     pin, material, clamps, loads = problem.pin, problem.material, problem.clamps, problem.loads
     if not isinstance(pin, CutPin):
-        raise ArgumentError(f"pin {pin.name} has no holes", "no-cuts")
+        raise ArgumentError(f"pin {pin.name} has no cuts", "no-cuts")
     found = singularities_of(pin.profile, material, clamps, (loads,), problem.distance)
     posed = SectionProblem(pin.profile, material, clamps, (loads,), found)
     bands = loaded_bands(pin, loads.surfaces if clamps else pin.connections)
-    cut = cut_solution(posed, pieces(pin, clamps, bands=bands), level, before, bands)
+    local = pieces(pin, clamps, bands=bands)
+    cut = cut_solution(posed, local, level, before, bands, problem.distance)
     return cut_result(cut, found, loads)
 
 

@@ -2,7 +2,7 @@
 
 beam      where its error is enough to decide                   (fea.beam.error_model)
 harmonic  any body of revolution                                (fea.harmonic.evaluate)
-harmonic+local   such a body with holes, solid about these      (fea.cut.evaluate)
+harmonic+local   such a body with cuts, solid about these       (fea.cut.evaluate)
 solid     any other body, and to check the others               (fea.solid.evaluate)
 """
 

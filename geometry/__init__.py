@@ -7,7 +7,9 @@ scikit-fem and gmsh and is therefore not imported here.
 from geometry.coded import ArgumentError, Coded
 from geometry.mesh.cut_pin import CutPin
 from geometry.shape.corners import Vertex, vertices
-from geometry.shape.features import Flat, Hole
+from geometry.shape.drilled import Bottom, Hole, Passage
+from geometry.shape.features import Cut
+from geometry.shape.milled import Flat, Slot
 from geometry.shape.pin import Band, GeometryError, Pin
 from geometry.shape.pin_like import PinLike
 from geometry.shape.profile import Arc, Edge, meridian, sharp_corners
@@ -17,15 +19,19 @@ __all__ = [
     "Arc",
     "ArgumentError",
     "Band",
+    "Bottom",
     "Coded",
+    "Cut",
     "CutPin",
     "Edge",
     "Flat",
     "GeometryError",
     "Hole",
+    "Passage",
     "Pin",
     "PinLike",
     "Segment",
+    "Slot",
     "Vertex",
     "meridian",
     "sharp_corners",

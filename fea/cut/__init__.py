@@ -1,1 +1,1 @@
-"""Pins with holes: the harmonic model of the uncut pin, and a solid about each cut."""
+"""Pins with cuts: the harmonic model of the uncut pin, and a solid about each cut."""

@@ -24,7 +24,7 @@ from fea.harmonic.evaluate import (
 )
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.stress_recovery import NOWHERE
-from fea.singular.singularities import Singularity
+from fea.singular.singularities import VARIED, Singularity
 from fea.solid.nodal_loads import Unit
 from fea.solid.superposition import squares
 from geometry import CutPin
@@ -47,6 +47,11 @@ class CutSolution:
     pieces: tuple[LocalFields, ...]
     reactions: Reactions
 
+    @property
+    def corners(self) -> tuple[Singularity, ...]:
+        """Sharp inner corners of the cuts."""
+        return tuple(c.singularity for piece in self.pieces for c in piece.corners)
+
 
 def cut_solution(
     problem: SectionProblem,
@@ -54,9 +59,11 @@ def cut_solution(
     level: int,
     before: Collection[MeshResult] = (),
     bands: Sequence[tuple[float, float]] = (),
+    distance: float = 0.1,
 ) -> CutSolution:
     """As fea.harmonic.evaluate.harmonic_solution, on mesh number `level` of section and pieces.
-    bands: loaded ones with holes in them (fea.cut.region.loaded_bands).
+    bands: loaded ones with holes in them (fea.cut.region.loaded_bands); distance: as
+    fea.cut.inner_corners.
 
     Raises: MeshError, SolveError.
     """
@@ -75,7 +82,7 @@ def cut_solution(
     units = _units(cases) or tuple((load, load.phases[0]) for load in section.fields.loads[:1])
     units += moved
     found = tuple(
-        local_fields(model, section.fields, stress, units, problem.singularities)
+        local_fields(model, section.fields, stress, units, problem.singularities, distance)
         for model, stress in zip(models, at, strict=True)
     )
     fields = _without(section.fields, [zone(piece) for piece in pieces])
@@ -290,19 +297,26 @@ def cut_result(
         if value[instant] > whole:
             whole, highest = float(value[instant]), (piece, instant, piece.points[point[instant]])
     unknowns = result.unknowns + sum(piece.unknowns for piece in solution.pieces)
-    result = replace(result, unknowns=unknowns, local_high=tuple(high), energy=None)
-    if highest is None:
-        return result
-    piece, instant, (x, y, z) = highest
+    inside = tuple(at for piece in solution.pieces for at in piece.inside(loads))
     result = replace(
         result,
-        maximum=whole,
-        instant=instant,
-        location=(float(x), float(y), float(z)),
-        left_out=result.left_out,
-        truncated=piece.left_at_ends(loads, instant),
+        unknowns=unknowns,
+        local_high=tuple(high),
+        energy=None,
+        singularities=(*result.singularities, *inside),
     )
-    if result.interval is None or not result.governed:
+    interval = result.interval or (result.maximum, result.maximum)
+    if highest is not None:
+        piece, instant, (x, y, z) = highest
+        result = replace(
+            result,
+            maximum=whole,
+            instant=instant,
+            location=(float(x), float(y), float(z)),
+            truncated=piece.left_at_ends(loads, instant),
+        )
+    if not result.governed:
         return replace(result, interval=None)
-    low, top = result.interval
-    return replace(result, interval=(max(low, whole), max(top, whole)))
+    varied = [max(p.varied(loads, times) for p in solution.pieces) for times in VARIED]
+    low, top = max(interval[0], min(varied)), max(interval[1], max(varied))
+    return replace(result, interval=(low, top))

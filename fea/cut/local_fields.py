@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from fea.core.material import Material
-from fea.core.mesh_result import Point
+from fea.core.mesh_result import FELT, AtSingularity, Point
 from fea.core.pin_loads import AnyLoads, require_solved
 from fea.core.voigt import ENTRIES, TENSOR
+from fea.cut.inner_corners import InnerCorner, inner_corners
 from fea.cut.local_model import LocalModel, turned
 from fea.cut.lost_loads import bearings
 from fea.cut.region import zone
@@ -38,9 +39,9 @@ NEAR = 3  # points of the section between which displacements are interpolated
 class LocalFields:
     """On one mesh of a piece, in the pin's frame: points (P, 3) m of the surface, triangles (M, 3)
     of them, stress (P, 6, L) Pa of L unit loads, each in one phase; displacement (P, 3, L) m of the
-    uncut pin. read: (P,) where the maximum is looked for. ended: (E, 6, L) what the cuts change of
-    the stress where the piece ends; moved: (2, 6, L) by how much they move its ends, as a shift (m)
-    and a turn (rad) about the pin's origin.
+    uncut pin. read: (P,) where the maximum is looked for but for inner corners of cuts. ended: (E,
+    6, L) what the cuts change of the stress where the piece ends; moved: (2, 6, L) by how much they
+    move its ends, as a shift (m) and a turn (rad) about the pin's origin.
     """
 
     piece: Piece
@@ -53,6 +54,7 @@ class LocalFields:
     ended: Floats
     moved: Floats
     unknowns: int
+    corners: tuple[InnerCorner, ...] = ()
 
     def coefficients(self, loads: AnyLoads) -> Floats:
         """How much of each unit load acts at each instant, (T, L).
@@ -61,19 +63,52 @@ class LocalFields:
         """
         return coefficients_of(loads, self.units)
 
+    def outside(self, times: float = 1.0) -> Mask:
+        """(P,) where the maximum is looked for, if so many times the usual distance from inner
+        corners is left out.
+        """
+        out = self.read.copy()
+        for corner in self.corners:
+            out &= corner.distance >= times * (1.0 - 1e-9)
+        return out
+
     @cached_property
-    def _squares(self) -> Callable[[Floats], Floats]:
-        return squares(self.stress[self.read])
+    def _squares(self) -> tuple[Ints, Callable[[Floats], Floats]]:
+        rows = np.flatnonzero(self.outside())
+        return rows, squares(self.stress[rows])
 
     def largest(self, loads: AnyLoads) -> tuple[Floats, Ints]:
         """The largest von Mises stress (T,) Pa at every instant, and its point (T,)."""
-        c, rows = self.coefficients(loads), np.flatnonzero(self.read)
+        return self._largest(loads, *self._squares)
+
+    def varied(self, loads: AnyLoads, times: float) -> float:
+        """The largest if so many times the distance from inner corners is left out, Pa."""
+        rows = np.flatnonzero(self.outside(times))
+        return float(self._largest(loads, rows, squares(self.stress[rows]))[0].max())
+
+    def _largest(
+        self, loads: AnyLoads, rows: Ints, found: Callable[[Floats], Floats]
+    ) -> tuple[Floats, Ints]:
+        c = self.coefficients(loads)
         value, point = np.zeros(len(c)), np.zeros(len(c), dtype=np.int64)
-        for k in range(0, len(c), 64):
-            here = self._squares(c[k : k + 64])
+        for k in range(0, len(c) if len(rows) else 0, 64):
+            here = found(c[k : k + 64])
             point[k : k + 64] = rows[here.argmax(axis=0)]
             value[k : k + 64] = np.sqrt(np.maximum(here.max(axis=0), 0.0))
         return value, point
+
+    def inside(self, loads: AnyLoads) -> tuple[AtSingularity, ...]:
+        """What is at the inner corners."""
+        out = []
+        for corner in self.corners:
+            both = []
+            for least in (0.0, FELT):
+                rows = np.flatnonzero((corner.distance < 1.0) & (corner.distance >= least))
+                value, point = self._largest(loads, rows, squares(self.stress[rows]))
+                both.append((float(value.max()), int(point[value.argmax()])))
+            (value, point), (felt, _) = both
+            out.append(AtSingularity(value, felt, _point(self.points[point])))
+        return tuple(out)
 
     def left_at_ends(self, loads: AnyLoads, instant: int) -> float:
         """Of the error at an instant, Pa: what the ends of the piece do."""
@@ -86,8 +121,8 @@ class LocalFields:
         where it is lower there than elsewhere in the piece.
         """
         c = self.coefficients(loads)[instant]
-        value = np.sqrt(np.maximum(squares(self.stress)(c[None])[:, 0], 0.0)) * self.read
-        least, hole = HIGH * value.max(), min(hole.diameter for hole in self.piece.holes)
+        value = np.sqrt(np.maximum(squares(self.stress)(c[None])[:, 0], 0.0)) * self.outside()
+        least, hole = HIGH * value.max(), self.piece.smallest
         low, high = zone(self.piece)
         value *= (self.points[:, 2] > low - hole) & (self.points[:, 2] < high + hole)
         found: list[int] = []
@@ -179,8 +214,10 @@ def local_fields(
     at_points: Floats,
     units: tuple[Unit, ...],
     singularities: Sequence[Singularity],
+    distance: float,
 ) -> LocalFields:
-    """Of the uncut pin's fields, and their stress `at_points` (section_points, 6, K).
+    """Of the uncut pin's fields, and their stress `at_points` (section_points, 6, K). distance: as
+    inner_corners.
 
     Raises: SolveError.
     """
@@ -218,6 +255,10 @@ def local_fields(
         read.difference[at_end & ~read.cut],
         _in_pin(read.moved, model.piece),
         model.unknowns,
+        tuple(
+            replace(corner, distance=np.tile(corner.distance, len(x)))
+            for corner in inner_corners(model, model.points, distance)
+        ),
     )
 
 

@@ -81,24 +81,25 @@ class LocalModel:
         """Displacement components, constrained ones included."""
         return self.space.unknowns
 
+    def mirrored(self, boundary: str) -> bool:
+        """Whether a boundary of the mesh is a mirror plane."""
+        amid = boundary == "start" and "z" in self.piece.mirrors
+        return amid or boundary.startswith("mirror ")
+
     def _readings(self) -> list[FaceReading]:
         out = []
-        holes = {f"hole {i}": hole for i, hole in enumerate(self.piece.holes, 1)}
         for name in self.space.mesh.boundaries:
-            if name in ENDS or name.startswith("mirror ") or name in self.clamps:
+            if name in ENDS or self.mirrored(name) or name in self.clamps:
                 continue
-            axis = None
-            if name in holes:
-                angle = holes[name].angle
-                axis = np.array([np.cos(angle), np.sin(angle), 0.0])
-            face = Face(name, np.flatnonzero(self.surface.on(self.space, (name,))), axis)
+            rows = np.flatnonzero(self.surface.on(self.space, (name,)))
+            face = Face(name, rows, self.piece.cut_at(name) is not None)
             out.append(read_face(self.space, self.surface, face, self.parities))
         return out
 
     @cached_property
     def cut(self) -> Mask:
         """(P,) which points are on cuts."""
-        parts = [np.full(len(r.nodes), r.face.axis is not None) for r in self.readings]
+        parts = [np.full(len(r.nodes), r.face.cut) for r in self.readings]
         return np.concatenate(parts)
 
     @cached_property
@@ -222,7 +223,7 @@ class LocalModel:
         for r in self.readings:
             here = stress[first : first + len(r.nodes)]
             first += len(r.nodes)
-            if r.face.axis is None or (only and r.face.name not in only):
+            if not r.face.cut or (only and self.piece.cut_at(r.face.name) not in only):
                 continue
             corners = self.surface.corners[r.face.rows]
             area = area_vectors(self.space.nodes[corners], x, y)
@@ -307,7 +308,7 @@ class LocalModel:
             e = r.strain(u.reshape(-1, 3, u.shape[1]), self.parities, character)
             out[here, [4, 3, 2]] = np.einsum("pia,pal->pil", r.directions, spread[here])
             normal = out[here, 2]
-            if r.face.axis is not None:
+            if r.face.cut:
                 normal = -turned(uncut[here], r.directions)[:, 2]
             plane = E / (1.0 - nu**2)
             out[here, 0] = plane * (e[:, 0] + nu * e[:, 1]) + nu / (1.0 - nu) * normal

@@ -26,7 +26,7 @@ ON_BAND = 1e-9  # of a band's length
 @dataclass(frozen=True)
 class Bearing:
     """A loaded band with cuts in it, between two z (m, in the frame of the piece; on both sides of
-    its mirror plane, if it has one across the axis). cuts: their faces, by name.
+    its mirror plane, if it has one across the axis). cuts: by name.
     """
 
     z0: float
@@ -49,13 +49,10 @@ def bearings(piece: Piece, bands: Sequence[tuple[float, float]]) -> tuple[Bearin
         if "z" in piece.mirrors:
             z1 = min(z1, -z0)
             z0 = -z1
-        names = [
-            f"hole {i}"
-            for i, hole in enumerate(piece.holes, 1)
-            if z0 < hole.z - hole.diameter / 2 and hole.z + hole.diameter / 2 < z1
-        ]
+        opens = {name: cut.opens for name, cut in piece.cuts.items()}
+        names = tuple(name for name, (start, end) in opens.items() if z0 < start and end < z1)
         if names:
-            out.append(Bearing(z0, z1, tuple(names)))
+            out.append(Bearing(z0, z1, names))
     return tuple(out)
 
 

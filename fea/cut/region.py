@@ -2,49 +2,50 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
-from itertools import pairwise
+from collections.abc import Iterable, Sequence
+from itertools import combinations
 
 from fea.core.peak import Note
 from fea.singular.singularities import Singularity
-from geometry import CutPin, Hole, Pin
+from geometry import Cut, CutPin, Hole, Pin
 from geometry.mesh.cut_piece import Piece, clipped
 
-BEYOND = 1.4  # of the diameter, past a hole: in a shaft, ends there change stress by 0.1 %
+BEYOND = 1.4  # of the diameter, past a cut: in a shaft, ends there change stress by 0.1 %
 LONGER = 1.6  # times that, where it is seen not to be enough, as in tubes
-NEXT = 1.0  # of the diameter: holes closer to each other are in one piece
+NEXT = 1.0  # of the diameter: cuts closer to each other are in one piece
 LEFT = 0.25  # of the diameter: less than that beyond a piece is part of it
 MARGIN = 0.1  # of a hole's diameter, at least to the end of a loaded band about it
 CLEAR = 0.1  # of the diameter, at least between the end of a piece and a step
-SAME_ANGLE = 1e-9
+SAME = 1e-9  # of the diameter: two lengths
 
 
 def refused(pin: CutPin, clamps: tuple[str, ...], loaded: Sequence[str]) -> Note | None:
     """Why a local solid does not do for this pin, clamped and loaded at surfaces (by name); None
     where it does.
     """
-    if pin.flats:
-        return _solid("flats have inner corners where stress is unbounded", "flat")
     for name in (*clamps, *loaded):
-        if name.startswith("hole "):
-            return _solid(f"{name} carries load", "hole-loaded")
-    for i, hole in enumerate(pin.holes, 1):
-        low, high = _extent(hole)
+        if name.removesuffix(" end") in pin.cuts:
+            return _solid(f"{name} carries load", f"{name.split()[0]}-loaded")
+    for cut, feature in pin.cuts.items():
+        low, high = feature.opens
         for name in dict.fromkeys((*loaded, *clamps)):
             z0, z1 = surface_ends(pin, name)
-            if not (low < z1 and z0 < high):
+            if not (low < z1 and z0 < high) and name not in feature.faces:
                 continue
             if name in clamps:
-                return _solid(f"hole {i} lies in the clamped surface {name}", "hole-in-clamped")
-            if not _well_inside(hole, z0, z1):
-                return _solid(f"hole {i} lies at an end of the band {name}", "hole-at-end")
+                text = f"{cut} lies in the clamped surface {name}"
+                return _solid(text, f"{feature.what}-in-clamped")
+            if not isinstance(feature, Hole):
+                text = f"{cut} lies in the loaded surface {name}"
+                return _solid(text, f"{feature.what}-in-loaded")
+            if not _well_inside(feature, z0, z1):
+                return _solid(f"{cut} lies at an end of the band {name}", "hole-at-end")
     return None
 
 
 def _well_inside(hole: Hole, z0: float, z1: float) -> bool:
     margin = MARGIN * hole.diameter
-    low, high = _extent(hole)
+    low, high = hole.opens
     return low > z0 + margin and high < z1 - margin
 
 
@@ -55,11 +56,11 @@ def loaded_bands(pin: CutPin, loaded: Sequence[str]) -> tuple[tuple[float, float
 
 
 def at_corner(pin: CutPin, singularities: Sequence[Singularity]) -> Note | None:
-    """The same, where a hole lies at one of the singularities of the pin without holes."""
-    for i, hole in enumerate(pin.holes, 1):
-        low, high = _extent(hole)
+    """The same, where a cut lies at one of the singularities of the pin without cuts."""
+    for cut, feature in pin.cuts.items():
+        low, high = feature.opens
         if any(low <= s.z <= high for s in singularities):
-            return _solid(f"hole {i} lies at a sharp corner", "hole-at-corner")
+            return _solid(f"{cut} lies at a sharp corner", f"{feature.what}-at-corner")
     return None
 
 
@@ -67,10 +68,6 @@ def _solid(why: str, code: str) -> Note:
     return Note(
         f"solid: the pin is not a body of revolution, and {why}", ("not-axisymmetric", code)
     )
-
-
-def _extent(hole: Hole) -> tuple[float, float]:
-    return hole.z - hole.diameter / 2, hole.z + hole.diameter / 2
 
 
 def surface_ends(pin: CutPin, name: str) -> tuple[float, float]:
@@ -86,11 +83,15 @@ def surface_ends(pin: CutPin, name: str) -> tuple[float, float]:
 
 def zone(piece: Piece) -> tuple[float, float]:
     """Between which z (m) the stress of the uncut pin does not count."""
-    ends = [_extent(hole) for hole in piece.holes]
-    low, high = min(a for a, _ in ends), max(b for _, b in ends)
+    low, high = _ends(piece.cuts.values())
     if "z" in piece.mirrors:
         low = -high
     return low + piece.origin, high + piece.origin
+
+
+def _ends(cuts: Iterable[Cut]) -> tuple[float, float]:
+    ends = [cut.extent for cut in cuts]
+    return min(a for a, _ in ends), max(b for _, b in ends)
 
 
 def pieces(
@@ -99,17 +100,18 @@ def pieces(
     beyond: float = BEYOND,
     bands: Sequence[tuple[float, float]] = (),
 ) -> tuple[Piece, ...]:
-    """One about each hole, or about holes that are close to each other, along the pin; beyond: how
+    """One about each cut, or about cuts that are close to each other, along the pin; beyond: how
     far past these, of the diameter. bands: loaded ones with holes in them (loaded_bands).
     """
-    holes = sorted(pin.holes, key=lambda hole: hole.z)
-    groups = [[holes[0]]]
-    for before, hole in pairwise(holes):
-        near = NEXT * beyond / BEYOND * _diameter(pin.profile, before.z, hole.z)
-        if _extent(hole)[0] - max(_extent(h)[1] for h in groups[-1]) < near:
-            groups[-1].append(hole)
+    cuts = sorted(pin.cuts.items(), key=lambda named: named[1].extent)
+    groups = [dict(cuts[:1])]
+    for name, cut in cuts[1:]:
+        (low, high), end = cut.extent, _ends(groups[-1].values())[1]
+        near = NEXT * beyond / BEYOND * _diameter(pin.profile, min(end, low), high)
+        if low - end < near:
+            groups[-1][name] = cut
         else:
-            groups.append([hole])
+            groups.append({name: cut})
     return tuple(_piece(pin.profile, group, clamps, beyond, bands) for group in groups)
 
 
@@ -121,31 +123,57 @@ def _diameter(pin: Pin, low: float, high: float) -> float:
 
 def _piece(
     pin: Pin,
-    holes: list[Hole],
+    cuts: dict[str, Cut],
     clamps: tuple[str, ...],
     beyond: float,
     bands: Sequence[tuple[float, float]],
 ) -> Piece:
-    low, high = min(_extent(h)[0] for h in holes), max(_extent(h)[1] for h in holes)
+    low, high = _ends(cuts.values())
+    low, high = max(low, 0.0), min(high, pin.length)
     reach = beyond * _diameter(pin, low, high)
     reach = beyond * _diameter(pin, max(low - reach, 0.0), min(high + reach, pin.length))
     z0, z1 = _end(pin, low - reach, -1.0), _end(pin, high + reach, 1.0)
-    angle = holes[0].angle
-    mirrors: tuple[str, ...] = ()
-    if all(abs(math.sin(2.0 * (hole.angle - angle))) < SAME_ANGLE for hole in holes):
-        mirrors = ("x", "y")
+    angle, mirrors = _about(pin, list(cuts.values()))
     middle = 0.5 * (low + high)
     clamped = any(z0 <= b and a <= z1 for a, b in (surface_ends(CutPin(pin), c) for c in clamps))
     parted = any(a < high and low < b and not (a < low and high < b) for a, b in bands)
-    if not clamped and not parted and _even(pin, holes, z0, z1, middle):
+    amid = [cut.moved(middle, angle) for cut in cuts.values()]
+    if (
+        not clamped
+        and not parted
+        and not any(cut.undivided for cut in amid)
+        and _even(pin, z0, z1, middle)
+        and _symmetric(pin, amid, "z")
+    ):
         half = max(middle - z0, z1 - middle)
         z0, z1, mirrors = middle - half, middle + half, (*mirrors, "z")
     start = middle if "z" in mirrors else z0
-    shifted = [Hole(h.z - start, h.diameter, h.angle - angle) for h in holes]
-    if "z" in mirrors:
-        shifted = [h for h in shifted if _extent(h)[1] > 0.0]
+    moved = {name: cut.moved(start, angle) for name, cut in cuts.items()}
+    there = {n: cut for n, cut in moved.items() if start == z0 or cut.extent[1] > 0.0}
     part, open_ends = clipped(pin, start, z1), (z0 > pin.tolerance, z1 < pin.length - pin.tolerance)
-    return Piece(part, z0, z1, angle, tuple(shifted), mirrors, open_ends)
+    return Piece(part, z0, z1, angle, there, mirrors, open_ends)
+
+
+def _about(pin: Pin, cuts: list[Cut]) -> tuple[float, tuple[str, ...]]:
+    """The angle by which the frame is turned that has most mirror planes along the axis, and those:
+    of single cuts and amid two of them.
+    """
+    angles = [cut.angle for cut in cuts]
+    angles += [0.5 * (a.angle + b.angle) for a, b in combinations(cuts, 2)]
+    best: tuple[float, tuple[str, ...]] = (angles[0], ())
+    for angle in angles:
+        turned = [cut.moved(0.0, angle) for cut in cuts]
+        if _symmetric(pin, turned, "y"):
+            mirrors = ("x", "y") if _symmetric(pin, turned, "x") else ("y",)
+            if len(mirrors) > len(best[1]):
+                best = angle, mirrors
+    return best
+
+
+def _symmetric(pin: Pin, cuts: list[Cut], plane: str) -> bool:
+    """Whether a plane through the origin mirrors cuts to cuts."""
+    near = SAME * pin.smallest_diameter
+    return all(any(cut.mirrored(plane).like(o, near) for o in cuts) for cut in cuts)
 
 
 def _end(pin: Pin, z: float, way: float) -> float:
@@ -163,22 +191,11 @@ def _end(pin: Pin, z: float, way: float) -> float:
     return 0.0 if z < least else pin.length if z > pin.length - least else z
 
 
-def _even(pin: Pin, holes: list[Hole], z0: float, z1: float, middle: float) -> bool:
-    """Whether the pin is the same on both sides of z = middle, as far as the piece goes."""
+def _even(pin: Pin, z0: float, z1: float, middle: float) -> bool:
+    """Whether the profile is the same on both sides of z = middle, as far as the piece goes."""
     half = max(middle - z0, z1 - middle)
     inside = middle - half >= -pin.tolerance and middle + half <= pin.length + pin.tolerance
     ends = zip(pin.segments, pin.stations, pin.stations[1:], strict=False)
     here = [s for s, a, b in ends if b > middle - half and a < middle + half]
     plain = {(s.diameter, s.bore, s.cylindrical) for s in here}
-    near = 1e-9 * pin.smallest_diameter
-
-    def mirrored(h: Hole) -> bool:
-        return any(
-            abs(h.z + o.z - 2.0 * middle) < near
-            and abs(h.diameter - o.diameter) < near
-            and abs(math.sin(h.angle - o.angle)) < SAME_ANGLE
-            for o in holes
-        )
-
-    straight = len(plain) == 1 and here[0].cylindrical
-    return inside and straight and all(mirrored(h) for h in holes)
+    return inside and len(plain) == 1 and here[0].cylindrical

@@ -31,20 +31,11 @@ _POWERS = [(i, j) for n in range(4) for i, j in ((n - k, k) for k in range(n + 1
 
 @dataclass(frozen=True)
 class Face:
-    """A smooth face: rows of its facets (F,) among the boundary's; along: (P, 3) -> (P, 3), a
-    direction at points that is in the face, or nearly.
-    """
+    """A smooth face: rows of its facets (F,) among the boundary's; cut: whether it is of a cut."""
 
     name: str
     rows: Ints
-    axis: Floats | None
-
-    def along(self, x: Floats) -> Floats:
-        """The first direction at points (P, 3): of a hole's axis, or round the pin's."""
-        if self.axis is not None:
-            return np.broadcast_to(self.axis, x.shape)
-        r = np.hypot(x[:, 0], x[:, 1])[:, None]
-        return np.stack([-x[:, 1], x[:, 0], 0.0 * x[:, 0]], axis=1) / r
+    cut: bool
 
 
 @dataclass(frozen=True)
@@ -85,15 +76,17 @@ def read_face(
     mean = np.zeros((len(nodes), 3))
     np.add.at(mean, where.reshape(corners.shape), normals)
     x = space.nodes[nodes]
-    directions = _directions(face.along(x), mean)
+    directions = _directions(mean)
     images, facing = (
         (parities.images[:, None] * each).reshape(-1, 3) for each in (x, directions[:, 2])
     )
     return FaceReading(face, nodes, directions, _slopes(x, directions, images, facing))
 
 
-def _directions(along: Floats, normal: Floats) -> Floats:
+def _directions(normal: Floats) -> Floats:
+    """Two along the face and its normal: the first as near to a coordinate's as there is one."""
     n = normal / np.linalg.norm(normal, axis=1, keepdims=True)
+    along = np.eye(3)[np.argmin(np.abs(n), axis=1)]
     first = along - np.sum(along * n, axis=1, keepdims=True) * n
     first /= np.linalg.norm(first, axis=1, keepdims=True)
     return np.stack([first, np.cross(n, first), n], axis=1)

@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 from fea.singular.singularities import INSTEAD_OF_CLAMP, Kind, Singularity
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import SurfaceMesh
-from geometry.arrays import Floats, Mask
+from geometry.arrays import Floats, Ints, Mask
 
 TURN = np.radians(40.0)  # of an inner corner: less is a facet of a curved wall, or hardly sharp
 SIDES = ((0, 1, 2), (1, 2, 0), (0, 2, 1))  # of a facet: ends and the corner across
@@ -58,9 +58,21 @@ class SharpEdges:
 _RADIUS = "a radius there would make it finite"
 
 
-def sharp_edges(space: Discretisation, surface: SurfaceMesh, clamps: tuple[str, ...]) -> SharpEdges:
-    """Inner corners that turn by more than TURN, and the rims of the clamped surfaces."""
-    clamped = surface.on(space, clamps)
+@dataclass(frozen=True)
+class TurnedEdges:
+    """Of the E edges between facets: rows of the two (2, E) among the boundary's, their nodes (E, 2
+    or 3), and by how much the surface turns inwards there, rad: above zero at an inner corner.
+    """
+
+    facets: Ints
+    nodes: Ints
+    turn: Floats
+
+
+def turned_edges(
+    space: Discretisation, surface: SurfaceMesh, plane: Floats | None = None
+) -> TurnedEdges:
+    """All of them, by the normals amid the edges; plane: normals (F, 3) that stand for them."""
     side_of = space.mesh.f2e[:, surface.facets]  # each is shared by two facets
     order = np.argsort(side_of.ravel(), kind="stable").reshape(-1, 2)
     facet, side = (order % len(surface.facets)).T, (order // len(surface.facets)).T
@@ -68,18 +80,30 @@ def sharp_edges(space: Discretisation, surface: SurfaceMesh, clamps: tuple[str, 
     two = surface.corners[facet[1]]
     a, b, across = (np.take_along_axis(two, nodes[:, [k]], axis=1)[:, 0] for k in range(3))
     x = space.nodes
-    # of facets made plane: sides that were straightened for the elements' sake kink curved ones
-    normal, other = _plane_normals(x, surface)[facet]
+    if plane is None:
+        normal, other = surface.normals[facet, 3 + side]
+    else:
+        normal, other = plane[facet]
     into = np.cross(other, x[b] - x[a])
     into *= np.sign(np.sum(into * (x[across] - (x[a] + x[b]) / 2), axis=1))[:, None]
     into /= np.linalg.norm(into, axis=1, keepdims=True)
     turn = np.arctan2(np.sum(normal * into, axis=1), np.sum(normal * other, axis=1))
-    corner = (turn > TURN) & ~(clamped[facet[0]] & clamped[facet[1]])
-    rim = clamped[facet[0]] != clamped[facet[1]]
     edge = np.stack([a, b], axis=1)
     if space.quadratic:
         edge = np.column_stack([edge, two[np.arange(len(two)), 3 + side[1]]])
-    corners, rims = (x[np.unique(edge[on])] for on in (corner, rim))
+    return TurnedEdges(facet, edge, turn)
+
+
+def sharp_edges(space: Discretisation, surface: SurfaceMesh, clamps: tuple[str, ...]) -> SharpEdges:
+    """Inner corners that turn by more than TURN, and the rims of the clamped surfaces."""
+    clamped = surface.on(space, clamps)
+    # of facets made plane: sides that were straightened for the elements' sake kink curved ones
+    edges = turned_edges(space, surface, _plane_normals(space.nodes, surface))
+    first, second = clamped[edges.facets]
+    corner = (edges.turn > TURN) & ~(first & second)
+    rim = first != second
+    x = space.nodes
+    corners, rims = (x[np.unique(edges.nodes[on])] for on in (corner, rim))
     radius = _outer_radius(space.nodes[surface.nodes], np.concatenate([corners, rims]))
     return SharpEdges(corners, rims, radius)
 

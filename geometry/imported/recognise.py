@@ -21,7 +21,8 @@ from geometry.imported.outline_chain import MeridianSide, outlines
 from geometry.imported.sampled_face import NEAR, Axis, SampledFace, sampled_faces
 from geometry.mesh.cut_pin import CutPin
 from geometry.mesh.gmsh_session import MeshError, gmsh_model
-from geometry.shape.features import Flat, Hole
+from geometry.shape.drilled import Hole
+from geometry.shape.milled import Flat
 from geometry.shape.pin import GeometryError, Pin
 from geometry.shape.polyline import Bend, pin_of_polyline
 

@@ -7,12 +7,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from geometry.mesh.cut_solid import cut_solid, name_faces, near
+import numpy as np
+
+from geometry.mesh.cut_solid import Cuts, cut_solid, named_parts, near
 from geometry.mesh.gmsh_session import formula_size, gmsh_model
 from geometry.mesh.gmsh_tetrahedra import collect, repair
 from geometry.mesh.scale import unit_of_solid
 from geometry.mesh.solid_mesh import MeshSize, SolidMesh, set_sizes, sound_mesh
-from geometry.shape.features import Hole
+from geometry.shape.drilled import Passage
+from geometry.shape.features import Cut
+from geometry.shape.milled import Slot
 from geometry.shape.pin import Pin
 
 Spots = Sequence[tuple[float, float, float]]
@@ -20,26 +24,32 @@ Spots = Sequence[tuple[float, float, float]]
 # about what a cut disturbs: elements over the diameter, and along a fillet's quarter circle
 ELSEWHERE = MeshSize(across=2.5, corner=1.0, arc=1.0, growth=0.6)
 QUARTER = 6.0  # elements on a quarter of a hole's edge
-WALL = 1.5  # size on its wall over that at its edge
+ALONG = 2.0  # size at the edges of slots, which are long, over that
+ARC, ARC_ALONG = 4.0, 2.5  # elements on the quarter circle of a rounded corner; of slots
+CORNER = 0.07  # size at a sharp inner corner, of a cut's size
+FACE = 0.12  # size on a flat, of the pin's diameter
+WALL, LONG_WALL = 1.5, 2.0  # size on its wall over that at its edge; of passages
 GROWTH = 0.45  # of the size with the distance from there
-REACH = 0.2  # of a hole's diameter: how far about a spot its elements are small
+REACH = 0.2  # of a cut's size: how far about a spot its elements are small
+ON = 1e-3  # of a cut's size: a spot on one of its surfaces
 
 
 @dataclass(frozen=True)
 class Piece:
-    """A pin from z0 to z1 (m), with the holes there; in a frame turned about its axis by `angle`.
+    """A pin from z0 to z1 (m), with the cuts there, by their names; in a frame turned about its
+    axis by `angle`.
 
-    profile: what lies between, from its own z = 0 on, in the frame as the holes. mirrors: which of
+    profile: what lies between, from its own z = 0 on, in the frame as the cuts. mirrors: which of
     the planes "x", "y" and "z" the piece is symmetric about, so that it is meshed on their positive
-    side only: "y" through the axis along the holes, "x" across, "z" amid z0 and z1. open_ends:
-    whether the pin goes on below z0 and above z1.
+    side only: "y" through the axis along x, "x" across, "z" amid z0 and z1. open_ends: whether the
+    pin goes on below z0 and above z1.
     """
 
     profile: Pin
     z0: float
     z1: float
     angle: float
-    holes: tuple[Hole, ...]
+    cuts: Cuts
     mirrors: tuple[str, ...] = ()
     open_ends: tuple[bool, bool] = (True, True)
 
@@ -53,11 +63,24 @@ class Piece:
         """What is meshed of the circumference, rad."""
         return {0: 2.0 * math.pi, 1: math.pi, 2: 0.5 * math.pi}[len(set(self.mirrors) & {"x", "y"})]
 
+    @property
+    def smallest(self) -> float:
+        """The least size of its cuts, m."""
+        return min(self.across(cut) for cut in self.cuts.values())
+
+    def across(self, cut: Cut) -> float:
+        """Size of a cut, m: at most the pin's diameter."""
+        return min(cut.size, self.profile.largest_diameter)
+
+    def cut_at(self, boundary: str) -> str | None:
+        """The name of the cut to which a boundary of its mesh belongs."""
+        return next((name for name in self.cuts if boundary.startswith(f"{name} ")), None)
+
     def scaled(self, factor: float) -> Piece:
         """The same in another unit."""
-        holes = tuple(hole.scaled(factor) for hole in self.holes)
+        cuts = {name: cut.scaled(factor) for name, cut in self.cuts.items()}
         z0, z1 = self.z0 * factor, self.z1 * factor
-        return replace(self, profile=self.profile.scaled(factor), z0=z0, z1=z1, holes=holes)
+        return replace(self, profile=self.profile.scaled(factor), z0=z0, z1=z1, cuts=cuts)
 
 
 def clipped(pin: Pin, z0: float, z1: float) -> Pin:
@@ -79,56 +102,103 @@ def clipped(pin: Pin, z0: float, z1: float) -> Pin:
 
 def piece_mesh(piece: Piece, finer: float, spots: Spots = (), at_spots: float = 1.0) -> SolidMesh:
     """Mesh what is left of a piece by its mirror planes, `finer` times as fine as the first mesh
-    at the edges of holes, and `at_spots` times at spots (x, y, z), m, near them; the planes are
-    boundaries "mirror x", "mirror y" and, of "z", "start".
+    at the edges of cuts, and `at_spots` times at spots (x, y, z), m, near them; the planes are
+    boundaries "mirror x", "mirror y" and, of "z", "start"; smooth parts of cuts are "hole 1 wall"
+    and so on.
 
     Raises: MeshError, GeometryError as geometry.mesh.cut_solid.
     """
-    small = "a hole that all but touches another surface"
-    size = MeshSize(QUARTER * finer)
+    small = "a cut that all but touches another surface"
 
     def make(size: MeshSize) -> SolidMesh:
-        return _mesh(piece, size, spots, QUARTER * at_spots)
+        return _mesh(piece, size, spots, at_spots)
 
-    return sound_mesh(make, size, piece.profile.name, small)
+    return sound_mesh(make, MeshSize(QUARTER * finer), piece.profile.name, small)
 
 
 def _mesh(piece: Piece, size: MeshSize, spots: Spots, at_spots: float) -> SolidMesh:
     unit = unit_of_solid(piece.profile)
     small = piece.scaled(1.0 / unit)
-    pin, holes = small.profile, small.holes
-    with gmsh_model(pin.name) as gmsh:
-        cut_solid(gmsh, pin, holes, (), small.sector)
+    finer = size.across / QUARTER
+    with gmsh_model(small.profile.name) as gmsh:
+        cut_solid(gmsh, small.profile, small.cuts, small.sector)
         planes = [f"mirror {m}" for m in small.mirrors if m != "z"]
-        faces = name_faces(gmsh, pin, holes, (), planes)
-        fields = _sizes(gmsh, holes, faces, size.across)
-        least = min(hole.diameter for hole in holes)
+        parts = named_parts(gmsh, small.profile, small.cuts, planes, whole=False)
+        fields = _sizes(gmsh, small, parts, finer)
         for spot in spots:
             x, y, z = (c / unit for c in spot)
-            h, flat = math.pi * least / (4.0 * at_spots), REACH * least
+            h, flat = _at_spot(small, (x, y, z))
             d = f"Sqrt((x-({x!r}))^2+(y-({y!r}))^2+(z-({z!r}))^2)-{flat!r}"
-            fields.append(formula_size(gmsh, f"{h!r}+{GROWTH / 2!r}*({d}+Fabs({d}))"))
-        set_sizes(gmsh, pin, ELSEWHERE.finer((size.across / QUARTER) ** 0.5), (), fields)
+            fields.append(formula_size(gmsh, f"{h / at_spots!r}+{GROWTH / 2!r}*({d}+Fabs({d}))"))
+        set_sizes(gmsh, small.profile, ELSEWHERE.finer(finer**0.5), (), fields)
         gmsh.model.mesh.generate(3)
         gmsh.model.mesh.setOrder(2)
         jacobian, repaired = repair(gmsh)
+        faces = {f"{name} {part}".rstrip(): tags for (name, part), tags in parts.items()}
         return SolidMesh(collect(gmsh, faces).scaled(unit), jacobian, repaired)
 
 
+def _edge_size(piece: Piece, cut: Cut) -> float:
+    """Of elements at the edges of a cut on the first mesh, m."""
+    if math.isinf(cut.size):
+        return FACE * piece.across(cut)
+    return math.pi * cut.size / (4.0 * QUARTER) * (ALONG if isinstance(cut, Slot) else 1.0)
+
+
+def _arc_size(cut: Cut, radius: float) -> float:
+    """The same where a corner is rounded."""
+    return math.pi * radius / (2.0 * (ARC_ALONG if isinstance(cut, Slot) else ARC))
+
+
+def _at_spot(piece: Piece, spot: tuple[float, float, float]) -> tuple[float, float]:
+    """Size of elements at a spot on the first mesh, and how far about it, m."""
+    at, cuts = np.array([spot]), piece.cuts.values()
+    found = [(_edge_size(piece, cut), REACH * piece.across(cut)) for cut in cuts]
+    for cut in cuts:
+        for s in cut.surfaces(piece.profile):
+            if s.radius and abs(float(s.off(at)[0])) < ON * piece.across(cut):
+                found.append((_arc_size(cut, s.radius), s.radius))
+    return min(found)
+
+
 def _sizes(
-    gmsh: Any, holes: tuple[Hole, ...], faces: dict[str, list[int]], quarter: float
+    gmsh: Any, piece: Piece, parts: dict[tuple[str, str], list[int]], finer: float
 ) -> list[int]:
-    own = [f"hole {i}" for i in range(1, len(holes) + 1)]
-    planes = ("start", "end", "mirror x", "mirror y")
-    others = [tag for name, tags in faces.items() if name not in (*own, *planes) for tag in tags]
-    rims = _curves(gmsh, others)
-    fields = []
-    for name, hole in zip(own, holes, strict=True):
-        h = math.pi * hole.diameter / (4.0 * quarter)
-        edges = sorted(rims & _curves(gmsh, faces[name]))
-        fields.append(near(gmsh, "CurvesList", edges, h, GROWTH))
-        fields.append(near(gmsh, "SurfacesList", faces[name], WALL * h, GROWTH))
+    others = [
+        tag
+        for (name, part), tags in parts.items()
+        if not part and name not in ("start", "end") and not name.startswith("mirror ")
+        for tag in tags
+    ]
+    rims, fields = _curves(gmsh, others), []
+    for name, cut in piece.cuts.items():
+        h = _edge_size(piece, cut) / finer
+        own = {part: tags for (n, part), tags in parts.items() if n == name}
+        radii = {s.part: s.radius for s in cut.surfaces(piece.profile)}
+        every = [tag for tags in own.values() for tag in tags]
+        edges = sorted(rims & _curves(gmsh, every))
+        if not math.isinf(cut.size):
+            fields.append(near(gmsh, "CurvesList", edges, h, GROWTH))
+        wall = (LONG_WALL if isinstance(cut, Passage) else WALL) * h
+        fields.append(near(gmsh, "SurfacesList", every, wall, GROWTH))
+        for part, tags in own.items():
+            if radii[part]:
+                arc = _arc_size(cut, radii[part]) / finer
+                arc = min(arc, wall)
+                fields.append(near(gmsh, "SurfacesList", tags, arc, GROWTH))
+                fields.append(near(gmsh, "CurvesList", sorted(_curves(gmsh, tags)), arc, GROWTH))
+        if not any(radii[part] for part in own):
+            inner = [curve for curve in _curves(gmsh, every) if _shared(gmsh, curve, every)]
+            if inner and len(own) > 1:
+                size = CORNER * piece.across(cut) / finer
+                fields.append(near(gmsh, "CurvesList", inner, size, GROWTH))
     return fields
+
+
+def _shared(gmsh: Any, curve: int, faces: Sequence[int]) -> bool:
+    """Whether a curve is between two of the faces."""
+    up, _ = gmsh.model.getAdjacencies(1, curve)
+    return len(set(up.tolist()) & set(faces)) > 1
 
 
 def _curves(gmsh: Any, faces: list[int]) -> set[int]:

@@ -1,4 +1,4 @@
-"""A pin turned on a lathe and then drilled across and milled flat in places."""
+"""A pin turned on a lathe and then drilled and milled in places."""
 
 from __future__ import annotations
 
@@ -9,32 +9,43 @@ from typing import ClassVar
 from geometry.mesh.cut_solid import cut_solid, name_faces
 from geometry.mesh.gmsh_session import gmsh_model
 from geometry.mesh.scale import unit_of_solid
-from geometry.shape.features import Flat, Hole, check_flat, check_hole
+from geometry.shape.drilled import Hole, Passage
+from geometry.shape.features import Cut, marks_of
+from geometry.shape.milled import Flat, Slot
 from geometry.shape.pin import Band, GeometryError, Pin
 
 
 @dataclass(frozen=True)
 class CutPin:
-    """A profile with holes and flats; its bands keep their names and positions, less what is cut.
-    Ends of flats within the profile's tolerance of a band's lie there.
+    """A profile with cuts; its bands keep their names and positions, less what is cut. Ends of
+    flats and slots within the profile's tolerance of a band's lie there.
 
-    Raises: GeometryError when a feature does not cut the pin, or cuts it in two.
+    Raises: GeometryError when a cut does not cut the pin, or cuts it in two.
     """
 
     profile: Pin
     holes: tuple[Hole, ...] = ()
     flats: tuple[Flat, ...] = ()
+    slots: tuple[Slot, ...] = ()
+    passages: tuple[Passage, ...] = ()
 
     meshed: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
-        marks = {*self.profile.stations, *(z for b in self.profile.bands for z in (b.z0, b.z1))}
-        flats = tuple(flat.snapped(marks, self.profile.tolerance) for flat in self.flats)
-        object.__setattr__(self, "flats", flats)
-        for i, hole in enumerate(self.holes, 1):
-            check_hole(self.profile, i, hole)
-        for i, flat in enumerate(self.flats, 1):
-            check_flat(self.profile, i, flat)
+        marks, near = marks_of(self.profile), self.profile.tolerance
+        flats = tuple(flat.snapped(marks, near) for flat in self.flats)
+        slots = tuple(slot.snapped(marks, near) for slot in self.slots)
+        for name, cut in _named((*self.holes, *flats, *slots, *self.passages)).items():
+            what, i = name.split()
+            cut.check(self.profile, f"{what} {i}", (what, int(i)))
+        length = self.length
+        object.__setattr__(self, "flats", tuple(cut.past(length, near) for cut in flats))
+        object.__setattr__(self, "slots", tuple(cut.past(length, near) for cut in slots))
+
+    @cached_property
+    def cuts(self) -> dict[str, Cut]:
+        """All of them by their names, "hole 1"."""
+        return _named((*self.holes, *self.flats, *self.slots, *self.passages))
 
     @property
     def name(self) -> str:
@@ -59,7 +70,7 @@ class CutPin:
     @property
     def revolved(self) -> bool:
         """Whether nothing is cut."""
-        return not (self.holes or self.flats)
+        return not self.cuts
 
     @property
     def connections(self) -> tuple[str, ...]:
@@ -71,18 +82,16 @@ class CutPin:
         return self.profile.band(name)
 
     def surface(self, name: str) -> str:
-        """The mesh boundary for a name in a study: also "hole 1" or "flat 1".
+        """The mesh boundary for a name in a study: also "hole 1", "flat 1" and so on.
 
         Raises: GeometryError listing the names there are.
         """
-        own = [f"hole {i}" for i in range(1, len(self.holes) + 1)]
-        own += [f"flat {i}" for i in range(1, len(self.flats) + 1)]
-        if name in own:
+        if name in self.cuts:
             return name
         try:
             return self.profile.surface(name)
         except GeometryError as error:
-            raise GeometryError(", ".join([str(error), *own]), error.code) from None
+            raise GeometryError(", ".join([str(error), *self.cuts]), error.code) from None
 
     @cached_property
     def volume(self) -> float:
@@ -96,8 +105,8 @@ class CutPin:
         unit = unit_of_solid(self.profile)
         cut = self.scaled(1.0 / unit)
         with gmsh_model(self.name) as gmsh:
-            solid = cut_solid(gmsh, cut.profile, cut.holes, cut.flats)
-            name_faces(gmsh, cut.profile, cut.holes, cut.flats)
+            solid = cut_solid(gmsh, cut.profile, cut.cuts)
+            name_faces(gmsh, cut.profile, cut.cuts)
             return float(gmsh.model.occ.getMass(*solid)) * unit**3
 
     def require_whole(self) -> None:
@@ -106,6 +115,20 @@ class CutPin:
 
     def scaled(self, factor: float) -> CutPin:
         """The same pin in another unit."""
-        holes = tuple(hole.scaled(factor) for hole in self.holes)
-        flats = tuple(flat.scaled(factor) for flat in self.flats)
-        return CutPin(self.profile.scaled(factor), holes, flats)
+        return CutPin(
+            self.profile.scaled(factor),
+            tuple(cut.scaled(factor) for cut in self.holes),
+            tuple(cut.scaled(factor) for cut in self.flats),
+            tuple(cut.scaled(factor) for cut in self.slots),
+            tuple(cut.scaled(factor) for cut in self.passages),
+        )
+
+
+def _named(cuts: tuple[Cut, ...]) -> dict[str, Cut]:
+    """By kind and number."""
+    named: dict[str, Cut] = {}
+    count = dict.fromkeys((cut.what for cut in cuts), 0)
+    for cut in cuts:
+        count[cut.what] += 1
+        named[f"{cut.what} {count[cut.what]}"] = cut
+    return named

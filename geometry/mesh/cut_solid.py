@@ -1,9 +1,9 @@
-"""Holes and flats cut from the revolved body by OpenCASCADE, surfaces named, edges graded."""
+"""Cuts taken from the revolved body by OpenCASCADE, surfaces named, edges graded."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy as np
@@ -11,76 +11,162 @@ import numpy as np
 from geometry.arrays import Floats
 from geometry.mesh.gmsh_session import MeshError, formula_size
 from geometry.mesh.revolve import revolve
-from geometry.shape.features import Flat, Hole
-from geometry.shape.pin import GeometryError, Pin
-from geometry.shape.profile import Arc, Edge, meridian
+from geometry.shape.drilled import Hole, Passage, Placed
+from geometry.shape.features import Cut, Off, outer_radius
+from geometry.shape.milled import Flat, Slot
+from geometry.shape.pin import FACES, GeometryError, Pin
+from geometry.shape.profile import Edge, kind_of, meridian, off_edge
 
-Holes = tuple[Hole, ...]
-Flats = tuple[Flat, ...]
-Off = Callable[[Floats], Floats]  # distances (P,) of points (P, 3) from a surface
+Cuts = Mapping[str, Cut]  # by their names, "hole 1"
+Entity = tuple[int, int]
 
 MIRRORS = {"mirror x": 0, "mirror y": 1}  # planes by the component that vanishes on them
 ASTRAY = 1e-4  # of the pin's size: OpenCASCADE's curves lie as far as 1e-5 off both their surfaces
+ON = 1e-6  # of the pin's size: a curve on two surfaces
 SAMPLES = (0.0, 0.21, 0.5, 0.77, 1.0)  # of an edge of a face
 
 
-def cut_solid(
-    gmsh: Any, pin: Pin, holes: Holes, flats: Flats, sector: float = 2.0 * math.pi
-) -> tuple[int, int]:
+def cut_solid(gmsh: Any, pin: Pin, cuts: Cuts, sector: float = 2.0 * math.pi) -> Entity:
     """Make the solid in gmsh's model, or a sector (rad, from x on) of it; its entity.
 
     Raises: GeometryError when the cuts leave several pieces or none.
     """
-    occ = gmsh.model.occ
+    occ, reach = gmsh.model.occ, 2.0 * pin.largest_diameter
+    rounded = [c for c in cuts.values() if isinstance(c, Hole) and c.mouth_radius]
     body = revolve(gmsh, meridian(pin), sector)
-    reach = 2.0 * pin.largest_diameter
-    tools = [_drill(occ, hole, reach) for hole in holes]
-    tools += [_mill(occ, flat, reach) for flat in flats]
+    if (
+        rounded and sector == 2.0 * math.pi
+    ):  # OpenCASCADE rounds whole edges only, which the body's seam must not cross
+        seams = np.linspace(0.0, math.pi, 13)
+        off = [min(abs(math.sin(seam - hole.angle)) for hole in rounded) for seam in seams]
+        occ.rotate([body], 0, 0, 0, 0, 0, 1, float(seams[int(np.argmax(off))]))
+    tools = [tool for cut in cuts.values() for tool in _tool(gmsh, pin, cut, reach)]
     left, _ = occ.cut([body], tools)
     occ.synchronize()
+    if rounded and len(left) == 1:
+        for hole in rounded:
+            left = _round_mouths(gmsh, left, hole, pin)
     if len(left) != 1:
         raise GeometryError(
-            f"pin {pin.name}: the holes and flats cut the pin into {len(left)} pieces; move "
-            "them or make them smaller",
+            f"pin {pin.name}: the cuts part the pin into {len(left)} pieces; move them or make "
+            "them smaller",
             "cut-apart",
         )
     return int(left[0][0]), int(left[0][1])
 
 
-def _drill(occ: Any, hole: Hole, reach: float) -> tuple[int, int]:
-    x, y = reach * math.cos(hole.angle), reach * math.sin(hole.angle)
-    return 3, occ.addCylinder(-x, -y, hole.z, 2 * x, 2 * y, 0.0, hole.diameter / 2)
+def _tool(gmsh: Any, pin: Pin, cut: Cut, reach: float) -> list[Entity]:
+    occ = gmsh.model.occ
+    if isinstance(cut, Hole) and cut.plain:
+        x, y = reach * math.cos(cut.angle), reach * math.sin(cut.angle)
+        return [(3, occ.addCylinder(-x, -y, cut.z, 2 * x, 2 * y, 0.0, cut.diameter / 2))]
+    if isinstance(cut, Hole | Passage):
+        return [_turned(gmsh, cut.placed(pin, reach))]
+    assert isinstance(cut, Flat | Slot)
+    floor = cut.distance if isinstance(cut, Flat) else max(cut.floor(pin), -reach)
+    half = reach if isinstance(cut, Flat) else cut.width / 2.0
+    rounded = isinstance(cut, Slot) and cut.round_ends
+    tool = _prism(gmsh, (cut.z0, cut.z1), (floor, floor + 2.0 * reach), half, rounded)
+    if cut.radius:
+        tool = _round_bottom(gmsh, tool, floor, cut)
+    occ.rotate([tool], 0, 0, 0, 0, 0, 1, cut.angle)
+    return [tool]
 
 
-def _mill(occ: Any, flat: Flat, reach: float) -> tuple[int, int]:
-    size = (reach, 2 * reach, flat.z1 - flat.z0)
-    tool = (3, occ.addBox(flat.distance, -reach, flat.z0, *size))
-    occ.rotate([tool], 0, 0, 0, 0, 0, 1, flat.angle)
+def _turned(gmsh: Any, placed: Placed) -> Entity:
+    occ = gmsh.model.occ
+    tool = revolve(gmsh, placed.outline)
+    x, y, z = placed.direction
+    occ.rotate([tool], 0, 0, 0, 0, 1, 0, math.acos(max(-1.0, min(1.0, z))))
+    occ.rotate([tool], 0, 0, 0, 0, 0, 1, math.atan2(y, x))
+    occ.translate([tool], *placed.origin)
     return tool
 
 
-def name_faces(
-    gmsh: Any, pin: Pin, holes: Holes, flats: Flats, planes: Collection[str] = ()
-) -> dict[str, list[int]]:
-    """Face tags by name: the profile's edges, "hole 1", "flat 1", and "flat 1 end" for the steps at
-    a flat's ends; of a sector also its `planes`, MIRRORS by name.
+def _prism(
+    gmsh: Any, z: tuple[float, float], u: tuple[float, float], half: float, rounded: bool
+) -> Entity:
+    """Between two z and two distances u from the axis along x, `half` of its width aside."""
+    occ, (z0, z1), (floor, top) = gmsh.model.occ, z, u
+    if not rounded:
+        return 3, occ.addBox(floor, -half, z0, top - floor, 2 * half, z1 - z0)
+    a, b = z0 + half, z1 - half
+
+    def point(y: float, z: float) -> int:
+        return int(occ.addPoint(floor, y, z))
+
+    low = [point(half, a), point(0.0, z0), point(-half, a)]
+    high = [point(-half, b), point(0.0, z1), point(half, b)]
+    first, last = point(0.0, a), point(0.0, b)
+    curves = [occ.addCircleArc(low[0], first, low[1]), occ.addCircleArc(low[1], first, low[2])]
+    if b - a > ON * half:
+        curves.append(occ.addLine(low[2], high[0]))
+    else:
+        high[0], high[2] = low[2], low[0]
+    curves += [occ.addCircleArc(high[0], last, high[1]), occ.addCircleArc(high[1], last, high[2])]
+    if b - a > ON * half:
+        curves.append(occ.addLine(high[2], low[0]))
+    face = occ.addPlaneSurface([occ.addCurveLoop(curves)])
+    made = occ.extrude([(2, face)], top - floor, 0.0, 0.0)
+    return next((int(d), int(tag)) for d, tag in made if d == 3)
+
+
+def _round_bottom(gmsh: Any, tool: Entity, floor: float, cut: Flat | Slot) -> Entity:
+    """With the edges of its floor rounded, of a flat those across."""
+    gmsh.model.occ.synchronize()
+    near = ON * (cut.z1 - cut.z0)
+    edges = []
+    for _, curve in gmsh.model.getBoundary([tool], recursive=False, oriented=False):
+        for _, edge in gmsh.model.getBoundary([(2, curve)], oriented=False):
+            x = _along(gmsh, edge)
+            across = np.ptp(x[:, 2]) < near or isinstance(cut, Slot)
+            if np.abs(x[:, 0] - floor).max() < near and across:
+                edges.append(edge)
+    made = gmsh.model.occ.fillet([tool[1]], sorted(set(edges)), [cut.radius])
+    return next((int(d), int(tag)) for d, tag in made if d == 3)
+
+
+def _round_mouths(gmsh: Any, body: list[Entity], hole: Hole, pin: Pin) -> list[Entity]:
+    """With the edges rounded at which a hole meets the outer surface."""
+    near, r = ON * pin.largest_diameter, outer_radius(pin, hole.z)
+    placed, edges = hole.placed(pin, 4.0 * r), set()
+    for _, face in gmsh.model.getBoundary(body, oriented=False):
+        for _, edge in gmsh.model.getBoundary([(2, face)], oriented=False):
+            x = _along(gmsh, edge)
+            off = np.abs(placed.local(x)[0] - hole.diameter / 2.0).max()
+            if off < near * 10.0 and np.abs(np.hypot(x[:, 0], x[:, 1]) - r).max() < near * 10.0:
+                edges.add(int(edge))
+    made = gmsh.model.occ.fillet([body[0][1]], sorted(edges), [hole.mouth_radius])
+    gmsh.model.occ.synchronize()
+    return [(d, tag) for d, tag in made if d == 3]
+
+
+def _along(gmsh: Any, curve: int) -> Floats:
+    low, high = gmsh.model.getParametrizationBounds(1, curve)
+    at = [float(low[0] + s * (high[0] - low[0])) for s in SAMPLES]
+    return np.reshape(gmsh.model.getValue(1, curve, at), (-1, 3))
+
+
+def named_parts(
+    gmsh: Any, pin: Pin, cuts: Cuts, planes: Collection[str] = (), whole: bool = True
+) -> dict[tuple[str, str], list[int]]:
+    """Face tags by name and part: the profile's edges (part ""), "hole 1" and its "wall"; of a
+    sector also its `planes`, MIRRORS by name. whole: whether all must be there.
 
     Raises: GeometryError when a feature is cut away by others; MeshError.
     """
     size = max(pin.length, pin.largest_diameter)
-    known: list[tuple[str, str, Off]] = []
-    for i, hole in enumerate(holes, 1):
-        known.append((f"hole {i}", "Cylinder", _off_hole(hole)))
-    for i, flat in enumerate(flats, 1):
-        known.append((f"flat {i}", "Plane", _off_flat(flat)))
-        known += [(f"flat {i} end", "Plane", _off_end(z)) for z in (flat.z0, flat.z1)]
-    of_profile = [(e.name, _kind(e), _off_edge(e)) for e in meridian(pin) if e.name]
-    known += [(plane, "Plane", _off_mirror(MIRRORS[plane])) for plane in planes]
-    known = of_profile + known  # a shoulder before the end of a flat in the same plane
-    named: dict[str, list[int]] = {}
+    known: list[tuple[tuple[str, str], str, Off]] = []
+    for e in meridian(pin):
+        if e.name:
+            known.append(((e.name, ""), kind_of(e), _off_edge(e)))
+    known += [((plane, ""), "Plane", _off_mirror(MIRRORS[plane])) for plane in planes]
+    for name, cut in cuts.items():  # a shoulder before the end of a flat in the same plane
+        known += [((name, s.part), s.kind, s.off) for s in cut.surfaces(pin)]
+    named: dict[tuple[str, str], list[int]] = {}
     for _, face in gmsh.model.getBoundary(gmsh.model.getEntities(3), oriented=False):
         points, kind = _points(gmsh, face), gmsh.model.getType(2, face)
-        off = [float(np.abs(f(points)).max()) if k == kind else math.inf for _, k, f in known]
+        off = [float(np.abs(f(points)).max()) if k in ("", kind) else math.inf for _, k, f in known]
         best = int(np.argmin(off))
         if off[best] > ASTRAY * size:
             raise MeshError(
@@ -89,27 +175,41 @@ def name_faces(
                 "surface-unmatched",
             )
         named.setdefault(known[best][0], []).append(int(face))
-    wanted = [name for name, _, _ in known if not name.endswith(" end")]
-    gone = [name for name in dict.fromkeys(wanted) if name not in named]
-    own = [name for name in gone if name.startswith(("hole ", "flat ")) or name in pin.connections]
-    if own:
-        features = {f"hole {i}": ("hole", i) for i in range(1, len(holes) + 1)}
-        features |= {f"flat {i}": ("flat", i) for i in range(1, len(flats) + 1)}
-        raise GeometryError(
-            f"pin {pin.name}: the cuts remove all of {', '.join(own)}; move or shrink them",
-            "cut-away",
-            features.get(own[0], ()),
-        )
+    if whole:
+        _require_all(pin, cuts, {name for name, _ in named})
     return named
+
+
+def name_faces(gmsh: Any, pin: Pin, cuts: Cuts) -> dict[str, list[int]]:
+    """Face tags by name: the profile's edges, "hole 1", "flat 1", and "flat 1 end" for the steps at
+    a flat's ends.
+
+    Raises: as named_parts.
+    """
+    named: dict[str, list[int]] = {}
+    for (name, part), tags in named_parts(gmsh, pin, cuts).items():
+        aside = isinstance(cuts.get(name), Flat) and part != "floor"
+        named.setdefault(f"{name} end" if aside else name, []).extend(tags)
+    return named
+
+
+def _require_all(pin: Pin, cuts: Cuts, found: Collection[str]) -> None:
+    """Raises: GeometryError where a cut, a band that bears, or an end face is gone."""
+    wanted = (*FACES, *pin.connections, *cuts)
+    if gone := [name for name in wanted if name not in found]:
+        own = next((name for name in gone if name in cuts), "").split()
+        raise GeometryError(
+            f"pin {pin.name}: the cuts remove all of {', '.join(gone)}; move or shrink them",
+            "cut-away",
+            (own[0], int(own[1])) if own else (),
+        )
 
 
 def _points(gmsh: Any, face: int) -> Floats:
     """Points on the edges of a face and, on a cylinder, between them: (P, 3)."""
-    model, found = gmsh.model, []
-    for _, curve in model.getBoundary([(2, face)], combined=False, oriented=False):
-        low, high = model.getParametrizationBounds(1, curve)
-        at = [float(low[0] + s * (high[0] - low[0])) for s in SAMPLES]
-        found.append(np.reshape(model.getValue(1, curve, at), (-1, 3)))
+    model = gmsh.model
+    curves = model.getBoundary([(2, face)], combined=False, oriented=False)
+    found = [_along(gmsh, curve) for _, curve in curves]
     if model.getType(2, face) == "Cylinder":  # whose edges may all lie on another one, too
         low, high = model.getParametrizationBounds(2, face)
         u, v = np.meshgrid(
@@ -120,43 +220,8 @@ def _points(gmsh: Any, face: int) -> Floats:
     return np.concatenate(found)
 
 
-def _kind(edge: Edge) -> str:
-    """gmsh's word for the surface that an edge makes."""
-    (r0, z0), (r1, z1) = edge.start, edge.end
-    if isinstance(edge, Arc):
-        return "Sphere" if edge.centre[0] == 0.0 else "Torus"
-    return "Plane" if z0 == z1 else "Cylinder" if r0 == r1 else "Cone"
-
-
 def _off_edge(edge: Edge) -> Off:
-    (r0, z0), (r1, z1) = sorted([edge.start, edge.end])
-    length = math.dist(edge.start, edge.end)
-
-    def off(x: Floats) -> Floats:
-        r, z = np.hypot(x[:, 0], x[:, 1]), x[:, 2]
-        beyond = np.maximum(np.abs(r - (r0 + r1) / 2) - (r1 - r0) / 2, 0.0)
-        beyond += np.maximum(np.abs(z - (z0 + z1) / 2) - abs(z1 - z0) / 2, 0.0)
-        if isinstance(edge, Arc):
-            beyond += np.abs(np.hypot(r - edge.centre[0], z - edge.centre[1]) - edge.radius)
-        else:
-            beyond += np.abs((r - r0) * (z1 - z0) - (z - z0) * (r1 - r0)) / length
-        return np.asarray(beyond)
-
-    return off
-
-
-def _off_hole(hole: Hole) -> Off:
-    c, s = math.cos(hole.angle), math.sin(hole.angle)
-    return lambda x: np.hypot(c * x[:, 1] - s * x[:, 0], x[:, 2] - hole.z) - hole.diameter / 2
-
-
-def _off_flat(flat: Flat) -> Off:
-    c, s = math.cos(flat.angle), math.sin(flat.angle)
-    return lambda x: c * x[:, 0] + s * x[:, 1] - flat.distance
-
-
-def _off_end(z: float) -> Off:
-    return lambda x: np.asarray(x[:, 2] - z)
+    return lambda x: off_edge(edge)(np.hypot(x[:, 0], x[:, 1]), x[:, 2])
 
 
 def _off_mirror(axis: int) -> Off:
@@ -164,24 +229,21 @@ def _off_mirror(axis: int) -> Off:
 
 
 def grade(
-    gmsh: Any,
-    holes: Holes,
-    flats: Flats,
-    faces: dict[str, list[int]],
-    far: float,
-    finer: float,
-    growth: float,
+    gmsh: Any, cuts: Cuts, faces: dict[str, list[int]], far: float, finer: float, growth: float
 ) -> list[int]:
     """Size fields: holes in `finer` times 4 elements around, their edges twice as fine; edges of
     flats in half of `far` (m), which nothing exceeds.
     """
     tags = []
-    for i, hole in enumerate(holes, 1):
-        h = min(far, math.pi * hole.diameter / (4.0 * finer))
-        tags.append(near(gmsh, "SurfacesList", faces[f"hole {i}"], h, growth))
-        tags.append(near(gmsh, "CurvesList", _edges(gmsh, faces[f"hole {i}"]), h / 2, growth))
-    for i, _ in enumerate(flats, 1):
-        tags.append(near(gmsh, "CurvesList", _edges(gmsh, faces[f"flat {i}"]), far / 2, growth))
+    for name, cut in cuts.items():
+        own = faces[name]
+        if isinstance(cut, Flat):
+            h = min(far / 2, math.pi * cut.radius / 2.0 / finer) if cut.radius else far / 2
+            tags.append(near(gmsh, "CurvesList", _edges(gmsh, own), h, growth))
+            continue
+        h = min(far, math.pi * cut.size / (4.0 * finer))
+        tags.append(near(gmsh, "SurfacesList", own, h, growth))
+        tags.append(near(gmsh, "CurvesList", _edges(gmsh, own), h / 2, growth))
     return tags
 
 

@@ -106,10 +106,10 @@ def _mesh(
     with gmsh_model(pin.name) as gmsh:
         more: list[int] = []
         if isinstance(pin, CutPin):
-            cut_solid(gmsh, pin.profile, pin.holes, pin.flats)
-            surfaces = name_faces(gmsh, pin.profile, pin.holes, pin.flats)
+            cut_solid(gmsh, pin.profile, pin.cuts)
+            surfaces = name_faces(gmsh, pin.profile, pin.cuts)
             far = _far(profile, size)
-            more = grade(gmsh, pin.holes, pin.flats, surfaces, far, size.across, size.growth)
+            more = grade(gmsh, pin.cuts, surfaces, far, size.across, size.growth)
         else:
             outline = meridian(pin)
             revolve(gmsh, outline)

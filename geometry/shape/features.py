@@ -1,50 +1,135 @@
-"""Holes and flats, and what must be true of them to be cut into a profile."""
+"""What is cut from a profile: removed volumes, each with a surface, an extent and symmetries."""
 
 from __future__ import annotations
 
+import dataclasses
 import math
-from collections.abc import Collection
-from dataclasses import dataclass, replace
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
 
+from geometry.arrays import Floats
+from geometry.coded import Place
 from geometry.shape.pin import GeometryError, Pin
-from geometry.shape.tolerance import snapped
+
+Off = Callable[[Floats], Floats]  # distances (P,) of points (P, 3) from a surface
+SAME_ANGLE = 1e-9
 
 
 @dataclass(frozen=True)
-class Hole:
-    """A round hole through the whole pin: its axis crosses the pin's at z (m), at `angle` (rad)
-    from x; diameter in m.
+class CutSurface:
+    """A smooth part of a cut's surface: its name, gmsh's word for it ("" for several kinds), and
+    how far points are off it. radius: to which it rounds an inner corner, 0 where it does not, m.
     """
 
-    z: float
-    diameter: float
-    angle: float = 0.0
-
-    def scaled(self, factor: float) -> Hole:
-        """The same in another unit."""
-        return Hole(self.z * factor, self.diameter * factor, self.angle)
+    part: str
+    kind: str
+    off: Off
+    radius: float = 0.0
 
 
-@dataclass(frozen=True)
-class Flat:
-    """What lies beyond `distance` (m) from the axis in the direction `angle` (rad from x) is taken
-    away from z0 to z1 (m).
+class Cut(ABC):
+    """A volume taken away from a profile, about or beside its axis. What its subclasses store are
+    lengths in m, and `angle` in rad from x.
     """
 
-    z0: float
-    z1: float
-    distance: float
-    angle: float = 0.0
+    what: ClassVar[str]  # in names: "hole 1"
+    angle: float
 
-    def scaled(self, factor: float) -> Flat:
+    @property
+    @abstractmethod
+    def extent(self) -> tuple[float, float]:
+        """Least and greatest z, m."""
+
+    @property
+    @abstractmethod
+    def size(self) -> float:
+        """Across, m: by it are measured the distance from its inner corners and between places."""
+
+    @property
+    def undivided(self) -> bool:
+        """Whether an end of a pin must not cut it: OpenCASCADE rounds no edges that end there."""
+        return False
+
+    @property
+    @abstractmethod
+    def half_turn(self) -> bool:
+        """Whether half a turn about the pin's axis leaves it where it is."""
+
+    @abstractmethod
+    def surfaces(self, pin: Pin) -> tuple[CutSurface, ...]:
+        """All of its surface in a profile."""
+
+    @abstractmethod
+    def check(self, pin: Pin, name: str, at: Place) -> None:
+        """Raises: GeometryError when it cannot be cut into a profile."""
+
+    @abstractmethod
+    def lengths(self) -> tuple[str, ...]:
+        """Names of what is a length."""
+
+    @abstractmethod
+    def along(self, change: Callable[[float, float], tuple[float, float]]) -> Self:
+        """The same with its two ends in z changed."""
+
+    @property
+    def opens(self) -> tuple[float, float]:
+        """Between which z, m, it takes from the outer surface."""
+        return self.extent
+
+    @property
+    def faces(self) -> tuple[str, ...]:
+        """End faces from which it takes although they are not in its extent."""
+        return ()
+
+    def scaled(self, factor: float) -> Self:
         """The same in another unit."""
-        z0, z1, distance = (x * factor for x in (self.z0, self.z1, self.distance))
-        return Flat(z0, z1, distance, self.angle)
+        return self._with({key: _times(getattr(self, key), factor) for key in self.lengths()})
 
-    def snapped(self, marks: Collection[float], tolerance: float) -> Flat:
-        """The same with its ends at marks (z, m) that are within the tolerance (m)."""
-        z0, z1 = (snapped(z, marks, tolerance) for z in (self.z0, self.z1))
-        return replace(self, z0=z0, z1=z1)
+    def moved(self, z: float, angle: float) -> Self:
+        """The same in a frame at z (m), turned by an angle (rad)."""
+        return self.along(lambda a, b: (a - z, b - z)).turned(self.angle - angle)
+
+    def turned(self, angle: float) -> Self:
+        """The same in another direction."""
+        return self._with({"angle": angle})
+
+    def mirrored(self, plane: str) -> Self:
+        """Its image in the plane across x, y or z through the origin."""
+        if plane == "z":
+            return self.along(lambda a, b: (-b, -a))
+        return self.turned(-self.angle if plane == "y" else math.pi - self.angle)
+
+    def like(self, other: Cut, tolerance: float) -> bool:
+        """Whether it is the same as another cut, but for round-off (tolerance in m)."""
+        if type(other) is not type(self):
+            return False
+        period = 1.0 if self.half_turn else 0.5
+        turn = math.sin(period * (self.angle - other.angle))
+        if abs(turn) > SAME_ANGLE and not self.round:
+            return False
+        ours, others = dataclasses.asdict(self), dataclasses.asdict(other)  # type: ignore[call-overload]
+        return all(_near(ours[key], others[key], tolerance) for key in ours if key != "angle")
+
+    @property
+    def round(self) -> bool:
+        """Whether it is of revolution about the pin's axis."""
+        return False
+
+    def _with(self, changes: dict[str, Any]) -> Self:
+        made: Self = dataclasses.replace(self, **changes)  # type: ignore[type-var]
+        return made
+
+
+def _times(value: float | None, factor: float) -> float | None:
+    return None if value is None else value * factor
+
+
+def _near(a: Any, b: Any, tolerance: float) -> bool:
+    if isinstance(a, float) and isinstance(b, float):
+        return abs(a - b) <= tolerance
+    return bool(a == b)
 
 
 def radii(pin: Pin, z0: float, z1: float) -> tuple[float, float]:
@@ -55,44 +140,23 @@ def radii(pin: Pin, z0: float, z1: float) -> tuple[float, float]:
     return (min(found), max(found)) if found else (0.0, 0.0)
 
 
-def check_hole(pin: Pin, i: int, hole: Hole) -> None:
-    """Raises: GeometryError when hole i does not go through the pin, or cuts it in two."""
-    what, r, at = f"pin {pin.name}, hole {i}", hole.diameter / 2, ("hole", i)
-    if not (math.isfinite(r) and r > 0.0):
-        raise GeometryError(f"{what}: the diameter must be positive", "not-positive", at)
-    if hole.z - r <= pin.tolerance or hole.z + r >= pin.length - pin.tolerance:
-        raise GeometryError(
-            f"{what}: it extends past an end of the pin; its z must be more than half its diameter "
-            "from both ends",
-            "beyond-end",
-            at,
-        )
-    least = radii(pin, hole.z - r, hole.z + r)[0]
-    if r >= least - pin.tolerance:
-        raise GeometryError(
-            f"{what}: its diameter is {r / least:.4g} times the pin's there and would cut the pin "
-            "in two; reduce it",
-            "hole-too-large",
-            at,
-        )
+def outer_radius(pin: Pin, z: float) -> float:
+    """Of the segment in which z lies, m."""
+    near = pin.tolerance
+    return radii(pin, z - near, z + near)[1] if 0.0 <= z <= pin.length else 0.0
 
 
-def check_flat(pin: Pin, i: int, flat: Flat) -> None:
-    """Raises: GeometryError when flat i cuts nothing, or reaches the axis."""
-    what, at = f"pin {pin.name}, flat {i}", ("flat", i)
-    if not flat.z1 - flat.z0 > pin.tolerance:
-        raise GeometryError(f"{what}: z = [a, b] requires a < b", "z-reversed", at)
-    if flat.z1 <= pin.tolerance or flat.z0 >= pin.length - pin.tolerance:
-        raise GeometryError(f"{what}: it lies entirely beyond an end of the pin", "beyond-end", at)
-    if not flat.distance > 0.0:
-        raise GeometryError(
-            f"{what}: the distance from the axis must be positive", "not-positive", at
-        )
-    most = radii(pin, flat.z0, flat.z1)[1]
-    if flat.distance >= most - pin.tolerance:
-        raise GeometryError(
-            f"{what}: its distance from the axis is {flat.distance / most:.4g} times the pin's "
-            "radius there, so it cuts nothing; reduce the distance",
-            "cuts-nothing",
-            at,
-        )
+def require(holds: bool, text: str, code: str, at: Place) -> None:
+    """Raises: GeometryError unless something holds."""
+    if not holds:
+        raise GeometryError(text, code, at)
+
+
+def positive(*values: float) -> bool:
+    """Whether all are, and finite."""
+    return all(math.isfinite(x) and x > 0.0 for x in values)
+
+
+def marks_of(pin: Pin) -> Collection[float]:
+    """z of the ends of its segments and bands, m."""
+    return {*pin.stations, *(z for b in pin.bands for z in (b.z0, b.z1))}

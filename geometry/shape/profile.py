@@ -3,11 +3,25 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
+
+from geometry.arrays import Floats
 from geometry.shape.polygon import RZ, SMOOTH, Profile, corners, cross
 
-__all__ = ["RZ", "Arc", "Corner", "Edge", "meridian", "sharp_corners", "volume_within"]
+__all__ = [
+    "RZ",
+    "Arc",
+    "Corner",
+    "Edge",
+    "kind_of",
+    "meridian",
+    "off_edge",
+    "sharp_corners",
+    "volume_within",
+]
 
 
 @dataclass(frozen=True)
@@ -57,6 +71,31 @@ def meridian(pin: Profile) -> tuple[Edge, ...]:
     found = [e for e in edges if e.start != e.end]
     start = next((k for k, e in enumerate(found) if e.name == "start"), 0)
     return (*found[start:], *found[:start])
+
+
+def off_edge(edge: Edge) -> Callable[[Floats, Floats], Floats]:
+    """How far points (r, z) are off an edge of an outline."""
+    (r0, z0), (r1, z1) = sorted([edge.start, edge.end])
+    length = math.dist(edge.start, edge.end)
+
+    def off(r: Floats, z: Floats) -> Floats:
+        beyond = np.maximum(np.abs(r - (r0 + r1) / 2) - (r1 - r0) / 2, 0.0)
+        beyond += np.maximum(np.abs(z - (z0 + z1) / 2) - abs(z1 - z0) / 2, 0.0)
+        if isinstance(edge, Arc):
+            beyond += np.abs(np.hypot(r - edge.centre[0], z - edge.centre[1]) - edge.radius)
+        else:
+            beyond += np.abs((r - r0) * (z1 - z0) - (z - z0) * (r1 - r0)) / length
+        return np.asarray(beyond)
+
+    return off
+
+
+def kind_of(edge: Edge) -> str:
+    """gmsh's word for the surface that an edge makes when it is turned."""
+    (r0, z0), (r1, z1) = edge.start, edge.end
+    if isinstance(edge, Arc):
+        return "Sphere" if edge.centre[0] == 0.0 else "Torus"
+    return "Plane" if z0 == z1 else "Cylinder" if r0 == r1 else "Cone"
 
 
 def sharp_corners(pin: Profile) -> tuple[Corner, ...]:

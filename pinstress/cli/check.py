@@ -116,7 +116,8 @@ def _form(pin: PinTable) -> str:
     if pin.geometry is not None:
         return f"from {pin.geometry}"
     shape = (pin.profile, "segment") if pin.meridian is None else (pin.meridian, "corner")
-    counted = ((len(shape[0] or ()), shape[1]), (len(pin.hole), "hole"), (len(pin.flat), "flat"))
+    cuts = {"hole": pin.hole, "flat": pin.flat, "slot": pin.slot, "passage": pin.passage}
+    counted = ((len(shape[0] or ()), shape[1]), *((len(cut), what) for what, cut in cuts.items()))
     return ", ".join(f"{n} {what}{'s' * (n > 1)}" for n, what in counted if n)
 
 

@@ -5,10 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from fea.core.material import Material
-from geometry import CutPin, Flat, GeometryError, Hole, Pin, PinLike, Segment
+from geometry import (
+    Bottom,
+    CutPin,
+    Flat,
+    GeometryError,
+    Hole,
+    Passage,
+    Pin,
+    PinLike,
+    Segment,
+    Slot,
+)
 from geometry.coded import Place
+from geometry.shape.drilled import FLAT_TIP
 from geometry.shape.polyline import Bend, Stripe, pin_of_polyline, with_stripes
-from pinstress.schema.pins import PinTable
+from pinstress.schema.pins import BottomTable, HoleTable, PassageTable, PinTable
 from pinstress.study.errors import Wrong
 from pinstress.study.file import Study
 
@@ -144,12 +156,32 @@ def outline(pin: PinLike) -> list[tuple[float, float, float, str, str]]:
 
 def _turned(name: str, p: PinTable) -> Pin | CutPin:
     profile = by_corners(name, p) if p.profile is None else _by_segments(name, p)
-    if not (p.hole or p.flat):
+    if not (p.hole or p.flat or p.slot or p.passage):
         return profile
-    holes = tuple(Hole(h.z, h.diameter, h.angle) for h in p.hole)
-    cut = CutPin(profile, holes, tuple(Flat(*f.z, f.distance, f.angle) for f in p.flat))
+    cut = CutPin(
+        profile,
+        tuple(_hole(h) for h in p.hole),
+        tuple(Flat(*f.z, f.distance, f.angle, f.radius) for f in p.flat),
+        tuple(Slot(*s.z, s.width, s.depth, s.angle, s.radius, s.ends == "round") for s in p.slot),
+        tuple(_passage(h, profile.length) for h in p.passage),
+    )
     cut.require_whole()
     return cut
+
+
+def _hole(h: HoleTable) -> Hole:
+    return Hole(h.z, h.diameter, h.angle, h.depth, _bottom(h), h.chamfer, h.mouth_radius)
+
+
+def _passage(h: PassageTable, length: float) -> Passage:
+    if h.depth is None:
+        return Passage(0.0, length, h.diameter, h.offset, h.angle)
+    z = (0.0, h.depth) if h.end == "start" else (length - h.depth, length)
+    return Passage(*z, h.diameter, h.offset, h.angle, h.end, _bottom(h))
+
+
+def _bottom(h: BottomTable) -> Bottom:
+    return Bottom(FLAT_TIP if h.tip_angle is None else h.tip_angle, h.bottom_radius)
 
 
 def _by_segments(name: str, p: PinTable) -> Pin:

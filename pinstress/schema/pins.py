@@ -113,15 +113,40 @@ Corners = Annotated[
 ]
 
 
-class HoleTable(StrictTable):
-    """A cross hole through the whole pin, through its axis."""
+class BottomTable(StrictTable):
+    """A drilled hole, perhaps with a bottom."""
 
-    z: PositiveLength
-    """Position of the hole's axis along the pin."""
     diameter: PositiveLength
     """Diameter of the hole."""
     angle: Angle = 0.0
-    """Direction of the hole's axis, from x."""
+    """Direction from the axis of the pin to the mouth of a cross hole, or to a passage; from x."""
+    depth: PositiveLength | None = None
+    """Depth to the end of the full diameter: of a cross hole from the surface at its `z`, on the
+    side of `angle`; of a passage from the end face. Default: through the pin."""
+    tip_angle: Angle | None = None
+    """Angle of the cone that the drill leaves at the bottom. Default: flat, "180 deg"."""
+    bottom_radius: NotNegativeLength = 0.0
+    """Radius of the corners at the bottom; 0 is sharp, where stress is unbounded."""
+
+    @model_validator(mode="after")
+    def _has_bottom(self) -> "BottomTable":
+        if self.depth is None and (self.tip_angle is not None or self.bottom_radius):
+            raise LoadsArgumentError(
+                "tip_angle and bottom_radius are of a blind hole; give its depth, too",
+                "key-not-applicable",
+            )
+        return self
+
+
+class HoleTable(BottomTable):
+    """A hole across the pin, through its axis."""
+
+    z: PositiveLength
+    """Position of the hole's axis along the pin."""
+    chamfer: NotNegativeLength = 0.0
+    """Width of a countersink of 90 degrees at the mouths, where the surface is highest."""
+    mouth_radius: NotNegativeLength = 0.0
+    """Radius to which the edges of the mouths are rounded."""
 
 
 class FlatTable(StrictTable):
@@ -133,6 +158,34 @@ class FlatTable(StrictTable):
     """Distance of the flat from the axis; the material beyond it is removed."""
     angle: Angle = 0.0
     """Direction of the flat's normal, from x."""
+    radius: NotNegativeLength = 0.0
+    """Radius of the inner corners at its ends; 0 is sharp, where stress is unbounded."""
+
+
+class SlotTable(StrictTable):
+    """A keyway or slot along the pin."""
+
+    z: tuple[Length, Length]
+    """Start and end along the pin, with the round ends; open where that is not inside the pin."""
+    width: PositiveLength
+    """Width across the pin."""
+    depth: PositiveLength | None = None
+    """Depth from the surface. Default: through the pin."""
+    angle: Angle = 0.0
+    """Direction from the axis in which it is milled, from x."""
+    radius: NotNegativeLength = 0.0
+    """Radius of the corners at the bottom; 0 is sharp, where stress is unbounded."""
+    ends: Literal["round", "square"] = "round"
+    """Shape of its ends seen from outside: half circles, or sharp corners."""
+
+
+class PassageTable(BottomTable):
+    """A hole along the pin, beside its axis."""
+
+    end: Literal["start", "end"] = "start"
+    """End face from which it is drilled."""
+    offset: NotNegativeLength
+    """Distance of its axis from that of the pin."""
 
 
 class BandTable(StrictTable):
@@ -204,6 +257,8 @@ ONLY_WITH = {
     "bore_meridian": ("meridian",),
     "hole": ("profile", "meridian"),
     "flat": ("profile", "meridian"),
+    "slot": ("profile", "meridian"),
+    "passage": ("profile", "meridian"),
     "lug": ("profile", "meridian"),
     "band": ("meridian", "geometry"),
     "geometry_unit": ("geometry",),
@@ -229,6 +284,10 @@ class PinTable(StrictTable):
     """Cross holes. Not with `geometry`."""
     flat: list[FlatTable] = []
     """Flats. Not with `geometry`."""
+    slot: list[SlotTable] = []
+    """Keyways and slots. Not with `geometry`."""
+    passage: list[PassageTable] = []
+    """Holes along the pin. Not with `geometry`."""
     geometry: str | None = None
     """A CAD file (STEP, BREP, IGES) or a mesh of tetrahedra, in the study's folder."""
     geometry_unit: Literal["mm", "cm", "m", "in"] = "mm"
@@ -243,8 +302,8 @@ class PinTable(StrictTable):
     contact stress at limit load, too."""
     clamp: list[str] = []
     """Clamped surfaces: "start" and "end" (the end faces), the name or connection of a segment (its
-    outer surface), "hole 1", "flat 1", or a band. Default: none; the loads must then be nearly in
-    equilibrium."""
+    outer surface), "hole 1", "flat 1", "slot 1", "passage 1", or a band. Default: none; the loads
+    must then be nearly in equilibrium."""
 
     @model_validator(mode="after")
     def _one_shape(self) -> "PinTable":

@@ -60,8 +60,8 @@ def resized(
     step: float | None = None,
     required: float | None = None,
 ) -> str:
-    """A study's text with pins (by name) scaled across their axis: diameters, bores, fillets and
-    the distances of flats; lengths and cross holes stay.
+    """A study's text with pins (by name) scaled across their axis: diameters, bores, fillets,
+    the distances of flats and offsets of passages; lengths, holes and slots stay.
 
     Diameters are rounded up, to a step (m) or to four digits, bores and fillets down; scale 1
     without a step changes nothing. Provenance that no longer holds is replaced. required: the
@@ -79,6 +79,9 @@ def resized(
                     rounding = step if key == "diameter" else None
                     for here, at in _numbers(table, key):
                         _scale(here, at, scale, system, rounding, up)
+        for table in _plain(table_of_pin.get("passage", [])):
+            for here, at in _numbers(table, "offset"):
+                _scale(here, at, scale, system, None, -1)
         for key, up in (("meridian", 1), ("bore_meridian", -1)):
             for corner in map(_value, _plain(table_of_pin.get(key, []))):
                 radius = step / 2.0 if step is not None and up > 0 else None

@@ -46,6 +46,8 @@ def _counted(table: StudyTable) -> Iterator[tuple[str, str, Sized, int]]:
         yield f"pin.{name}.bore_meridian", "corners", pin.bore_meridian or (), MOST_PARTS
         yield f"pin.{name}.hole", "holes", pin.hole, MOST_PARTS
         yield f"pin.{name}.flat", "flats", pin.flat, MOST_PARTS
+        yield f"pin.{name}.slot", "slots", pin.slot, MOST_PARTS
+        yield f"pin.{name}.passage", "passages", pin.passage, MOST_PARTS
         yield f"pin.{name}.band", "bands", pin.band, MOST_PARTS
     for name, case in table.case.items():
         yield f"case.{name}.apply", "loads", getattr(case, "apply", ()), MOST_LOADS

@@ -15,7 +15,7 @@ from fea.cut.local_model import LocalModel, Read
 from fea.cut.parity import Parities
 from fea.cut.region import pieces, refused, zone
 from fea.solve_pin import Asked, solve_pin
-from geometry import ArgumentError, CutPin, Flat, Hole, Pin, Segment
+from geometry import ArgumentError, CutPin, Flat, Hole, Passage, Pin, Segment
 from geometry.arrays import Floats
 from geometry.mesh.cut_piece import Piece, clipped, piece_mesh
 from geometry.mesh.solid_mesh import SolidMesh
@@ -170,10 +170,10 @@ def test_what_is_meshed_of_the_pin() -> None:
     assert near.angle == 0.3
     (skew,) = pieces(CutPin(SHAFT, (Hole(0.07, d), Hole(0.08, d, 0.8))), ())
     assert skew.mirrors == ()
-    assert len(skew.holes) == 2
+    assert len(skew.cuts) == 2
     (pair,) = pieces(CutPin(SHAFT, (Hole(0.07, d), Hole(0.09, d))), ())
     assert pair.mirrors == ("x", "y", "z")
-    assert len(pair.holes) == 1
+    assert len(pair.cuts) == 1
     assert len(pieces(CutPin(SHAFT, (Hole(0.05, d), Hole(0.11, d))), ())) == 2
 
 
@@ -187,7 +187,9 @@ def test_where_no_local_solid_will_do() -> None:
         "hole-at-end": (CutPin(SHAFT, (Hole(0.021, d),)), (), bands),
         "hole-in-clamped": (hole, ("middle",), ()),
         "hole-loaded": (hole, (), ("hole 1",)),
-        "flat": (CutPin(SHAFT, (), (Flat(0.05, 0.06, 0.008),)), (), bands),
+        "flat-in-loaded": (CutPin(SHAFT, (), (Flat(0.025, 0.06, 0.008),)), (), bands),
+        "flat-loaded": (CutPin(SHAFT, (), (Flat(0.05, 0.06, 0.008),)), ("flat 1",), bands),
+        "passage-in-clamped": (CutPin(SHAFT, passages=(Passage(0, 0.05, d, d),)), ("start",), ()),
     }
     for code, (pin, clamps, loaded) in cases.items():
         note = refused(pin, clamps, loaded)

@@ -55,7 +55,7 @@ def step(pin: Pin | CutPin, path: Path, change: Change = _as_drawn) -> BodyFile:
     """A STEP file of a pin in mm, changed before it is written."""
     with gmsh_model("P") as gmsh:
         if isinstance(pin, CutPin):
-            _, solid = cut_solid(gmsh, pin.profile, pin.holes, pin.flats)
+            _, solid = cut_solid(gmsh, pin.profile, pin.cuts)
         else:
             _, solid = revolve(gmsh, meridian(pin))
         change(gmsh, solid)

@@ -1,0 +1,110 @@
+"""Sharp inner corners of cuts, where stress has no bound: found on the mesh of a piece."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from fea.cut.local_model import LocalModel
+from fea.cut.parity import AXES
+from fea.singular.singularities import Singularity
+from fea.singular.williams import antiplane_exponent, plane_exponent
+from fea.solid.boundary import SMOOTH
+from fea.solid.sharp_edges import turned_edges
+from geometry.arrays import Floats, Ints
+
+TURN = math.radians(15.0)  # of an inner corner: less is the mesh of a curved wall
+ADVICE = {
+    "flat": "a radius of the flat would make it finite",
+    "slot": "a radius of the slot would make it finite",
+    "hole": "a bottom_radius of the hole would make it finite",
+    "passage": "a bottom_radius of the passage would make it finite",
+}
+
+
+@dataclass(frozen=True)
+class InnerCorner:
+    """A singularity, and how far points (P,) are from it, over its radius."""
+
+    singularity: Singularity
+    distance: Floats
+
+
+def inner_corners(model: LocalModel, x: Floats, distance: float) -> tuple[InnerCorner, ...]:
+    """Of a piece; x: points (P, 3), m, of what is meshed of it. distance: of a cut's size, at most
+    the pin's diameter, within which stress is not read.
+    """
+    out = []
+    for between, (nodes, angle) in sorted(_lines(model).items()):
+        points = model.space.nodes[nodes]
+        cut = next(filter(None, (model.piece.cut_at(name) for name in between)))
+        reach = distance * model.piece.across(model.piece.cuts[cut])
+        edge = math.isfinite(angle)
+        nu = model.material.poisson_ratio
+        at = points[0]
+        singularity = Singularity(
+            r=float(np.hypot(at[0], at[1])),
+            z=float(at[2]) + model.piece.origin,
+            kind="sharp corner",
+            between=between,
+            theory=plane_exponent(angle, nu, "free", "free") if edge else None,
+            torsion_theory=antiplane_exponent(angle, "free", "free") if edge else 0.0,
+            radius=reach,
+            advice=ADVICE[cut.split()[0]],
+            angle=angle,
+        )
+        out.append(InnerCorner(singularity, np.asarray(cKDTree(points).query(x)[0]) / reach))
+    return tuple(out)
+
+
+def _lines(model: LocalModel) -> dict[tuple[str, str], tuple[Ints, float]]:
+    """Nodes along inner corners, and the mean angle of the material there, rad, by the names of
+    what meets; of tips of cones nan.
+    """
+    names = np.full(len(model.surface.facets), -1)
+    boundaries = list(model.space.mesh.boundaries)
+    for k, name in enumerate(boundaries):
+        names[model.surface.on(model.space, (name,))] = k
+    mirror = np.array([model.mirrored(name) for name in boundaries])
+    cut = np.array([model.piece.cut_at(name) is not None for name in boundaries])
+    edges = turned_edges(model.space, model.surface)
+    one, two = names[edges.facets]
+    on_mirror = mirror[one] | mirror[two]
+    angle = np.where(on_mirror, 2.0 * (np.pi + edges.turn), np.pi + edges.turn)
+    sharp = (cut[one] | cut[two]) & (angle > np.pi + TURN) & ~(mirror[one] & mirror[two])
+    found: dict[tuple[str, str], list[int]] = {}
+    for k in np.flatnonzero(sharp):
+        pair = [boundaries[i] for i in (one[k], two[k]) if not mirror[i]]
+        first, *other = sorted(pair)
+        found.setdefault((first, other[0] if other and other[0] != first else "itself"), []).append(
+            k
+        )
+    out = {
+        key: (np.unique(edges.nodes[rows]), float(angle[rows].mean()))
+        for key, rows in found.items()
+    }
+    return out | _tips(model)
+
+
+def _tips(model: LocalModel) -> dict[tuple[str, str], tuple[Ints, float]]:
+    """Nodes at which the normals of one smooth part point apart, away from its edges."""
+    out = {}
+    for reading in model.readings:
+        if not reading.face.name.endswith(" bottom"):
+            continue
+        corners = model.surface.corners[reading.face.rows]
+        normals = model.surface.normals[reading.face.rows].copy()
+        for plane in model.piece.mirrors:
+            axis = AXES.index(plane)
+            normals[np.abs(model.space.nodes[corners][..., axis]) < 1e-12, axis] = 0.0
+        where = np.searchsorted(reading.nodes, corners)
+        total = np.zeros((len(reading.nodes), 3))
+        np.add.at(total, where, normals)
+        mean = np.linalg.norm(total, axis=1) / np.bincount(where.ravel())
+        tip = reading.nodes[mean < SMOOTH]
+        if len(tip):
+            out[reading.face.name, "itself"] = (tip, math.nan)
+    return out
