@@ -16,7 +16,8 @@ from tests.conftest import ROOT
 # Folders of code whose docstrings, comments and messages are checked.
 CODE = ("reports", "pinstress", "fea", "geometry", "loads", "examples")
 # Text that people read: pages, templates with scripts, comments of studies.
-PAGES = ("*.md", "docs/*.md", "reports/templates/*", "studies/**/*.toml")
+TEMPLATES = ("reports/templates/*", "reports/templates/designs/*")
+PAGES = ("*.md", "docs/*.md", *TEMPLATES, "studies/**/*.toml")
 
 REPLACED = {
     "nought": "zero",

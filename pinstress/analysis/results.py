@@ -12,6 +12,7 @@ from pinstress.analysis.gather import results_of
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.solve import keep_none, solve_tasks
 from pinstress.processes.pool import processes
+from pinstress.processes.threads import one_thread
 from pinstress.study.file import Study
 from reports.data.results import Field, Results
 from reports.format.words import headline
@@ -117,7 +118,8 @@ class Found(Results):
     def _field(self, pin: str, case: str) -> Field:
         if self.plan is not None and not any(row[0] == pin for row in self.fields):
             tasks = [task for task in self.plan.tasks if task.pin.name == pin]
-            solve_tasks(dataclasses.replace(self.plan, tasks=tasks), self._keep)
+            with one_thread():
+                solve_tasks(dataclasses.replace(self.plan, tasks=tasks), self._keep)
         if (pin, case) not in self.fields:
             there = ", ".join(f"{p} in {c}" for p, c in self.fields) or "none"
             raise ValueError(f"no field of pin {pin} in {case}; there are {there}")
@@ -159,9 +161,10 @@ def run(
     Raises: InputError for bad input.
     """
     most = processes(jobs)
-    plan = prepare(
-        study, pins=pins, cases=cases, model=model, tolerance=tolerance, memory=memory_limit
-    )
+    with one_thread():
+        plan = prepare(
+            study, pins=pins, cases=cases, model=model, tolerance=tolerance, memory=memory_limit
+        )
     return solve(plan, fields=fields, jobs=most)
 
 
@@ -173,6 +176,7 @@ def solve(plan: Plan, *, fields: bool = False, jobs: int | None = 1) -> Found:
         kept[field.pin, field.case] = field
 
     most = 1 if fields else processes(jobs)
-    results = results_of(plan, solve_tasks(plan, keep if fields else keep_none, jobs=most))
+    with one_thread():
+        results = results_of(plan, solve_tasks(plan, keep if fields else keep_none, jobs=most))
     plain = {f.name: getattr(results, f.name) for f in dataclasses.fields(Results)}
     return Found(**plain, fields=kept, plan=plan)

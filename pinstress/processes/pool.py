@@ -31,6 +31,7 @@ from pinstress.processes.anew import started_anew
 from pinstress.processes.current_folder import elsewhere
 from pinstress.processes.parent import end_with_parent
 from pinstress.processes.system import portable
+from pinstress.processes.threads import hold_threads
 from pinstress.study.choices import require_count
 
 T = TypeVar("T")
@@ -209,6 +210,7 @@ def _serve(
     """What a process does: the jobs that it is sent, by number or themselves, until there is none.
     libraries: to be imported first.
     """
+    hold_threads()  # of a user of Python, whose environment does not say so
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # an interrupt is for the parent, which ends us
     signal.signal(signal.SIGTERM, _leave)
     interrupts.unblock()

@@ -3,10 +3,42 @@
 from __future__ import annotations
 
 import os
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from threadpoolctl import threadpool_limits
 
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "LP_NUM_THREADS")
+
+_entering = threading.Lock()
+_inside = 0
+_first: threadpool_limits | None = None  # of those inside, which knows what was there before
 
 
 def hold_threads() -> None:
     """One thread in every numeric library that is imported from now on, and in Mesa's renderer."""
     os.environ.update(dict.fromkeys(THREADS, "1"))
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """One thread in every numeric library that is already imported, for users of Python, whose
+    environment is theirs. Each thread that leaves restores what was there before the first came:
+    the number is the process's in some libraries, the thread's in others.
+    """
+    from threadpoolctl import threadpool_limits
+
+    global _inside, _first
+    with _entering:
+        limits = threadpool_limits(1)
+        before = _first = limits if _first is None or not _inside else _first
+        _inside += 1
+    try:
+        yield
+    finally:
+        with _entering:
+            _inside -= 1
+        before.restore_original_limits()

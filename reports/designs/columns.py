@@ -25,7 +25,7 @@ TITLES = {
 
 
 @dataclass(frozen=True)
-class Column:
+class DesignColumn:
     """Values (designs or rows,): NaN for none; of texts their place in `names`."""
 
     key: str
@@ -53,9 +53,9 @@ class Designs:
     required: float | None
     numbers: np.ndarray[Any, np.dtype[np.int64]]
     first: np.ndarray[Any, np.dtype[np.int64]]
-    parameters: tuple[Column, ...]
-    results: tuple[Column, ...]
-    texts: dict[str, Column]  # by the names in ROW
+    parameters: tuple[DesignColumn, ...]
+    results: tuple[DesignColumn, ...]
+    texts: dict[str, DesignColumn]  # by the names in ROW
 
     @property
     def failed_rows(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
@@ -107,7 +107,7 @@ def _results(names: list[str], parameters: list[str]) -> list[str]:
     return known + [n for n in names if n not in {*parameters, *known, *ROW}]
 
 
-def _column(table: pa.Table, name: str, order: Any, law: dict[str, Any]) -> Column:
+def _column(table: pa.Table, name: str, order: Any, law: dict[str, Any]) -> DesignColumn:
     import pyarrow as pa
 
     field, data = table.schema.field(name), table.column(name).combine_chunks()
@@ -121,7 +121,7 @@ def _column(table: pa.Table, name: str, order: Any, law: dict[str, Any]) -> Colu
     values = data.cast(pa.float64()).to_numpy(zero_copy_only=False)[order]
     unit = (field.metadata or {}).get(b"unit", b"").decode() or str(law.get("unit") or "")
     title = TITLES.get(name, name)
-    return Column(name, title, unit, _law(law.get("law")), values.astype(np.float64), names)
+    return DesignColumn(name, title, unit, _law(law.get("law")), values.astype(np.float64), names)
 
 
 def _numeric(kind: Any) -> bool:
@@ -146,15 +146,15 @@ def _law(law: object) -> str:
     return "" if law is None else str(law)
 
 
-def _per_design(column: Column, ends: Any) -> Column:
+def _per_design(column: DesignColumn, ends: Any) -> DesignColumn:
     """Of every design its one value. Raises: ValueError if it has two."""
     values, starts = column.values, ends[:-1]
     one = values[starts]
     again = np.repeat(one, np.diff(ends))
     if not np.array_equal(again, values, equal_nan=True):
         raise ValueError(f"a design has two values of {column.key}")
-    return Column(column.key, column.title, column.unit, column.law, one, column.names)
+    return DesignColumn(column.key, column.title, column.unit, column.law, one, column.names)
 
 
-def _nothing(name: str, rows: int) -> Column:
-    return Column(name, name, "", "", np.full(rows, np.nan), ())
+def _nothing(name: str, rows: int) -> DesignColumn:
+    return DesignColumn(name, name, "", "", np.full(rows, np.nan), ())

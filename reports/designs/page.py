@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from reports.designs.columns import Column, Designs, designs_of
+from reports.designs.columns import DesignColumn, Designs, designs_of
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, short
 from reports.format.packed import packed
@@ -70,7 +70,7 @@ def page_data(designs: Designs) -> dict[str, Any]:
     }
 
 
-def _packed(column: Column) -> dict[str, Any]:
+def _packed(column: DesignColumn) -> dict[str, Any]:
     """A column's values as they are; of texts the places in `names` from 1, 0 for none."""
     head = {"key": column.key, "title": column.title, "unit": column.unit}
     if column.names is None:
@@ -88,7 +88,7 @@ def column_grid(designs: Designs) -> Grid:
     return Grid(head, body, [False, False, False, True, True, False])
 
 
-def _ends(column: Column) -> list[str]:
+def _ends(column: DesignColumn) -> list[str]:
     known = column.known
     if not len(known):
         return [DASH, DASH]

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -85,6 +87,53 @@ print(*heard)
 """
 
 
+HELD = """
+import threading
+import pinstress
+import pinstress.analysis.results
+from threadpoolctl import threadpool_info, threadpool_limits
+from pinstress.processes.threads import one_thread
+
+def most():
+    return max(lib["num_threads"] for lib in threadpool_info())
+
+study = pinstress.load_study("studies/one_pin.toml")
+plan = pinstress.prepare(study)
+with threadpool_limits(3):
+    seen = set()
+    at_once = pinstress.analysis.results.solve_tasks
+
+    def spied(*args, **options):
+        seen.add(most())
+        return at_once(*args, **options)
+
+    pinstress.analysis.results.solve_tasks = spied
+    results = pinstress.solve(plan)
+    print(seen, most(), results.pins[0].max_von_mises)
+
+    entered, left = threading.Event(), threading.Event()
+
+    def other():
+        with one_thread():
+            entered.set()
+            left.wait()
+
+    thread = threading.Thread(target=other)
+    with one_thread():
+        thread.start()
+        entered.wait()
+    print(most())  # while the other thread is inside
+    left.set()
+    thread.join()
+    print(most())
+    try:
+        with one_thread():
+            raise ValueError
+    except ValueError:
+        print(most())
+"""
+
+
 def python(code: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, timeout=600
@@ -96,6 +145,22 @@ def test_analyses_in_several_threads_do_not_disturb_each_other() -> None:
     done = python(TWO_KINDS)
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout == "[1, 1, 1, 1] True True\n"
+
+
+def test_numeric_libraries_have_one_thread_during_an_analysis_and_theirs_afterwards(
+    tmp_path: Path,
+) -> None:
+    """With the command's numbers to the last bit."""
+    done = python(HELD)
+    assert (done.returncode, done.stderr) == (0, "")
+    first, *rest = done.stdout.splitlines()
+    seen, after, stress = first.rsplit(" ", 2)
+    assert (seen, after, rest) == ("{1}", "3", ["3", "3", "3"])
+    command = ["pinstress", "run", "studies/one_pin.toml", "--out", str(tmp_path / "out")]
+    run = [sys.executable, "-m", *command, "--vtk", "none", "--quiet"]
+    subprocess.run(run, cwd=ROOT, check=True, capture_output=True, timeout=600)
+    found = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
+    assert float(stress) == found["pins"][0]["max_von_mises"]
 
 
 def test_a_mesh_is_the_same_while_another_thread_orders_unknowns() -> None:
