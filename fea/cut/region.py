@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 
 from fea.core.peak import Note
@@ -18,6 +19,20 @@ LEFT = 0.25  # of the diameter: less than that beyond a piece is part of it
 MARGIN = 0.1  # of a hole's diameter, at least to the end of a loaded band about it
 CLEAR = 0.1  # of the diameter, at least between the end of a piece and a step
 SAME_ANGLE = 1e-9
+
+
+@dataclass(frozen=True)
+class RingedCutPin(CutPin):
+    """A pin with cuts whose bands are cut into rings, for contact pressures. whole: the same pin
+    without rings.
+    """
+
+    whole: CutPin | None = None
+
+
+def unringed(pin: CutPin) -> CutPin:
+    """The pin without rings."""
+    return (pin.whole or pin) if isinstance(pin, RingedCutPin) else pin
 
 
 def refused(pin: CutPin, clamps: tuple[str, ...], loaded: Sequence[str]) -> Note | None:
