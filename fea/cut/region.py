@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from fea.core.peak import Note
+from fea.cut.inside import crosses_end, extent, is_inside
 from fea.singular.singularities import Singularity
 from geometry import CutPin, Hole, Pin
 from geometry.mesh.cut_piece import Piece, clipped
@@ -16,7 +17,6 @@ BEYOND = 1.4  # of the diameter, past a hole: in a shaft, ends there change stre
 LONGER = 1.6  # times that, where it is seen not to be enough, as in tubes
 NEXT = 1.0  # of the diameter: holes closer to each other are in one piece
 LEFT = 0.25  # of the diameter: less than that beyond a piece is part of it
-MARGIN = 0.1  # of a hole's diameter, at least to the end of a loaded band about it
 CLEAR = 0.1  # of the diameter, at least between the end of a piece and a step
 SAME_ANGLE = 1e-9
 
@@ -45,34 +45,26 @@ def refused(pin: CutPin, clamps: tuple[str, ...], loaded: Sequence[str]) -> Note
         if name.startswith("hole "):
             return _solid(f"{name} carries load", "hole-loaded")
     for i, hole in enumerate(pin.holes, 1):
-        low, high = _extent(hole)
+        low, high = extent(hole)
         for name in dict.fromkeys((*loaded, *clamps)):
             z0, z1 = surface_ends(pin, name)
-            if not (low < z1 and z0 < high):
-                continue
-            if name in clamps:
+            if name in clamps and low < z1 and z0 < high:
                 return _solid(f"hole {i} lies in the clamped surface {name}", "hole-in-clamped")
-            if not _well_inside(hole, z0, z1):
+            if crosses_end(hole, z0, z1):
                 return _solid(f"hole {i} lies at an end of the band {name}", "hole-at-end")
     return None
-
-
-def _well_inside(hole: Hole, z0: float, z1: float) -> bool:
-    margin = MARGIN * hole.diameter
-    low, high = _extent(hole)
-    return low > z0 + margin and high < z1 - margin
 
 
 def loaded_bands(pin: CutPin, loaded: Sequence[str]) -> tuple[tuple[float, float], ...]:
     """The z of both ends, m, of loaded bands (by name) with holes in them."""
     found = (surface_ends(pin, name) for name in dict.fromkeys(loaded) if name in pin.connections)
-    return tuple((z0, z1) for z0, z1 in found if any(_well_inside(h, z0, z1) for h in pin.holes))
+    return tuple((z0, z1) for z0, z1 in found if any(is_inside(h, z0, z1) for h in pin.holes))
 
 
 def at_corner(pin: CutPin, singularities: Sequence[Singularity]) -> Note | None:
     """The same, where a hole lies at one of the singularities of the pin without holes."""
     for i, hole in enumerate(pin.holes, 1):
-        low, high = _extent(hole)
+        low, high = extent(hole)
         if any(low <= s.z <= high for s in singularities):
             return _solid(f"hole {i} lies at a sharp corner", "hole-at-corner")
     return None
@@ -82,10 +74,6 @@ def _solid(why: str, code: str) -> Note:
     return Note(
         f"solid: the pin is not a body of revolution, and {why}", ("not-axisymmetric", code)
     )
-
-
-def _extent(hole: Hole) -> tuple[float, float]:
-    return hole.z - hole.diameter / 2, hole.z + hole.diameter / 2
 
 
 def surface_ends(pin: CutPin, name: str) -> tuple[float, float]:
@@ -101,7 +89,7 @@ def surface_ends(pin: CutPin, name: str) -> tuple[float, float]:
 
 def zone(piece: Piece) -> tuple[float, float]:
     """Between which z (m) the stress of the uncut pin does not count."""
-    ends = [_extent(hole) for hole in piece.holes]
+    ends = [extent(hole) for hole in piece.holes]
     low, high = min(a for a, _ in ends), max(b for _, b in ends)
     if "z" in piece.mirrors:
         low = -high
@@ -121,7 +109,7 @@ def pieces(
     groups = [[holes[0]]]
     for before, hole in pairwise(holes):
         near = NEXT * beyond / BEYOND * _diameter(pin.profile, before.z, hole.z)
-        if _extent(hole)[0] - max(_extent(h)[1] for h in groups[-1]) < near:
+        if extent(hole)[0] - max(extent(h)[1] for h in groups[-1]) < near:
             groups[-1].append(hole)
         else:
             groups.append([hole])
@@ -141,7 +129,7 @@ def _piece(
     beyond: float,
     bands: Sequence[tuple[float, float]],
 ) -> Piece:
-    low, high = min(_extent(h)[0] for h in holes), max(_extent(h)[1] for h in holes)
+    low, high = min(extent(h)[0] for h in holes), max(extent(h)[1] for h in holes)
     reach = beyond * _diameter(pin, low, high)
     reach = beyond * _diameter(pin, max(low - reach, 0.0), min(high + reach, pin.length))
     z0, z1 = _end(pin, low - reach, -1.0), _end(pin, high + reach, 1.0)
@@ -158,7 +146,7 @@ def _piece(
     start = middle if "z" in mirrors else z0
     shifted = [Hole(h.z - start, h.diameter, h.angle - angle) for h in holes]
     if "z" in mirrors:
-        shifted = [h for h in shifted if _extent(h)[1] > 0.0]
+        shifted = [h for h in shifted if extent(h)[1] > 0.0]
     part, open_ends = clipped(pin, start, z1), (z0 > pin.tolerance, z1 < pin.length - pin.tolerance)
     return Piece(part, z0, z1, angle, tuple(shifted), mirrors, open_ends)
 

@@ -38,7 +38,7 @@ from fea.joint.solve_joint import Cells, JointContact, JointModel
 from fea.joint.variations import Comparison, compare
 from fea.joint.what_contact_says import joint_result
 from fea.solve_pin import Progress, Solution, imbalance, singularities_of, solve_pin
-from geometry import CutPin, Pin, PinLike
+from geometry import ArgumentError, CutPin, Pin, PinLike
 
 SETS = Cells(), Cells(12, 48, 16)  # until one is fine enough
 MAY = 0.8  # of the largest on the first mesh: from there on an instant may govern on finer ones
@@ -238,16 +238,20 @@ class _Contact:
         def between(of_links: Between) -> Between:
             return lambda times: self.press(of_links(times))
 
-        found = solve_pin(
-            self._pin,
-            self.given.material,
-            (),
-            tuple(self.press(self.instants[case.case]) for case in live),
-            replace(asked, model="harmonic", because=CUT_CONTACT if self.given.cut else CONTACT),
-            progress,
-            {case: between(links) for case, links in self.given.between.items()},
-            self.model.first,
-        )
+        why = CUT_CONTACT if self.given.cut else CONTACT
+        try:
+            found = solve_pin(
+                self._pin,
+                self.given.material,
+                (),
+                tuple(self.press(self.instants[case.case]) for case in live),
+                replace(asked, model="harmonic", because=why),
+                progress,
+                {case: between(links) for case, links in self.given.between.items()},
+                self.model.first,
+            )
+        except ArgumentError as error:  # of a hole where no local solid will do
+            raise SolveError(str(error), error.code) from error
         return {
             case.case: self._solution(case, solution, compared[case.case], asked)
             for case, solution in zip(live, found, strict=True)
