@@ -39,22 +39,17 @@ def _trial(rng: np.random.Generator, k: int) -> CutTrial:
     force = rng.normal(size=(1, 1, 3)) * 1e4 * np.array([1.0, 1.0, 3.0])
     couple = rng.normal(size=(1, 1, 3)) * 1e4 * np.array([1.0, 1.0, 3.0]) * d
     middle = Segment(shaft + 2.0 * rho, d, bore, name="shaft")
-    ends = {"connection": "A"}, {"connection": "B"}
     kind = k % 4
-    if kind == 0:
-        ends = {"name": "root"}, {"connection": "B"}
-    elif kind == 2:
-        ends = {"name": "root"}, {"name": "tip"}
+    first, last = Segment(thick, thick, bore, "root"), Segment(thick, thick, bore, "tip")
+    if kind % 2:
+        first = replace(first, name=None, connection="A")
+    if kind != 2:
+        last = replace(last, name=None, connection="B")
     low, high = thick + rho + 0.7 * size, thick + rho + shaft - 0.7 * size
     if kind >= 2:  # a band about the hole
         middle = replace(middle, name=None, connection="C")
-    segments = (
-        Segment(thick, thick, bore, **ends[0]),
-        middle,
-        Segment(thick, thick, bore, **ends[1]),
-    )
     holes = _holes(rng, size, low, high, k)
-    pin = CutPin(Pin(f"cut {k} {KINDS[kind]}", segments, rho), holes)
+    pin = CutPin(Pin(f"cut {k} {KINDS[kind]}", (first, middle, last), rho), holes)
     if kind == 0:
         return CutTrial(pin, ("start",), PinLoads("case", ("B",), force, couple))
     if kind == 1:

@@ -175,8 +175,11 @@ def refined(
         instant = s.results[-1].instant
         governing = case.at(np.array([instant]))
         peak = replace(peak, governing=governing, history=s.under(governing))
-        peak = because(peak, why(s))
-        out[case.case] = Solution(peak, mesh.answers[case.case], case, instant)
+        answer = mesh.answers[case.case]
+        if isinstance(answer, CutAnswer):
+            solids = tuple((p.piece.z0, p.piece.z1) for p in answer.solution.pieces)
+            peak = replace(peak, solids=solids)
+        out[case.case] = Solution(because(peak, why(s)), answer, case, instant)
     return out
 
 

@@ -23,7 +23,7 @@ from fea.core.material import Material
 from fea.core.over_time import Between, rise_between, through_time
 from fea.core.peak import NOTHING, Note, Peak
 from fea.core.pin_loads import PinLoads
-from fea.cut.region import at_corner, loaded_bands, refused
+from fea.cut.region import at_corner, loaded_bands, refused, unringed
 from fea.harmonic.evaluate import FirstMesh
 from fea.refine import (
     LOCAL,
@@ -68,7 +68,8 @@ def solve_pin(
 
     Raises: ArgumentError for a model that does not apply to this pin; MeshError, SolveError.
     """
-    if asked.model in ("beam", "harmonic") and not isinstance(pin, Pin):
+    holed = isinstance(pin, CutPin) and not pin.revolved
+    if asked.model in ("beam", "harmonic")[: 1 if holed else 2] and not isinstance(pin, Pin):
         raise ArgumentError(
             f"pin {pin.name} is not a body of revolution, which the {asked.model} model needs: use "
             "auto or solid",
@@ -86,7 +87,7 @@ def solve_pin(
             peak = Peak(pin.name, case.case, asked.model, "rigid", refusal, reasons=codes)
             out[case.case] = Solution(peak, None, case)
     live = tuple(c for c in cases if c.case not in out)
-    if live and isinstance(pin, CutPin) and not pin.revolved and asked.model == "auto":
+    if live and isinstance(pin, CutPin) and holed and asked.model in ("auto", "harmonic"):
         found, job = _with_local_solids(job, pin, live, notes)
         out |= found
         live = tuple(c for c in live if c.case not in out)
@@ -166,19 +167,26 @@ def _with_local_solids(
     job: PinJob, pin: CutPin, cases: tuple[PinLoads, ...], notes: dict[str, Note]
 ) -> tuple[dict[str, Solution], PinJob]:
     """Of a pin with holes, none where it must be solid as a whole; and the job with the reason."""
-    local = replace(job, pin=pin.profile)
-    loaded = [name for case in cases for name in case.surfaces]
+    local, whole = replace(job, pin=pin.profile), unringed(pin)
+    loaded = [name for case in cases for name in case.surfaces] if whole is pin else []
     if not job.constrained:
-        loaded += pin.connections  # which react the imbalance
-    why = refused(pin, job.constrained, loaded)
-    why = why or at_corner(pin, job_singularities(local, cases))
+        loaded += whole.connections  # which react the imbalance
+    why = refused(whole, job.constrained, loaded)
+    why = why or at_corner(whole, job_singularities(local, cases))
     if why is None:
         try:
-            local = replace(local, cut=pin, bands=loaded_bands(pin, loaded))
+            local = replace(local, cut=whole, bands=loaded_bands(whole, loaded))
             return refined(local, LOCAL, cases, notes), job
         except (MeshError, SolveError, GeometryError) as error:
+            if job.asked.model == "harmonic":
+                raise
             text = f"solid: a local solid about the cuts failed: {error}"
             why = Note(text, ("not-axisymmetric", "local-failed"))
+    if job.asked.model == "harmonic":
+        reason = why.text.removeprefix("solid: the pin is not a body of revolution, and ")
+        raise ArgumentError(
+            f"pin {pin.name}: no local solid about the holes will do, since {reason}", why.codes[-1]
+        )
     return {}, replace(job, asked=replace(job.asked, because=why))
 
 

@@ -95,7 +95,8 @@ class Peak:
     the excluded distance: `interval` is the maximum over half and twice that distance with its
     error, Pa, and error_estimate covers both of its ends. parts: of the error on the meshes and
     instants. imbalance: of an unconstrained pin, what its bands react: the force over the largest
-    load, and the couple over that load times the length.
+    load, and the couple over that load times the length. solids: between which z (m) local solids
+    are, of a pin with cuts.
     """
 
     pin: str
@@ -114,6 +115,7 @@ class Peak:
     parts: ErrorParts | None = None
     reasons: tuple[str, ...] = ()
     imbalance: tuple[float, float] | None = None
+    solids: tuple[tuple[float, float], ...] = ()
 
     @property
     def time(self) -> float | None:

@@ -126,7 +126,7 @@ def _without(fields: MeridianFields, zones: Sequence[tuple[float, float]]) -> Me
 
 
 @dataclass(frozen=True)
-class CutSurface:
+class ShownCut:
     """The surface as it is shown: points (P, 3) m, triangles (M, 3), and of L unit loads, each in
     one phase, stress (P, 6, L) Pa and displacement (P, 3, L) m; read: (P,) where the maximum is
     looked for.
@@ -184,14 +184,14 @@ class CutAnswer:
         return self.solution.pieces[0].coefficients(self.solution.reactions.held(loads))
 
     @cached_property
-    def surface(self) -> CutSurface:
+    def surface(self) -> ShownCut:
         """The pieces in place, the uncut pin between them."""
         pieces = self.solution.pieces
         between = [(p.piece.z0, p.piece.z1) for p in pieces]
         uncut = _revolved(self.section, pieces[0].units, between)
         parts = [uncut, *(_shown(piece) for piece in pieces)]
         starts = np.cumsum([0, *(len(part.points) for part in parts)])
-        return CutSurface(
+        return ShownCut(
             np.concatenate([p.points for p in parts]),
             np.concatenate([p.triangles + i for p, i in zip(parts, starts, strict=False)]),
             np.concatenate([p.stress for p in parts]),
@@ -200,13 +200,13 @@ class CutAnswer:
         )
 
 
-def _shown(piece: LocalFields) -> CutSurface:
-    return CutSurface(piece.points, piece.triangles, piece.stress, piece.displacement, piece.read)
+def _shown(piece: LocalFields) -> ShownCut:
+    return ShownCut(piece.points, piece.triangles, piece.stress, piece.displacement, piece.read)
 
 
 def _revolved(
     section: HarmonicAnswer, units: tuple[Unit, ...], pieces: Sequence[tuple[float, float]]
-) -> CutSurface:
+) -> ShownCut:
     """The outline turned about the axis, without what lies in the pieces."""
     fields = section.fields
     ends = np.arange(fields.skin).reshape(-1, 5)[:, [0, 4]]
@@ -246,7 +246,7 @@ def _revolved(
     quads = np.stack([i, j, j + SECTORS, i + SECTORS], axis=2).reshape(-1, 4)
     read = fields.outside(section.singularities)[: fields.skin]
     count = len(units)
-    return CutSurface(
+    return ShownCut(
         points.reshape(-1, 3),
         quads[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3),
         np.stack([tensor[:, :, a, b] for a, b in ENTRIES], axis=2).reshape(-1, 6, count),

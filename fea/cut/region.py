@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from itertools import combinations
 
 from fea.core.peak import Note
+from fea.cut.inside import crosses_end, is_inside
 from fea.singular.singularities import Singularity
 from geometry import Cut, CutPin, Hole, Pin
 from geometry.mesh.cut_piece import Piece, clipped
@@ -14,9 +16,22 @@ BEYOND = 1.4  # of the diameter, past a cut: in a shaft, ends there change stres
 LONGER = 1.6  # times that, where it is seen not to be enough, as in tubes
 NEXT = 1.0  # of the diameter: cuts closer to each other are in one piece
 LEFT = 0.25  # of the diameter: less than that beyond a piece is part of it
-MARGIN = 0.1  # of a hole's diameter, at least to the end of a loaded band about it
 CLEAR = 0.1  # of the diameter, at least between the end of a piece and a step
 SAME = 1e-9  # of the diameter: two lengths
+
+
+@dataclass(frozen=True)
+class RingedCutPin(CutPin):
+    """A pin with cuts whose bands are cut into rings, for contact pressures. whole: the same pin
+    without rings.
+    """
+
+    whole: CutPin | None = None
+
+
+def unringed(pin: CutPin) -> CutPin:
+    """The pin without rings."""
+    return (pin.whole or pin) if isinstance(pin, RingedCutPin) else pin
 
 
 def refused(pin: CutPin, clamps: tuple[str, ...], loaded: Sequence[str]) -> Note | None:
@@ -38,21 +53,15 @@ def refused(pin: CutPin, clamps: tuple[str, ...], loaded: Sequence[str]) -> Note
             if not isinstance(feature, Hole):
                 text = f"{cut} lies in the loaded surface {name}"
                 return _solid(text, f"{feature.what}-in-loaded")
-            if not _well_inside(feature, z0, z1):
+            if crosses_end(feature, z0, z1):
                 return _solid(f"{cut} lies at an end of the band {name}", "hole-at-end")
     return None
-
-
-def _well_inside(hole: Hole, z0: float, z1: float) -> bool:
-    margin = MARGIN * hole.diameter
-    low, high = hole.opens
-    return low > z0 + margin and high < z1 - margin
 
 
 def loaded_bands(pin: CutPin, loaded: Sequence[str]) -> tuple[tuple[float, float], ...]:
     """The z of both ends, m, of loaded bands (by name) with holes in them."""
     found = (surface_ends(pin, name) for name in dict.fromkeys(loaded) if name in pin.connections)
-    return tuple((z0, z1) for z0, z1 in found if any(_well_inside(h, z0, z1) for h in pin.holes))
+    return tuple((z0, z1) for z0, z1 in found if any(is_inside(h, z0, z1) for h in pin.holes))
 
 
 def at_corner(pin: CutPin, singularities: Sequence[Singularity]) -> Note | None:

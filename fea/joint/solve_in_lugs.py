@@ -24,9 +24,13 @@ from fea.core.material import Material
 from fea.core.over_time import Between, knots
 from fea.core.peak import Note, Peak, decides
 from fea.core.pin_loads import Floats, PinLoads
+from fea.cut.evaluate import CutAnswer
+from fea.cut.region import RingedCutPin
 from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
 from fea.joint.cell_pressure import CellPressure
 from fea.joint.contact import Pressed
+from fea.joint.cut_in_lugs import neglected, with_neglected
+from fea.joint.error_parts import with_cells
 from fea.joint.lugs.lug import Lug
 from fea.joint.lugs.rings import whole_names
 from fea.joint.pressure_loads import NEGLIGIBLE, ROUGH, Patterns, PressureLoads
@@ -35,8 +39,7 @@ from fea.joint.solve_joint import Cells, JointContact, JointModel
 from fea.joint.variations import Comparison, compare
 from fea.joint.what_contact_says import joint_result
 from fea.solve_pin import Progress, Solution, imbalance, singularities_of, solve_pin
-from fea.verdict import accuracy
-from geometry import Pin
+from geometry import ArgumentError, CutPin, Pin, PinLike
 
 SETS = Cells(), Cells(12, 48, 16)  # until one is fine enough
 ROUGH_CELLS = Cells(4, 24, 8)  # may decide a required factor
@@ -45,13 +48,16 @@ STRAIGHT = 0.01  # of the largest load: what an instant left out to begin with m
 FEWEST = 16  # intervals to begin with
 MOST_CELLS = 6000  # a dense matrix of them takes 300 MB
 CONTACT = Note("contact, harmonic: the pin is held by its lugs", ("contact",))
+CUT_CONTACT = Note(
+    "contact, harmonic with local solids about the holes: the pin is held by its lugs", ("contact",)
+)
 
 
 @dataclass(frozen=True)
 class InLugs:
     """A pin in its lugs, to be solved under the loads of its links in some cases. between: of those
     that are motions, the loads at any times. besides: by case, other loads under which its stress
-    will be asked for.
+    will be asked for. cut: the pin with its cuts, of which `pin` is the profile.
     """
 
     pin: Pin
@@ -60,6 +66,7 @@ class InLugs:
     cases: tuple[PinLoads, ...]
     between: Mapping[str, Between] = field(default_factory=dict)
     besides: Mapping[str, PinLoads] = field(default_factory=dict)
+    cut: CutPin | None = None
 
 
 @dataclass(frozen=True)
@@ -185,7 +192,10 @@ class _Contact:
         for x, zones in zip(loads, own, strict=True):
             answer = HarmonicAnswer(section, zones)
             largest, instant = answer.largest(x)
-            out[x.case] = Near(instant, answer.maxima(x, MAY * largest) > MAY * largest)
+            may = answer.maxima(x, MAY * largest) > MAY * largest
+            if self.given.cut is not None:  # any may govern where it is cut
+                may[:] = True
+            out[x.case] = Near(instant, may)
         return out
 
     def follow(self, near: Mapping[str, Near]) -> None:
@@ -233,20 +243,32 @@ class _Contact:
         def between(of_links: Between) -> Between:
             return lambda times: self.press(of_links(times))
 
-        found = solve_pin(
-            self.model.pin,
-            self.given.material,
-            (),
-            tuple(self.press(self.instants[case.case]) for case in live),
-            replace(asked, model="harmonic", because=CONTACT),
-            progress,
-            {case: between(links) for case, links in self.given.between.items()},
-            self.model.first,
-        )
+        why = CUT_CONTACT if self.given.cut else CONTACT
+        try:
+            found = solve_pin(
+                self._pin,
+                self.given.material,
+                (),
+                tuple(self.press(self.instants[case.case]) for case in live),
+                replace(asked, model="harmonic", because=why),
+                progress,
+                {case: between(links) for case, links in self.given.between.items()},
+                self.model.first,
+            )
+        except ArgumentError as error:  # of a hole where no local solid will do
+            raise SolveError(str(error), error.code) from error
         return {
             case.case: self._solution(case, solution, compared[case.case], asked)
             for case, solution in zip(live, found, strict=True)
         }
+
+    @property
+    def _pin(self) -> PinLike:
+        """On which the pressures act, with its cuts."""
+        model, cut = self.model, self.given.cut
+        if cut is None:
+            return model.pin
+        return RingedCutPin(model.pin, cut.holes, whole=replace(cut, profile=model.whole))
 
     def _solution(
         self, case: PinLoads, solution: Solution, known: Comparison, asked: Asked
@@ -266,7 +288,12 @@ class _Contact:
         joint = joint_result(contact, over, found.loads, known.left_out)
         (pressed,) = contact.contact
         pressure = CellPressure(contact.bands, pressed.pressure, pressed.angle)
-        return LugSolution(found, joint, self.press, pressure, self.model.pin)
+        cut, rings = self.given.cut, self.model.pin
+        if cut is None or not isinstance(found.answer, CutAnswer):
+            return LugSolution(found, joint, self.press, pressure, rings)
+        left = neglected(cut, self.given.material, contact, pressure, found.answer)
+        peak = with_neglected(peak, left, found.answer, over.variations, asked)
+        return LugSolution(replace(found, peak=peak), joint, self.press, pressure)
 
 
 def _instants(case: PinLoads, between: Between | None) -> PinLoads:
@@ -306,25 +333,3 @@ def _imbalance(model: JointModel, case: PinLoads) -> tuple[float, float] | None:
     if model.on_structure:
         return None
     return imbalance(model.given, out_of_balance(model.given, case, model.material.density))
-
-
-def with_cells(peak: Peak, relative: float, asked: Asked) -> Peak:
-    """With the error of the cells, relative, among its parts."""
-    largest, error = peak.max_von_mises, peak.error_estimate
-    if not largest or error is None or peak.parts is None:
-        return peak
-    more = relative * largest
-    interval = peak.interval and (peak.interval[0] - more, peak.interval[1] + more)
-    parts = replace(peak.parts, cells=more)
-    ratios = [x.total / largest for x in (peak.parts, parts)]
-    before, after = (accuracy(x, asked.tolerance, x <= asked.tolerance) for x in ratios)
-    loose = peak.verdict == "converged" and after.codes != before.codes
-    return replace(
-        peak,
-        parts=parts,
-        error_estimate=error + more,
-        interval=interval,
-        verdict="unconverged" if loose else peak.verdict,
-        note=peak.note.replace(before.text, after.text),
-        reasons=tuple(after.codes[0] if x == before.codes[0] else x for x in peak.reasons),
-    )

@@ -14,6 +14,7 @@ from fea.core.pin_loads import PinLoads
 from fea.joint.records import JointResult
 from fea.plastic.records import LimitLoad
 from fea.solve_pin import Solution
+from geometry import CutPin
 from pinstress.analysis.gather_fatigue import fatigue_margins, fatigue_of
 from pinstress.analysis.mechanics.gather_loads import drive_position, mechanics, position_unit
 from pinstress.analysis.mechanics.gather_sequences import with_sequences
@@ -135,7 +136,11 @@ def _results(
             _pin_result(study, loads, *row, found, published)
             for row, found in zip(rows, strength, strict=True)
         ),
-        shapes=tuple(_shape(tasks[name]) for name in table.pin if name in tasks),
+        shapes=tuple(
+            _shape(tasks[name], [peak for _, peak, _ in rows if peak.pin == name])
+            for name in table.pin
+            if name in tasks
+        ),
         margins=tuple(margin for found in strength for margin in found.margins),
         arms=tuple(found.arms for found in strength if found.arms),
         **mechanics(study, loads, published),
@@ -239,7 +244,7 @@ def _meets(peak: Peak, strength: float | None, required: float | None) -> bool |
     return decides(peak, strength / required)
 
 
-def _shape(task: Task) -> plain.PinShape:
+def _shape(task: Task, peaks: list[Peak]) -> plain.PinShape:
     pin, density = task.pin, task.material.density
     held = {pin.surface(c) for c in task.clamps}
     segments = tuple(
@@ -247,7 +252,10 @@ def _shape(task: Task) -> plain.PinShape:
         for length, diameter, bore, label, kind in outline(pin)
     )
     heavy = weight(pin, density) if density else None
-    return plain.PinShape(pin.name, segments, task.material.name, heavy, far_ends(pin))
+    holes = tuple((h.z, h.diameter) for h in pin.holes) if isinstance(pin, CutPin) else ()
+    solids = tuple(dict.fromkeys(ends for peak in peaks for ends in peak.solids))
+    made_of = task.material.name
+    return plain.PinShape(pin.name, segments, made_of, heavy, far_ends(pin), holes, solids)
 
 
 def landing_range(

@@ -9,6 +9,7 @@ from fea.joint.solve_in_lugs import LugSolution
 from fea.plastic.records import LimitLoad
 from fea.plastic.solve import Rung, limit_load
 from fea.solve_pin import Solution
+from geometry import Pin
 from pinstress.analysis.plan import Plan
 from pinstress.model.tasks import Task
 from pinstress.processes.pool import Tell
@@ -44,7 +45,7 @@ def _limit_load(
     tell(f"pin {task.pin.name}, limit load in {peak.case}")
     pin, loads = task.pin, peak.governing
     assert loads is not None
-    if in_lugs is not None:
+    if in_lugs is not None and isinstance(pin, Pin):
         if in_lugs.rings is None:
             return LimitLoad("none", note=ON_FOUNDATIONS)
         pin, loads = in_lugs.rings, in_lugs.pressed(loads)

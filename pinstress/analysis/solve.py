@@ -18,7 +18,7 @@ from fea.joint.records import JointResult
 from fea.joint.solve_in_lugs import InLugs, LugSolution
 from fea.refine import MOST_UNKNOWNS
 from fea.solve_pin import Asked, Solution, solve_pin
-from geometry import Pin
+from geometry import CutPin, Pin
 from pinstress.analysis import checks, gather, gather_fields
 from pinstress.analysis.gather_surface import surfaces_of
 from pinstress.analysis.limits import limit_loads
@@ -204,13 +204,15 @@ def _in_lugs(study: Study, task: Task, asked: Asked, tell: Tell) -> tuple[LugSol
     """Solutions of a pin that its lugs support; none of any other."""
     if not task.lugs:
         return ()
-    assert isinstance(task.pin, Pin)
-    given = InLugs(task.pin, task.material, task.lugs, task.loads, task.between, task.ranges)
+    cut = task.pin if isinstance(task.pin, CutPin) else None
+    pin = task.pin if cut is None else cut.profile
+    assert isinstance(pin, Pin)
+    given = InLugs(pin, task.material, task.lugs, task.loads, task.between, task.ranges, cut)
     joints = study.table.analysis.joints
     if joints == "prescribed":
         joints = "auto"
-    if joints == "auto" and study.table.fatigue is not None:
-        joints = "contact"  # damage depends on the stress itself, not on a limit of it
+    if joints == "auto" and (cut is not None or study.table.fatigue is not None):
+        joints = "contact"  # a beam sees no holes; damage depends on stress itself, not on a limit
     return solve_joints(given, asked, joints, tell)
 
 

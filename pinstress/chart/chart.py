@@ -112,7 +112,13 @@ def _require_stress(study: Study, peak: Peak) -> None:
 
 def _plan_in_lugs(study: Study, task: Task, asked: Asked) -> ChartPlan:
     """Of a pin in its lugs: solved as a run would."""
-    assert isinstance(task.pin, Pin)
+    if not isinstance(task.pin, Pin):
+        raise study.error(
+            f"pin {task.pin.name} has holes and is held by lugs; charts of contact are of pins "
+            'without holes: set analysis.joints = "prescribed"',
+            at=f"pin.{task.pin.name}",
+            code="not-axisymmetric",
+        )
     given = InLugs(task.pin, task.material, task.lugs, task.loads, task.between)
     (found,) = solve_in_lugs(given, asked)
     solution = found.solution

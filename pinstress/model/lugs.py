@@ -6,9 +6,10 @@ import math
 from dataclasses import dataclass, replace
 
 from fea.core.material import Material
+from fea.cut.inside import crosses_end
 from fea.joint.lugs.fit import beyond_foundations, fitted, on_structure
 from fea.joint.lugs.lug import Bushing, Lug, LugRange
-from geometry import ArgumentError, Pin, PinLike
+from geometry import ArgumentError, CutPin, Pin, PinLike
 from pinstress.model.pins import material
 from pinstress.schema.pins import LugRangeTable, LugTable
 from pinstress.study.file import Study
@@ -30,13 +31,7 @@ def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]
         return ()
     at = f"pin.{pin.name}" + ".lug" * bool(table.lug)
     instead = 'or set analysis.joints = "prescribed"'
-    if not isinstance(pin, Pin):
-        raise study.error(
-            f"pin {pin.name} has holes or flats or is from a file; lugs require a plain profile: "
-            f"remove its lugs, {instead}",
-            at,
-            "not-axisymmetric",
-        )
+    pin = _in_contact(study, pin, f"remove its lugs, {instead}")
     if clamps:
         raise study.error(
             f"pin {pin.name} is clamped at {', '.join(clamps)}, and also supported by lugs: "
@@ -65,6 +60,40 @@ def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]
             "beyond-foundations",
         )
     return tuple(out)
+
+
+def _in_contact(study: Study, pin: PinLike, instead: str) -> Pin:
+    """The profile of a pin that lugs can hold. Raises: InputError for another."""
+    table, joints = study.table.pin[pin.name], study.table.analysis.joints
+    at = f"pin.{pin.name}" + ".lug" * bool(table.lug)
+    if isinstance(pin, CutPin) and joints == "foundation":
+        raise study.error(
+            f"pin {pin.name} has cuts, which a beam on foundations leaves out; use "
+            'analysis.joints = "contact"',
+            at,
+            "not-axisymmetric",
+        )
+    drilled = isinstance(pin, CutPin) and len(pin.cuts) == len(pin.holes)
+    profile = pin.profile if isinstance(pin, CutPin) and drilled else pin
+    if not isinstance(profile, Pin):
+        raise study.error(
+            f"pin {pin.name} has other cuts than cross holes or is from a file; lugs require a "
+            f"profile, which may have cross holes: {instead}",
+            at,
+            "not-axisymmetric",
+        )
+    holes = pin.holes if isinstance(pin, CutPin) else ()
+    for i, hole in enumerate(holes, 1):
+        for name in (*profile.connections, *table.lug):
+            band = profile.band(name)
+            if crosses_end(hole, band.z0, band.z1):
+                raise study.error(
+                    f"pin {pin.name}: hole {i} lies at the edge of the lug of {name}, where stress "
+                    f"has no bound: move it, {instead}",
+                    at,
+                    "hole-at-end",
+                )
+    return profile
 
 
 def _ends_of_clearance(lugs: list[Lug]) -> list[list[Lug]]:

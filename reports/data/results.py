@@ -166,7 +166,8 @@ class LandingRange:
 class PinShape:
     """A pin's profile for drawing: segments (length, diameter, bore, label, kind) in order, where
     kind is "band", "held" or "plain"; its weight (None without a density). far_ends: diameter and
-    bore at the segments' far ends, where any is a cone.
+    bore at the segments' far ends, where any is a cone. holes: z and diameter of cross holes;
+    solids: between which z local solids are about cuts.
     """
 
     pin: str
@@ -174,6 +175,8 @@ class PinShape:
     material: str
     weight: Force | None
     far_ends: tuple[tuple[Length, Length], ...] = ()
+    holes: tuple[tuple[Length, Length], ...] = ()
+    solids: tuple[tuple[Length, Length], ...] = ()
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from reports.page.drawing_zones import STRIPES, ZoneMarks
 from reports.tables.stress.singular_zones import Zone
 
 WIDTH, MARGIN, TALLEST = 760.0, 45.0, 0.2  # the last in widths
+SOLID = 3.0  # what the box of a local solid stands off the pin
 LINE = 14.0  # height of the text
 FILLS = {"band": "#9dbbe0", "held": "url(#held)", "plain": "#ececec"}
 
@@ -72,6 +73,8 @@ def draw_pin(
     parts += [
         part for p in pieces for wall in _walls(p, axis) for part in marks.stripes(axis, wall)
     ]
+    parts += [_hole(left + scale * z, scale * d, axis, pieces) for z, d in shape.holes]
+    parts += [_solid(left + scale * z0, left + scale * z1, axis, pieces) for z0, z1 in shape.solids]
     parts.append(line(left - 14, axis, right + 14, axis, 'stroke-dasharray="12 3 2 3"'))
     parts += [_leader(p, axis, tops[i]) for i, p in enumerate(pieces)]
     parts += [_label(p, tops[i]) for i, p in enumerate(pieces)]
@@ -139,6 +142,24 @@ def _walls(piece: _Piece, axis: float) -> list[tuple[float, float, float, float]
     bore = min(piece.bores)
     wall = piece.radius - bore
     return [(piece.x, y, piece.width, wall) for y in (axis - piece.radius, axis + bore)]
+
+
+def _hole(x: float, diameter: float, axis: float, pieces: list[_Piece]) -> str:
+    """A hole through the section: its walls as hidden edges, whatever its angle."""
+    radius = max(p.radius for p in pieces if p.x <= x <= p.x + p.width)
+    ends = (x - 0.5 * diameter, x + 0.5 * diameter)
+    dashed = 'stroke-dasharray="4 2"'
+    return "".join(line(e, axis - radius, e, axis + radius, dashed) for e in ends)
+
+
+def _solid(left: float, right: float, axis: float, pieces: list[_Piece]) -> str:
+    """The boundary of a local solid."""
+    radius = max(p.radius for p in pieces if p.x < right and left < p.x + p.width) + SOLID
+    return (
+        f'<rect class="solid" x="{left:.2f}" y="{axis - radius:.2f}" width="{right - left:.2f}" '
+        f'height="{2.0 * radius:.2f}" fill="none" stroke="#1a7f37" stroke-width="1.5" '
+        'stroke-dasharray="6 3"/>'
+    )
 
 
 def _leader(piece: _Piece, axis: float, row: int) -> str:

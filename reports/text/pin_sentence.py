@@ -34,8 +34,10 @@ def drawing_caption(shape: PinShape, units: Units, zoned: bool = True) -> str:
         " Numbered red rings: stress singularities, filled where one governs; red stripes: the "
         "excluded zones about them."
     )
+    solids = " Dashed green boxes: local solids about cuts; dashed lines: cross holes."
     weight = "" if shape.weight is None else f", weight {engineering(shape.weight)} {units.force}"
+    more = zones * zoned + solids * bool(shape.solids)
     return (
         f"Profile, lengths and diameters (⌀ outer / bore) in {units.length}. Blue: bearing bands; "
-        f"hatched: clamped; grey: free.{zones * zoned} Material {shape.material}{weight}."
+        f"hatched: clamped; grey: free.{more} Material {shape.material}{weight}."
     )

@@ -8,7 +8,7 @@ import pytest
 
 from fea.asked import Asked
 from fea.core.peak import ErrorParts, Peak
-from fea.joint.solve_in_lugs import with_cells
+from fea.joint.error_parts import with_cells
 from fea.verdict import accuracy
 
 ASKED = Asked(tolerance=0.02)

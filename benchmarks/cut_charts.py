@@ -1,0 +1,79 @@
+"""Cross holes beside the charts of the literature: tension, bending and torsion over d/D."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from benchmarks.random_pins import STEEL
+from benchmarks.timing import table
+from fea.cut.local_model import LocalModel, Read
+from fea.cut.region import pieces
+from geometry import CutPin, Hole, Pin, Segment
+from geometry.arrays import Floats
+from geometry.mesh.cut_piece import piece_mesh
+
+D = 0.02
+RATIOS = (0.05, 0.1, 0.15, 0.2, 0.3)
+FINE = 1.5  # times as fine as the first mesh
+BAR = Pin("bar", (Segment(0.16, D, name="side"),))
+# Of d / D from the third power down; largest stress over the nominal one of the whole section, at
+# the extreme fibre. Young & Budynas, Roark's Formulas for Stress and Strain, 7th ed., table 17.1,
+# radial hole in a solid circular shaft.
+ROARK = {
+    "tension": (16.841, -0.421, 2.773, 3.0),
+    "bending": (-53.307, 44.739, -6.690, 3.0),
+    "torsion": (-44.576, 38.382, -6.793, 4.0),
+}
+
+
+def chart(load: str, ratio: float) -> float:
+    """Of the literature."""
+    return float(np.polyval(ROARK[load], ratio))
+
+
+@cache
+def model(ratio: float) -> LocalModel:
+    """An eighth of a bar with a hole of so much of its diameter along x."""
+    (piece,) = pieces(CutPin(BAR, (Hole(0.08, ratio * D),)), ())
+    return LocalModel(piece, piece_mesh(piece, FINE), STEEL)
+
+
+def uncut(of: LocalModel, load: str) -> Floats:
+    """Stress (G, P, 6, 1) of the bar, one at the extreme fibre."""
+    x, y, _ = np.moveaxis(of.images, -1, 0)
+    out = np.zeros((*x.shape, 6, 1))
+    if load == "torsion":
+        out[..., 3, 0], out[..., 4, 0] = 2.0 * x / D, -2.0 * y / D
+    else:
+        out[..., 2, 0] = 1.0 if load == "tension" else 2.0 * x / D
+    return out
+
+
+def factors(load: str, ratio: float) -> tuple[float, float]:
+    """The largest principal and von Mises stress over the nominal stress."""
+    found = model(ratio)
+    return largest(found.solve(uncut(found, load)))
+
+
+def largest(read: Read) -> tuple[float, float]:
+    """Principal stress and von Mises stress."""
+    xx, yy, zz, yz, xz, xy = np.moveaxis(read.stress[..., 0], -1, 0)
+    tensor = np.stack([xx, xy, xz, xy, yy, yz, xz, yz, zz], axis=1).reshape(-1, 3, 3)
+    a, b, c = np.linalg.eigvalsh(tensor).T
+    mises = np.sqrt(0.5 * ((a - b) ** 2 + (b - c) ** 2 + (c - a) ** 2))
+    return float(c.max()), float(mises.max())
+
+
+def cut_charts() -> str:
+    """A table over loads and ratios."""
+    rows = []
+    for load in ROARK:
+        for ratio in RATIOS:
+            principal, mises = factors(load, ratio)
+            known = chart(load, ratio)
+            apart = 100.0 * (known / principal - 1.0)
+            rows.append((load, ratio, known, principal, f"{apart:+.1f}", mises))
+    head = ("load", "d / D", "Roark", "ours, principal", "Roark over ours, %", "ours, von Mises")
+    return table(head, rows)
