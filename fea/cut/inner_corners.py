@@ -76,7 +76,7 @@ def _lines(model: LocalModel) -> dict[tuple[str, str], tuple[Ints, float]]:
     angle = np.where(on_mirror, 2.0 * (np.pi + edges.turn), np.pi + edges.turn)
     sharp = (cut[one] | cut[two]) & (angle > np.pi + TURN) & ~(mirror[one] & mirror[two])
     found: dict[tuple[str, str], list[int]] = {}
-    for k in np.flatnonzero(sharp):
+    for k in np.flatnonzero(sharp).tolist():
         pair = [boundaries[i] for i in (one[k], two[k]) if not mirror[i]]
         first, *other = sorted(pair)
         found.setdefault((first, other[0] if other and other[0] != first else "itself"), []).append(

@@ -101,14 +101,17 @@ class LocalFields:
         """What is at the inner corners."""
         out = []
         for corner in self.corners:
-            both = []
-            for least in (0.0, FELT):
-                rows = np.flatnonzero((corner.distance < 1.0) & (corner.distance >= least))
-                value, point = self._largest(loads, rows, squares(self.stress[rows]))
-                both.append((float(value.max()), int(point[value.argmax()])))
-            (value, point), (felt, _) = both
+            (value, point), (felt, _) = (
+                self._within(loads, (corner.distance < 1.0) & (corner.distance >= least))
+                for least in (0.0, FELT)
+            )
             out.append(AtSingularity(value, felt, _point(self.points[point])))
         return tuple(out)
+
+    def _within(self, loads: AnyLoads, where: Mask) -> tuple[float, int]:
+        rows = np.flatnonzero(where)
+        value, point = self._largest(loads, rows, squares(self.stress[rows]))
+        return float(value.max()), int(point[value.argmax()])
 
     def left_at_ends(self, loads: AnyLoads, instant: int) -> float:
         """Of the error at an instant, Pa: what the ends of the piece do."""

@@ -1,7 +1,7 @@
-"""A CAD body that is turned on a lathe, drilled across or milled flat: profile, holes and flats.
+"""A CAD body that is turned on a lathe, drilled and milled: profile and cuts.
 
 Faces of revolution about one axis give straight and round parts of the section's outline; a chain
-of them from end to end is the outline. What is not of revolution must be cross holes or flats. That
+of them from end to end is the outline. What is not of revolution must be cuts. That
 the volume comes out is the proof that nothing was overlooked.
 """
 
@@ -18,11 +18,11 @@ from geometry.arrays import Floats
 from geometry.imported.body_file import BodyFile
 from geometry.imported.cad_mesh import face_names, solids_of
 from geometry.imported.outline_chain import MeridianSide, outlines
+from geometry.imported.recognised_cuts import CutFaces
 from geometry.imported.sampled_face import NEAR, Axis, SampledFace, sampled_faces
 from geometry.mesh.cut_pin import CutPin
 from geometry.mesh.gmsh_session import MeshError, gmsh_model
-from geometry.shape.drilled import Hole
-from geometry.shape.milled import Flat
+from geometry.shape.features import Cut
 from geometry.shape.pin import GeometryError, Pin
 from geometry.shape.polyline import Bend, pin_of_polyline
 
@@ -32,8 +32,8 @@ DIGITS = 7  # of the size, to which dimensions are rounded
 
 
 class NotTurnedError(GeometryError):
-    """The body is not one of revolution, nor one with cross holes and flats; `why` says what of it
-    is not.
+    """The body is not one of revolution, nor one with cuts that are known; `why` says what of it is
+    not.
     """
 
     def __init__(self, pin: str, file: str, why: str) -> None:
@@ -53,8 +53,7 @@ class Turned:
 
     outside: tuple[Bend, ...]
     bore: tuple[Bend, ...]
-    holes: tuple[Hole, ...]
-    flats: tuple[Flat, ...]
+    cuts: tuple[Cut, ...]
     start: float
     along: tuple[float, float, float]
     x: tuple[float, float, float]
@@ -66,7 +65,7 @@ class Turned:
 
 
 def turned(file: BodyFile, upright: bool = True) -> Turned:
-    """The profile, holes and flats of the body in a file. upright: only if the file's z-axis is its
+    """The profile and cuts of the body in a file. upright: only if the file's z-axis is its
     axis.
 
     Raises: NotTurnedError; GeometryError, MeshError as cad_mesh.
@@ -153,14 +152,17 @@ def _turned(
         raise _not(file, str(error)) from None
     start = min(bend.z for bend in outside)
     down = np.array([0.0, 0.0, start])
-    holes, flats = _cuts(file, [_in_frame(face, down, np.eye(3)) for face in rest], size)
     surfaces = _surfaces(sides, start, size, file.unit)
     digits = DIGITS - math.floor(math.log10(size))
+    rest = [_in_frame(face, down, np.eye(3)) for face in rest]
+    profile = [
+        tuple(_rounded(bend, start, digits, 1.0) for bend in line) for line in (outside, bore)
+    ]
+    cuts = _cuts(file, rest, profile, size) if rest else ()
     return Turned(
         tuple(_rounded(bend, start, digits, file.unit) for bend in outside),
         tuple(_rounded(bend, start, digits, file.unit) for bend in bore),
-        tuple(hole.scaled(file.unit) for hole in holes),
-        tuple(flat.scaled(file.unit) for flat in flats),
+        tuple(cut.rounded(digits).scaled(file.unit) for cut in cuts),
         round(start, digits),
         _plain(frame[2]),
         _plain(frame[0]),
@@ -188,51 +190,16 @@ def _rounded(bend: Bend, start: float, digits: int, unit: float) -> Bend:
 
 
 def _cuts(
-    file: BodyFile, rest: Sequence[SampledFace], size: float
-) -> tuple[list[Hole], list[Flat]]:
-    """The faces that are not of revolution as cross holes and flats, in the file's unit."""
-    holes: list[Hole] = []
-    flats: list[Flat] = []
-    digits = DIGITS - math.floor(math.log10(size))
-    for face in rest:
-        if face.plane and abs(face.normals[0, 2]) < NEAR:
-            flat = _flat(face, digits)
-            if flat not in flats:
-                flats.append(flat)
-            continue
-        hole = None if face.plane else _hole(face, size, digits)
-        if hole is None:
-            raise _not(file, f"{face.name} is neither of revolution nor a cross hole nor a flat")
-        if hole not in holes:
-            holes.append(hole)
-    return holes, flats
-
-
-def _flat(face: SampledFace, digits: int) -> Flat:
-    normal = face.normals[0]
-    distance = float(face.points[0] @ normal)
-    angle = math.atan2(normal[1], normal[0]) if distance > 0 else math.atan2(-normal[1], -normal[0])
-    z = face.rim[:, 2]
-    ends = round(float(z.min()), digits), round(float(z.max()), digits)
-    return Flat(*ends, round(abs(distance), digits), round(angle, 9) + 0.0)
-
-
-def _hole(face: SampledFace, size: float, digits: int) -> Hole | None:
-    """A cylinder whose axis crosses the z-axis at a right angle."""
-    axis = face.axis(np.zeros(3), size)
-    if axis is None or abs(axis.along[2]) > NEAR:
-        return None
-    along = axis.along / np.linalg.norm(axis.along)
-    z, point = axis.point[2], axis.point
-    if abs(along[0] * point[1] - along[1] * point[0]) > NEAR * size:
-        return None
-    away = np.cross(face.points - point, along)
-    r = np.linalg.norm(away, axis=1)
-    if np.ptp(r) > NEAR * size:
-        return None
-    angle = math.atan2(along[1], along[0]) % math.pi
-    angle = 0.0 if math.pi - angle < NEAR else round(angle, 9)
-    return Hole(round(float(z), digits), round(2.0 * float(r.mean()), digits), angle)
+    file: BodyFile, rest: Sequence[SampledFace], profile: Sequence[tuple[Bend, ...]], size: float
+) -> tuple[Cut, ...]:
+    """The faces that are not of revolution as cuts, in the file's unit."""
+    try:
+        return CutFaces(rest, size).cuts(pin_of_polyline(file.name, *profile))
+    except ValueError as error:
+        if isinstance(error, GeometryError):
+            raise _not(file, str(error)) from None
+        why = f"{error} is neither of revolution nor of a hole, flat, slot or passage"
+        raise _not(file, why) from None
 
 
 def _surfaces(
@@ -253,10 +220,10 @@ def _require_volume(file: BodyFile, found: Turned, volume: float) -> None:
     try:
         profile = found.pin(file.name)
         made = profile.volume
-        if found.holes or found.flats:
-            made = CutPin(profile, found.holes, found.flats).volume
+        if found.cuts:
+            made = CutPin.of(profile, found.cuts).volume
     except (GeometryError, MeshError) as error:
-        raise _not(file, f"as a profile with holes and flats it is impossible ({error})") from None
+        raise _not(file, f"as a profile with cuts it is impossible ({error})") from None
     if abs(made / volume - 1.0) > SAME_VOLUME:
         raise _not(
             file, f"a profile of its faces of revolution has {made / volume:.6g} times its volume"

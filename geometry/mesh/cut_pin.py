@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
@@ -41,6 +42,18 @@ class CutPin:
         length = self.length
         object.__setattr__(self, "flats", tuple(cut.past(length, near) for cut in flats))
         object.__setattr__(self, "slots", tuple(cut.past(length, near) for cut in slots))
+
+    @staticmethod
+    def of(profile: Pin, cuts: Iterable[Cut]) -> CutPin:
+        """With cuts of all kinds; each kind keeps its order."""
+        every = tuple(cuts)
+        return CutPin(
+            profile,
+            tuple(cut for cut in every if isinstance(cut, Hole)),
+            tuple(cut for cut in every if isinstance(cut, Flat)),
+            tuple(cut for cut in every if isinstance(cut, Slot)),
+            tuple(cut for cut in every if isinstance(cut, Passage)),
+        )
 
     @cached_property
     def cuts(self) -> dict[str, Cut]:
@@ -115,13 +128,8 @@ class CutPin:
 
     def scaled(self, factor: float) -> CutPin:
         """The same pin in another unit."""
-        return CutPin(
-            self.profile.scaled(factor),
-            tuple(cut.scaled(factor) for cut in self.holes),
-            tuple(cut.scaled(factor) for cut in self.flats),
-            tuple(cut.scaled(factor) for cut in self.slots),
-            tuple(cut.scaled(factor) for cut in self.passages),
-        )
+        cuts = (cut.scaled(factor) for cut in self.cuts.values())
+        return CutPin.of(self.profile.scaled(factor), cuts)
 
 
 def _named(cuts: tuple[Cut, ...]) -> dict[str, Cut]:

@@ -47,6 +47,11 @@ class Bottom:
     tip: float = FLAT_TIP
     radius: float = 0.0
 
+    def rounded(self, digits: int) -> Bottom:
+        """With its radius rounded to so many digits, and its angle."""
+        tip = round(self.tip, 9)
+        return Bottom(FLAT_TIP if tip >= round(FLAT_TIP, 9) else tip, round(self.radius, digits))
+
     def height(self, diameter: float) -> float:
         """Of the cone below the full diameter, m."""
         return diameter / 2.0 / math.tan(self.tip / 2.0) if self.tip < FLAT_TIP else 0.0
@@ -188,6 +193,10 @@ class Hole(Cut):
         """The same in another unit."""
         made = super().scaled(factor)
         return replace(made, bottom=replace(self.bottom, radius=self.bottom.radius * factor))
+
+    def rounded(self, digits: int) -> Hole:
+        """The same, its bottom as well."""
+        return replace(super().rounded(digits), bottom=self.bottom.rounded(digits))
 
     def along(self, change: Callable[[float, float], tuple[float, float]]) -> Hole:
         """With its middle amid other ends."""
@@ -362,6 +371,10 @@ class Passage(Cut):
         """The same in another unit."""
         made = super().scaled(factor)
         return replace(made, bottom=replace(self.bottom, radius=self.bottom.radius * factor))
+
+    def rounded(self, digits: int) -> Passage:
+        """The same, its bottom as well."""
+        return replace(super().rounded(digits), bottom=self.bottom.rounded(digits))
 
     def along(self, change: Callable[[float, float], tuple[float, float]]) -> Passage:
         """With other ends; what exchanges them turns it round."""

@@ -87,6 +87,12 @@ class Cut(ABC):
         """The same in another unit."""
         return self._with({key: _times(getattr(self, key), factor) for key in self.lengths()})
 
+    def rounded(self, digits: int) -> Self:
+        """The same with its lengths rounded to so many digits, and its angle."""
+        lengths = {key: getattr(self, key) for key in self.lengths()}
+        made = {k: None if x is None else round(x, digits) + 0.0 for k, x in lengths.items()}
+        return self._with(made | {"angle": round(self.angle, 9) + 0.0})
+
     def moved(self, z: float, angle: float) -> Self:
         """The same in a frame at z (m), turned by an angle (rad)."""
         return self.along(lambda a, b: (a - z, b - z)).turned(self.angle - angle)

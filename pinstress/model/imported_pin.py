@@ -30,6 +30,7 @@ from pinstress.processes.parent import end_with_parent
 from pinstress.processes.pool import Died, Job, Tell, ended, processes, side_by_side
 from pinstress.processes.system import portable
 
+KINDS = "hole", "flat", "slot", "passage"
 LARGEST_BODY = 1024 * MB
 CODE = "import sys; from pinstress.model.imported_pin import serve; serve(sys.argv[1])"
 
@@ -41,7 +42,7 @@ LARGE = Limits(600, 6000)  # for a mesh file, and to mesh a CAD file more finely
 
 
 def read_body(file: BodyFile, clamps: Iterable[str] = ()) -> PinLike:
-    """The body in the file: a profile, with holes and flats, if it is one and its bands and clamps
+    """The body in the file: a profile, with cuts, if it is one and its bands and clamps
     (by name) are on it; otherwise a solid, with its bands measured.
 
     Raises: GeometryError, MeshError as SolidBody; GeometryError if it is not a regular file, is too
@@ -94,22 +95,21 @@ def _profiled(file: BodyFile, found: Turned, clamps: set[str]) -> Pin | CutPin:
     stripes += [Stripe(c, *found.surfaces[c], False) for c in clamps - named if c in found.surfaces]
     try:
         profile = with_stripes(found.pin(file.name), stripes)
-        pin = CutPin(profile, found.holes, found.flats)
+        pin = CutPin.of(profile, found.cuts)
         for clamp in clamps:
             pin.surface(clamp)
     except GeometryError as error:
         raise NotTurnedError(file.name, file.path.name, str(error)) from None
     counted = (
         (len(profile.segments), "segment"),
-        (len(pin.holes), "hole"),
-        (len(pin.flats), "flat"),
+        *((sum(c.what == kind for c in found.cuts), kind) for kind in KINDS),
     )
     parts = ", ".join(f"{n} {what}{'s' * (n > 1)}" for n, what in counted if n)
     source = f"{file.path.name} is taken as a profile: {parts}"
     if found.start:
         source += f"; z counts from its start face, at z = {found.start:g} of the file"
     profile = replace(profile, source=source)
-    return replace(pin, profile=profile) if pin.holes or pin.flats else profile
+    return replace(pin, profile=profile) if found.cuts else profile
 
 
 def apart(work: Work, file: BodyFile, *arguments: object) -> Any:

@@ -5,12 +5,23 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
-from geometry import Flat, GeometryError, Hole, Pin, Segment
+from geometry import (
+    Bottom,
+    Cut,
+    Flat,
+    GeometryError,
+    Hole,
+    Passage,
+    Pin,
+    Segment,
+    Slot,
+)
 from geometry.imported.body_file import BodyFile
 from geometry.imported.recognise import NotTurnedError, Turned
+from geometry.shape.drilled import FLAT_TIP
 from pinstress.model.imported_pin import require_readable, turned_apart
 from pinstress.model.pins import METRES
 from pinstress.schema.types import usable_name
@@ -65,10 +76,8 @@ def _text(file: BodyFile, found: Turned, unit: str, material: str) -> str:
         "]",
         *_listed(pin, file.unit, unit),
     ]
-    for hole in found.holes:
-        lines += ["", f"[[pin.{_key(file.name)}.hole]]", *_hole(hole, file.unit, unit)]
-    for flat in found.flats:
-        lines += ["", f"[[pin.{_key(file.name)}.flat]]", *_flat(flat, file.unit, unit)]
+    for cut in found.cuts:
+        lines += ["", f"[[pin.{_key(file.name)}.{cut.what}]]", *_cut(cut, file.unit, unit)]
     return "\n".join(lines) + "\n"
 
 
@@ -94,16 +103,43 @@ def _listed(pin: Pin, one: float, unit: str) -> Iterator[str]:
             yield f"#   segment {i}: diameter {size} {unit}, straight from z = {z0} to {z1} {unit}"
 
 
-def _hole(hole: Hole, one: float, unit: str) -> Iterable[str]:
-    yield f"z = {_length(hole.z, one, unit)}"
-    yield f"diameter = {_length(hole.diameter, one, unit)}"
-    yield f"angle = {_angle(hole.angle)}"
+def _cut(cut: Cut, one: float, unit: str) -> Iterator[str]:
+    """Keys of a cut; those that have their defaults are left out."""
+
+    def given(**lengths: float | None) -> Iterator[str]:
+        for key, si in lengths.items():
+            if si:
+                yield f"{key} = {_length(si, one, unit)}"
+
+    def ends() -> str:
+        return f"z = [{', '.join(_length(z, one, unit) for z in cut.extent)}]"
+
+    if isinstance(cut, Flat):
+        yield ends()
+        yield from given(distance=cut.distance, radius=cut.radius)
+    elif isinstance(cut, Slot):
+        yield ends()
+        yield from given(width=cut.width, depth=cut.depth, radius=cut.radius)
+        if not cut.round_ends:
+            yield 'ends = "square"'
+    elif isinstance(cut, Hole):
+        yield from given(z=cut.z, diameter=cut.diameter, depth=cut.depth, chamfer=cut.chamfer)
+        yield from _bottom(cut.bottom, one, unit)
+    elif isinstance(cut, Passage):
+        if cut.mouth != "both":
+            yield f'end = "{cut.mouth}"'
+            yield from given(depth=cut.z1 - cut.z0)
+        yield f"offset = {_length(cut.offset, one, unit)}"
+        yield from given(diameter=cut.diameter)
+        yield from _bottom(cut.bottom, one, unit)
+    yield f"angle = {_angle(cut.angle)}"
 
 
-def _flat(flat: Flat, one: float, unit: str) -> Iterable[str]:
-    yield f"z = [{_length(flat.z0, one, unit)}, {_length(flat.z1, one, unit)}]"
-    yield f"distance = {_length(flat.distance, one, unit)}"
-    yield f"angle = {_angle(flat.angle)}"
+def _bottom(bottom: Bottom, one: float, unit: str) -> Iterator[str]:
+    if bottom.tip < FLAT_TIP:
+        yield f"tip_angle = {_angle(bottom.tip)}"
+    if bottom.radius:
+        yield f"bottom_radius = {_length(bottom.radius, one, unit)}"
 
 
 def _angle(angle: float) -> str:

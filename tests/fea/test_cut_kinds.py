@@ -38,8 +38,7 @@ HOLE = Hole(MIDDLE, 0.004)
 
 
 def cut(*cuts: Cut, pin: Pin = SHAFT) -> CutPin:
-    kinds = (Hole, Flat, Slot, Passage)
-    return CutPin(pin, *(tuple(c for c in cuts if isinstance(c, kind)) for kind in kinds))  # type: ignore[arg-type]
+    return CutPin.of(pin, cuts)
 
 
 def piece(*cuts: Cut) -> Piece:

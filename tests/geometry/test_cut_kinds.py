@@ -24,8 +24,7 @@ COUNT = 4000
 
 
 def made(*cuts: Cut) -> CutPin:
-    kinds = (Hole, Flat, Slot, Passage)
-    return CutPin(BAR, *(tuple(c for c in cuts if isinstance(c, kind)) for kind in kinds))  # type: ignore[arg-type]
+    return CutPin.of(BAR, cuts)
 
 
 def integral(f: Callable[[Floats], Floats], low: float, high: float) -> float:

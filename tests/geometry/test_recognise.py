@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from geometry import CutPin, Flat, Hole, Pin, Segment, meridian
+from geometry import Bottom, Cut, CutPin, Flat, Hole, Passage, Pin, Segment, Slot, meridian
 from geometry.imported.body_file import BodyFile
 from geometry.imported.recognise import NotTurnedError, Turned, turned
 from geometry.mesh.cut_solid import cut_solid
@@ -120,9 +122,82 @@ def test_holes_and_flats_become_features(tmp_path: Path) -> None:
     pin = CutPin(PROFILES["stepped"], (hole,), (flat,))
     found = turned(step(pin, tmp_path / "pin.step"))
     same(found, PROFILES["stepped"])
-    (a,), (b,) = found.holes, found.flats
+    a, b = found.cuts
+    assert isinstance(a, Hole)
+    assert isinstance(b, Flat)
     assert (a.z, a.diameter, a.angle) == pytest.approx((0.03, 0.004, math.pi / 6.0))
     assert (b.z0, b.z1, b.distance, b.angle) == pytest.approx((0.045, 0.055, 0.008, -math.pi / 3.0))
+
+
+CUTS: dict[str, Cut] = {
+    "rounded flat": Flat(45.0, 55.0, 8.0, 0.4, 1.0),
+    "flat at the end": Flat(50.0, 60.0, 8.0, 0.4, 1.0),
+    "blind": Hole(40.0, 4.0, 0.5, 8.0),
+    "tip": Hole(40.0, 4.0, 3.0, 8.0, Bottom(math.radians(118.0))),
+    "rounded bottom": Hole(40.0, 4.0, -2.0, 8.0, Bottom(radius=0.5)),
+    "rounded tip": Hole(40.0, 4.0, -2.0, 12.0, Bottom(math.radians(118.0), 0.5)),
+    "countersunk": Hole(40.0, 4.0, 0.3, chamfer=0.6),
+    "keyway": Slot(30.0, 45.0, 5.0, 3.0, 0.3),
+    "rounded keyway": Slot(30.0, 45.0, 5.0, 3.0, 0.3, 0.6),
+    "open keyway": Slot(45.0, 60.0, 5.0, 3.0, 0.3, 0.6),
+    "square keyway": Slot(30.0, 45.0, 5.0, 3.0, 0.3, 0.0, False),
+    "slot": Slot(35.0, 45.0, 5.0, None, 0.3),
+    "passage": Passage(0.0, 60.0, 3.0, 5.0, 0.3),
+    "blind passage": Passage(0.0, 30.0, 3.0, 5.0, 0.3, "start", Bottom(math.radians(118.0))),
+    "rounded passage": Passage(30.0, 60.0, 3.0, 5.0, 0.3, "end", Bottom(radius=0.5)),
+}
+
+
+@pytest.mark.parametrize("name", CUTS)
+def test_a_cut_is_recognised(name: str, tmp_path: Path) -> None:
+    """And the volume of what is made of it is that of the body, or it would not be."""
+    cut = CUTS[name]
+    found = turned(step(CutPin.of(PROFILES["stepped"], [cut]), tmp_path / "pin.step"))
+    same(found, PROFILES["stepped"])
+    (made,) = found.cuts
+    assert isinstance(made, Hole | Flat | Slot | Passage)
+    bottom, wanted = (getattr(c, "bottom", Bottom()) for c in (made.scaled(1e3), cut))
+    assert (bottom.tip, bottom.radius) == pytest.approx((wanted.tip, wanted.radius), abs=1e-5)
+    plain = made.scaled(1e3)
+    if isinstance(plain, Hole | Passage):
+        plain = replace(plain, bottom=wanted)
+    turn = 1.0 if cut.half_turn else 0.5
+    assert math.sin(turn * (plain.angle - cut.angle)) == pytest.approx(0.0, abs=1e-6)
+    assert plain.turned(cut.angle).like(cut, 1e-5), plain
+
+
+def test_cuts_of_several_kinds_of_a_body_that_lies_anyhow(tmp_path: Path) -> None:
+    """A hole that comes out in a flat, one into a bore, a keyway opposite, all turned."""
+    tube = Pin("P", (Segment(30.0, 20.0, bore=8.0), Segment(30.0, 20.0, bore=8.0)))
+    cuts = (
+        Hole(15.0, 4.0, 0.3), Flat(10.0, 20.0, 8.0, 0.3), Hole(40.0, 3.0, 1.0, 8.0),
+        Slot(30.0, 45.0, 4.0, 3.0, 2.8, 0.4), Passage(0.0, 60.0, 2.0, 7.0, -1.5),
+    )  # fmt: skip
+    file = step(CutPin.of(tube, cuts), tmp_path / "pin.step", _turn)
+    found = turned(file, upright=False)
+    assert sorted(cut.what for cut in found.cuts) == ["flat", "hole", "hole", "passage", "slot"]
+
+
+INCH = (
+    "( CONVERSION_BASED_UNIT('INCH',#9001) LENGTH_UNIT() NAMED_UNIT(#9002) )",
+    "#9001 = LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(25.4),#9003);\n"
+    "#9002 = DIMENSIONAL_EXPONENTS(1.,0.,0.,0.,0.,0.,0.);\n"
+    "#9003 = ( LENGTH_UNIT() NAMED_UNIT(*) SI_UNIT(.MILLI.,.METRE.) );\nENDSEC;\nEND-ISO",
+)
+
+
+def test_a_file_in_inches(tmp_path: Path) -> None:
+    """The unit is in the file's header, and what is read is in millimetres."""
+    cut = CUTS["keyway"]
+    file = step(CutPin.of(PROFILES["stepped"], [cut]), tmp_path / "pin.step")
+    text = file.path.read_text()
+    (before,) = set(re.findall(r"\( *LENGTH_UNIT\(\) NAMED_UNIT\(\*\) SI_UNIT\([^)]*\) *\)", text))
+    text = text.replace(before, INCH[0]).replace("ENDSEC;\nEND-ISO", INCH[1])
+    file.path.write_text(text)
+    found = turned(file)
+    same(found, PROFILES["stepped"].scaled(25.4))
+    (made,) = found.cuts
+    assert made.scaled(1e3 / 25.4).like(cut, 1e-5)
 
 
 def test_a_dome_may_have_its_poles_aside(tmp_path: Path) -> None:
@@ -154,17 +229,17 @@ def _box(gmsh: Any, solid: int) -> None:
     gmsh.model.occ.fuse([(3, solid)], [(3, box)])
 
 
-def _blind_hole(gmsh: Any, solid: int) -> None:
-    drill = gmsh.model.occ.addCylinder(0, 0, 40, 20, 0, 0, 2)
+def _beside_axis(gmsh: Any, solid: int) -> None:
+    drill = gmsh.model.occ.addCylinder(-20, 3, 40, 40, 0, 0, 2)
     gmsh.model.occ.cut([(3, solid)], [(3, drill)])
 
 
-def _off_axis(gmsh: Any, solid: int) -> None:
-    drill = gmsh.model.occ.addCylinder(5, 0, -10, 0, 0, 100, 1)
+def _oblique(gmsh: Any, solid: int) -> None:
+    drill = gmsh.model.occ.addCylinder(-20, 0, 30, 40, 0, 20, 2)
     gmsh.model.occ.cut([(3, solid)], [(3, drill)])
 
 
-@pytest.mark.parametrize("change", [_box, _blind_hole, _off_axis])
+@pytest.mark.parametrize("change", [_box, _beside_axis, _oblique])
 def test_other_bodies_are_not_turned(change: Change, tmp_path: Path) -> None:
     with raises(NotTurnedError, "not-turned", "pin.step"):
         turned(step(PROFILES["sharp"], tmp_path / "pin.step", change))

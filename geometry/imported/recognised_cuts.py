@@ -1,0 +1,312 @@
+"""The faces of a CAD body that are not of revolution about its axis, as holes, flats, slots and
+passages.
+
+Cylinders across the axis are holes, or ends of slots where planes beside them go on; cylinders
+along it are passages. Cones, tori and planes belong to the cylinder about whose axis they are of
+revolution. Planes that are left are flats.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from geometry.arrays import Floats
+from geometry.imported.sampled_face import NEAR, Axis, SampledFace
+from geometry.shape.drilled import FLAT_TIP, Bottom, Hole, Passage
+from geometry.shape.features import Cut, outer_radius, radii
+from geometry.shape.milled import Flat, Slot
+from geometry.shape.pin import Pin
+
+Z = np.array([0.0, 0.0, 1.0])
+
+
+@dataclass
+class _Drilled:
+    """A cylinder: its axis, radius, and between which t along the axis, from the point of it that
+    is nearest to the pin's, it reaches. faces: with it of revolution about the axis.
+    """
+
+    axis: Axis
+    radius: float
+    low: float
+    high: float
+    faces: list[SampledFace] = field(default_factory=list)
+
+    def local(self, x: Floats) -> tuple[Floats, Floats]:
+        """Distances from the axis, and t, of points (P, 3)."""
+        away = x - self.axis.point
+        t = away @ self.axis.along
+        return np.linalg.norm(away - t[:, None] * self.axis.along, axis=1), t
+
+
+@dataclass(frozen=True)
+class CutFaces:
+    """Those faces in a frame whose z-axis is the pin's; size: of the body; all in the file's unit.
+
+    Raises: ValueError with the name of a face that belongs to nothing.
+    """
+
+    faces: Sequence[SampledFace]
+    size: float
+
+    def cuts(self, pin: Pin) -> tuple[Cut, ...]:
+        """Of a profile."""
+        planes = [f for f in self.faces if f.plane]
+        across, along, bent = self._cylinders([f for f in self.faces if not f.plane])
+        slots, used = self._slots(pin, planes, across, along)
+        planes = [f for f in planes if f.tag not in used]
+        across = [c for c in across if not any(f.tag in used for f in c.faces)]
+        along = [c for c in along if not any(f.tag in used for f in c.faces)]
+        for face in [*bent, *planes]:
+            owner = self._owner(face, [*across, *along])
+            if owner is not None:
+                owner.faces.append(face)
+                used.add(face.tag)
+        flats, rounded = self._flats([f for f in planes if f.tag not in used], bent)
+        used |= rounded
+        if left := [f for f in bent if f.tag not in used]:
+            raise ValueError(left[0].name)
+        holes = [self._hole(pin, c) for c in across]
+        passages = [self._passage(pin, c) for c in along]
+        return _once([*holes, *flats, *slots, *passages])
+
+    @property
+    def near(self) -> float:
+        """Within which two places are one."""
+        return 10.0 * NEAR * self.size
+
+    def _cylinders(
+        self, faces: Sequence[SampledFace]
+    ) -> tuple[list[_Drilled], list[_Drilled], list[SampledFace]]:
+        """Across the pin's axis and through it, along it, and the faces that are neither."""
+        across: list[_Drilled] = []
+        along: list[_Drilled] = []
+        bent = []
+        for face in faces:
+            axis = face.axis(np.zeros(3), self.size)
+            place = None if axis is None else self._placed(axis)
+            if place is None:
+                bent.append(face)
+                continue
+            line, group = place, across if abs(place.along[2]) < 0.5 else along
+            made = _Drilled(line, 0.0, 0.0, 0.0, [face])
+            s, _ = made.local(face.points)
+            if np.ptp(s) > NEAR * self.size:
+                bent.append(face)
+                continue
+            t = made.local(face.rim)[1]
+            made.radius, made.low, made.high = float(s.mean()), float(t.min()), float(t.max())
+            self._joined(group, made)
+        return across, along, bent
+
+    def _placed(self, axis: Axis) -> Axis | None:
+        """An axis along the pin's or across it and through it, from the point nearest to that."""
+        way = axis.along / np.linalg.norm(axis.along)
+        if abs(abs(way[2]) - 1.0) < NEAR:
+            return Axis(axis.point * [1.0, 1.0, 0.0], Z)
+        if abs(way[2]) > NEAR:
+            return None
+        if abs(way[0] * axis.point[1] - way[1] * axis.point[0]) > NEAR * self.size:
+            return None
+        way = way * (1.0 if way[0] > NEAR or (abs(way[0]) <= NEAR and way[1] > 0.0) else -1.0)
+        return Axis(axis.point * [0.0, 0.0, 1.0], way)
+
+    def _joined(self, group: list[_Drilled], made: _Drilled) -> None:
+        for other in group:
+            same = np.abs(other.axis.point - made.axis.point).max() < self.near
+            same &= np.abs(other.axis.along - made.axis.along).max() < NEAR
+            if same and abs(other.radius - made.radius) < self.near:
+                other.low, other.high = min(other.low, made.low), max(other.high, made.high)
+                other.faces += made.faces
+                return
+        group.append(made)
+
+    def _owner(self, face: SampledFace, drilled: Sequence[_Drilled]) -> _Drilled | None:
+        """The cylinder about whose axis a face is of revolution, and near which it lies."""
+        for c in drilled:
+            s, _ = c.local(face.rim)
+            normal_along = not face.plane or abs(abs(face.normals[0] @ c.axis.along) - 1.0) < NEAR
+            inside = (
+                s.max() <= 2.0 * c.radius if not face.plane else s.max() <= c.radius + self.near
+            )
+            if normal_along and inside and face.revolved(c.axis, self.size):
+                return c
+        return None
+
+    def _slots(
+        self,
+        pin: Pin,
+        planes: Sequence[SampledFace],
+        across: Sequence[_Drilled],
+        along: Sequence[_Drilled],
+    ) -> tuple[list[Slot], set[int]]:
+        """Slots between parallel planes on both sides of the axis, with ends or a floor."""
+        out, used = [], set()
+        for i, one in enumerate(planes):
+            for other in planes[i + 1 :]:
+                m = one.normals[0]
+                h = float(one.points[0] @ m)
+                if abs(abs(m @ other.normals[0]) - 1.0) > NEAR or abs(h) < self.near:
+                    continue
+                if abs(float(other.points[0] @ m) + h) > self.near:
+                    continue
+                found = self._slot(pin, (one, other), abs(h), planes, across, along)
+                if found is not None:
+                    out.append(found[0])
+                    used |= found[1]
+        return out, used
+
+    def _slot(
+        self,
+        pin: Pin,
+        walls: tuple[SampledFace, SampledFace],
+        h: float,
+        planes: Sequence[SampledFace],
+        across: Sequence[_Drilled],
+        along: Sequence[_Drilled],
+    ) -> tuple[Slot, set[int]] | None:
+        k = np.cross(walls[0].normals[0], Z)
+        rim = np.concatenate([wall.rim for wall in walls])
+        k = k * math.copysign(1.0, float((rim @ k).mean()))
+        z0, z1 = float(rim[:, 2].min()), float(rim[:, 2].max())
+        ends = [
+            c
+            for c in across
+            if abs(c.radius - h) < self.near
+            and abs(abs(c.axis.along @ k) - 1.0) < NEAR
+            and min(abs(c.axis.point[2] - z) for z in (z0, z1)) < self.near
+        ]
+        floors = [
+            f
+            for f in planes
+            if abs(abs(f.normals[0] @ k) - 1.0) < NEAR
+            and float((f.points @ k).mean()) < float((rim @ k).max())
+            and np.abs(f.rim @ walls[0].normals[0]).max() <= h + self.near
+            and f.rim[:, 2].max() > z0 + self.near
+            and f.rim[:, 2].min() < z1 - self.near
+        ]
+        if not ends and not floors:
+            return None
+        for c in ends:
+            low = abs(c.axis.point[2] - z0) < self.near
+            z0, z1 = (z0 - h, z1) if low else (z0, z1 + h)
+        tags = {f.tag for f in (*walls, *floors)} | {f.tag for c in ends for f in c.faces}
+        angle, depth, radius = math.atan2(k[1], k[0]), None, 0.0
+        if floors:
+            floor = float(floors[0].points[0] @ k)
+            depth = radii(pin, z0, z1)[1] - floor
+            radius = max(0.0, float((rim @ k).min()) - floor)
+            radius = 0.0 if radius < self.near else radius
+        if radius:
+            reach = [z0 - self.near, z1 + self.near]
+            for f in self.faces:
+                inside = reach[0] <= f.rim[:, 2].min() and f.rim[:, 2].max() <= reach[1]
+                level = f.rim @ k
+                corner = (
+                    level.max() < floor + radius + self.near and level.min() > floor - self.near
+                )
+                if not f.plane and inside and corner:
+                    tags.add(f.tag)
+        return Slot(z0, z1, 2.0 * h, depth, angle, radius, bool(ends)), tags
+
+    def _flats(
+        self, planes: Sequence[SampledFace], bent: Sequence[SampledFace]
+    ) -> tuple[list[Flat], set[int]]:
+        """Planes along the axis, with the cylinders that round the corners at their ends."""
+        out, used = [], set()
+        for face in planes:
+            normal = face.normals[0]
+            if abs(normal[2]) > NEAR:
+                raise ValueError(face.name)
+            distance = float(face.points[0] @ normal)
+            normal = normal * math.copysign(1.0, distance)
+            z0, z1 = float(face.rim[:, 2].min()), float(face.rim[:, 2].max())
+            radius = 0.0
+            for other in bent:
+                level, z = other.points @ normal, other.rim[:, 2]
+                axis = other.axis(np.zeros(3), self.size)
+                touches = min(abs(z.max() - z0), abs(z.min() - z1)) < self.near
+                if axis is None or not touches or level.min() < abs(distance) - self.near:
+                    continue
+                if abs(abs(axis.along @ np.cross(normal, Z)) - 1.0) < NEAR:
+                    radius = float(
+                        np.linalg.norm(np.cross(other.points[0] - axis.point, axis.along))
+                    )
+                    z0, z1 = min(z0, float(z.min())), max(z1, float(z.max()))
+                    used.add(other.tag)
+            angle = math.atan2(normal[1], normal[0])
+            out.append(Flat(z0, z1, abs(distance), angle, radius))
+        return out, used
+
+    def _beyond_wall(self, c: _Drilled) -> list[SampledFace]:
+        """Faces at the bottom of a hole."""
+        found = [(face, c.local(face.points)[0]) for face in c.faces]
+        return [f for f, s in found if np.ptp(s) >= self.near and s.max() <= c.radius + self.near]
+
+    def _bottom(self, c: _Drilled, end: float, way: float) -> tuple[float, Bottom]:
+        """Where the full diameter ends, before its corner is rounded, and what follows; end: t of
+        the wall there; way: of t, out of the hole.
+        """
+        tip, top, curved = FLAT_TIP, end, False
+        for face in self._beyond_wall(c):
+            s, t = c.local(face.points)
+            if face.plane:
+                top = float(t.mean())
+                continue
+            slope = np.abs(face.normals @ c.axis.along)
+            if np.ptp(slope) < 10.0 * NEAR:
+                tip = 2.0 * math.asin(min(1.0, float(slope.mean())))
+                apex = t - way * s / math.tan(tip / 2.0)
+                top = float(apex.mean()) + way * c.radius / math.tan(tip / 2.0)
+            else:
+                curved = True
+        if curved and tip == FLAT_TIP:
+            rims = [way * c.local(face.rim)[1].min() for face in self._beyond_wall(c)]
+            ends = [way * c.local(face.rim)[1].max() for face in self._beyond_wall(c)]
+            top = way * min(*rims, *ends)
+        radius = abs(end - top) / math.tan(tip / 4.0) if curved else 0.0
+        return top, Bottom(tip, radius)
+
+    def _hole(self, pin: Pin, c: _Drilled) -> Hole:
+        z = float(c.axis.point[2])
+        outer, angle = outer_radius(pin, z), math.atan2(c.axis.along[1], c.axis.along[0])
+        chamfer = 0.0
+        for face in c.faces:
+            s, t = c.local(face.points)
+            if s.max() > c.radius + self.near:
+                chamfer = float((s + outer - np.abs(t)).mean()) - c.radius
+        blind = bool(self._beyond_wall(c))
+        if c.low < 0.0 < c.high and not blind:
+            angle = 0.0 if math.pi - angle % math.pi < NEAR else angle % math.pi
+            return Hole(z, 2.0 * c.radius, angle, chamfer=chamfer)
+        way = 1.0 if c.high > -c.low else -1.0
+        end = c.low if way > 0.0 else c.high
+        floor, bottom = self._bottom(c, end, way) if blind else (end / 2.0, Bottom())  # in a bore
+        angle = angle if way > 0.0 else angle + math.pi
+        angle = math.atan2(math.sin(angle), math.cos(angle))
+        return Hole(z, 2.0 * c.radius, angle, outer - way * floor, bottom, chamfer)
+
+    def _passage(self, pin: Pin, c: _Drilled) -> Passage:
+        x, y, _ = c.axis.point
+        place = 2.0 * c.radius, math.hypot(x, y), math.atan2(y, x)
+        first, last = c.low < self.near, c.high > pin.length - self.near
+        if first and last:
+            return Passage(0.0, pin.length, *place)
+        if first:
+            floor, bottom = self._bottom(c, c.high, -1.0)
+            return Passage(0.0, floor, *place, "start", bottom)
+        floor, bottom = self._bottom(c, c.low, 1.0)
+        return Passage(floor, pin.length, *place, "end", bottom)
+
+
+def _once(cuts: Sequence[Cut]) -> tuple[Cut, ...]:
+    """Without those that come twice."""
+    out: list[Cut] = []
+    for cut in cuts:
+        if not any(cut.like(other, 1e-6 * max(1e-300, abs(cut.extent[1]))) for other in out):
+            out.append(cut)
+    return tuple(out)
