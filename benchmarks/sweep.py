@@ -16,7 +16,7 @@ from functools import partial
 
 import numpy as np
 
-from benchmarks.timing import power, table
+from benchmarks.timing import Floats, power, table
 from pinstress import Study, shipped_studies, study_from
 from pinstress.designs.batches import Batch, Batches, Done
 from pinstress.designs.sweep import Kept, Sweep, planned, solved
@@ -205,7 +205,7 @@ def _simulated() -> str:
     )
 
 
-def _simulate(length: float, relative: np.ndarray, overhead: float) -> float:  # type: ignore[type-arg]
+def _simulate(length: float, relative: Floats, overhead: float) -> float:
     """The share of all time in which processes work. A scheduler hands out one batch after the
     other, each process has one that is solved and one that waits.
     """
