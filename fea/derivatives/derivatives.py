@@ -26,7 +26,7 @@ import numpy as np
 
 from fea.core.material import Material
 from fea.core.pin_loads import UnitLoad
-from fea.derivatives.governing import Wave, by_loads, waves_of
+from fea.derivatives.governing import by_loads, waves_of
 from fea.derivatives.governing_point import point_of
 from fea.derivatives.reading_point import SectionState
 from fea.derivatives.records import Derivatives, SolvedCase
@@ -38,7 +38,7 @@ from fea.harmonic.model import HarmonicModel, applied, generalised
 from fea.harmonic.stress_recovery import points_of_nodes
 from fea.harmonic.superposition import Circumference
 from geometry import Pin
-from geometry.arrays import Floats
+from geometry.arrays import Floats, Ints
 from geometry.mesh.outline_motion import (
     PLACES,
     NodeMotion,
@@ -68,15 +68,13 @@ class _Adjoint:
     def __init__(self, solved: SolvedCase) -> None:
         self.solved = solved
         self.fields = solved.solution.fields
-        assert self.fields.mesh is not None
-        self.mesh = self.fields.mesh
-        self.model = HarmonicModel(solved.pin, self.mesh, solved.material, solved.clamps)
+        self.model = HarmonicModel(solved.pin, solved.solution.mesh, solved.material, solved.clamps)
         self.space, self.outline = self.model.space, self.model.outline
         self.around = Circumference(self.fields, solved.loads)
         self.top = self.around.top(self.fields.outside(solved.zones))
         self.waves, self.weight = waves_of(self.fields_at, solved.loads, self.top)
         self.n = np.array([wave.n for wave in self.waves])
-        self.traction = self._traction(solved.pin, self.outline)
+        self.traction = self._forces(solved.pin, self.outline)[1]
         self.point = point_of(self.model, solved, self.traction, self.top.point)
         self._lambda = self._solve()
 
@@ -97,18 +95,27 @@ class _Adjoint:
                 amounts[index[load], k] = amount
         return np.asarray((self.fields.displacement @ amounts)[rows])
 
-    def _forces(
-        self, wave: Wave, pin: Pin, outline: Outline, integrals: Floats | None = None
-    ) -> tuple[Floats, Floats]:
-        """Of a wave: on the unknowns (3 N,), and tractions (E, 3, 3)."""
-        loads = tuple(wave.amounts)
-        amounts = np.array([wave.amounts[load] for load in loads])
-        forces, tractions = applied(self.model, pin, outline, wave.n, loads, integrals)
-        return forces @ amounts, tractions @ amounts
+    @cached_property
+    def _harmonics(self) -> list[tuple[int, tuple[UnitLoad, ...], Floats, Ints]]:
+        """Of each: its unit loads (L), their amounts in its waves (L, W), the numbers of these."""
+        out = []
+        for n in np.unique(self.n):
+            here = np.flatnonzero(self.n == n)
+            loads = tuple(dict.fromkeys(load for k in here for load in self.waves[k].amounts))
+            amounts = [[self.waves[k].amounts.get(load, 0.0) for k in here] for load in loads]
+            out.append((int(n), loads, np.array(amounts), here))
+        return out
 
-    def _traction(self, pin: Pin, outline: Outline) -> Floats:
-        found = [self._forces(wave, pin, outline)[1] for wave in self.waves]
-        return np.stack(found, axis=-1)
+    def _forces(
+        self, pin: Pin, outline: Outline, integrals: Floats | None = None
+    ) -> tuple[Floats, Floats]:
+        """Of the waves: on the unknowns (3 N, K), and tractions (E, 3, 3, K)."""
+        forces = np.zeros((self.space.unknowns, len(self.waves)))
+        tractions = np.zeros((*outline.nodes.shape, 3, len(self.waves)))
+        for n, loads, amounts, here in self._harmonics:
+            one, other = applied(self.model, pin, outline, n, loads, integrals)
+            forces[:, here], tractions[..., here] = one @ amounts, other @ amounts
+        return forces, tractions
 
     @cached_property
     def places(self) -> Floats:
@@ -164,7 +171,7 @@ class _Adjoint:
     ) -> tuple[dict[str, float], dict[str, str]]:
         solved = self.solved
         reaches = [Reach((p.r, p.z), p.radius) for p in solved.zones]
-        nodes = OutlineNodes(self.mesh, solved.pin, reaches)
+        nodes = OutlineNodes(solved.solution.mesh, solved.pin, reaches)
         motions: list[NodeMotion] = []
         without = {}
         for dimension in dimensions:
@@ -199,15 +206,9 @@ class _Adjoint:
             nodes = self.space.nodes + step * velocity
             outline = self.outline.moved(nodes)
             integrals = None if grown is None else self.space.integrals + step * grown
-            total, tractions = 0.0, []
-            for k, wave in enumerate(self.waves):
-                forces, traction = self._forces(wave, pin, outline, integrals)
-                total += float(np.sum(self._lambda[:, k] * forces))
-                tractions.append(traction)
-            state = SectionState(
-                nodes, np.stack(tractions, axis=-1), self._places_at(step, velocity)
-            )
-            values.append(np.array(total + self.read(state)))
+            forces, tractions = self._forces(pin, outline, integrals)
+            state = SectionState(nodes, tractions, self._places_at(step, velocity))
+            values.append(np.array(np.sum(self._lambda * forces) + self.read(state)))
         return float(rate_of(values, motion.step))
 
     @cached_property

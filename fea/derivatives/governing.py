@@ -71,6 +71,7 @@ def by_loads(
     in any case.
     """
     found: tuple[By, By] = {}, {}
+    before = loads.coefficients()
     for kind, given in enumerate((loads.forces, loads.moments)):
         step = FORCE * (float(np.abs(given).max()) or 1.0)
         for c, surface in enumerate(loads.surfaces):
@@ -79,7 +80,7 @@ def by_loads(
             for a, axis in enumerate(AXES):
                 one = np.zeros_like(given)
                 one[:, c, a] = 1.0
-                stress = partial(_of_change, at, loads, (weight, top.angle), (kind, one))
+                stress = partial(_of_change, at, (loads, before), (weight, top.angle), (kind, one))
                 if np.isfinite(derivative := float(rate(stress, step))):
                     found[kind][surface, axis] = derivative
     return found
@@ -87,7 +88,7 @@ def by_loads(
 
 def _of_change(
     at: dict[UnitLoad, Floats],
-    loads: PinLoads,
+    given: tuple[PinLoads, dict[UnitLoad, Floats]],
     where: tuple[Floats, float],
     change: tuple[int, Floats],
     times: float,
@@ -95,12 +96,12 @@ def _of_change(
     """What is added to von Mises stress, () Pa, at an angle with a gradient, by `times` more of a
     force (0) or moment (1); NaN where it was not solved.
     """
-    (weight, angle), (kind, one) = where, change
+    (weight, angle), (kind, one), (loads, before) = where, change, given
     if kind:
         more = replace(loads, moments=loads.moments + times * one)
     else:
         more = replace(loads, forces=loads.forces + times * one)
-    now, before, total = more.coefficients(), loads.coefficients(), np.zeros(6)
+    now, total = more.coefficients(), np.zeros(6)
     none = np.zeros((1, 2))
     for load in dict.fromkeys([*now, *before]):
         parts = _turned(load.n, now.get(load, none)[0] - before.get(load, none)[0], angle)

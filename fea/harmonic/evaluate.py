@@ -24,7 +24,7 @@ from fea.singular.probes import rim
 from fea.singular.singularities import VARIED, Singularity, smooth_edges
 from geometry import Pin
 from geometry.arrays import Floats, Mask
-from geometry.mesh.section_mesh import meridian_mesh
+from geometry.mesh.section_mesh import MeridianMesh, meridian_mesh
 from geometry.mesh.sizing import Grade, SectionSize, Spot, size_at
 
 SIZE = SectionSize()  # of the first mesh
@@ -51,6 +51,12 @@ class HarmonicSolution:
     ends: tuple[tuple[float, float], ...] = ()
     quiet: tuple[int, ...] = ()
     elsewhere: Floats = field(default_factory=lambda: np.zeros((0, 6, 0)))
+
+    @property
+    def mesh(self) -> MeridianMesh:
+        """Of the section."""
+        assert self.fields.mesh is not None
+        return self.fields.mesh
 
 
 Key = tuple[object, ...]

@@ -4,35 +4,27 @@ discrete problem on meshes that are moved.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from benchmarks.derivatives import by_differences, moved_maximum, richardson
 from fea.beam.stress_concentration import BENDING, shoulder_factor
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads, UnitLoad
 from fea.derivatives.derivatives import derivatives
 from fea.derivatives.records import Derivatives, SolvedCase
-from fea.derivatives.virtual_work import Interior, shape_gradient, work
+from fea.derivatives.virtual_work import shape_gradient, work
 from fea.harmonic.assembly import Section, elasticity
-from fea.harmonic.evaluate import (
-    SectionProblem,
-    _ends,
-    _rims,
-    harmonic_result,
-    harmonic_solution,
-)
-from fea.harmonic.model import HarmonicModel
-from fea.harmonic.superposition import Circumference
+from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
 from fea.joint.pressure_loads import PressureLoads
 from fea.refine import STEP, singularities_of
 from geometry import Pin, Segment
-from geometry.arrays import Floats
 from geometry.mesh.outline_motion import OtherShapeError, OutlineNodes, Reach
-from geometry.mesh.section_mesh import MeridianMesh, SectionSize, meridian_mesh
-from geometry.shape.dimensions import Dimension, dimensions
+from geometry.mesh.section_mesh import SectionSize, meridian_mesh
+from geometry.shape.dimensions import dimensions
 
 STEEL = Material("steel", 210e9, 0.3, 7850.0)
 HELD = ("start",)
@@ -95,54 +87,12 @@ def found(of: SolvedCase) -> Derivatives:
     return derivatives(of, dimensions(of.pin))
 
 
-def mesh_of(of: SolvedCase) -> MeridianMesh:
-    assert of.solution.fields.mesh is not None
-    return of.solution.fields.mesh
-
-
-def velocities(of: SolvedCase) -> tuple[list[Dimension], Floats]:
-    """(N, 2, P) of the mesh with each dimension."""
-    nodes = OutlineNodes(mesh_of(of), of.pin, [Reach((p.r, p.z), p.radius) for p in of.zones])
-    every = list(dimensions(of.pin))
-    moved = np.stack([nodes.motion(each).velocity for each in every], axis=2)
-    return every, Interior(Section(mesh_of(of)), nodes.rows).velocity(moved)
-
-
-def again(of: SolvedCase, pin: Pin, moved: Floats, material: Material = STEEL) -> float:
-    """The maximum on the same mesh with its nodes moved (N, 2), at the same point, all of it found
-    anew.
-    """
-    mesh = mesh_of(of)
-    mesh = replace(mesh, mesh=replace(mesh.mesh, doflocs=mesh.mesh.doflocs + moved.T))
-    zones = singularities_of(pin, material, of.clamps, (of.loads,))
-    units = tuple(of.loads.coefficients())
-    fields = HarmonicModel(pin, mesh, material, of.clamps).solve(
-        units, _rims(pin, zones), _ends(pin, of.clamps, units)
-    )
-    old = Circumference(of.solution.fields, of.loads).top(of.solution.fields.outside(of.zones))
-    value, _ = Circumference(fields, of.loads).round(np.array([old.point]), np.array([0]))
-    return float(value[0])
-
-
-def richardson(at: Callable[[float], float], step: float) -> float:
-    def central(h: float) -> float:
-        return (at(h) - at(-h)) / (2.0 * h)
-
-    return (4.0 * central(step / 2.0) - central(step)) / 3.0
-
-
 def check_differences(of: SolvedCase, some: slice) -> None:
-    """Relative to the maximum over the dimension, with step 1e-3 of that."""
-    ours, (every, velocity) = found(of), velocities(of)
-    for k in range(len(every))[some]:
-        one = every[k]
-
-        def at(x: float, k: int = k, one: Dimension = one) -> float:
-            return again(of, one.changed(one.value + x), x * velocity[:, :, k])
-
-        theirs = richardson(at, 1e-3 * one.value)
-        close = pytest.approx(theirs, abs=1e-6 * ours.maximum / one.value)
-        assert ours.by_dimension[one.key] == close, one.key
+    """Relative to the maximum over the dimension."""
+    ours, values = found(of), {one.key: one.value for one in dimensions(of.pin)}
+    for key, theirs in by_differences(of, some).items():
+        close = pytest.approx(theirs, abs=1e-6 * ours.maximum / values[key])
+        assert ours.by_dimension[key] == close, key
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -184,14 +134,14 @@ def test_sums_over_dimensions_and_loads(name: str) -> None:
 @pytest.mark.parametrize("name", [*CASES][::3])
 def test_by_poissons_ratio(name: str) -> None:
     of = solved(*CASES[name])
-    still = np.zeros((mesh_of(of).mesh.doflocs.shape[1], 2))
+    still = np.zeros((of.solution.mesh.mesh.doflocs.shape[1], 2))
 
     def at(x: float) -> float:
-        return again(of, of.pin, still, replace(STEEL, poisson_ratio=0.3 + x))
+        return moved_maximum(of, of.pin, still, replace(STEEL, poisson_ratio=0.3 + x))
 
     ours = found(of)
     assert ours.poisson_ratio == pytest.approx(richardson(at, 1e-3), abs=1e-6 * ours.maximum)
-    stiffer = again(of, of.pin, still, replace(STEEL, youngs_modulus=100e9))
+    stiffer = moved_maximum(of, of.pin, still, replace(STEEL, youngs_modulus=100e9))
     assert stiffer == pytest.approx(ours.maximum, rel=1e-9)
     assert ours.youngs_modulus == 0.0
 
@@ -313,7 +263,7 @@ def test_ties_are_named() -> None:
     r, z = np.hypot(*ours.location[:2]), ours.location[2]
     assert any(np.hypot(r - R, 0.07 - z - Z) < 2e-3 for R, Z in ours.tied_places)
     alone = found(solved(SHOULDER, HELD, ACROSS))
-    assert alone.tied_places == alone.tied_times == ()
+    assert (alone.tied_places, alone.tied_times) == ((), ())
 
 
 def test_a_dimension_with_another_shape_on_one_side_has_none() -> None:

@@ -1,0 +1,146 @@
+"""Derivatives of the largest stress: their price beside the solution, and how right they are."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TypeVar
+
+import numpy as np
+
+from benchmarks.random_pins import STEEL, Trial, trials
+from benchmarks.timing import table
+from fea.asked import Asked
+from fea.core.material import Material
+from fea.derivatives.derivatives import derivatives
+from fea.derivatives.records import Derivatives, SolvedCase
+from fea.derivatives.virtual_work import Interior
+from fea.harmonic.assembly import Section
+from fea.harmonic.evaluate import HarmonicAnswer, _ends, _rims
+from fea.harmonic.model import HarmonicModel
+from fea.harmonic.superposition import Circumference
+from fea.solve_pin import singularities_of, solve_pin
+from geometry import Pin
+from geometry.arrays import Floats
+from geometry.mesh.outline_motion import OutlineNodes, Reach
+from geometry.shape.dimensions import Dimension, dimensions
+
+T = TypeVar("T")
+PINS = 10
+STEP = 1e-3  # of a dimension, for differences
+FINE = 0.005  # tolerance of meshes that are taken for true
+
+
+def price() -> str:
+    """Price and errors of random pins with fillets."""
+    rows = [_row(trial) for trial in trials(PINS, seed=22)]
+    head = (
+        "pin",
+        "unknowns",
+        "dimensions",
+        "solution, s",
+        "derivatives, s",
+        "price",
+        "off Richardson's",
+        "off finer meshes",
+    )
+    ratio = float(np.median([row[-3] for row in rows]))
+    return (
+        "Random pins with fillets, processor times: all derivatives of a case (dimensions, loads, "
+        f"material) take {ratio:.2g} of the solution (median). Differences are central, "
+        "extrapolated by Richardson, of the same mesh moved as a whole; finer meshes are those of "
+        f"a tolerance of {FINE:.1%}. Both errors are the largest over all dimensions p, of "
+        "p dσ/dp relative to its largest:\n\n" + table(head, rows)
+    )
+
+
+def _row(trial: Trial) -> tuple[object, ...]:
+    solution, solving = _timed(lambda: _solved(trial, Asked(model="harmonic")))
+    every = list(dimensions(trial.pin))
+    ours, deriving = _timed(lambda: derivatives(solution, every))
+    scale = max(abs(one.value * ours.by_dimension[one.key]) for one in every)
+    fine = derivatives(_solved(trial, Asked(FINE, model="harmonic")), every)
+    theirs = by_differences(solution)
+    off = max(abs(one.value * (ours.by_dimension[one.key] - theirs[one.key])) for one in every)
+    return (
+        trial.pin.name,
+        f"{solution.solution.fields.unknowns:,}",
+        len(every),
+        solving,
+        deriving,
+        deriving / solving,
+        f"{off / scale:.0e}",
+        f"{_apart(ours, fine, every):.1%}",
+    )
+
+
+def _apart(ours: Derivatives, fine: Derivatives, every: list[Dimension]) -> float:
+    one, other = (
+        np.array([p.value * x.by_dimension[p.key] for p in every]) / x.maximum for x in (ours, fine)
+    )
+    return float(np.abs(one - other).max() / np.abs(other).max())
+
+
+def _timed(work: Callable[[], T]) -> tuple[T, float]:
+    start = time.process_time()
+    made = work()
+    return made, time.process_time() - start
+
+
+def _solved(trial: Trial, asked: Asked) -> SolvedCase:
+    (found,) = solve_pin(trial.pin, STEEL, trial.clamps, (trial.loads,), asked)
+    assert isinstance(found.answer, HarmonicAnswer)
+    assert found.peak.governing is not None
+    zones = found.answer.singularities
+    loads = found.peak.governing
+    return SolvedCase(trial.pin, STEEL, trial.clamps, loads, found.answer.solution, zones)
+
+
+def velocities(of: SolvedCase) -> tuple[list[Dimension], Floats]:
+    """(N, 2, P) of the mesh with each dimension."""
+    reaches = [Reach((p.r, p.z), p.radius) for p in of.zones]
+    nodes = OutlineNodes(of.solution.mesh, of.pin, reaches)
+    every = list(dimensions(of.pin))
+    moved = np.stack([nodes.motion(each).velocity for each in every], axis=2)
+    return every, Interior(Section(of.solution.mesh), nodes.rows).velocity(moved)
+
+
+def moved_maximum(of: SolvedCase, pin: Pin, moved: Floats, material: Material) -> float:
+    """The stress at the governing point on the same mesh with its nodes moved (N, 2), all of it
+    found anew.
+    """
+    mesh = of.solution.mesh
+    mesh = replace(mesh, mesh=replace(mesh.mesh, doflocs=mesh.mesh.doflocs + moved.T))
+    zones = singularities_of(pin, material, of.clamps, (of.loads,))
+    units = tuple(of.loads.coefficients())
+    ends = _ends(pin, of.clamps, units)
+    fields = HarmonicModel(pin, mesh, material, of.clamps).solve(units, _rims(pin, zones), ends)
+    before = of.solution.fields
+    old = Circumference(before, of.loads).top(before.outside(of.zones))
+    value, _ = Circumference(fields, of.loads).round(np.array([old.point]), np.array([0]))
+    return float(value[0])
+
+
+def by_differences(of: SolvedCase, some: slice = slice(None)) -> dict[str, float]:
+    """Derivatives of that by some of the dimensions, Pa/m."""
+    every, velocity = velocities(of)
+    out = {}
+    for k in range(len(every))[some]:
+        one = every[k]
+
+        def at(x: float, one: Dimension = one, k: int = k) -> float:
+            pin = one.changed(one.value + x)
+            return moved_maximum(of, pin, x * velocity[:, :, k], of.material)
+
+        out[one.key] = richardson(at, STEP * one.value)
+    return out
+
+
+def richardson(at: Callable[[float], float], step: float) -> float:
+    """Derivative at 0 by central differences with a step and with half of it."""
+
+    def central(h: float) -> float:
+        return (at(h) - at(-h)) / (2.0 * h)
+
+    return (4.0 * central(step / 2.0) - central(step)) / 3.0
