@@ -11,12 +11,12 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
-from benchmarks.timing import power, table
+from benchmarks.timing import Floats, power, table
 from pinstress import Study, shipped_studies, study_from
 from pinstress.designs.batches import Batch, Batches, Done
 from pinstress.designs.sweep import Kept, Sweep, planned, solved
@@ -43,18 +43,18 @@ def sweep() -> str:
     """The tables."""
     grown = [_measured(_study(count), JOBS) for count in COUNTS]
     rows = [
-        (f"{count:,}", m.seconds, 1e3 * JOBS * m.seconds / count, m.most)
+        (f"{count:,}", m.seconds, m.cpu, 1e3 * m.cpu / count, m.most)
         for count, m in zip(COUNTS, grown, strict=True)
     ]
-    seconds = np.array([m.seconds for m in grown])
+    seconds = np.array([m.cpu for m in grown])
     exponent = power(np.array(COUNTS, float), seconds) if len(COUNTS) > 1 else math.nan
-    head = ("designs", "s", "ms of a process a design", "memory of all processes, MB")
+    head = ("designs", "s", "processor time, s", "ms of it a design", "memory, MB")
     return "\n\n".join(
         [
             f"The pin of studies/one_pin.toml by {JOBS} processes on this machine, their start "
-            "included. A Sobol sequence of a diameter, a force and a strength: every design has "
-            f"another shape, meshed three times. Time grows with the power {exponent:.2f} of the "
-            "number of designs:",
+            "and memory included. A Sobol sequence of a diameter, a force and a strength: every "
+            "design has another shape, meshed three times. Processor time grows with the power "
+            f"{exponent:.2f} of the number of designs:",
             table(head, rows),
             _kinds(),
             _efficiency(),
@@ -73,18 +73,21 @@ def _study(count: int, shapes: int = 0) -> Study:
 
 @dataclass
 class Memory:
-    """The most (MB) that this process and its children had together."""
+    """The most memory (MB) that this process and its children had together, and their processor
+    time, s.
+    """
 
     most: float = 0.0
+    cpu: float = 0.0
 
 
 @dataclass(frozen=True)
 class Measured:
-    """A sweep: wall time, s, and memory of all its processes, MB."""
+    """A sweep: wall time and processor time of all its processes, s, and their memory, MB."""
 
     seconds: float
+    cpu: float
     most: float
-    stored: Kept = field(repr=False)
 
 
 @contextmanager
@@ -92,16 +95,18 @@ def _watched() -> Iterator[Memory]:
     import psutil
 
     found, done, us = Memory(), threading.Event(), psutil.Process()
+    before = sum(us.cpu_times()[:2])
 
     def watch() -> None:
         while not done.wait(0.25):
-            total = 0.0
+            total = cpu = 0.0
             for each in (us, *us.children(recursive=True)):
                 try:
                     total += each.memory_full_info().pss / 2**20
+                    cpu += sum(each.cpu_times()[:2])
                 except psutil.Error:  # it has ended
                     continue
-            found.most = max(found.most, total)
+            found.most, found.cpu = max(found.most, total), max(found.cpu, cpu - before)
 
     thread = threading.Thread(target=watch, daemon=True)
     thread.start()
@@ -113,12 +118,11 @@ def _watched() -> Iterator[Memory]:
 
 
 def _measured(study: Study, jobs: int) -> Measured:
-    store = Kept()
-    with _watched() as memory:
+    with _watched() as used:
         start = time.perf_counter()
-        solved(planned(study), store, jobs)
+        solved(planned(study), Kept(), jobs)
         spent = time.perf_counter() - start
-    return Measured(spent, memory.most, store)
+    return Measured(spent, used.cpu, used.most)
 
 
 def _kinds() -> str:
@@ -132,8 +136,8 @@ def _kinds() -> str:
     ):
         designs = len(planned(study).values)
         found = _measured(study, JOBS)
-        rows.append((name, f"{designs:,}", found.seconds, 1e3 * JOBS * found.seconds / designs))
-    head = ("designs", "number", "s", "ms of a process a design")
+        rows.append((name, f"{designs:,}", found.seconds, found.cpu, 1e3 * found.cpu / designs))
+    head = ("designs", "number", "s", "processor time, s", "ms of it a design")
     return "What is the same in several designs is not solved again:\n\n" + table(head, rows)
 
 
@@ -205,7 +209,7 @@ def _simulated() -> str:
     )
 
 
-def _simulate(length: float, relative: np.ndarray, overhead: float) -> float:  # type: ignore[type-arg]
+def _simulate(length: float, relative: Floats, overhead: float) -> float:
     """The share of all time in which processes work. A scheduler hands out one batch after the
     other, each process has one that is solved and one that waits.
     """

@@ -19,7 +19,7 @@ import numpy as np
 
 from pinstress.designs.evaluate import DesignRow, Evaluator
 from pinstress.designs.laws import Floats
-from pinstress.designs.parameters import Number
+from pinstress.designs.number import Number
 from pinstress.study.file import Study, parse_study
 
 AIM = 2.0  # s of work in a batch

@@ -69,7 +69,7 @@ def correlations_of(
 def root_of(matrix: Floats) -> Floats:
     """A matrix L (p, p) with L L^T = `matrix`, lower triangular unless that is singular."""
     try:
-        return np.linalg.cholesky(matrix)
+        return np.asarray(np.linalg.cholesky(matrix), np.float64)
     except np.linalg.LinAlgError:
         values, vectors = np.linalg.eigh(matrix)
         return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0)), np.float64)

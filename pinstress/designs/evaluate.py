@@ -26,7 +26,8 @@ from pinstress.analysis.solve import solutions
 from pinstress.analysis.stored import shape_of
 from pinstress.cache.serialise import pack
 from pinstress.designs.laws import Floats
-from pinstress.designs.parameters import Number, Parameter, put
+from pinstress.designs.number import Number, put
+from pinstress.designs.parameters import Parameter
 from pinstress.model.cases import CaseLoads, case_loads
 from pinstress.model.mechanism.linkage import determined, linkage
 from pinstress.model.pins import pin as pin_of

@@ -7,14 +7,11 @@ nominal sizes up to 500 mm.
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
 
 from loads.coded import LoadsArgumentError
+from pinstress.designs.number import Number
 from pinstress.schema.shown import shown
 from pinstress.schema.units import UnitSystem, to_si
-
-if TYPE_CHECKING:
-    from pinstress.designs.parameters import Number
 
 UP_TO = (3, 6, 10, 18, 30, 50, 80, 120, 180, 250, 315, 400, 500)  # mm, nominal sizes
 GRADES = {  # micrometres

@@ -1,13 +1,8 @@
-"""The numbers of a study that vary: where each stands, its dimension, and its law.
-
-Any number of a study has a key, as messages spell it; what reads it says of which dimension it is.
-"""
+"""The numbers of a study that vary, each by its law."""
 
 from __future__ import annotations
 
-import copy
-import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -24,39 +19,14 @@ from pinstress.designs.laws import (
     cut_off,
     of_tolerance,
 )
+from pinstress.designs.number import Number, Path, number_at
 from pinstress.schema.shown import shown
-from pinstress.schema.types import Probe
-from pinstress.schema.units import DIMENSIONS, UNIT_NEEDED, UnitSystem, split, to_si
+from pinstress.schema.units import UnitSystem, to_si
 from pinstress.schema.vary import ParameterTable
-from pinstress.study.errors import Errors, InputError
-from pinstress.study.file import Study, raw_study
-from pinstress.study.in_python import key_parts
+from pinstress.study.errors import Errors
+from pinstress.study.file import Study
 
-ANGLES = {"angle": ("deg", math.pi / 180.0)}  # others are in radians
-RADIANS = {"angular velocity": "rad/s", "angular acceleration": "rad/s^2"}
 LITTLE = 1e-6  # of the probability: a law must not be cut off so far
-
-Path = tuple[str | int, ...]
-
-
-@dataclass(frozen=True)
-class Number:
-    """A number of the study: its key, its path in what `raw_study` returns, its dimension (empty
-    of a number without one) and its value in SI. unit: of a design's values in tables, `factor` its
-    SI value; written: whether the study must give it as a text with that unit.
-    """
-
-    key: str
-    path: Path
-    dimension: str
-    nominal: float
-    unit: str = ""
-    factor: float = 1.0
-    written: bool = False
-
-    def in_study(self, value: float) -> float | str:
-        """A value in its unit (not SI) as the study may write it."""
-        return f"{value!r} {self.unit}" if self.written else value
 
 
 @dataclass(frozen=True)
@@ -126,138 +96,6 @@ def parameters_of(study: Study, sampled: bool = True) -> tuple[Parameter, ...]:
     if sampled and vary.sample == "grid":
         _require_grid(study, made)
     return made
-
-
-def number_at(study: Study, key: str) -> Number:
-    """The number with a key. Raises: InputError for a key that names no number."""
-    raw = raw_study(study)
-    path = _path(study, raw, key)
-    value = _at(raw, path)
-    if isinstance(value, bool) or not isinstance(value, int | float | str):
-        what = "a table" if isinstance(value, Mapping) else "a list"
-        what = "true or false" if isinstance(value, bool) else what
-        raise _no_number(study, key, f"is {what}, not a number")
-    try:
-        return _number(study, raw, key, path, value)
-    except LoadsArgumentError as error:
-        raise study.error(f"{key}: {error}", code=error.code) from None
-
-
-def put(raw: dict[str, Any], path: Path, value: Any) -> dict[str, Any]:
-    """A copy of a study's raw content with another value at a path; the rest is shared."""
-    made = copy.copy(raw)
-    here: Any = made
-    for part in path[:-1]:
-        here[part] = copy.copy(here[part])
-        here = here[part]
-    here[path[-1]] = value
-    return made
-
-
-def _number(study: Study, raw: dict[str, Any], key: str, path: Path, value: Any) -> Number:
-    dimension = _dimension(study, raw, path)
-    if not dimension and isinstance(value, str):
-        found = split(value)
-        if found is None or not found[1]:
-            raise _no_number(study, key, f"is the text {shown(value)}, not a number")
-        dimension = _dimension_of_unit(found[1])
-        if not dimension:
-            raise _no_number(study, key, f"is {shown(value)}, whose unit has no known dimension")
-    if not dimension:
-        if isinstance(value, int) and _whole(study, raw, path):
-            raise _no_number(study, key, "is a whole number, which cannot vary continuously")
-        return Number(key, path, "", float(value))
-    nominal = to_si(value, dimension, study.system)
-    if dimension in ANGLES:
-        return Number(key, path, dimension, nominal, *ANGLES[dimension], written=True)
-    if dimension in UNIT_NEEDED:
-        return Number(key, path, dimension, nominal, RADIANS[dimension], written=True)
-    system = study.system
-    return Number(
-        key, path, dimension, nominal, unit_of(system, dimension), system.factor(dimension)
-    )
-
-
-def unit_of(system: UnitSystem, dimension: str) -> str:
-    """The name of a system's unit of a dimension, in length, force, time and stress."""
-    if dimension == "stress":
-        return system.stress
-    exponents, _ = DIMENSIONS[dimension]
-    names = (system.force, system.length, system.time)
-    powers = [(name, exponents[k]) for name, k in zip(names, (1, 0, 2), strict=True)]
-    above, below = (
-        " ".join(f"{n}^{abs(e)}" if abs(e) > 1 else n for n, e in powers if e * sign > 0)
-        for sign in (1, -1)
-    )
-    return f"{above or '1'}/{below}" if below else above
-
-
-def _dimension(study: Study, raw: dict[str, Any], path: Path) -> str:
-    probe = Probe(1.0)
-    _validate(study, put(raw, path, probe))
-    return probe.dimension
-
-
-def _whole(study: Study, raw: dict[str, Any], path: Path) -> bool:
-    """Whether nothing but a whole number may be there."""
-    found = _validate(study, put(raw, path, 0.5))
-    return any(kind in ("int_type", "int_from_float") for kind in found)
-
-
-def _validate(study: Study, raw: dict[str, Any]) -> list[str]:
-    """The kinds of errors."""
-    from pydantic import ValidationError
-
-    from pinstress.schema.tables import StudyTable
-
-    try:
-        StudyTable.model_validate(raw, context={"system": study.system})
-    except ValidationError as error:
-        return [each["type"] for each in error.errors()]
-    return []
-
-
-def _dimension_of_unit(unit: str) -> str:
-    from pinstress.schema.units import USUAL
-
-    return USUAL[unit][0] if unit in USUAL else ""
-
-
-def _path(study: Study, raw: Any, key: str) -> Path:
-    """In the raw content. A list of one element may be meant without its index, and a table where
-    there may be a list with [1].
-    """
-    found: list[str | int] = []
-    here = raw
-    for part in key_parts(study, key):
-        if isinstance(part, str) and isinstance(here, list) and len(here) == 1:
-            found.append(0)
-            here = here[0]
-        if part == 0 and isinstance(here, Mapping):
-            continue
-        there = here[part] if _has(here, part) else None
-        if there is None or (not found and part == "vary"):
-            said = f"[{part + 1}]" if isinstance(part, int) else shown(part)
-            raise _no_number(study, key, f"the study has no {said} there; write it in the study")
-        found.append(part)
-        here = there
-    return tuple(found)
-
-
-def _has(here: Any, part: str | int) -> bool:
-    if isinstance(part, int):
-        return isinstance(here, list) and 0 <= part < len(here)
-    return isinstance(here, Mapping) and part in here
-
-
-def _at(raw: Any, path: Path) -> Any:
-    for part in path:
-        raw = raw[part]
-    return raw
-
-
-def _no_number(study: Study, key: str, why: str) -> InputError:
-    return study.error(f"vary.parameters.{key}: {why}", code="not-a-varying-number")
 
 
 def _require_different(study: Study, made: Iterable[Parameter]) -> None:

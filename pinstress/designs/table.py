@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pinstress.designs.evaluate import DesignRow
-from pinstress.designs.parameters import Parameter, unit_of
+from pinstress.designs.number import unit_of
+from pinstress.designs.parameters import Parameter
 from pinstress.study.file import Study
 
 if TYPE_CHECKING:

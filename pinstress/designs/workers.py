@@ -54,7 +54,7 @@ def solve_on(
     from distributed import as_completed
 
     ready = as_completed(raise_errors=False)
-    running: dict[str, Batch] = {}
+    running: dict[Any, Batch] = {}
 
     def start(batch: Batch) -> None:
         future = client.submit(solve, problem, batch, pure=False)

@@ -8,8 +8,10 @@ import pytest
 
 import pinstress
 from pinstress import InputError, Study, changed_study, load_study, shipped_studies, study_from
+from pinstress.analysis.solve import solutions
 from pinstress.designs.evaluate import Evaluator, Recent
-from pinstress.designs.parameters import number_at
+from pinstress.designs.number import number_at
+from pinstress.model.cases import case_loads
 from tests.support.swept import DIAMETER, FORCE, ONE_PIN, STRENGTH
 
 MODULUS = "material.AISI 4340.youngs_modulus"
@@ -116,7 +118,7 @@ def test_pins_that_a_number_does_not_touch_are_solved_once(
     evaluator = Evaluator(study, [times, width], pins=["B", "E"], cases=["landing"])
     solved: list[str] = []
     cases: list[str] = []
-    whole, loads = module.solutions, module.case_loads
+    whole, loads = solutions, case_loads
 
     def counted(study: Study, task: object, *more: object) -> object:
         solved.append(getattr(task, "pin").name)  # noqa: B009

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,15 +11,16 @@ from scipy import stats
 
 from pinstress.designs.correlations import correlations_of
 from pinstress.designs.fits import UP_TO, limits_of
-from pinstress.designs.laws import Law, LogNormal, Normal, Triangular, Uniform, of_tolerance
-from pinstress.designs.parameters import Number, parameters_of
+from pinstress.designs.laws import Floats, Law, LogNormal, Normal, Triangular, Uniform, of_tolerance
+from pinstress.designs.number import Number
+from pinstress.designs.parameters import parameters_of
 from pinstress.designs.sample import designs_of
 from pinstress.schema.units import SYSTEMS
 from pinstress.schema.vary import VaryTable
 from tests.support.swept import DIAMETER, FORCE, STRENGTH, swept
 
 SIGMA = float(np.sqrt(np.log1p(0.2**2)))
-KNOWN = {
+KNOWN: dict[str, tuple[Law, Any]] = {
     "uniform": (Uniform(2.0, 5.0), stats.uniform(2.0, 3.0)),
     "normal": (Normal(10.0, 2.0), stats.norm(10.0, 2.0)),
     "cut off": (Normal(10.0, 2.0, 9.0, 15.0), stats.truncnorm(-0.5, 2.5, 10.0, 2.0)),
@@ -102,7 +104,7 @@ VARIED = f"""
 """
 
 
-def _designs(head: str, more: str = "") -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
+def _designs(head: str, more: str = "") -> Floats:
     study = swept(VARIED + more, head)
     parameters = parameters_of(study)
     assert study.table.vary is not None
@@ -143,7 +145,7 @@ def test_a_grid_has_all_combinations_the_first_parameter_slowest() -> None:
 def test_correlated_numbers_vary_together() -> None:
     pair = f'[[vary.correlations]]\nbetween = ["{FORCE}", "{STRENGTH}"]\ncoefficient = -0.8\n'
     found = _designs('sample = "sobol"\ncount = 4096', pair)
-    matrix = np.corrcoef(found.T)
+    matrix = np.asarray(np.corrcoef(found.T))
     assert matrix[1, 2] == pytest.approx(-0.8, abs=0.01)
     assert np.abs(matrix[0, 1:]).max() < 0.01
     assert found[:, 2].std() == pytest.approx(5.0 * 6894757.293168361, rel=0.01)

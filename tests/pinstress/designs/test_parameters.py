@@ -10,7 +10,8 @@ import pytest
 from pinstress import InputError, load_study, shipped_studies, study_from
 from pinstress.designs.correlations import correlations_of
 from pinstress.designs.laws import Uniform
-from pinstress.designs.parameters import number_at, parameters_of, unit_of
+from pinstress.designs.number import number_at, unit_of
+from pinstress.designs.parameters import parameters_of
 from pinstress.schema.units import DIMENSIONS, SYSTEMS, to_si
 from tests.support.swept import DIAMETER, FORCE, ONE_PIN, STRENGTH, swept, varied
 

@@ -13,7 +13,8 @@ from pyarrow import parquet
 import pinstress
 from pinstress import InputError
 from pinstress.designs.batches import AIM, MOST, Batch, Batches, DesignProblem, Done, solve_batch
-from pinstress.designs.parameters import number_at, parameters_of
+from pinstress.designs.number import number_at
+from pinstress.designs.parameters import parameters_of
 from pinstress.designs.parts import Parts, identity, is_ours
 from pinstress.designs.sweep import Kept, planned, solved
 from pinstress.designs.table import assembled, facts, write_table
@@ -105,7 +106,7 @@ def test_only_what_is_missing_is_solved(table: pa.Table, monkeypatch: pytest.Mon
     import pinstress.designs.workers as module
 
     batches: list[Batch] = []
-    whole = module.solve_batch
+    whole = solve_batch
 
     def noted(problem: DesignProblem, batch: Batch) -> Done:
         batches.append(batch)

@@ -85,10 +85,10 @@ def test_an_unfinished_sweep_is_kept_and_goes_on(
 ) -> None:
     """Interrupted after the third batch; another study does not go on with it."""
     import pinstress.designs.workers as module
-    from pinstress.designs.batches import Batch, DesignProblem, Done
+    from pinstress.designs.batches import Batch, DesignProblem, Done, solve_batch
 
     _study(tmp_path)
-    whole, count = module.solve_batch, 0
+    whole, count = solve_batch, 0
 
     def interrupted(problem: DesignProblem, batch: Batch) -> Done:
         nonlocal count
