@@ -7,7 +7,7 @@ one of designs that were solved as a run solves them: nothing is fitted or inter
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -52,8 +52,8 @@ def assess(
     nominal: Results,
     jobs: int,
     progress: Progress,
-    pins: Iterable[str] | None = None,
-    cases: Iterable[str] | None = None,
+    pins: Sequence[str] | None = None,
+    cases: Sequence[str] | None = None,
 ) -> Reliability:
     """Assess the pins of a study in its cases. nominal: the results of the study as it is.
 
@@ -66,7 +66,7 @@ def assess(
     designs = Designs(evaluator, space, jobs, progress)
     plain = plain_draws(asked.samples, space.size, asked.seed)
     sampled = Sample(plain, designs.at(plain.u, "plain sampling"))
-    forms = [_first_order(designs, sampled, k, asked) for k in range(len(evaluator.table))]
+    forms = _first_orders(study, parameters, designs, sampled, cases)
     centres = [c for form in forms for c in form.centres]
     weighted = _weighted(designs, centres, asked)
     shares = _indices(designs, asked) if space.lower is None else None
@@ -121,24 +121,44 @@ class _Form:
     nearest: DesignPoint | None = None
 
 
-def _first_order(designs: Designs, sampled: Sample, row: int, asked: ReliabilityTable) -> _Form:
-    """Design points of a row from the mean and from samples that fail in other directions."""
+def _first_orders(
+    study: Study,
+    parameters: tuple[Parameter, ...],
+    designs: Designs,
+    sampled: Sample,
+    cases: Sequence[str] | None,
+) -> list[_Form]:
+    """Of all rows; only the pin of a row is solved."""
+    table = designs.evaluator.table
+    found: dict[tuple[str, str], _Form] = {}
+    for pin in dict.fromkeys(pin for pin, _ in table):
+        alone = designs.of_pin(Evaluator(study, parameters, [pin], cases))
+        for k, row in enumerate(alone.evaluator.table):
+            starts = _starts(sampled, table.index(row), study.table.reliability.factor)
+            found[row] = _first_order(alone, k, starts, study.table.reliability)
+    return [found[row] for row in table]
+
+
+def _first_order(designs: Designs, row: int, starts: list[Array], asked: ReliabilityTable) -> _Form:
+    """Design points of a row from the mean and from other starts in other directions."""
     size = designs.space.size
     close = NOISY if any(map(shapes, designs.evaluator.numbers)) else SMOOTH
     limit = designs.limit(row, asked.factor)
     points = [design_point(limit, np.zeros(size), close)]
-    for start in _starts(sampled, row, asked.factor):
+    for start in starts:
         known = [p.direction @ start for p in points if not p.why]
         if all(cosine < APART * float(np.linalg.norm(start)) for cosine in known):
             points.append(design_point(limit, start, close))
     kept = distinct(points)
-    lowest = form_quantile(
-        lambda u: -designs.at(u, "FORM").used[:, row], asked.probability, size, close
-    )
+
+    def unused(u: Array) -> Array:
+        return -designs.at(u, "FORM").used[:, row]
+
+    lowest = form_quantile(unused, asked.probability, size, close)
     value = -1.0 / lowest.value if lowest.value else np.inf
     centres = [p.u for p in kept]
-    if not lowest.why:
-        centres += [lowest.u] if all(np.linalg.norm(lowest.u - c) > 1.0 for c in centres) else []
+    if not lowest.why and all(np.linalg.norm(lowest.u - c) > 1.0 for c in centres):
+        centres.append(lowest.u)
     if not kept:
         return _Form(FirstOrder(np.nan, np.nan, value, 0, points[0].why), tuple(centres))
     nearest = kept[0]

@@ -76,6 +76,12 @@ class Designs:
         self.solved, self.reasons = Counter[str](), Counter[str]()
         self._jobs, self._progress = jobs, progress
 
+    def of_pin(self, evaluator: Evaluator) -> Designs:
+        """The same with the rows of one pin, counted together."""
+        mine = Designs(evaluator, self.space, 1, self._progress)
+        mine.solved, mine.reasons = self.solved, self.reasons
+        return mine
+
     def at(self, u: Array, purpose: str) -> Answers:
         """Of designs u (n, d)."""
         self.solved[purpose] += len(u)

@@ -26,9 +26,10 @@ from scipy.special import ndtr, ndtri
 Array = NDArray[np.float64]
 LimitState = Callable[[Array], Array]  # at u (n, d): values (n,), failing where negative
 
-FARTHEST = 10.0  # standard deviations: beyond, the probability is below 1e-23
+FARTHEST = 10.0  # standard deviations: where the search ends, probabilities are below 1e-18
 MOST = 30  # iterations
 HALVINGS = 12
+NEARLY = 0.01  # angle of a quantile's point, whose square is in the value
 
 
 @dataclass(frozen=True)
@@ -167,7 +168,8 @@ def form_quantile(
         if why:
             return FormQuantile(np.nan, u, g.calls, why)
         target = radius * gradient / slope
-        if u.any() and float(np.linalg.norm(u - target)) <= close.angle * abs(radius):
+        angle = max(close.angle, NEARLY)
+        if u.any() and float(np.linalg.norm(u - target)) <= angle * abs(radius):
             return FormQuantile(value, u, g.calls)
         if radius == 0.0:
             return FormQuantile(value, u, g.calls)
@@ -190,8 +192,8 @@ def _stuck(value: float, slope: float, scale: float, u: Array) -> str:
         return "a design near the design point fails"
     if slope <= 1e-12 * scale:
         return "nothing random changes the factor there"
-    if float(np.linalg.norm(u)) >= FARTHEST:
-        return f"no failure is found within {FARTHEST:g} standard deviations"
+    if float(np.linalg.norm(u)) > 0.9 * FARTHEST and value > 0.0:
+        return f"no failure is found within {0.9 * FARTHEST:g} standard deviations"
     return ""
 
 

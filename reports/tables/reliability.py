@@ -198,7 +198,8 @@ def drivers_grid(found: Reliability) -> Grid:
     """What drives each row, the most important first."""
     body = []
     for risk in found.risks:
-        for each in sorted(risk.drivers, key=lambda d: -(d.importance or 0.0)):
+        known = [d for d in risk.drivers if d.importance is not None or d.first is not None]
+        for each in sorted(known, key=lambda d: -(d.importance or 0.0)):
             body.append([risk.pin, risk.case, each.parameter, _per_cent(each.importance),
                          _share(each.first), _share(each.total)])  # fmt: skip
     head = ["pin", "case", "parameter", "importance (FORM)", "Sobol index", "total Sobol index"]

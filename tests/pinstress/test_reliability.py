@@ -146,7 +146,7 @@ def test_nothing_fails_gives_an_upper_bound_only(
     assert "Not decided: pin A, case pull" in printed.err
     (risk,) = json.loads((tmp_path / "out" / "reliability.json").read_text())["risks"]
     assert risk["sampled"] == {"value": 0.0, "low": 0.0, "high": pytest.approx(0.16843, rel=1e-4)}
-    assert "10 standard deviations" in risk["form"]["why"]
+    assert "9 standard deviations" in risk["form"]["why"]
     assert risk["form"]["probability"] is None
 
 

@@ -146,7 +146,7 @@ def test_what_does_not_converge_is_reported() -> None:
     flat = design_point(lambda u: np.ones(len(u)), np.zeros(2))
     assert "nothing random" in flat.why
     far = design_point(plane(20.0, np.array([1.0, 0.0])), np.zeros(2))
-    assert "10 standard deviations" in far.why
+    assert "9 standard deviations" in far.why
     lost = design_point(lambda u: np.where(u[:, 0] > 1.0, np.nan, 2.0 - u[:, 0]), np.zeros(2))
     assert lost.why
     assert np.isnan(lost.index)

@@ -1,0 +1,73 @@
+"""Which estimate of a row counts, what is decided, and how it is worded."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from pinstress.reliability.designs import Answers
+from reports.data.reliability import ByErrors, FirstOrder, Reliability, Risk, Spread
+from reports.plots.reliability import distribution_plot
+from reports.tables.reliability import chance_range, factor_interval, remark, risks_grid
+from reports.text.reliability import sentence
+
+PLAIN = Spread(0.03, 0.02, 0.04)
+ROW = Risk("A", "pull", "converged", 1.25, PLAIN, 60, 0, Spread(0.9, 0.8, 1.0))
+
+
+def test_the_narrower_interval_counts() -> None:
+    row = replace(ROW, weighted=Spread(0.031, 0.029, 0.033))
+    assert row.by_weights
+    assert row.probability == row.weighted
+    assert not replace(ROW, weighted=Spread(0.03, 0.01, 0.09)).by_weights
+
+
+def test_estimates_that_contradict_are_not_decided_and_the_plain_one_counts() -> None:
+    row = replace(ROW, weighted=Spread(1e-4, 0.9e-4, 1.1e-4))
+    assert row.disagrees
+    assert row.probability == PLAIN
+    assert row.result(0.5) == "not decided"
+    assert "contradict" in remark(row)
+
+
+def test_the_interval_decides_with_the_error_of_the_mesh() -> None:
+    assert [ROW.result(p) for p in (0.01, 0.03, 0.05)] == ["fails", "not decided", "safe"]
+    wide = ByErrors(0.01, Spread(0.02, 0.01, 0.03), Spread(0.05, 0.04, 0.06))
+    row = replace(ROW, mesh=wide)
+    assert [row.result(p) for p in (0.005, 0.01, 0.05, 0.06)] == [
+        "fails", "not decided", "not decided", "safe",
+    ]  # fmt: skip
+    assert replace(ROW, verdict="singular").result(0.05) == "not decided"
+    assert replace(ROW, verdict="singular").result(0.01) == "fails"
+
+
+def test_no_probability_without_its_interval() -> None:
+    assert chance_range(PLAIN) == "0.03 (0.02 to 0.04)"
+    assert chance_range(Spread(0.0, 0.0, 0.168)) == "below 0.168"
+    assert factor_interval(Spread(1.03, -np.inf, 1.09)) == "1.03 (? to 1.09)"
+
+
+def test_the_sentence_and_the_plot() -> None:
+    row = replace(ROW, curve=((0.8, 0.01, 0), (1.0, 0.03, 0), (1.2, 0.5, 0), (0.7, 0.001, 1)))
+    row = replace(row, form=FirstOrder(1.9, 0.0287, 0.87, 2))
+    found = Reliability("t", "s", 1.0, 1e-3, 0.95, 2000, 1, (), (row,))
+    said = "Pin A, pull: the probability of a factor below 1.00 is 0.03 (95 %: 0.02 to 0.04; "
+    assert sentence(found, row) == f"{said}model form not included)."
+    assert "2 design points" in remark(row)
+    plot = distribution_plot(found, row)
+    assert plot is not None
+    points = plot.spec["data"]["values"]
+    assert [round(p["y"], 2) for p in points] == [-2.33, -1.88, 0.0, -3.09]
+    assert distribution_plot(found, ROW) is None
+    assert risks_grid(found).body[0][5] == "0.03 (0.02 to 0.04)"
+
+
+def test_the_worst_row_of_each_design() -> None:
+    used = np.array([[0.5, 0.9], [0.8, 0.1], [np.nan, 0.3], [0.0, 0.0]])
+    errors = np.array([[0.1, 0.2], [0.3, 0.4], [0.0, 0.0], [0.0, 0.0]])
+    worst = Answers(used, errors).system
+    assert worst.used[:2, 0].tolist() == [0.9, 0.8]
+    assert worst.errors[:2, 0].tolist() == [0.2, 0.3]
+    assert np.isnan(worst.used[2, 0])
+    assert Answers(used, errors).factors[3].tolist() == [np.inf, np.inf]
