@@ -13,21 +13,29 @@ CHANGES = 3  # digits
 def rows_grid(found: RunComparison) -> Grid:
     """Pins and cases, the important changes first; those without any are left out."""
     maxima = [f"max von Mises {run} [{found.stress}]" for run in "AB"]
-    head = ["pin", "case", *maxima, "change", "factor A", "factor B", "result A", "result B",
-            "change is"]  # fmt: skip
+    head = ["pin", "case", *maxima, "change", "factor A → B", "result A → B", "change is"]
     body = [
         [
             row.pin,
             row.case,
             *(_range(side) for side in (row.first, row.second)),
             per_cent(row.change),
-            *(DASH if s is None else engineering(s.factor) for s in (row.first, row.second)),
-            *(DASH if s is None else s.outcome for s in (row.first, row.second)),
+            _from_to(*(DASH if s is None else engineering(s.factor) for s in _sides(row))),
+            _from_to(*(DASH if s is None else s.outcome for s in _sides(row))),
             row.kind,
         ]
         for row in shown(found)
     ]
-    return Grid(head, body, [False, False, *[True] * 5, False, False, False])
+    return Grid(head, body, [False, False, *[True] * 4, False, False])
+
+
+def _sides(row: RowPair) -> tuple[Side | None, Side | None]:
+    return row.first, row.second
+
+
+def _from_to(first: str, second: str) -> str:
+    """What was and what is; once where they are the same."""
+    return first if first == second else f"{first} → {second}"
 
 
 def shown(found: RunComparison) -> list[RowPair]:
@@ -98,7 +106,7 @@ def _range(side: Side | None) -> str:
 
 def per_cent(change: float | None) -> str:
     """A change with its sign."""
-    return DASH if change is None else f"{100.0 * change:+.3g} %"
+    return DASH if change is None else f"{100.0 * change:+.3g} %".replace("-", "−")
 
 
 def _signed(margin: float | None) -> str:

@@ -23,7 +23,7 @@ from reports.text.fitted_table import Column, fitted_table
 if TYPE_CHECKING:
     from rich.console import Console
 
-RANKS = 0, 0, 2, 1, 0, 3, 3, 4, 4, 0  # of the columns of rows: which are left out first
+RANKS = 0, 0, 4, 3, 0, 1, 2, 0  # of the columns of rows: which are left out first
 READING = (
     "A change is beyond the errors if the ranges of the two maxima, by their errors, do not "
     "overlap; the range over the joint is not part of them. Similar runs have similar errors, so a "

@@ -78,7 +78,7 @@ def test_the_headline_names_the_largest_change(run: dict[str, Any]) -> None:
     said = headline(compare(base, changed(base, max_von_mises=55.0)))
     assert said == (
         "1 row: 1 changed beyond the errors. "
-        f"Largest change of a maximum: pin {pin} in {case}, -50 %."
+        f"Largest change of a maximum: pin {pin} in {case}, −50 %."
     )
 
 
