@@ -104,7 +104,7 @@ def test_help_has_no_replaced_phrase_and_begins_with_an_example(name: str, text:
 
 
 def test_the_list_of_commands_says_what_each_does() -> None:
-    listed = commands.get_help(click.Context(commands)).split("Commands:")[1]
+    listed = commands.get_help(click.Context(commands)).split("Options:")[1]
     assert "Example" not in listed
     for name in commands.list_commands(click.Context(commands)):
         assert re.search(rf"^  {name} +[A-Z][a-z]+ .*\.$", listed, re.MULTILINE), name

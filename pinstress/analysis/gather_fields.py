@@ -129,6 +129,7 @@ def _bands(task: Task, loads: PinLoads, instant: int) -> tuple[plain.BandLoad, .
 
 
 def _outside(peak: Peak) -> tuple[float, tuple[float, float, float]] | None:
-    if peak.verdict != "singular" or peak.max_von_mises is None or peak.location is None:
+    """Where stress at singularities is left out, whether or not they govern."""
+    if not peak.singular_at or peak.max_von_mises is None or peak.location is None:
         return None
     return peak.max_von_mises, peak.location

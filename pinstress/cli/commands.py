@@ -23,7 +23,7 @@ from pinstress.cli.more_commands import (
     size,
     view,
 )
-from pinstress.cli.shared import example, names, read_study
+from pinstress.cli.shared import Commands, example, names, read_study
 from pinstress.processes import interrupts
 from pinstress.processes.environment import settle_surroundings
 from pinstress.processes.interrupts import INTERRUPTED, Unfinished
@@ -84,6 +84,7 @@ def _status(error: BaseException) -> int | None:
 
 
 @click.group(
+    cls=Commands,
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog="A first run: pinstress init trial && pinstress run trial/one_pin.toml",
 )

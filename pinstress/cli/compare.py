@@ -14,7 +14,7 @@ from pinstress.cli.view import opened_results
 from pinstress.processes.pool import preload
 from pinstress.schema.units import SYSTEMS, UnitSystem
 from pinstress.study.errors import InputError
-from reports.data.comparison import DECISION, UNCHANGED, RunComparison, compared
+from reports.data.comparison import DECISION, UNCHANGED, RowPair, RunComparison, compared
 from reports.page.comparison import PicturePair, write_comparison
 from reports.text.comparison import print_comparison, write_markdown
 from reports.vtk.read_back import Opened
@@ -78,20 +78,28 @@ def _pictures(
         PicturePair(
             f"Pin {row.pin}, {row.case}" + f": {row.kind}" * (row.kind == DECISION),
             (
-                _drawn(opened[0], row.pin, row.case, into / f"picture_{k}_a.png"),
-                _drawn(opened[1], row.pin, row.case, into / f"picture_{k}_b.png"),
+                _drawn(opened[0], row, 1.0, into / f"picture_{k}_a.png"),
+                _drawn(opened[1], row, _stress_of(*opened), into / f"picture_{k}_b.png"),
             ),
         )
         for k, row in enumerate(rows, 1)
     )
 
 
-def _drawn(opened: Opened, pin: str, case: str, path: Path) -> Path | None:
+def _stress_of(a: Opened, b: Opened) -> float:
+    """The unit of stress of the second run in that of the first."""
+    return _system(b).factor("stress") / _system(a).factor("stress")
+
+
+def _drawn(opened: Opened, pair: RowPair, unit: float, path: Path) -> Path | None:
+    """One of two pictures whose colours mean the same; unit: of stress, in that of the pair."""
     from reports.vtk.render import render_pin
 
+    maxima = [s.maximum for s in (pair.first, pair.second) if s and s.maximum is not None]
+    top = max(maxima, default=0.0) / unit
     try:
-        row = opened.row(pin, case)
-        render_pin(opened.field(row), path, opened.units, opened.title(row))
+        row = opened.row(pair.pin, pair.case)
+        render_pin(opened.field(row), path, opened.units, opened.title(row), top)
     except (ValueError, FileNotFoundError):  # not in this run, or a beam
         return None
     return path

@@ -43,3 +43,29 @@ def open_page(page: Path) -> None:
 
     if not webbrowser.open(page.resolve().as_uri()):
         click.echo(f"No browser found; open {page} yourself.", err=True)
+
+
+# Commands by what they are for.
+SECTIONS = {
+    "Studies": ("init", "check", "import", "schema"),
+    "Analysis": ("run", "loads", "chart"),
+    "Designs": ("size", "sweep", "reliability"),
+    "Earlier runs": ("view", "compare", "plots", "pdf"),
+}
+
+
+class Commands(click.Group):
+    """Commands whose list is in sections."""
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the sections, then what is in none of them."""
+        names = self.list_commands(ctx)
+        wide, placed = max(map(len, names)), {name for each in SECTIONS.values() for name in each}
+        rest = tuple(name for name in names if name not in placed)
+        for title, members in {**SECTIONS, "Other": rest}.items():
+            found = [
+                (f"{n:{wide}}", self.commands[n].short_help or "") for n in members if n in names
+            ]
+            if found:
+                with formatter.section(title):
+                    formatter.write_dl(found)

@@ -69,8 +69,8 @@ class Field:
     """A mesh with results at its nodes: points (N, 3), cells (M, 10; VTK's order of "tetra10") or
     (M, 4; "quad": the surface alone), displacement (N, 3), stress (N, 6: xx, yy, zz, yz, xz, xy),
     von_mises (N,), and envelope (N,): the largest von Mises over all instants at surface nodes, NaN
-    inside. yield_strength: for the factor of safety at each point, None without one. outside: of a
-    `singular` pin the largest stress outside the excluded zones and where it is (x, y, z). time:
+    inside. yield_strength: for the factor of safety at each point, None without one. outside: where
+    zones are excluded, the largest stress outside of them and where it is (x, y, z). time:
     None without a motion. loads: what acts at this instant. stills: along the motion, and
     volume: all of a revolved pin, if wanted. contact_pressure: (N,) of its lugs, None without.
     """

@@ -12,21 +12,30 @@ CHANGES = 3  # digits
 
 def rows_grid(found: RunComparison) -> Grid:
     """Pins and cases, the important changes first; those without any are left out."""
-    head = ["pin", "case", f"max von Mises A [{found.stress}]", "max von Mises B", "change",
-            "factor A", "factor B", "result A", "result B", "change is"]  # fmt: skip
+    maxima = [f"max von Mises {run} [{found.stress}]" for run in "AB"]
+    head = ["pin", "case", *maxima, "change", "factor A → B", "result A → B", "change is"]
     body = [
         [
             row.pin,
             row.case,
             *(_range(side) for side in (row.first, row.second)),
-            _per_cent(row.change),
-            *(DASH if s is None else engineering(s.factor) for s in (row.first, row.second)),
-            *(DASH if s is None else s.outcome for s in (row.first, row.second)),
+            per_cent(row.change),
+            _from_to(*(DASH if s is None else engineering(s.factor) for s in _sides(row))),
+            _from_to(*(DASH if s is None else s.outcome for s in _sides(row))),
             row.kind,
         ]
         for row in shown(found)
     ]
-    return Grid(head, body, [False, False, *[True] * 5, False, False, False])
+    return Grid(head, body, [False, False, *[True] * 4, False, False])
+
+
+def _sides(row: RowPair) -> tuple[Side | None, Side | None]:
+    return row.first, row.second
+
+
+def _from_to(first: str, second: str) -> str:
+    """What was and what is; once where they are the same."""
+    return first if first == second else f"{first} → {second}"
 
 
 def shown(found: RunComparison) -> list[RowPair]:
@@ -47,10 +56,16 @@ def versions_grid(found: RunComparison) -> Grid:
 def forces_grid(found: RunComparison) -> Grid:
     """Largest forces that differ, the largest changes first."""
     body = [
-        [*pair.names, engineering(pair.first), engineering(pair.second), _per_cent(pair.change)]
+        [*pair.names, engineering(pair.first), engineering(pair.second), per_cent(pair.change)]
         for pair in found.forces[:MOST]
     ]
-    head = ["case", "connection", f"largest force A [{found.force}]", "B", "change"]
+    head = [
+        "case",
+        "connection",
+        f"largest force A [{found.force}]",
+        f"B [{found.force}]",
+        "change",
+    ]
     return Grid(head, body, [False, False, True, True, True])
 
 
@@ -89,8 +104,9 @@ def _range(side: Side | None) -> str:
     return f"{engineering(side.maximum)} ({' to '.join(ends)})"
 
 
-def _per_cent(change: float | None) -> str:
-    return DASH if change is None else f"{100.0 * change:+.3g} %"
+def per_cent(change: float | None) -> str:
+    """A change with its sign."""
+    return DASH if change is None else f"{100.0 * change:+.3g} %".replace("-", "−")
 
 
 def _signed(margin: float | None) -> str:

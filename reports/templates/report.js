@@ -40,9 +40,19 @@ const start = (starter) => {
 const fill = (part) => {
   const text = part.querySelector(":scope > noscript");
   if (!text) return;
+  part.querySelector(":scope > .words")?.remove();
   text.outerHTML = text.textContent;
   starters.forEach((starter) => starter(part));
 };
+
+// The words of such a part, by which the browser's search finds and opens it.
+const wordsOf = (text) => text.replace(/<(script|style|svg)[^]*?<\/\1>|<[^>]*>/g, " ").replace(/\s+/g, " ");
+for (const text of document.querySelectorAll("details.fold > noscript")) {
+  const words = document.createElement("div");
+  words.className = "words";
+  words.textContent = wordsOf(text.textContent);
+  text.after(words);
+}
 
 // Folded parts open for links that lead into them, and all at once.
 const folds = [...document.querySelectorAll("details.fold")];

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from reports.data.comparison import KINDS, RunComparison
+from reports.data.comparison import KINDS, UNCHANGED, RunComparison
 from reports.format.files import markdown
 from reports.format.grid import Grid
 from reports.tables.comparison import (
@@ -14,6 +14,7 @@ from reports.tables.comparison import (
     inputs_grid,
     left_out,
     margins_grid,
+    per_cent,
     rows_grid,
     versions_grid,
 )
@@ -22,7 +23,7 @@ from reports.text.fitted_table import Column, fitted_table
 if TYPE_CHECKING:
     from rich.console import Console
 
-RANKS = 0, 0, 2, 1, 0, 3, 3, 4, 4, 0  # of the columns of rows: which are left out first
+RANKS = 0, 0, 4, 3, 0, 1, 2, 0  # of the columns of rows: which are left out first
 READING = (
     "A change is beyond the errors if the ranges of the two maxima, by their errors, do not "
     "overlap; the range over the joint is not part of them. Similar runs have similar errors, so a "
@@ -33,10 +34,18 @@ SAME_INPUTS = "The inputs are the same."
 
 
 def headline(found: RunComparison) -> str:
-    """How many rows changed, and how."""
+    """How many rows changed, and how; the one that changed most."""
+    if not found.rows:
+        return "Neither run has pins."
     counts = [(found.count(kind), kind) for kind in KINDS]
     said = ", ".join(f"{n} {kind}" for n, kind in counts if n)
-    return f"{len(found.rows)} rows: {said}." if found.rows else "Neither run has pins."
+    count = "1 row" if len(found.rows) == 1 else f"{len(found.rows)} rows"
+    changed = [row for row in found.rows if row.change and row.kind != UNCHANGED]
+    most = max(changed, key=lambda row: abs(row.change or 0.0), default=None)
+    if most is None:
+        return f"{count}: {said}."
+    where = f"pin {most.pin} in {most.case}, {per_cent(most.change)}"
+    return f"{count}: {said}. Largest change of a maximum: {where}."
 
 
 def sections(found: RunComparison) -> Iterator[tuple[str, Grid, str]]:

@@ -65,7 +65,7 @@ class Opened:
         stress = np.empty((len(mesh.points), 6))
         stress[:, VTK_SYMMETRIC] = data[f"stress [{u.stress}]"]
         place = row["location"]
-        singular = row["verdict"] == "singular" and place is not None
+        excluded = bool(row["singular_at"]) and place is not None
         return Field(
             pin=row["pin"],
             case=row["case"],
@@ -76,7 +76,7 @@ class Opened:
             von_mises=data[f"von Mises [{u.stress}]"],
             envelope=data[f"von Mises envelope [{u.stress}]"],
             cell_type=cells.type,
-            outside=(row["max_von_mises"], tuple(place)) if singular else None,
+            outside=(row["max_von_mises"], tuple(place)) if excluded else None,
             verdict=row["verdict"],
         )
 

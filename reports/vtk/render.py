@@ -21,13 +21,19 @@ SHARP = 30.0  # degrees between faces from which an edge is drawn
 INK = "#222222"
 
 
-def render_pin(field: Field, path_png: Path, units: Units, title: str) -> None:
-    """Draw a pin's surface with its von Mises stress and mark the largest: a PNG of 1200x800."""
+def render_pin(
+    field: Field, path_png: Path, units: Units, title: str, top: float | None = None
+) -> None:
+    """Draw a pin's surface with its von Mises stress and mark the largest: a PNG of 1200x800.
+
+    top: the stress at which the colours end, where that is more than the largest, so that pictures
+    can be compared.
+    """
     import pyvista
 
     plotter = pyvista.Plotter(off_screen=True, window_size=list(SIZE))
     try:
-        _draw(plotter, field, units, title)
+        _draw(plotter, field, units, title, top)
         plotter.screenshot(path_png)
     finally:
         plotter.close()
@@ -43,20 +49,21 @@ def show_pin(field: Field, units: Units, title: str) -> None:
     plotter.show()
 
 
-def _draw(plotter: Any, field: Field, units: Units, title: str) -> None:
+def _draw(plotter: Any, field: Field, units: Units, title: str, top: float | None = None) -> None:
     peak = int(np.argmax(field.von_mises))
     largest, place, label = float(field.von_mises[peak]), field.points[peak], "max"
     if field.outside is not None:  # colours would only show how fine the mesh is at the zones
         largest, place = field.outside[0], np.asarray(field.outside[1])
         label = "max outside excluded zones"
-    power = _power(largest)
+    top = max(largest, top or 0.0)
+    power = _power(top)
     # VTK's font has no raised digits.
     unit = units.stress if power == 0 else f"10^{power} {units.stress}"
     name = f"von Mises [{unit}]"
     surface = _surface(field, name, 10.0**power)
     view = View.of(field.points, place)
     plotter.set_background("white")
-    _add_surface(plotter, surface, name, largest / 10.0**power)
+    _add_surface(plotter, surface, name, top / 10.0**power)
     label = f"{label} {engineering(largest / 10.0**power)} {unit}"
     _mark(plotter, place, view.above(field.points, place), label)
     plotter.add_text(_drawable(title), position=(24, SIZE[1] - 48), font_size=13, color=INK)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import partial
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 import pytest
 
@@ -74,6 +75,21 @@ def test_all_parts_can_be_opened_at_once(page: Any) -> None:
 def test_a_link_makes_what_it_leads_to(page: Any) -> None:
     page.execute_script("document.querySelector('nav a[href=\"#reactions\"]').click();")
     wait(page, lambda: page.find_elements("css selector", "#reactions tbody tr"))
+
+
+def test_a_search_for_text_opens_the_part_that_has_it(page: Any, many_run: Path) -> None:
+    """A text fragment of an address is searched as by Ctrl+F."""
+    section = page.find_elements("css selector", "section.pin")[PINS // 2]
+    part = section.find_elements("css selector", "details.fold")[0]
+    text = part.find_element("css selector", ".words").get_property("textContent")
+    words = " ".join(text.split()[:6])
+    assert not part.get_property("open")
+    page.get("about:blank")
+    page.get(f"{(many_run / 'report.html').as_uri()}#:~:text={quote(words)}")
+    opened_parts = "details.fold[open] table, details.fold[open] figure, details.fold[open] p"
+    wait(page, lambda: page.find_elements("css selector", opened_parts))
+    assert not page.find_elements("css selector", "details.fold[open] > .words")
+    assert errors(page) == []
 
 
 def test_without_scripts_the_parts_open_too(page: Any, many_run: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -12,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from geometry import Pin
-from pinstress.cli.commands import run_command_line
+from pinstress.cli.commands import commands, run_command_line
 from pinstress.cli.output_folder import replacing
 from pinstress.study.errors import InputError
 from tests.conftest import ROOT
@@ -137,6 +138,14 @@ def test_schema_is_json_and_knows_every_table() -> None:
     assert "mechanism" in made["properties"]
 
 
+def test_every_command_is_listed_once_in_a_section(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run_command_line(["--help"]) == 0
+    said = capsys.readouterr().out
+    listed = re.findall(r"^  (\w+) {2,}\S", said.partition("Studies:")[2], re.M)
+    assert sorted(listed) == sorted(commands.commands)
+    assert said.index("Analysis:") < said.index("  run ") < said.index("Earlier runs:")
+
+
 @pytest.mark.parametrize(
     "command",
     ["run", "loads", "chart", "check", "import", "init", "schema", "size", "view", "completion"],
@@ -229,7 +238,7 @@ import os, signal, sys
 from pinstress.processes.threads import hold_threads
 hold_threads()
 import fea.harmonic.evaluate
-from pinstress.cli.commands import run_command_line
+from pinstress.cli.commands import commands, run_command_line
 
 good = fea.harmonic.evaluate.meridian_mesh
 

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from pinstress import load_study
+from pinstress import load_study, run
 from pinstress.cli.commands import run_command_line
 from pinstress.study.inputs import inputs
+from reports.vtk.read_back import open_results
 from tests.conftest import ROOT
 
 ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()
@@ -103,3 +104,16 @@ def test_pictures_need_a_folder(
 def test_results_keep_the_inputs(folders: tuple[Path, Path]) -> None:
     kept = json.loads((folders[0] / "results.json").read_text())["inputs"]
     assert kept == inputs(load_study(folders[0].parent / "a.toml"))
+
+
+def test_pictures_mark_the_maximum_that_is_reported(folders: tuple[Path, Path]) -> None:
+    """At the edge of the clamp stress grows with the mesh, and is left out."""
+    opened = open_results(folders[0])
+    row = opened.row("B", "landing")
+    field = opened.field(row)
+    assert {zone["governs"] for zone in row["singular_at"]} == {False}
+    assert field.outside == (row["max_von_mises"], tuple(row["location"]))
+    study = load_study(folders[0].parent / "a.toml")
+    found = run(study, tolerance=0.2, fields=True).fields["B", "landing"]
+    assert found.outside is not None
+    assert found.outside[0] == row["max_von_mises"]

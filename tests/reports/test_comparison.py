@@ -70,6 +70,18 @@ def test_decisions_and_missing_rows_come_first(run: dict[str, Any]) -> None:
     assert set(kinds[3:]) == {UNCHANGED}
 
 
+def test_the_headline_names_the_largest_change(run: dict[str, Any]) -> None:
+    one = {**run, "pins": run["pins"][:1]}
+    base = changed(one, max_von_mises=110.0, error_estimate=1.0, max_von_mises_interval=None)
+    pin, case = base["pins"][0]["pin"], base["pins"][0]["case"]
+    assert headline(compare(base, base)) == "1 row: 1 unchanged."
+    said = headline(compare(base, changed(base, max_von_mises=55.0)))
+    assert said == (
+        "1 row: 1 changed beyond the errors. "
+        f"Largest change of a maximum: pin {pin} in {case}, −50 %."
+    )
+
+
 def test_other_units_are_no_change(run: dict[str, Any]) -> None:
     other, stress, force = copy.deepcopy(run), 6894.757, 4.448222
     for pin in other["pins"]:

@@ -102,6 +102,26 @@ def test_picture_of_a_surface(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     assert len(np.unique(picture, axis=0)) > 500  # colours of a field, not of one face
 
 
+def test_pictures_that_share_a_scale_do_not_both_end_in_its_last_colour(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(renderer.WINDOW, os.environ.get(renderer.WINDOW, ""))
+    assert renderer_problem() is None
+    field, shares = tube(), []
+    for top in (None, 2.0 * float(field.von_mises.max())):
+        render_pin(field, tmp_path / "a.png", UNITS, "pin A", top)
+        red, green, blue = _above_the_bar(tmp_path / "a.png").T.astype(int)
+        shares.append(((red > green) & (green > blue + 60)).mean())  # yellow: the last colour
+    assert shares[0] > 0.001
+    assert shares[1] == 0.0
+
+
+def _above_the_bar(path: Path) -> np.ndarray[Any, Any]:
+    """Colours of the pixels (N, 3) of a picture without its scale; VTK's rows go upwards."""
+    colours = np.asarray(pyvista.read(path).active_scalars)[:, :3]
+    return colours[1200 * 200 :]
+
+
 def test_a_crash_is_a_problem_and_no_crash(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(renderer, "PROBE", "import os; os.kill(os.getpid(), 11)")
     problem = renderer_problem()
