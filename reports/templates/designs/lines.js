@@ -105,7 +105,7 @@ const linesOf = (host, model, on) => {
     names.style.width = `${wide}px`;
     names.replaceChildren(...axes.map((c, k) => {
       const name = document.createElement("div");
-      name.textContent = titled(model.columns[c]).replace(/([.\]_])(?=\w)/g, "$1\u200b"); // where it may break
+      name.textContent = breakable(titled(model.columns[c]));
       name.style.left = `${SIDE + k * step}px`;
       name.style.width = `${Math.min(2 * SIDE, Math.max(step, LEAST)) - 6}px`;
       return name;

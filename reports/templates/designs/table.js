@@ -11,6 +11,9 @@ const element = (name, text, attributes = {}) => {
 
 const titled = ({ title, unit }) => (unit ? `${title} [${unit}]` : title);
 
+// A key may be broken after its dots.
+const breakable = (text) => text.replace(/([.\]_])(?=\w)/g, "$1\u200b");
+
 // A value of a column for reading; the file has all digits.
 const worded = (column, value, digits = 6) => {
   if (column.names) return value >= 0 ? column.names[value] : "–";
@@ -102,7 +105,7 @@ const fillTable = (host, columns, order, by, on) => {
   const head = element("tr"), body = host.tBodies[0];
   for (const c of columns) {
     const cell = element("th", undefined, { scope: "col", class: c.numeric ? "n" : "t", "aria-sort": c.key !== by.key ? "none" : by.down ? "descending" : "ascending" });
-    const button = element("button", c.title, { type: "button", "data-key": c.key });
+    const button = element("button", breakable(c.title), { type: "button", "data-key": c.key });
     button.addEventListener("click", () => on.sort(c.key));
     cell.append(button);
     head.append(cell);
