@@ -64,7 +64,8 @@ class InLugs:
 class LugSolution:
     """A case: the solution of the pin under its pressures, what contact says at the governing
     instant, None where that failed, and what presses on the pin under other loads of its links.
-    pressure: of contact, with `joint`. rings: the pin that these loads press on, its bands cut.
+    pressure: of contact, with `joint`. rings: the pin that these loads press on, its bands cut;
+    model: of its contact.
     """
 
     solution: Solution
@@ -72,6 +73,7 @@ class LugSolution:
     pressed: Callable[[PinLoads], PinLoads]
     pressure: CellPressure | None = None
     rings: Pin | None = None
+    model: JointModel | None = None
 
 
 def solve_in_lugs(
@@ -262,7 +264,7 @@ class _Contact:
         joint = joint_result(contact, over, found.loads, known.left_out)
         (pressed,) = contact.contact
         pressure = CellPressure(contact.bands, pressed.pressure, pressed.angle)
-        return LugSolution(found, joint, self.press, pressure, self.model.pin)
+        return LugSolution(found, joint, self.press, pressure, self.model.pin, self.model)
 
 
 def _instants(case: PinLoads, between: Between | None) -> PinLoads:

@@ -146,5 +146,5 @@ def sensitivity_notes(results: Results) -> list[str]:
         if found.note:
             without.setdefault(found.note, []).append(found.pin)
     for note, pins in without.items():
-        notes.append(f"{'Pins' if pins[1:] else 'Pin'} {', '.join(pins)}, none: {note}.")
+        notes.append(f"{'Pins' if pins[1:] else 'Pin'} {', '.join(pins)}: {note}.")
     return notes
