@@ -62,6 +62,8 @@ def joint_derivatives(solved: SolvedCase, model: JointModel, links: PinLoads) ->
             change = _change(model, adjoint, found[2 * k + 1], found[2 * k])
             if change is not None:
                 by_force.setdefault((links.surfaces[c], AXES[a]), change / (2.0 * step))
+        if len(by_force) == len(keys):
+            break
     by_clearance: dict[str, float] = {}
     for k, lug in enumerate(model.lugs):
         step = LOOSER * model.whole.band(lug.connection).radius
