@@ -59,11 +59,11 @@ def derivatives(solved: SolvedCase, dimensions: Iterable[Dimension]) -> Derivati
 
     Raises: SolveError.
     """
-    return _Adjoint(solved).derivatives(tuple(dimensions))
+    return Adjoint(solved).derivatives(tuple(dimensions))
 
 
-class _Adjoint:
-    """All at the governing point and angle."""
+class Adjoint:
+    """All at the governing point and angle: `top`; `waves`: what acts there."""
 
     def __init__(self, solved: SolvedCase) -> None:
         self.solved = solved
@@ -116,6 +116,15 @@ class _Adjoint:
             one, other = applied(self.model, pin, outline, n, loads, integrals)
             forces[:, here], tractions[..., here] = one @ amounts, other @ amounts
         return forces, tractions
+
+    def of_load(self, k: int, load: UnitLoad) -> float:
+        """What one more unit load, of the same harmonic and part as wave k, adds to the stress."""
+        wave = self.waves[k]
+        forces, traction = applied(self.model, self.solved.pin, self.outline, wave.n, [load])
+        state = replace(self.state, traction=traction)
+        none = np.zeros((len(self.point.nodes), 3, 1))
+        read = self.point.stress(self.solved.material, state, self.n[[k]], none)
+        return float(np.sum(self._lambda[:, k] * forces[:, 0]) + wave.weight @ read[:, 0])
 
     @cached_property
     def places(self) -> Floats:

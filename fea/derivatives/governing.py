@@ -20,11 +20,12 @@ By = dict[tuple[str, str], float]
 
 @dataclass(frozen=True)
 class Wave:
-    """What goes as cos, or as sin, of psi at the governing angle, of one harmonic: amounts of unit
-    loads, and what each stress (6,) of it adds to von Mises.
+    """What goes as cos (part 0), or as sin (1), of psi at the governing angle, of one harmonic:
+    amounts of unit loads, and what each stress (6,) of it adds to von Mises.
     """
 
     n: int
+    part: int
     amounts: dict[UnitLoad, float]
     weight: Floats
 
@@ -38,7 +39,7 @@ def waves_of(
     acting = loads.coefficients()
     amounts: dict[tuple[int, int], dict[UnitLoad, float]] = {}
     for load, both in acting.items():
-        for part, amount in enumerate(_turned(load.n, both[0], top.angle)):
+        for part, amount in enumerate(turned(load.n, both[0], top.angle).tolist()):
             if amount:
                 amounts.setdefault((load.n, part), {})[load] = amount
     stress = np.zeros(6)
@@ -47,13 +48,16 @@ def waves_of(
             stress += x * MASKS[part] * at[load]
     weight = von_mises_gradient(stress)
     found = sorted(amounts.items(), key=lambda item: item[0])
-    return tuple(Wave(n, mine, MASKS[part] * weight) for (n, part), mine in found), weight
+    waves = tuple(Wave(n, part, mine, MASKS[part] * weight) for (n, part), mine in found)
+    return waves, weight
 
 
-def _turned(n: int, both: Floats, angle: float) -> tuple[float, float]:
-    """Of a load's phases what goes as BACK does and what as the others do, at an angle (rad)."""
+def turned(n: int, both: Floats, angle: float) -> Floats:
+    """Of a load's phases, (2, ..), what goes as BACK does and what as the others do, (2, ..), at an
+    angle (rad).
+    """
     c, s = np.cos(n * angle), np.sin(n * angle)
-    return float(both[0] * c + both[1] * s), float(both[0] * s - both[1] * c)
+    return np.asarray(np.stack([both[0] * c + both[1] * s, both[0] * s - both[1] * c]))
 
 
 def von_mises_gradient(stress: Floats) -> Floats:
@@ -104,9 +108,9 @@ def _of_change(
     now, total = more.coefficients(), np.zeros(6)
     none = np.zeros((1, 2))
     for load in dict.fromkeys([*now, *before]):
-        parts = _turned(load.n, now.get(load, none)[0] - before.get(load, none)[0], angle)
+        parts = turned(load.n, now.get(load, none)[0] - before.get(load, none)[0], angle)
         if load not in at:
-            total += np.nan if any(parts) else 0.0
+            total += np.nan if parts.any() else 0.0
             continue
         for part, mask in zip(parts, MASKS, strict=True):
             total += part * mask * at[load]

@@ -73,7 +73,8 @@ class InLugs:
 class LugSolution:
     """A case: the solution of the pin under its pressures, what contact says at the governing
     instant, None where that failed, and what presses on the pin under other loads of its links.
-    pressure: of contact, with `joint`. rings: the pin that these loads press on, its bands cut.
+    pressure: of contact, with `joint`. rings: the pin that these loads press on, its bands cut;
+    model: of its contact.
     """
 
     solution: Solution
@@ -81,6 +82,7 @@ class LugSolution:
     pressed: Callable[[PinLoads], PinLoads]
     pressure: CellPressure | None = None
     rings: Pin | None = None
+    model: JointModel | None = None
 
 
 def solve_in_lugs(
@@ -290,7 +292,7 @@ class _Contact:
         pressure = CellPressure(contact.bands, pressed.pressure, pressed.angle)
         cut, rings = self.given.cut, self.model.pin
         if cut is None or not isinstance(found.answer, CutAnswer):
-            return LugSolution(found, joint, self.press, pressure, rings)
+            return LugSolution(found, joint, self.press, pressure, rings, self.model)
         left = neglected(cut, self.given.material, contact, pressure, found.answer)
         peak = with_neglected(peak, left, found.answer, over.variations, asked)
         return LugSolution(replace(found, peak=peak), joint, self.press, pressure)

@@ -185,7 +185,7 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
     to_do = change(plan.asked, task, found)
     tell(f"pin {task.pin.name}, sensitivities")
     step = STEPS[study.table.units]
-    sensitive = sensitivities(study, plan.asked, task, found, step, plan.sensitive)
+    sensitive = sensitivities(study, plan.asked, task, every, step, plan.sensitive)
     limits = limit_loads(plan, task, every, tell)
     return Solved(
         peaks,

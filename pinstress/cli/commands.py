@@ -150,7 +150,7 @@ def commands() -> None:
 @click.option(
     "--sensitivities",
     is_flag=True,
-    help="Sensitivities of every pin in all cases, not only in its worst one.",
+    help="Sensitivities of every pin in all cases, not only in its worst one, and in contact too.",
 )
 @click.option(
     "--fail-on-miss",

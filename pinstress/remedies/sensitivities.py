@@ -9,17 +9,22 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from fea.asked import Asked
 from fea.beam.model import BeamAnswer
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.derivatives.derivatives import derivatives
+from fea.derivatives.in_lugs import joint_derivatives
 from fea.derivatives.records import Derivatives, SolvedCase
 from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
+from fea.joint.solve_in_lugs import LugSolution
 from fea.refine import STEP, Solution, singularities_of
 from fea.solve_pin import solve_pin
 from geometry import Pin
+from geometry.arrays import Floats
 from geometry.mesh.gmsh_session import MeshError
 from geometry.shape.dimensions import Dimension
 from pinstress.model.cases import case_loads
@@ -33,27 +38,39 @@ from reports.data.sensitivities import PinSensitivities, Sensitivity
 MOST = 0.1  # of a dimension that its step is at most
 SMALL = 0.01  # step of any other parameter, of its value; of a force, of the largest
 POISSON = 0.01
-IN_LUGS = "in contact with lugs the pressure depends on the shape too; solve the changed study"
-NOT_REVOLVED = "only of bodies of revolution; solve the changed study"
+LOOSER = 0.01  # of the step of a dimension: that of a clearance
+IN_LUGS = (
+    "no derivatives by dimensions, because in contact with lugs the pressure depends on the shape "
+    "too: solve the changed study"
+)
+MORE = "; --sensitivities gives those by forces and clearances"
+NOT_REVOLVED = "no derivatives, only of bodies of revolution: solve the changed study"
 
 
 def sensitivities(
     study: Study,
     asked: Asked,
     task: Task,
-    solutions: Iterable[Solution],
+    solutions: Iterable[Solution | LugSolution],
     step: float,
     every: bool = False,
 ) -> tuple[PinSensitivities, ...]:
     """Of a task's worst case, or of every one. step: of a dimension (m) whose effect is shown; a
     tenth of it, or a hundredth, where that is no small part of the dimension.
     """
-    found = sorted(
-        (s for s in solutions if s.peak.max_von_mises),
-        key=lambda s: -(s.peak.max_von_mises or 0.0),
-    )
+    found = sorted((s for s in solutions if _largest(s)), key=lambda s: _largest(s), reverse=True)
     dimensions = tuple(dimensions_of(study, task.pin))
-    return tuple(_of_case(asked, task, s, dimensions, step) for s in found[: None if every else 1])
+    return tuple(
+        _of_lugs(task, s, step if every else None)
+        if isinstance(s, LugSolution)
+        else _of_case(asked, task, s, dimensions, step)
+        for s in found[: None if every else 1]
+    )
+
+
+def _largest(found: Solution | LugSolution) -> float:
+    solution = found.solution if isinstance(found, LugSolution) else found
+    return solution.peak.max_von_mises or 0.0
 
 
 def by_key(study: Study, pin: str, case: str) -> dict[str, float]:
@@ -129,14 +146,14 @@ def _of_case(
     maximum = peak.max_von_mises or 0.0
     factor = peak.safety_factor(task.material.yield_strength)
     out = PinSensitivities(peak.pin, peak.case, maximum, factor)
-    if task.lugs or not isinstance(task.pin, Pin):
-        return replace(out, note=IN_LUGS if task.lugs else NOT_REVOLVED)
+    if not isinstance(task.pin, Pin):
+        return replace(out, note=NOT_REVOLVED)
     try:
         found = differentiated(asked, task, solution, dimensions)
     except (MeshError, SolveError) as error:
-        return replace(out, note=str(error))
+        return replace(out, note=f"no derivatives: {error}")
     if found is None or peak.governing is None:
-        return replace(out, note=f"not with the {peak.model} model")
+        return replace(out, note=f"no derivatives with the {peak.model} model")
     rows = (
         *_of_dimensions(found, dimensions, step),
         *_of_loads(found, peak.governing),
@@ -144,11 +161,44 @@ def _of_case(
     )
     return replace(
         out,
-        rows=tuple(each.sensitivity(factor) for each in sorted(rows, key=lambda x: -abs(x.effect))),
+        rows=_sorted(rows, factor),
         tied_places=found.tied_places,
         tied_times=found.tied_times,
         without=tuple(found.without.items()),
     )
+
+
+def _of_lugs(task: Task, joined: LugSolution, step: float | None) -> PinSensitivities:
+    """Of a pin in contact; without a step, why there are none."""
+    peak, answer = joined.solution.peak, joined.solution.answer
+    maximum, strength = peak.max_von_mises or 0.0, task.material.yield_strength
+    factor, links = peak.safety_factor(strength), peak.governing
+    out = PinSensitivities(peak.pin, peak.case, maximum, factor, note=IN_LUGS)
+    if joined.model is None or joined.rings is None or links is None:
+        return out
+    if step is None or not isinstance(answer, HarmonicAnswer):
+        return replace(out, note=IN_LUGS + MORE)
+    loads = joined.solution.loads.at(np.array([joined.solution.instant]))
+    zones, section = answer.singularities, answer.solution
+    solved = SolvedCase(joined.rings, task.material, (), loads, section, zones)
+    try:
+        found = joint_derivatives(solved, joined.model, links)
+    except SolveError as error:
+        return replace(out, note=f"no derivatives: {error}")
+    rows = [
+        *_of_forces(found.by_force, "force", links.surfaces, links.forces[0], maximum),
+        *(
+            _Parameter(
+                f"lug.{lug.connection}.clearance", "length", lug.clearance, LOOSER * step,
+                found.by_clearance[lug.connection], -found.by_clearance[lug.connection] / maximum,
+            )
+            for lug in joined.model.lugs if lug.connection in found.by_clearance
+        ),
+    ]  # fmt: skip
+    if strength is not None:
+        key, more = f"material.{task.material.name}.yield_strength", SMALL * strength
+        rows.append(_Parameter(key, "stress", strength, more, 0.0, 1.0 / strength))
+    return replace(out, rows=_sorted(rows, factor))
 
 
 @dataclass(frozen=True)
@@ -189,17 +239,32 @@ def _of_dimensions(
             yield _Parameter(dimension.key, "length", dimension.value, more, stress, relative)
 
 
+def _sorted(rows: Iterable[_Parameter], factor: float | None) -> tuple[Sensitivity, ...]:
+    """The largest effects first."""
+    return tuple(each.sensitivity(factor) for each in sorted(rows, key=lambda x: -abs(x.effect)))
+
+
 def _of_loads(found: Derivatives, loads: PinLoads) -> Iterator[_Parameter]:
-    for kind, derivatives_of, given in (
+    for kind, by, given in (
         ("force", found.by_force, loads.forces[0]),
         ("moment", found.by_moment, loads.moments[0]),
     ):
-        for (surface, axis), stress in derivatives_of.items():
-            value = float(given[loads.surfaces.index(surface), "xyz".index(axis)])
-            step = SMALL * float(abs(given).max())
-            if step:
-                relative = -stress / found.maximum
-                yield _Parameter(f"{kind} {surface} {axis}", kind, value, step, stress, relative)
+        yield from _of_forces(by, kind, loads.surfaces, given, found.maximum)
+
+
+def _of_forces(
+    by: dict[tuple[str, str], float],
+    kind: str,
+    surfaces: tuple[str, ...],
+    given: Floats,
+    maximum: float,
+) -> Iterator[_Parameter]:
+    for (surface, axis), stress in by.items():
+        value = float(given[surfaces.index(surface), "xyz".index(axis)])
+        step = SMALL * float(np.abs(given).max())
+        if step:
+            relative = -stress / maximum
+            yield _Parameter(f"{kind} {surface} {axis}", kind, value, step, stress, relative)
 
 
 def _of_material(found: Derivatives, material: Material) -> Iterator[_Parameter]:

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from benchmarks.derivatives import by_differences, moved_maximum, richardson
+from benchmarks.random_pins import trials
 from fea.beam.stress_concentration import BENDING, shoulder_factor
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads, UnitLoad
@@ -101,6 +102,14 @@ def test_by_dimensions_they_are_those_of_a_mesh_that_is_moved(name: str) -> None
     the end of a pressure.
     """
     check_differences(solved(*CASES[name]), slice(1, None, 4))
+
+
+@pytest.mark.parametrize("k", range(5))
+def test_of_random_pins(k: int) -> None:
+    """Another dimension of each."""
+    trial = trials(5, seed=3)[k]
+    loads = trial.loads.at(np.array([k]))
+    check_differences(solved(trial.pin, trial.clamps, loads), slice(k, k + 1))
 
 
 @pytest.mark.slow

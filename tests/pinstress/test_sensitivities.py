@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import csv
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import pinstress
+from pinstress.analysis.gather import results_of
+from pinstress.analysis.plan import prepare
+from pinstress.analysis.solve import solve_tasks
 from pinstress.cli.commands import run_command_line
 from pinstress.model.pins import pin as pin_of
 from pinstress.remedies.dimensions import dimensions_of
 from pinstress.remedies.sensitivities import by_key
 from reports.data.results import PinSensitivities
+from tests.support.clevis import CLEVIS
 from tests.support.command_line import QUICK
 
 TWICE = """
@@ -84,8 +89,16 @@ def test_all_cases_where_asked() -> None:
     """Otherwise the worst one of each pin."""
     more = '\n[case.light]\nkind = "given"\nforces = { B = [0.0, -100.0] }\n'
     study = pinstress.study_from(QUICK + more)
-    (only,) = pinstress.run(study).sensitivities
+    plan = prepare(study)
+    (only,) = results_of(plan, solve_tasks(plan)).sensitivities
     assert only.case == "landing"
+    every = replace(plan, sensitive=True)
+    both = results_of(every, solve_tasks(every)).sensitivities
+    assert [found.case for found in both] == ["landing", "light"]
+    assert both[0] == only
+    one, other = ({row.key: row.stress for row in found.rows} for found in both)
+    key = "profile[2].diameter"
+    assert one[key] / both[0].maximum == pytest.approx(other[key] / both[1].maximum, rel=1e-6)
 
 
 def test_corners_and_segments_agree() -> None:
@@ -137,3 +150,19 @@ def test_of_a_beam_they_are_relative_to_its_maximum() -> None:
         for x in (beam, harmonic)
     )
     assert one == pytest.approx(other, rel=0.1, abs=0.02 * float(np.abs(other).max()))
+
+
+@pytest.mark.slow
+def test_in_contact_by_forces_and_clearances(tmp_path: Path) -> None:
+    """Where asked, and why there are no others."""
+    study = pinstress.study_from(CLEVIS)
+    plan = replace(prepare(study), sensitive=True)
+    (found,) = results_of(plan, solve_tasks(plan)).sensitivities
+    kinds = {row.key: row.kind for row in found.rows}
+    assert {f"lug.{c}.clearance" for c in "LMR"} <= set(kinds)
+    assert kinds["force M x"] == "force"
+    assert not any("profile" in key for key in kinds)
+    assert "no derivatives by dimensions" in found.note
+    (brief,) = pinstress.run(study).sensitivities
+    assert brief.rows == ()
+    assert "--sensitivities" in brief.note

@@ -22,6 +22,10 @@ INTRODUCTION = (
     "shown; sensitivities.csv has all, those of loads and material too. Steps are small; what a "
     "large change does is not in proportion."
 )
+SINGULAR = (
+    "Of singular rows this is of the maximum outside the excluded zones, whose size goes with the "
+    "diameter where they are."
+)
 ONE_SIDED = "one-sided: stress is as large, within its error, {places}, which may govern instead."
 
 
@@ -141,10 +145,13 @@ def sensitivity_notes(results: Results) -> list[str]:
         if found.without:
             keys = ", ".join(key for key, _ in found.without)
             notes.append(f"{who}, no derivative by {keys}: {found.without[0][1]}.")
+    rows = {(found.pin, found.case) for found in results.sensitivities if _shown(found)}
+    if any((p.pin, p.case) in rows and p.verdict == "singular" for p in results.pins):
+        notes.append(SINGULAR)
     without: dict[str, list[str]] = {}
     for found in results.sensitivities:
         if found.note:
             without.setdefault(found.note, []).append(found.pin)
     for note, pins in without.items():
-        notes.append(f"{'Pins' if pins[1:] else 'Pin'} {', '.join(pins)}, none: {note}.")
+        notes.append(f"{'Pins' if pins[1:] else 'Pin'} {', '.join(pins)}: {note}.")
     return notes
