@@ -73,6 +73,12 @@ def solve_on(
             done: Done = future.result()
             batches.learn(done)
             keep(done)
+        elif future.status != "error":
+            raise InputError(
+                "--scheduler: the connection to the scheduler is lost; the batches that are done "
+                "are kept, for --resume",
+                code="no-scheduler",
+            )
         elif not _died(error := future.exception()):
             raise _unusable(error)
         elif len(batch.designs) > 1:
@@ -100,6 +106,8 @@ def local(jobs: int) -> Iterator[Client]:
         "distributed.comm.timeouts.connect": "30s",
         "distributed.scheduler.allowed-failures": 1,
         "distributed.admin.system-monitor.interval": "10s",
+        "distributed.scheduler.http.routes": [],  # a port is opened, but nothing is served there
+        "distributed.worker.http.routes": [],
     }
     with dask.config.set(quiet), _silent():
         with _ignored_by_children():
@@ -108,7 +116,8 @@ def local(jobs: int) -> Iterator[Client]:
                 threads_per_worker=1,
                 processes=True,
                 host="127.0.0.1",
-                dashboard_address=None,
+                dashboard_address="127.0.0.1:0",
+                scheduler_kwargs={"dashboard": False},
                 worker_dashboard_address=None,
                 memory_limit=None,
                 silence_logs=logging.CRITICAL,
@@ -177,7 +186,8 @@ def _unusable(error: BaseException | None) -> BaseException:
             "install the same version of pinstress there",
             code="other-version",
         )
-    return error or RuntimeError("a batch was cancelled by the cluster")
+    assert error is not None
+    return error
 
 
 def _short(error: BaseException) -> str:

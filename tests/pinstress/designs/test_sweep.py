@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from functools import partial
+from multiprocessing import resource_tracker
 from pathlib import Path
 
 import numpy as np
@@ -18,9 +20,11 @@ from pinstress.designs.parameters import parameters_of
 from pinstress.designs.parts import Parts, identity, is_ours
 from pinstress.designs.sweep import Kept, planned, solved
 from pinstress.designs.table import assembled, facts, write_table
-from pinstress.designs.workers import failed_rows, remote
+from pinstress.designs.workers import failed_rows, local, remote, solve_on
 from tests.support.command_line import QUICK
-from tests.support.swept import DIAMETER, FORCE, STRENGTH, swept
+from tests.support.swept import DEADLY, DIAMETER, FORCE, STRENGTH, dying, swept
+
+resource_tracker.ensure_running()  # multiprocessing's, which stays to the end
 
 VARIED = f"""
 "{DIAMETER}" = {{ from = "1.5 in", to = "4.5 in", steps = 3 }}
@@ -205,3 +209,27 @@ def test_a_scheduler_that_does_not_answer_is_named(monkeypatch: pytest.MonkeyPat
         with pytest.raises(InputError, match="no scheduler of dask answers at") as raised:
             remote(address).__enter__()
         assert raised.value.code == "no-scheduler"
+
+
+@pytest.mark.slow
+@pytest.mark.linux
+def test_a_design_that_ends_its_process_is_a_row_and_the_others_go_on(table: pa.Table) -> None:
+    """Also in a batch with others; another client of the same cluster has the same table."""
+    study = swept(VARIED, "", QUICK)
+    sweep = planned(study)
+    found: dict[int, str] = {}
+
+    def keep(done: Done) -> None:
+        found.update(
+            (i, rows[0].code) for i, rows in zip(done.batch.designs, done.rows, strict=True)
+        )
+
+    with local(1) as client:
+        batches = Batches(sweep.problem.numbers, sweep.values, set(), 1)
+        batches.learn(Done(Batch((0,), ((0.0,),)), [], 1e-3))
+        lost = partial(failed_rows, (("B", "landing"),))
+        solve_on(client, sweep.problem, batches, keep, lost, dying)
+        again = pinstress.sweep(study, scheduler=client.scheduler.address)
+    assert again.equals(table, check_metadata=True)
+    expected = dict(enumerate(table["code"].to_pylist())) | {DEADLY: "process-died"}
+    assert found == expected
