@@ -17,7 +17,7 @@ from pinstress.designs.batches import shapes
 from pinstress.designs.evaluate import Evaluator
 from pinstress.designs.parameters import Parameter
 from pinstress.processes.pool import Progress
-from pinstress.reliability.designs import Designs, random_numbers
+from pinstress.reliability.designs import SolvedDesigns, random_numbers
 from pinstress.reliability.drivers import base_samples, indices
 from pinstress.reliability.form import (
     NOISY,
@@ -27,7 +27,7 @@ from pinstress.reliability.form import (
     distinct,
     form_quantile,
 )
-from pinstress.reliability.risk import Column, Row, Sample, risk_of
+from pinstress.reliability.risk import AssessedRow, RiskColumn, Sample, risk_of
 from pinstress.reliability.sampling import importance_draws, plain_draws
 from pinstress.schema.reliability import ReliabilityTable
 from pinstress.study.file import Study
@@ -63,7 +63,7 @@ def assess(
     parameters, space = random_numbers(study)
     evaluator = Evaluator(study, parameters, pins, cases)
     _require_strengths(study, evaluator)
-    designs = Designs(evaluator, space, jobs, progress)
+    designs = SolvedDesigns(evaluator, space, jobs, progress)
     plain = plain_draws(asked.samples, space.size, asked.seed)
     sampled = Sample(plain, designs.at(plain.u, "plain sampling"))
     forms = _first_orders(study, parameters, designs, sampled, cases)
@@ -74,11 +74,13 @@ def assess(
     risks = []
     for k, (pin, case) in enumerate(evaluator.table):
         drivers = _drivers(parameters, designs, forms[k], shares[k] if shares else None)
-        found = Row(pin, case, Column(k), rows.get((pin, case)), forms[k].result, drivers)
+        found = AssessedRow(
+            pin, case, RiskColumn(k), rows.get((pin, case)), forms[k].result, drivers
+        )
         risks.append(risk_of(found, sampled, weighted, asked))
     if len(risks) > 1:
         everything = _drivers(parameters, designs, None, shares[-1] if shares else None)
-        worst = Row(SYSTEM, SYSTEM, Column(None), _worst(nominal), None, everything)
+        worst = AssessedRow(SYSTEM, SYSTEM, RiskColumn(None), _worst(nominal), None, everything)
         risks.insert(0, risk_of(worst, sampled, weighted, asked))
     vary = study.table.vary
     assert vary is not None
@@ -124,7 +126,7 @@ class _Form:
 def _first_orders(
     study: Study,
     parameters: tuple[Parameter, ...],
-    designs: Designs,
+    designs: SolvedDesigns,
     sampled: Sample,
     cases: Sequence[str] | None,
 ) -> list[_Form]:
@@ -139,7 +141,9 @@ def _first_orders(
     return [found[row] for row in table]
 
 
-def _first_order(designs: Designs, row: int, starts: list[Array], asked: ReliabilityTable) -> _Form:
+def _first_order(
+    designs: SolvedDesigns, row: int, starts: list[Array], asked: ReliabilityTable
+) -> _Form:
     """Design points of a row from the mean and from other starts in other directions."""
     size = designs.space.size
     close = NOISY if any(map(shapes, designs.evaluator.numbers)) else SMOOTH
@@ -185,7 +189,9 @@ def _starts(sampled: Sample, row: int, factor: float) -> list[Array]:
     return kept
 
 
-def _weighted(designs: Designs, centres: list[Array], asked: ReliabilityTable) -> Sample | None:
+def _weighted(
+    designs: SolvedDesigns, centres: list[Array], asked: ReliabilityTable
+) -> Sample | None:
     kept: list[Array] = []
     for centre in sorted(centres, key=lambda c: float(np.linalg.norm(c))):
         if all(np.linalg.norm(centre - other) > 0.5 for other in kept):
@@ -196,7 +202,9 @@ def _weighted(designs: Designs, centres: list[Array], asked: ReliabilityTable) -
     return Sample(draws, designs.at(draws.u, "importance sampling"))
 
 
-def _indices(designs: Designs, asked: ReliabilityTable) -> list[list[tuple[Spread, Spread]]] | None:
+def _indices(
+    designs: SolvedDesigns, asked: ReliabilityTable
+) -> list[list[tuple[Spread, Spread]]] | None:
     """Of all rows and, last, of the system."""
     base = base_samples(asked.sobol_samples)
     if not base or designs.space.size < 2:
@@ -211,7 +219,7 @@ def _indices(designs: Designs, asked: ReliabilityTable) -> list[list[tuple[Sprea
 
 def _drivers(
     parameters: tuple[Parameter, ...],
-    designs: Designs,
+    designs: SolvedDesigns,
     form: _Form | None,
     shares: list[tuple[Spread, Spread]] | None,
 ) -> tuple[Driver, ...]:

@@ -63,7 +63,7 @@ def random_numbers(study: Study) -> tuple[tuple[Parameter, ...], NormalSpace]:
     return parameters, NormalSpace(tuple(p.of_normal for p in parameters), lower)
 
 
-class Designs:
+class SolvedDesigns:
     """The designs of a study at standard normal u, solved. jobs: number of parallel processes.
 
     solved: how many designs by what for; reasons: why rows have no result, with how many.
@@ -76,9 +76,9 @@ class Designs:
         self.solved, self.reasons = Counter[str](), Counter[str]()
         self._jobs, self._progress = jobs, progress
 
-    def of_pin(self, evaluator: Evaluator) -> Designs:
+    def of_pin(self, evaluator: Evaluator) -> SolvedDesigns:
         """The same with the rows of one pin, counted together."""
-        mine = Designs(evaluator, self.space, 1, self._progress)
+        mine = SolvedDesigns(evaluator, self.space, 1, self._progress)
         mine.solved, mine.reasons = self.solved, self.reasons
         return mine
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +29,7 @@ def indices(
     """First-order and total indices of each output and each of d = size independent standard normal
     variables. factors: of designs (n, d), as (n, s); None where any is not finite.
     """
+    standard: Any = norm()
     first, total = [], []
     for k in range(SETS):
         lost = False
@@ -40,7 +42,7 @@ def indices(
 
         rng = np.random.default_rng([seed, 2, k])
         with np.errstate(invalid="ignore", divide="ignore"):  # of an output that does not vary
-            made = sobol_indices(func=outputs, n=base, dists=[norm()] * size, rng=rng)
+            made = sobol_indices(func=outputs, n=base, dists=[standard] * size, rng=rng)
         if lost:
             return None
         first.append(np.atleast_2d(made.first_order))

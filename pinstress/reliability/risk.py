@@ -21,7 +21,7 @@ FEWEST = 10  # weighted samples below a point of it
 
 
 @dataclass(frozen=True)
-class Column:
+class RiskColumn:
     """A row of the study, or all (None)."""
 
     row: int | None
@@ -39,13 +39,15 @@ class Sample:
     draws: Draws
     answers: Answers
 
-    def probability(self, asked: ReliabilityTable, column: Column, part: float = 0.0) -> Estimate:
+    def probability(
+        self, asked: ReliabilityTable, column: RiskColumn, part: float = 0.0
+    ) -> Estimate:
         """Of failure. part: of its error by which each stress is larger."""
         used, errors = column.of(self.answers)
         margin = 1.0 - asked.factor * used * (1.0 + part * errors)
         return probability(self.draws, margin, 0.0, asked.confidence)
 
-    def quantile(self, asked: ReliabilityTable, column: Column) -> Estimate:
+    def quantile(self, asked: ReliabilityTable, column: RiskColumn) -> Estimate:
         """The factor of safety that is not reached with the stated probability."""
         with np.errstate(divide="ignore"):
             factors = 1.0 / column.of(self.answers)[0]
@@ -53,18 +55,20 @@ class Sample:
 
 
 @dataclass(frozen=True)
-class Row:
+class AssessedRow:
     """A row of the study, or all of them, with its result as the study is and what FORM found."""
 
     pin: str
     case: str
-    column: Column
+    column: RiskColumn
     nominal: PinResult | None
     form: FirstOrder | None
     drivers: tuple[Driver, ...]
 
 
-def risk_of(row: Row, sampled: Sample, weighted: Sample | None, asked: ReliabilityTable) -> Risk:
+def risk_of(
+    row: AssessedRow, sampled: Sample, weighted: Sample | None, asked: ReliabilityTable
+) -> Risk:
     """What plain and importance sampling say of a row."""
     plain = sampled.probability(asked, row.column)
     by_weights = weighted and weighted.probability(asked, row.column)
@@ -93,7 +97,7 @@ def risk_of(row: Row, sampled: Sample, weighted: Sample | None, asked: Reliabili
     )
 
 
-def _by_errors(best: Sample, row: Row, asked: ReliabilityTable) -> ByErrors | None:
+def _by_errors(best: Sample, row: AssessedRow, asked: ReliabilityTable) -> ByErrors | None:
     used, errors = row.column.of(best.answers)
     known = errors[np.isfinite(used) & (used > 0.0)]
     if not len(known):
@@ -102,7 +106,7 @@ def _by_errors(best: Sample, row: Row, asked: ReliabilityTable) -> ByErrors | No
     return ByErrors(float(np.median(known)), *ends)
 
 
-def _by_joint(best: Sample, row: Row, asked: ReliabilityTable) -> ByErrors | None:
+def _by_joint(best: Sample, row: AssessedRow, asked: ReliabilityTable) -> ByErrors | None:
     """With the relative range over the joint of the study as it is."""
     nominal = row.nominal
     span = nominal.joint.range if nominal and nominal.joint else None
@@ -117,7 +121,7 @@ def _by_joint(best: Sample, row: Row, asked: ReliabilityTable) -> ByErrors | Non
     return ByErrors(max(abs(s - 1.0) for s in scales), *ends)
 
 
-def _curve(sample: Sample, row: Row, way: int) -> tuple[tuple[float, float, int], ...]:
+def _curve(sample: Sample, row: AssessedRow, way: int) -> tuple[tuple[float, float, int], ...]:
     """Points of the distribution of the factor of safety, even in normal deviates."""
     used, _ = row.column.of(sample.answers)
     known = np.isfinite(used) & (used > 0.0)

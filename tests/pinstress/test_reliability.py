@@ -189,3 +189,15 @@ def test_ranges_are_refused_by_the_function_too() -> None:
     with pytest.raises(InputError, match="from and to") as caught:
         random_numbers(parse_study(Path("bar.toml"), text))
     assert caught.value.code == "no-law"
+
+
+@pytest.mark.slow
+def test_the_page_shows_what_is_printed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """With all samples, whose interval has the exact probability in it too."""
+    _run(tmp_path, BAR.replace(SMALL, ""))
+    printed = [line.rstrip() for line in capsys.readouterr().out.splitlines()]
+    shown = PAGE.split("```text\n")[1].split("```")[0].splitlines()
+    assert shown == printed
+    (risk,) = json.loads((tmp_path / "out" / "reliability.json").read_text())["risks"]
+    assert risk["weighted"]["low"] < EXACT < risk["weighted"]["high"]
+    assert risk["sampled"]["low"] < EXACT < risk["sampled"]["high"]
