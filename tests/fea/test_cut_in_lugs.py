@@ -56,6 +56,7 @@ def test_a_grease_hole_at_the_extreme_fibre() -> None:
     assert plain.joint is not None
     assert holed.joint is not None
     assert holed.joint.bending_moment == plain.joint.bending_moment
+    assert plain.joint.bending_moment is not None
     nominal = 32.0 * plain.joint.bending_moment / (np.pi * D**3)
     peak = holed.solution.peak
     assert peak.model == "harmonic+local"
