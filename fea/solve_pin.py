@@ -23,7 +23,7 @@ from fea.core.material import Material
 from fea.core.over_time import Between, rise_between, through_time
 from fea.core.peak import NOTHING, Note, Peak
 from fea.core.pin_loads import PinLoads
-from fea.cut.region import at_corner, loaded_bands, refused, unringed
+from fea.cut.region import RingedCutPin, at_corner, loaded_bands, refused, unringed
 from fea.harmonic.evaluate import FirstMesh
 from fea.refine import (
     LOCAL,
@@ -69,7 +69,8 @@ def solve_pin(
     Raises: ArgumentError for a model that does not apply to this pin; MeshError, SolveError.
     """
     holed = isinstance(pin, CutPin) and not pin.revolved
-    if asked.model in ("beam", "harmonic")[: 1 if holed else 2] and not isinstance(pin, Pin):
+    in_lugs = isinstance(pin, RingedCutPin)
+    if asked.model in ("beam", "harmonic") and not (isinstance(pin, Pin) or in_lugs):
         raise ArgumentError(
             f"pin {pin.name} is not a body of revolution, which the {asked.model} model needs: use "
             "auto or solid",

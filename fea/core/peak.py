@@ -66,8 +66,9 @@ class SingularZone:
 @dataclass(frozen=True)
 class ErrorParts:
     """The parts of an error, Pa: from the mesh; from the time between instants; from the truncated
-    harmonics of a bearing pressure; from the beam model; from the cells of contact pressure; from
-    the ends of a local solid. None includes the modelling of the joint.
+    harmonics of a bearing pressure; from what a model neglects (a beam; contact without holes);
+    from the cells of contact pressure; from the ends of a local solid. None includes the modelling
+    of the joint.
     """
 
     mesh: float

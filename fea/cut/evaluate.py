@@ -14,7 +14,7 @@ from fea.core.solution import Picture
 from fea.core.voigt import ENTRIES, TENSOR
 from fea.cut.local_fields import RATIO, LocalFields, local_fields, mesh_of, section_points
 from fea.cut.region import surface_ends, zone
-from fea.cut.supports import Reactions, Support, motions, reactions
+from fea.cut.supports import ClampMotions, Support, motions, reactions
 from fea.harmonic.evaluate import (
     HarmonicAnswer,
     HarmonicSolution,
@@ -45,7 +45,7 @@ class CutSolution:
 
     section: HarmonicSolution
     pieces: tuple[LocalFields, ...]
-    reactions: Reactions
+    reactions: ClampMotions
 
     @property
     def corners(self) -> tuple[Singularity, ...]:

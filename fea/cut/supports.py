@@ -56,7 +56,7 @@ BACKWARDS = np.array([1.0, 1.0, 1.0, -1.0, 1.0, 1.0])  # of these motions, the s
 
 
 @dataclass(frozen=True)
-class Reactions:
+class ClampMotions:
     """motions: of clamps, as unit loads; amounts: (M, L) of them per unit of each of the units of
     loads.
     """
@@ -82,7 +82,7 @@ class Reactions:
         )  # fmt: skip
 
 
-def reactions(supports: Sequence[Support], pieces: Sequence[LocalFields]) -> Reactions:
+def reactions(supports: Sequence[Support], pieces: Sequence[LocalFields]) -> ClampMotions:
     """Of pieces under all units, the motions of clamps among them last.
 
     Raises: SolveError where the gaps cannot be closed.
@@ -90,7 +90,7 @@ def reactions(supports: Sequence[Support], pieces: Sequence[LocalFields]) -> Rea
     units, moved = pieces[0].units, motions(supports)
     first = len(units) - len(moved)
     if not moved:
-        return Reactions(units, (), np.zeros((0, first)))
+        return ClampMotions(units, (), np.zeros((0, first)))
     reached = [_reached(s, pieces) for s in supports]
     gap = np.concatenate([BACKWARDS[:, None] * (x - reached[0]) for x in reached[1:]])
     system = np.eye(len(moved)) + gap[:, first:]
@@ -103,7 +103,7 @@ def reactions(supports: Sequence[Support], pieces: Sequence[LocalFields]) -> Rea
             "local solids",
             "reactions-unknown",
         )
-    return Reactions(units[:first], moved, -np.linalg.solve(system, gap[:, :first]))
+    return ClampMotions(units[:first], moved, -np.linalg.solve(system, gap[:, :first]))
 
 
 def _reached(support: Support, pieces: Sequence[LocalFields]) -> Floats:

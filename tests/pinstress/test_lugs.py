@@ -103,6 +103,7 @@ def test_what_is_not_given(tmp_path: Path) -> None:
     [
         ("", "auto", 0),
         ("lug.M = {}", "auto", 3),
+        ("lug.M = {}\nhole = [{ z = 20, diameter = 4 }]", "auto", 3),
         ("lug.M = {}", "prescribed", 0),
         ("", "contact", 3),
         ("", "foundation", 3),
@@ -137,7 +138,12 @@ def test_a_lug_of_the_structure_by_the_name_of_a_segment(tmp_path: Path) -> None
         ('lug.M = { tilt = "loose" }', None, "pin.P.lug.M.tilt"),
         ("lug.M = { tilt = -1 }", None, "pin.P.lug.M.tilt"),
         ('clamp = ["start"]\nlug.M = {}', "clamped-in-lugs", "clamped at start"),
-        ("lug.M = {}\nhole = [{ z = 20, diameter = 4 }]", "not-axisymmetric", "plain profile"),
+        ("lug.M = {}\nhole = [{ z = 11, diameter = 4 }]", "hole-at-end", "hole 1 lies at the edge"),
+        (
+            "lug.M = {}\nflat = [{ z = [18, 22], distance = 8 }]",
+            "not-axisymmetric",
+            "lugs require a profile",
+        ),
     ],
 )
 def test_what_cannot_be_is_refused_before_anything_is_solved(

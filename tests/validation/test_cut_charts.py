@@ -20,5 +20,5 @@ def test_a_small_hole_is_one_in_a_plate(load: str, limit: float) -> None:
 @pytest.mark.parametrize("load", ROARK)
 @pytest.mark.parametrize("ratio", [0.1, 0.2, 0.3])
 def test_beside_roark(load: str, ratio: float) -> None:
-    """Within 8 %, by which the formulas are low in bending (docs/validation.md)."""
-    assert factors(load, ratio)[0] == pytest.approx(chart(load, ratio), rel=0.085)
+    """Within 9 %, by which the formulas are low in bending (docs/validation.md)."""
+    assert factors(load, ratio)[0] == pytest.approx(chart(load, ratio), rel=0.09)
