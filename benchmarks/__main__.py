@@ -48,6 +48,7 @@ ACCURACY = {
     "tension": tension.tension,
     "corners": coverage.singular,
     "cut-pins": cut.cut_pins,
+    "cut-kinds": cut.cut_kinds,
     "holding": modelling.holding,
     "terms": modelling.terms,
     "instants": modelling.instants,

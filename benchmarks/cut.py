@@ -1,4 +1,4 @@
-"""Cross holes by local solids: known ones, beside the whole solid, and many at random."""
+"""Cuts by local solids: known ones, beside the whole solid, and many at random."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import time
 
 import numpy as np
 
-from benchmarks.random_cuts import CutTrial, cut_trials
+from benchmarks.random_cuts import CutTrial, cut_trials, kind_trials
 from benchmarks.random_pins import STEEL
 from benchmarks.timing import table
 from fea.core.peak import Peak
@@ -15,7 +15,7 @@ from fea.core.pin_loads import PinLoads
 from fea.solve_pin import Asked, Model, Solution, solve_pin
 from geometry import CutPin, Hole, Pin, Segment
 
-D, HOLE, COUNT, SEED = 0.02, 0.004, 30, 7
+D, HOLE, COUNT, KINDS, SEED = 0.02, 0.004, 30, 12, 7
 NOMINAL = 32.0 * 1500.0 * 0.02 / (np.pi * D**3)
 FURTHER = 200  # instants
 REFERENCE = 2  # meshes after the one on which a run ends
@@ -86,7 +86,17 @@ def _stress(peak: Peak) -> tuple[float, float]:
 
 def cut_pins() -> str:
     """Whether the error contains the truth, on random pins with holes."""
-    rows = [row for trial in cut_trials(COUNT, SEED) if (row := _trial(trial)) is not None]
+    return _contained(cut_trials(COUNT, SEED), REFERENCE)
+
+
+def cut_kinds() -> str:
+    """The same on random pins with cuts of other kinds."""
+    return _contained(kind_trials(KINDS, SEED), 1)
+
+
+def _contained(trials: list[CutTrial], more: int) -> str:
+    """more: meshes after that on which a run ends."""
+    rows = [row for trial in trials if (row := _trial(trial, more)) is not None]
     inside = sum(row[-1] == "yes" for row in rows)
     head = ("pin", "unknowns", "of the reference", "true error, %", "estimated, %", "inside")
     worst = max(float(row[3]) for row in rows)
@@ -94,7 +104,7 @@ def cut_pins() -> str:
     return f"{text}\n\n{table(head, rows)}"
 
 
-def _trial(trial: CutTrial) -> tuple[str, int, int, float, float, str] | None:
+def _trial(trial: CutTrial, more: int) -> tuple[str, int, int, float, float, str] | None:
     """None where the whole pin is solid, or the maximum at a singularity."""
 
     def peak(asked: Asked) -> Peak:
@@ -103,7 +113,7 @@ def _trial(trial: CutTrial) -> tuple[str, int, int, float, float, str] | None:
     found = peak(Asked(0.02))
     if found.model != "harmonic+local" or found.verdict == "singular":
         return None
-    best = peak(Asked(1e-9, meshes=len(found.history) + REFERENCE))
+    best = peak(Asked(1e-9, meshes=len(found.history) + more))
     (value, error), (true, _) = _stress(found), _stress(best)
     off, estimate = abs(value / true - 1.0), error / value
     inside = "yes" if abs(value - true) <= error else "no"

@@ -1,4 +1,4 @@
-"""Pins with cross holes drawn at random, seeded: what the error of the local solids is tried on."""
+"""Pins with cuts drawn at random, seeded: what the error of the local solids is tried on."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from fea.core.pin_loads import PinLoads
-from geometry import CutPin, Hole, Pin, Segment
+from geometry import Bottom, Cut, CutPin, Flat, Hole, Pin, Segment, Slot
 
 
 @dataclass(frozen=True)
 class CutTrial:
-    """A pin with holes, what holds it, and one case of loads."""
+    """A pin with cuts, what holds it, and one case of loads."""
 
     pin: CutPin
     clamps: tuple[str, ...]
@@ -27,7 +27,13 @@ def cut_trials(count: int, seed: int) -> list[CutTrial]:
     return [_trial(rng, k) for k in range(count)]
 
 
-def _trial(rng: np.random.Generator, k: int) -> CutTrial:
+def kind_trials(count: int, seed: int) -> list[CutTrial]:
+    """The same with rounded flats, keyways, slots, blind, countersunk and rounded holes."""
+    rng = np.random.default_rng(seed)
+    return [_trial(rng, k, kinds=True) for k in range(count)]
+
+
+def _trial(rng: np.random.Generator, k: int, kinds: bool = False) -> CutTrial:
     d = float(rng.uniform(0.01, 0.05))
     bore = float(rng.uniform(0.2, 0.5)) * d if k % 4 == 3 else 0.0
     thick = d * float(rng.uniform(1.4, 2.0))
@@ -39,8 +45,10 @@ def _trial(rng: np.random.Generator, k: int) -> CutTrial:
     segments = (root, Segment(shaft + 2.0 * rho, d, bore, name="shaft"), end)
     if k % 2:
         segments = (Segment(thick, thick, bore, connection="A"), *segments[1:])
-    holes = _holes(rng, d, thick + rho, shaft, k)
-    pin = CutPin(Pin(f"cut {k}", segments, rho), holes)
+    cuts: tuple[Cut, ...] = _holes(rng, d, thick + rho, shaft, k)
+    if kinds:
+        cuts = (_cut(rng, d, thick + rho + 0.5 * shaft, k),)
+    pin = CutPin.of(Pin(f"cut {k}", segments, rho), cuts)
     size = 1e4 * np.array([1.0, 1.0, 3.0])
     force = rng.normal(size=(1, 1, 3)) * size
     couple = rng.normal(size=(1, 1, 3)) * size * d
@@ -63,3 +71,23 @@ def _holes(
     if k % 5 == 4 and high - z > 1.5 * size:
         return Hole(z, size, angle), Hole(z + 1.5 * size, size, angle + np.pi / 2.0)
     return (Hole(z, size, angle),)
+
+
+def _cut(rng: np.random.Generator, d: float, z: float, k: int) -> Cut:
+    """At the middle of a shaft, not deeper than a bore leaves it."""
+    size, angle = d * float(rng.uniform(0.12, 0.3)), float(rng.uniform(-np.pi, np.pi))
+    deep, half = d * float(rng.uniform(0.12, 0.2)), d * float(rng.uniform(0.3, 0.6))
+    rounded = size * float(rng.uniform(0.1, 0.2))
+    match k % 6:
+        case 0:
+            return Flat(z - half, z + half, d / 2.0 - 0.6 * deep, angle, 0.4 * deep)
+        case 1:
+            return Slot(z - half, z + half, size, deep, angle, rounded)
+        case 2:
+            return Hole(z, size, angle, deep, Bottom(radius=rounded))
+        case 3:
+            return Slot(z - 0.6 * size, z + 0.6 * size, size, None, angle)
+        case 4:
+            return Hole(z, size, angle, chamfer=0.15 * size)
+        case _:
+            return Hole(z, size, angle, mouth_radius=0.15 * size)

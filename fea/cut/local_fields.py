@@ -40,7 +40,8 @@ class LocalFields:
     of them, stress (P, 6, L) Pa of L unit loads, each in one phase; displacement (P, 3, L) m of the
     uncut pin. read: (P,) where the
     maximum is looked for but for inner corners of cuts. ended: (E, 6, L) what the cuts change of
-    the stress where the piece ends.
+    the stress where the piece ends. scatter: (P,) of the stress with the positions of nodes,
+    relative.
     """
 
     piece: Piece
@@ -52,7 +53,8 @@ class LocalFields:
     read: Mask
     ended: Floats
     unknowns: int
-    corners: tuple[InnerCorner, ...] = ()
+    corners: tuple[InnerCorner, ...]
+    scatter: Floats
 
     def coefficients(self, loads: AnyLoads) -> Floats:
         """How much of each unit load acts at each instant, (T, L).
@@ -176,7 +178,7 @@ def mesh_of(
     if here:
         spots = [_point(x) for x in _unmirrored(piece, np.array(here))]
     mesh = piece_mesh(piece, RATIO ** (level * ELSEWHERE), spots, RATIO**level)
-    return LocalModel(piece, mesh, material, _within(piece, clamps))
+    return LocalModel(piece, mesh, material, _within(piece, clamps), RATIO**level)
 
 
 def _within(piece: Piece, clamps: tuple[str, ...]) -> tuple[str, ...]:
@@ -245,6 +247,7 @@ def local_fields(
             replace(corner, distance=np.tile(corner.distance, len(x)))
             for corner in inner_corners(model, model.points, distance)
         ),
+        np.tile(model.scatter, len(x)),
     )
 
 
