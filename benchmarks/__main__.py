@@ -53,6 +53,7 @@ ACCURACY = {
     "corners": coverage.singular,
     "cut-charts": cut_charts.cut_charts,
     "cut-pins": cut.cut_pins,
+    "cut-kinds": cut.cut_kinds,
     "holding": modelling.holding,
     "terms": modelling.terms,
     "instants": modelling.instants,

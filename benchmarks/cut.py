@@ -1,4 +1,4 @@
-"""Cross holes by local solids: known ones, beside the whole solid, and many at random."""
+"""Cuts by local solids: known ones, beside the whole solid, and many at random."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from benchmarks.cut_calculix import in_calculix
-from benchmarks.random_cuts import CutTrial, cut_trials
+from benchmarks.random_cuts import CutTrial, cut_trials, kind_trials
 from benchmarks.random_pins import STEEL
 from benchmarks.timing import table
 from fea.checks.calculix import installed
@@ -22,7 +22,7 @@ from fea.harmonic.evaluate import SectionProblem
 from fea.solve_pin import Asked, Model, Solution, singularities_of, solve_pin
 from geometry import CutPin, Hole, Pin, Segment
 
-D, HOLE, COUNT, SEED = 0.02, 0.004, 30, 7
+D, HOLE, COUNT, KINDS, SEED = 0.02, 0.004, 30, 5, 7
 NOMINAL = 32.0 * 1500.0 * 0.02 / (np.pi * D**3)
 FURTHER = 200  # instants
 TIMES, MOST = 10.0, 90_000  # the unknowns of a reference: times those of a run, and enough
@@ -104,7 +104,16 @@ def _stress(peak: Peak) -> tuple[float, float]:
 
 def cut_pins() -> str:
     """Whether the error contains the truth, on random pins with holes."""
-    rows = [row for trial in cut_trials(COUNT, SEED) if (row := _trial(trial)) is not None]
+    return _contained(cut_trials(COUNT, SEED))
+
+
+def cut_kinds() -> str:
+    """The same on random pins with cuts of other kinds."""
+    return _contained(kind_trials(KINDS, SEED))
+
+
+def _contained(trials: list[CutTrial]) -> str:
+    rows = [row for trial in trials if (row := _trial(trial)) is not None]
     inside = sum(row[-1] == "yes" for row in rows)
     head = ("pin", "unknowns", "of the reference", "true error, %", "estimated, %", "inside")
     worst = max(float(row[3]) for row in rows)

@@ -7,9 +7,11 @@ scikit-fem and gmsh and is therefore not imported here.
 from geometry.coded import ArgumentError, Coded
 from geometry.mesh.cut_pin import CutPin
 from geometry.shape.corners import Vertex, vertices
-from geometry.shape.drilled import Bottom, Hole, Passage
+from geometry.shape.drill import Bottom
 from geometry.shape.features import Cut
+from geometry.shape.hole import Hole
 from geometry.shape.milled import Flat, Slot
+from geometry.shape.passage import Passage
 from geometry.shape.pin import Band, GeometryError, Pin
 from geometry.shape.pin_like import PinLike
 from geometry.shape.profile import Arc, Edge, meridian, sharp_corners

@@ -295,7 +295,7 @@ def cut_result(
         instant = int(value.argmax())
         high += piece.high(loads, instant)
         if value[instant] > whole:
-            whole, highest = float(value[instant]), (piece, instant, piece.points[point[instant]])
+            whole, highest = float(value[instant]), (piece, instant, int(point[instant]))
     unknowns = result.unknowns + sum(piece.unknowns for piece in solution.pieces)
     inside = tuple(at for piece in solution.pieces for at in piece.inside(loads))
     result = replace(
@@ -307,12 +307,14 @@ def cut_result(
     )
     interval = result.interval or (result.maximum, result.maximum)
     if highest is not None:
-        piece, instant, (x, y, z) = highest
+        piece, instant, at = highest
+        x, y, z = piece.points[at].tolist()
         result = replace(
             result,
             maximum=whole,
             instant=instant,
-            location=(float(x), float(y), float(z)),
+            location=(x, y, z),
+            scatter=whole * float(piece.scatter[at]),
             truncated=piece.left_at_ends(loads, instant),
         )
     if not result.governed:

@@ -41,7 +41,8 @@ class LocalFields:
     of them, stress (P, 6, L) Pa of L unit loads, each in one phase; displacement (P, 3, L) m of the
     uncut pin. read: (P,) where the maximum is looked for but for inner corners of cuts. ended: (E,
     6, L) what the cuts change of the stress where the piece ends; moved: (2, 6, L) by how much they
-    move its ends, as a shift (m) and a turn (rad) about the pin's origin.
+    move its ends, as a shift (m) and a turn (rad) about the pin's origin. scatter: (P,) of the
+    stress with the positions of nodes, relative.
     """
 
     piece: Piece
@@ -54,7 +55,8 @@ class LocalFields:
     ended: Floats
     moved: Floats
     unknowns: int
-    corners: tuple[InnerCorner, ...] = ()
+    corners: tuple[InnerCorner, ...]
+    scatter: Floats
 
     def coefficients(self, loads: AnyLoads) -> Floats:
         """How much of each unit load acts at each instant, (T, L).
@@ -191,7 +193,8 @@ def mesh_of(
     if here:
         spots = [_point(x) for x in _unmirrored(piece, np.array(here))]
     mesh = piece_mesh(piece, RATIO ** (level * ELSEWHERE), spots, RATIO**level)
-    return LocalModel(piece, mesh, material, _within(piece, clamps), bearings(piece, bands))
+    held, loaded = _within(piece, clamps), bearings(piece, bands)
+    return LocalModel(piece, mesh, material, held, loaded, RATIO**level)
 
 
 def _within(piece: Piece, clamps: tuple[str, ...]) -> tuple[str, ...]:
@@ -262,6 +265,7 @@ def local_fields(
             replace(corner, distance=np.tile(corner.distance, len(x)))
             for corner in inner_corners(model, model.points, distance)
         ),
+        np.tile(model.scatter, len(x)),
     )
 
 

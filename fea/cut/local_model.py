@@ -37,6 +37,7 @@ from geometry.mesh.solid_mesh import SolidMesh
 NO_CLASS = 2e-4  # of the tractions: less of a class is the noise of the section's mesh
 LEAST = 1e-6  # of the tractions of a class: what less of them does is not solved
 UNBALANCED = 0.1  # of the tractions, by the section's mesh
+ROUNDED = 0.06  # scatter of stress on rounded corners on the first mesh, by flats and keyways
 FELT = 0.02  # of the pin's largest stress: less of it is not looked at
 ENDS = ("start", "end")
 
@@ -57,8 +58,8 @@ class Read:
 
 
 class LocalModel:
-    """A piece on one mesh. clamps: names of clamped surfaces of it. bearings: loaded bands with
-    cuts in them.
+    """A piece on one mesh, `finer` than the first. clamps: names of clamped surfaces of it.
+    bearings: loaded bands with cuts in them.
     """
 
     def __init__(
@@ -68,8 +69,9 @@ class LocalModel:
         material: Material,
         clamps: tuple[str, ...] = (),
         bearings: tuple[Bearing, ...] = (),
+        finer: float = 1.0,
     ) -> None:
-        self.piece, self.material, self.clamps = piece, material, clamps
+        self.piece, self.material, self.clamps, self.finer = piece, material, clamps, finer
         self.bearings = bearings
         self.space = Discretisation(solid.mesh)
         self.surface = surface(self.space)
@@ -101,6 +103,17 @@ class LocalModel:
         """(P,) which points are on cuts."""
         parts = [np.full(len(r.nodes), r.face.cut) for r in self.readings]
         return np.concatenate(parts)
+
+    @cached_property
+    def scatter(self) -> Floats:
+        """(P,) of the stress at the points with the positions of nodes, relative, beyond that of
+        all pieces.
+        """
+        parts = [
+            np.full(len(r.nodes), ROUNDED * r.face.name.endswith(("fillet", "mouth")))
+            for r in self.readings
+        ]
+        return np.asarray(np.concatenate(parts) / self.finer**2)
 
     @cached_property
     def points(self) -> Floats:

@@ -16,9 +16,11 @@ import numpy as np
 
 from geometry.arrays import Floats
 from geometry.imported.sampled_face import NEAR, Axis, SampledFace
-from geometry.shape.drilled import FLAT_TIP, Bottom, Hole, Passage
+from geometry.shape.drill import FLAT_TIP, Bottom
 from geometry.shape.features import Cut, outer_radius, radii
+from geometry.shape.hole import Hole
 from geometry.shape.milled import Flat, Slot
+from geometry.shape.passage import Passage
 from geometry.shape.pin import Pin
 
 Z = np.array([0.0, 0.0, 1.0])

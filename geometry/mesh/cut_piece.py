@@ -14,9 +14,9 @@ from geometry.mesh.gmsh_session import formula_size, gmsh_model
 from geometry.mesh.gmsh_tetrahedra import collect, repair
 from geometry.mesh.scale import unit_of_solid
 from geometry.mesh.solid_mesh import MeshSize, SolidMesh, set_sizes, sound_mesh
-from geometry.shape.drilled import Passage
 from geometry.shape.features import Cut
 from geometry.shape.milled import Slot
+from geometry.shape.passage import Passage
 from geometry.shape.pin import Pin
 
 Spots = Sequence[tuple[float, float, float]]

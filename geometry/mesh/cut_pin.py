@@ -10,9 +10,10 @@ from typing import ClassVar
 from geometry.mesh.cut_solid import cut_solid, name_faces
 from geometry.mesh.gmsh_session import gmsh_model
 from geometry.mesh.scale import unit_of_solid
-from geometry.shape.drilled import Hole, Passage
 from geometry.shape.features import Cut, marks_of
+from geometry.shape.hole import Hole
 from geometry.shape.milled import Flat, Slot
+from geometry.shape.passage import Passage
 from geometry.shape.pin import Band, GeometryError, Pin
 
 

@@ -11,9 +11,11 @@ import numpy as np
 from geometry.arrays import Floats
 from geometry.mesh.gmsh_session import MeshError, formula_size
 from geometry.mesh.revolve import revolve
-from geometry.shape.drilled import Hole, Passage, Placed
+from geometry.shape.drill import Placed
 from geometry.shape.features import Cut, Off, outer_radius
+from geometry.shape.hole import Hole
 from geometry.shape.milled import Flat, Slot
+from geometry.shape.passage import Passage
 from geometry.shape.pin import FACES, GeometryError, Pin
 from geometry.shape.profile import Edge, kind_of, meridian, off_edge
 

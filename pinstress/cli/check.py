@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sized
 from functools import partial
 
 from fea.core.equilibrium import out_of_balance
@@ -116,7 +117,12 @@ def _form(pin: PinTable) -> str:
     if pin.geometry is not None:
         return f"from {pin.geometry}"
     shape = (pin.profile, "segment") if pin.meridian is None else (pin.meridian, "corner")
-    cuts = {"hole": pin.hole, "flat": pin.flat, "slot": pin.slot, "passage": pin.passage}
+    cuts: dict[str, Sized] = {
+        "hole": pin.hole,
+        "flat": pin.flat,
+        "slot": pin.slot,
+        "passage": pin.passage,
+    }
     counted = ((len(shape[0] or ()), shape[1]), *((len(cut), what) for what, cut in cuts.items()))
     return ", ".join(f"{n} {what}{'s' * (n > 1)}" for n, what in counted if n)
 

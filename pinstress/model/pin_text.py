@@ -21,7 +21,7 @@ from geometry import (
 )
 from geometry.imported.body_file import BodyFile
 from geometry.imported.recognise import NotTurnedError, Turned
-from geometry.shape.drilled import FLAT_TIP
+from geometry.shape.drill import FLAT_TIP
 from pinstress.model.imported_pin import require_readable, turned_apart
 from pinstress.model.pins import METRES
 from pinstress.schema.types import usable_name

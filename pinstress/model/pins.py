@@ -18,7 +18,7 @@ from geometry import (
     Slot,
 )
 from geometry.coded import Place
-from geometry.shape.drilled import FLAT_TIP
+from geometry.shape.drill import FLAT_TIP
 from geometry.shape.polyline import Bend, Stripe, pin_of_polyline, with_stripes
 from pinstress.schema.pins import BottomTable, HoleTable, PassageTable, PinTable
 from pinstress.study.errors import Wrong

@@ -1,0 +1,148 @@
+"""Holes along the pin, beside its axis."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import ClassVar, Literal
+
+from geometry.coded import Place
+from geometry.shape.drill import (
+    SQUARE,
+    Bottom,
+    Placed,
+    closed_outline,
+    drill_outline,
+    turned_surfaces,
+)
+from geometry.shape.features import Cut, CutSurface, positive, radii, require
+from geometry.shape.pin import FACES, Pin
+from geometry.shape.profile import Edge
+
+Mouth = Literal["start", "end", "both"]
+
+
+@dataclass(frozen=True)
+class Passage(Cut):
+    """A hole along the pin, its axis `offset` (m) from the pin's in the direction `angle` (rad from
+    x): of a diameter (m), between z0 and z1 (m), drilled from a `mouth`: "start", "end", or "both"
+    for one through the pin. bottom: of a blind one, beyond the end of its full diameter.
+    """
+
+    z0: float
+    z1: float
+    diameter: float
+    offset: float
+    angle: float = 0.0
+    mouth: Mouth = "both"
+    bottom: Bottom = SQUARE
+
+    what: ClassVar[str] = "passage"
+
+    @property
+    def extent(self) -> tuple[float, float]:
+        """With its tip."""
+        tip = self.bottom.height(self.diameter)
+        down, up = (tip if self.mouth == end else 0.0 for end in ("end", "start"))
+        return self.z0 - down, self.z1 + up
+
+    @property
+    def size(self) -> float:
+        """The diameter."""
+        return self.diameter
+
+    @property
+    def half_turn(self) -> bool:
+        """Never; amid the pin it is round."""
+        return False
+
+    @property
+    def round(self) -> bool:
+        """On the axis."""
+        return self.offset == 0.0
+
+    @property
+    def opens(self) -> tuple[float, float]:
+        """Nowhere on the outer surface."""
+        return math.inf, -math.inf
+
+    @property
+    def faces(self) -> tuple[str, ...]:
+        """With its mouths."""
+        return FACES if self.mouth == "both" else (self.mouth,)
+
+    def lengths(self) -> tuple[str, ...]:
+        """All but angles."""
+        return "z0", "z1", "diameter", "offset"
+
+    def scaled(self, factor: float) -> Passage:
+        """The same in another unit."""
+        made = super().scaled(factor)
+        return replace(made, bottom=replace(self.bottom, radius=self.bottom.radius * factor))
+
+    def rounded(self, digits: int) -> Passage:
+        """The same, its bottom as well."""
+        return replace(super().rounded(digits), bottom=self.bottom.rounded(digits))
+
+    def along(self, change: Callable[[float, float], tuple[float, float]]) -> Passage:
+        """With other ends; what exchanges them turns it round."""
+        a, b = change(self.z0, self.z1)
+        turned = change(0.0, 1.0)[0] < change(0.0, 0.0)[0]
+        other: dict[Mouth, Mouth] = {"start": "end", "end": "start", "both": "both"}
+        return replace(self, z0=a, z1=b, mouth=other[self.mouth] if turned else self.mouth)
+
+    def placed(self, pin: Pin, top: float) -> Placed:
+        """What is taken away, beyond the ends of the profile by `top` (m)."""
+        del pin
+        x, y = self.offset * math.cos(self.angle), self.offset * math.sin(self.angle)
+        long, a = self.z1 - self.z0, self.diameter / 2.0
+        if self.mouth == "both":
+            first = [Edge(None, (0.0, -top), (a, -top))]
+            return Placed(
+                closed_outline(first, [("wall", a, long + top)]), (x, y, self.z0), (0, 0, 1.0)
+            )
+        outline = drill_outline(a, self.bottom, 0.0, long + top, None)
+        if self.mouth == "end":
+            return Placed(outline, (x, y, self.z0), (0.0, 0.0, 1.0))
+        return Placed(outline, (x, y, self.z1), (0.0, 0.0, -1.0))
+
+    def surfaces(self, pin: Pin) -> tuple[CutSurface, ...]:
+        """Wall and bottom."""
+        return turned_surfaces(self.placed(pin, 2.0 * pin.largest_diameter))
+
+    def check(self, pin: Pin, name: str, at: Place) -> None:
+        """Raises: GeometryError when it is no passage of this pin."""
+        what, r, near = f"pin {pin.name}, {name}", self.diameter / 2, pin.tolerance
+        require(positive(r), f"{what}: the diameter must be positive", "not-positive", at)
+        require(self.offset >= 0.0, f"{what}: the offset must not be negative", "negative", at)
+        require(self.z1 - self.z0 > near, f"{what}: the depth must be positive", "not-positive", at)
+        self.bottom.check(self.diameter, what, at)
+        low, high = self.extent
+        deep = self.mouth != "both" and not (
+            (self.mouth == "start" or low > near)
+            and (self.mouth == "end" or high < pin.length - near)
+        )
+        require(
+            not deep,
+            f"{what}: with its tip it is as deep as the pin is long; reduce the depth, or leave it "
+            "out for one through the pin",
+            "too-deep",
+            at,
+        )
+        least, _ = radii(pin, low, high)
+        require(
+            self.offset + r < least - near,
+            f"{what}: its wall reaches {(self.offset + r) / least:.4g} times the pin's radius and "
+            "breaks out of its surface; reduce the offset or the diameter",
+            "breaks-out",
+            at,
+        )
+        ends = zip(pin.segments, pin.stations, pin.stations[1:], strict=False)
+        bores = [max(s.bores) / 2.0 for s, a, b in ends if b > low and a < high]
+        require(
+            not max(bores, default=0.0) or self.offset - r > max(bores) + near,
+            f"{what}: it meets the pin's bore; increase the offset",
+            "meets-bore",
+            at,
+        )
