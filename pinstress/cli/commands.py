@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from pinstress.cli.designs.commands import sweep
+from pinstress.cli.designs.commands import reliability, sweep
 from pinstress.cli.more_commands import (
     compare_runs,
     completion,
@@ -18,7 +18,6 @@ from pinstress.cli.more_commands import (
     init,
     pdf_of,
     plots,
-    reliability,
     schema,
     size,
     view,

@@ -29,7 +29,7 @@ from pinstress.reliability.form import (
 )
 from pinstress.reliability.risk import AssessedRow, RiskColumn, Sample, risk_of
 from pinstress.reliability.sampling import importance_draws, plain_draws
-from pinstress.schema.reliability import ReliabilityTable
+from pinstress.schema.vary import ReliabilityTable
 from pinstress.study.file import Study
 from reports.data.reliability import (
     SYSTEM,

@@ -10,7 +10,7 @@ from scipy.special import ndtri
 
 from pinstress.reliability.designs import Answers
 from pinstress.reliability.sampling import Draws, Estimate, probability, quantile
-from pinstress.schema.reliability import ReliabilityTable
+from pinstress.schema.vary import ReliabilityTable
 from reports.data.reliability import ByErrors, Driver, FirstOrder, Risk, Spread
 from reports.data.results import PinResult
 

@@ -12,7 +12,6 @@ from pinstress.schema.landing import DropCase, GroundCase
 from pinstress.schema.leg import SpatialLegTable
 from pinstress.schema.mechanism import MechanismTable
 from pinstress.schema.pins import MaterialTable, PinTable
-from pinstress.schema.reliability import ReliabilityTable
 from pinstress.schema.sequence import SequenceTable
 from pinstress.schema.shown import shown
 from pinstress.schema.types import (
@@ -24,7 +23,7 @@ from pinstress.schema.types import (
     PositiveLength,
     StrictTable,
 )
-from pinstress.schema.vary import VaryTable
+from pinstress.schema.vary import ReliabilityTable, VaryTable
 
 
 class AnalysisTable(StrictTable):

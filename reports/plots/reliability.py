@@ -27,7 +27,7 @@ def distribution_plot(found: Reliability, risk: Risk) -> Plot | None:
                "scale": {"zero": False, "nice": False}}  # fmt: skip
     y: Spec = {"field": "y", "type": "quantitative", "title": "probability of a lower factor",
                "axis": {"values": [deviate(p) for p in ticks], "labelExpr": f"{named} : ''",
-                     "labelOverlap": False},
+                     "tickCount": 2 * len(ticks)},
                "scale": {"zero": False}}  # fmt: skip
     colour: Spec = {"field": "way", "type": "nominal", "title": None,
                     "scale": {"domain": list(WAYS)}}  # fmt: skip

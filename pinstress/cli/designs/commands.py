@@ -1,4 +1,4 @@
-"""The `sweep` command's options."""
+"""The options of the commands `sweep` and `reliability`."""
 
 from __future__ import annotations
 
@@ -54,3 +54,41 @@ def sweep(
     directory = out or Path("out") / f"{loaded.name}-sweep"
     way = Way(jobs, scheduler, resume, opens, quiet)
     return sweep_and_write(loaded, directory, pins, cases, way)
+
+
+@click.command(
+    short_help="Find the probability that pins fail, and what drives it.",
+    help=example("pinstress reliability study.toml --out out/risk")
+    + "\nFind the factor of safety as a distribution where numbers of the study are random, as "
+    "[vary.parameters] says: its value at a stated probability, the probability of failure with "
+    "its confidence interval by sampling, FORM and importance sampling, and what drives it. Keys "
+    "in [reliability]. Writes reliability.csv, drivers.csv, reliability.json, reliability.html.\n\n"
+    "Exit status: 0 done; 1 done, but it is not decided whether a probability of failure is "
+    "within the allowed one; 2 bad input; 3 the numerics failed; 130 interrupted.",
+)
+@click.argument("study", type=click.Path(path_type=Path))
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="Output folder [out/<study name>-reliability]."
+)
+@click.option("--pins", callback=names, metavar="A,B", help="Only these pins.")
+@click.option("--cases", callback=names, metavar="X,Y", help="Only these cases.")
+@click.option(
+    "--jobs",
+    type=click.IntRange(1),
+    metavar="N",
+    help="Number of parallel processes [number of cores]; does not affect the results.",
+)
+@click.option("--quiet", is_flag=True, help="No progress bar, no notes; errors are still reported.")
+def reliability(
+    study: Path,
+    out: Path | None,
+    pins: list[str] | None,
+    cases: list[str] | None,
+    jobs: int | None,
+    quiet: bool,
+) -> int:
+    loaded = read_study(study)
+    from pinstress.cli.designs.reliability import reliability_and_write
+
+    directory = out or Path("out") / f"{loaded.name}-reliability"
+    return reliability_and_write(loaded, directory, pins, cases, jobs, quiet)
