@@ -197,14 +197,14 @@ def _simulated() -> str:
     relative = np.array([b.seconds / len(b.batch.designs) for b in batches])
     relative /= relative.mean()
     rows = [(length, _simulate(length, relative, overhead)) for length in LENGTHS]
-    good = next((length for length, found in rows if found >= GOOD), math.nan)
+    good = next((f"{length:g} s" for length, found in rows if found >= GOOD), "more")
     shown = [(length, f"{found:.0%}") for length, found in rows]
     return (
         f"A task that does nothing takes {1e3 * overhead:.2f} ms of the scheduler and of the "
         f"process that submits it ({TASKS:,} tasks by {JOBS} processes). With that, one task "
         f"after the other, and with batches that differ as the measured ones do, {WORKERS:,} "
         f"simulated processes with {EACH} batches each would have the efficiencies below: batches "
-        f"must have {good:g} s of work for {GOOD:.0%} (`AIM` in pinstress/designs/batches.py):\n\n"
+        f"must have {good} of work for {GOOD:.0%} (`AIM` in pinstress/designs/batches.py):\n\n"
         + table(("s of work in a batch", "efficiency"), shown)
     )
 

@@ -51,15 +51,12 @@ def solve_on(
 
     Raises: InputError where the processes of a cluster cannot solve the study.
     """
-    from distributed import as_completed
-
-    ready = as_completed(raise_errors=False)
-    running: dict[Any, Batch] = {}
+    running: dict[Any, Batch] = {}  # by future
+    suspects: list[Batch] = []  # designs whose process died, perhaps by another one's fault
+    alone: set[tuple[int, ...]] = set()
 
     def start(batch: Batch) -> None:
-        future = client.submit(solve, problem, batch, pure=False)
-        running[future.key] = batch
-        ready.add(future)
+        running[client.submit(solve, problem, batch, pure=False)] = batch
 
     def fill() -> None:
         most = AHEAD * processes_of(client)
@@ -67,8 +64,14 @@ def solve_on(
             start(batches.next())
 
     fill()
-    for future in ready:
-        batch = running.pop(future.key)
+    while running or suspects:
+        if not running:
+            alone.add(suspects[-1].designs)
+            start(suspects.pop())
+        future = _ended(client, list(running))
+        if future is None:
+            continue
+        batch = running.pop(future)
         if future.status == "finished":
             done: Done = future.result()
             batches.learn(done)
@@ -84,9 +87,29 @@ def solve_on(
         elif len(batch.designs) > 1:
             for half in batch.halves():
                 start(half)
-        else:
+        elif batch.designs in alone:
             keep(lost(batch))
+        else:
+            suspects.append(batch)
         fill()
+
+
+def _ended(client: Client, running: list[Any]) -> Any:
+    """One of the batches that are done; None if none is for a while. Raises: InputError when the
+    cluster has no process left.
+    """
+    from distributed import wait
+
+    try:
+        return wait(running, timeout=WORKERS, return_when="FIRST_COMPLETED").done.pop()
+    except TimeoutError:
+        if client.nthreads():
+            return None
+        raise InputError(
+            "the processes that solve designs have ended, and no other began within "
+            f"{WORKERS:g} s; the batches that are done are kept, for --resume",
+            code="no-worker",
+        ) from None
 
 
 def processes_of(client: Client) -> int:

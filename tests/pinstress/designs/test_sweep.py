@@ -229,8 +229,7 @@ def test_a_design_that_ends_its_process_is_a_row_and_the_others_go_on(table: pa.
         batches.learn(Done(Batch((0,), ((0.0,),)), [], 1e-3))
         lost = partial(failed_rows, (("B", "landing"),))
         solve_on(client, sweep.problem, batches, keep, lost, dying)
-        assert client.scheduler is not None
-        again = pinstress.sweep(study, scheduler=client.scheduler.address)
+        again = pinstress.sweep(study, scheduler=client.scheduler_info()["address"])
     assert again.equals(table, check_metadata=True)
     expected = dict(enumerate(table["code"].to_pylist())) | {DEADLY: "process-died"}
     assert found == expected
