@@ -15,7 +15,7 @@ from fea.core.pin_loads import PinLoads
 from fea.solve_pin import Asked, Model, Solution, solve_pin
 from geometry import CutPin, Hole, Pin, Segment
 
-D, HOLE, COUNT, KINDS, SEED = 0.02, 0.004, 30, 5, 7
+D, HOLE, COUNT, KINDS, SEED = 0.02, 0.004, 30, 6, 7
 NOMINAL = 32.0 * 1500.0 * 0.02 / (np.pi * D**3)
 FURTHER = 200  # instants
 REFERENCE = 2  # meshes after the one on which a run ends
