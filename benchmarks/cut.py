@@ -22,7 +22,7 @@ from fea.harmonic.evaluate import SectionProblem
 from fea.solve_pin import Asked, Model, Solution, singularities_of, solve_pin
 from geometry import CutPin, Hole, Pin, Segment
 
-D, HOLE, COUNT, KINDS, SEED = 0.02, 0.004, 30, 5, 7
+D, HOLE, COUNT, KINDS, SEED = 0.02, 0.004, 30, 6, 7
 NOMINAL = 32.0 * 1500.0 * 0.02 / (np.pi * D**3)
 FURTHER = 200  # instants
 TIMES, MOST = 10.0, 90_000  # the unknowns of a reference: times those of a run, and enough

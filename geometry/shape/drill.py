@@ -9,7 +9,7 @@ import numpy as np
 
 from geometry.arrays import Floats
 from geometry.coded import Place
-from geometry.shape.features import CutSurface, Off, require
+from geometry.shape.features import Off, SmoothPart, require
 from geometry.shape.profile import Arc, Edge, kind_of, off_edge
 
 FLAT_TIP = math.pi
@@ -128,11 +128,11 @@ def _off(placed: Placed, edge: Edge) -> Off:
     return lambda x: off_edge(edge)(*placed.local(x))
 
 
-def turned_surfaces(placed: Placed) -> tuple[CutSurface, ...]:
+def turned_surfaces(placed: Placed) -> tuple[SmoothPart, ...]:
     out = []
     for e in placed.outline:
         if e.name:
             # a torus without a hole is none to OpenCASCADE
             kind, radius = ("", e.radius) if isinstance(e, Arc) else (kind_of(e), 0.0)
-            out.append(CutSurface(e.name, kind, _off(placed, e), radius))
+            out.append(SmoothPart(e.name, kind, _off(placed, e), radius))
     return tuple(out)

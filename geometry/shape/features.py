@@ -18,7 +18,7 @@ SAME_ANGLE = 1e-9
 
 
 @dataclass(frozen=True)
-class CutSurface:
+class SmoothPart:
     """A smooth part of a cut's surface: its name, gmsh's word for it ("" for several kinds), and
     how far points are off it. radius: to which it rounds an inner corner, 0 where it does not, m.
     """
@@ -58,7 +58,7 @@ class Cut(ABC):
         """Whether half a turn about the pin's axis leaves it where it is."""
 
     @abstractmethod
-    def surfaces(self, pin: Pin) -> tuple[CutSurface, ...]:
+    def surfaces(self, pin: Pin) -> tuple[SmoothPart, ...]:
         """All of its surface in a profile."""
 
     @abstractmethod

@@ -20,7 +20,7 @@ from geometry.shape.drill import (
     turned_surfaces,
     wall_edges,
 )
-from geometry.shape.features import Cut, CutSurface, Off, outer_radius, positive, radii, require
+from geometry.shape.features import Cut, Off, SmoothPart, outer_radius, positive, radii, require
 from geometry.shape.pin import Pin
 from geometry.shape.profile import Edge
 
@@ -107,12 +107,12 @@ class Hole(Cut):
         c, s = math.cos(self.angle), math.sin(self.angle)
         return Placed(outline, (0.0, 0.0, self.z), (c, s, 0.0))
 
-    def surfaces(self, pin: Pin) -> tuple[CutSurface, ...]:
+    def surfaces(self, pin: Pin) -> tuple[SmoothPart, ...]:
         """Wall, bottom, mouths."""
         top = 4.0 * pin.largest_diameter
         found = turned_surfaces(self.placed(pin, top))
         if self.mouth_radius:
-            found = (*found, CutSurface("mouth", "", self._off_mouth(pin), self.mouth_radius))
+            found = (*found, SmoothPart("mouth", "", self._off_mouth(pin), self.mouth_radius))
         return found
 
     def _off_mouth(self, pin: Pin) -> Off:

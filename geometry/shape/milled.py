@@ -11,7 +11,7 @@ import numpy as np
 
 from geometry.arrays import Floats
 from geometry.coded import Place
-from geometry.shape.features import Cut, CutSurface, Off, positive, radii, require
+from geometry.shape.features import Cut, Off, SmoothPart, positive, radii, require
 from geometry.shape.pin import Pin
 from geometry.shape.tolerance import snapped
 
@@ -78,7 +78,7 @@ class Flat(Milled):
         """All but the angle."""
         return "z0", "z1", "distance", "radius"
 
-    def surfaces(self, pin: Pin) -> tuple[CutSurface, ...]:
+    def surfaces(self, pin: Pin) -> tuple[SmoothPart, ...]:
         """Floor, ends, and what rounds their corner."""
         del pin
         below, beyond, both = _rounded(self, lambda x: np.full(len(x), -math.inf), self.distance)
@@ -153,7 +153,7 @@ class Slot(Milled):
             return -math.inf
         return radii(pin, self.z0, self.z1)[1] - self.depth
 
-    def surfaces(self, pin: Pin) -> tuple[CutSurface, ...]:
+    def surfaces(self, pin: Pin) -> tuple[SmoothPart, ...]:
         """Bottom, walls, and what rounds their corner."""
         half, radius = self.width / 2.0, self.width / 2.0 if self.round_ends else 0.0
         long = 0.5 * (self.z1 - self.z0) - radius
@@ -173,7 +173,7 @@ class Slot(Milled):
         past: Off = lambda x: _past_ends(self, x)  # noqa: E731
         out = [part for part in parts if part.part == "floor"]
         for name, side in (("end", past), ("wall", aside)):
-            out.append(CutSurface(name, "Plane", _on(both, side)))
+            out.append(SmoothPart(name, "Plane", _on(both, side)))
             if self.radius:
                 out.append(_fillet(side, below, self.radius))
         return tuple(out)
@@ -277,7 +277,7 @@ def _corner(one: Off, other: Off, rho: float) -> Off:
     return off
 
 
-def _fillet(one: Off, other: Off, rho: float) -> CutSurface:
+def _fillet(one: Off, other: Off, rho: float) -> SmoothPart:
     """What rounds the corner between two sides."""
     whole = _corner(one, other, rho)
 
@@ -285,7 +285,7 @@ def _fillet(one: Off, other: Off, rho: float) -> CutSurface:
         aside = np.maximum(-rho - one(x), 0.0) + np.maximum(-rho - other(x), 0.0)
         return np.asarray(np.abs(whole(x)) + aside)
 
-    return CutSurface("fillet", "", off, rho)
+    return SmoothPart("fillet", "", off, rho)
 
 
 def _on(whole: Off, side: Off) -> Off:
@@ -300,11 +300,11 @@ def _past_ends(cut: Flat | Slot, x: Floats) -> Floats:
 
 def _parts(
     below: Off, beyond: Off, both: Off, radius: float, wall: str, bottom: bool = True
-) -> tuple[CutSurface, ...]:
+) -> tuple[SmoothPart, ...]:
     out = []
     if bottom:
-        out.append(CutSurface("floor", "Plane", _on(both, below)))
-    out.append(CutSurface(wall, "", _on(both, beyond)))
+        out.append(SmoothPart("floor", "Plane", _on(both, below)))
+    out.append(SmoothPart(wall, "", _on(both, beyond)))
     if radius:
         out.append(_fillet(beyond, below, radius))
     return tuple(out)

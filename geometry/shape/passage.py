@@ -16,7 +16,7 @@ from geometry.shape.drill import (
     drill_outline,
     turned_surfaces,
 )
-from geometry.shape.features import Cut, CutSurface, positive, radii, require
+from geometry.shape.features import Cut, SmoothPart, positive, radii, require
 from geometry.shape.pin import FACES, Pin
 from geometry.shape.profile import Edge
 
@@ -107,7 +107,7 @@ class Passage(Cut):
             return Placed(outline, (x, y, self.z0), (0.0, 0.0, 1.0))
         return Placed(outline, (x, y, self.z1), (0.0, 0.0, -1.0))
 
-    def surfaces(self, pin: Pin) -> tuple[CutSurface, ...]:
+    def surfaces(self, pin: Pin) -> tuple[SmoothPart, ...]:
         """Wall and bottom."""
         return turned_surfaces(self.placed(pin, 2.0 * pin.largest_diameter))
 

@@ -124,24 +124,37 @@ def test_amid_a_long_flat_stress_is_that_of_beams(
 
 @pytest.mark.slow
 def test_a_passage_amid_a_stress_across_is_kirschs_hole() -> None:
-    """3 and -1 round it, with the stress along it that keeps its middle plane."""
+    """In a disc of finite radius: its rim is pulled as a plate's would be, so that the parts of
+    the hoop stress round the hole, even and with twice the angle, come from Lamé and from
+    Michell's four functions r^2, r^-2, r^4 and 1.
+    """
+    rho = 0.1
+
+    def rows(r: float) -> list[list[float]]:
+        return [[-2.0, -6.0 / r**4, 0.0, -4.0 / r**2], [2.0, -6.0 / r**4, 6.0 * r**2, -2.0 / r**2]]
+
+    _, b, c, _ = found = np.linalg.solve([*rows(rho), *rows(1.0)], [0.0, 0.0, 0.5, -0.5])
+    twice = 2.0 * found[0] + 6.0 * b / rho**4 + 12.0 * c * rho**2
+    even = 1.0 / (1.0 - rho**2)
     small = Passage(0.0, SHAFT.length, 0.1 * D, 0.0)
     read = solved(piece(small), component(0), 1.5)
     x, y, z = read.points.T
     amid = read.cut & (np.abs(z) < D)
     top, side = amid & (np.abs(x) < 1e-5), amid & (np.abs(y) < 1e-5)
-    assert read.stress[top, 0, 0].mean() == pytest.approx(3.0, rel=0.02)
-    assert read.stress[side, 1, 0].mean() == pytest.approx(-1.0, rel=0.04)
+    assert read.stress[top, 0, 0].mean() == pytest.approx(even - twice, rel=0.02)
+    assert read.stress[side, 1, 0].mean() == pytest.approx(even + twice, rel=0.04)
 
 
 @pytest.mark.slow
 def test_a_deep_blind_hole_is_a_hole_at_its_mouth() -> None:
-    """Through the pin but for a skin; and a small chamfer is none."""
+    """Through the pin but for a skin on the far side, of 1 % of the section, so far from the axis
+    that the tension bends the shaft by up to 3 % more; and a small chamfer is none.
+    """
     through = von_mises(solved(piece(HOLE), component(2), 1.5)).max()
     deep = replace(HOLE, depth=0.975 * D, bottom=Bottom(radius=0.001))
     read = solved(piece(deep), component(2), 1.5)
     mouth = read.points[:, 0] > 0.8 * R
-    assert von_mises(read)[mouth].max() == pytest.approx(through, rel=0.01)
+    assert through < von_mises(read)[mouth].max() < 1.03 * through
     chamfered = von_mises(solved(piece(replace(HOLE, chamfer=0.0003)), component(2), 1.5)).max()
     assert chamfered == pytest.approx(through, rel=0.015)
 
