@@ -72,18 +72,18 @@ def solve_on(
         if future is None:
             continue
         batch = running.pop(future)
-        if future.status == "finished":
-            done: Done = future.result()
-            batches.learn(done)
-            keep(done)
-        elif future.status != "error":
+        outcome = _outcome(future)
+        if isinstance(outcome, Done):
+            batches.learn(outcome)
+            keep(outcome)
+        elif outcome is None:
             raise InputError(
                 "--scheduler: the connection to the scheduler is lost; the batches that are done "
                 "are kept, for --resume",
                 code="no-scheduler",
             )
-        elif not _died(error := future.exception()):
-            raise _unusable(error)
+        elif not _died(outcome):
+            raise _unusable(outcome)
         elif len(batch.designs) > 1:
             for half in batch.halves():
                 start(half)
@@ -110,6 +110,23 @@ def _ended(client: Client, running: list[Any]) -> Any:
             f"{WORKERS:g} s; the batches that are done are kept, for --resume",
             code="no-worker",
         ) from None
+
+
+def _outcome(future: Any) -> Done | BaseException | None:
+    """Of a batch that is done: its rows or its error; None where the connection is lost. Rows are
+    lost with the process that holds them, until they are fetched.
+    """
+    from distributed import KilledWorker
+
+    try:
+        found: Done | BaseException | None = None
+        if future.status == "finished":
+            found = future.result()
+        elif future.status == "error":
+            found = future.exception()
+    except KilledWorker as error:
+        return error
+    return found
 
 
 def processes_of(client: Client) -> int:
@@ -193,13 +210,13 @@ def failed_rows(table: tuple[tuple[str, str], ...], batch: Batch) -> Done:
     return Done(batch, rows, 0.0)
 
 
-def _died(error: BaseException | None) -> bool:
+def _died(error: BaseException) -> bool:
     from distributed import KilledWorker
 
     return isinstance(error, KilledWorker)
 
 
-def _unusable(error: BaseException | None) -> BaseException:
+def _unusable(error: BaseException) -> BaseException:
     """An error of a batch, as the command reports it."""
     if isinstance(error, InputError):
         return error
@@ -209,7 +226,6 @@ def _unusable(error: BaseException | None) -> BaseException:
             "install the same version of pinstress there",
             code="other-version",
         )
-    assert error is not None
     return error
 
 

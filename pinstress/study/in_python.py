@@ -8,8 +8,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import tomlkit
-
 from pinstress.schema.shown import shown
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study, parse_study
@@ -37,6 +35,8 @@ def study_from(
             f"{shown(tables)} is not a study: give a dict or the text of a study file",
             code="not-a-study",
         )
+    import tomlkit
+
     return parse_study(path, tomlkit.dumps(_plain(tables, name)), located=False)
 
 
@@ -47,6 +47,8 @@ def changed_study(study: Study, changes: Mapping[str, Any]) -> Study:
 
     Raises: InputError as load_study, and for a key that does not exist in the study.
     """
+    import tomlkit
+
     document: Any = tomlkit.parse(study.text)
     for key, value in changes.items():
         *parents, last = key_parts(study, key)
