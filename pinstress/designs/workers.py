@@ -27,7 +27,6 @@ WORKERS = 30.0  # s within which it must have a worker
 AHEAD = 2  # batches for each process: one that is solved and one that waits
 
 Keep = Callable[[Done], None]
-Solve = Callable[[DesignProblem, Batch], Done]
 
 
 def solve_here(problem: DesignProblem, batches: Batches, keep: Keep) -> None:
@@ -44,10 +43,9 @@ def solve_on(
     batches: Batches,
     keep: Keep,
     lost: Callable[[Batch], Done],
-    solve: Solve = solve_batch,
 ) -> None:
     """Solve batches on a cluster. keep: called with each as it ends, in any order. lost: the rows
-    of a design whose processes died each time. solve: what solves a batch.
+    of a design whose processes died each time.
 
     Raises: InputError where the processes of a cluster cannot solve the study.
     """
@@ -56,7 +54,7 @@ def solve_on(
     alone: set[tuple[int, ...]] = set()
 
     def start(batch: Batch) -> None:
-        running[client.submit(solve, problem, batch, pure=False)] = batch
+        running[client.submit(solve_batch, problem, batch, pure=False)] = batch
 
     def fill() -> None:
         most = AHEAD * processes_of(client)
@@ -72,7 +70,7 @@ def solve_on(
         if future is None:
             continue
         batch = running.pop(future)
-        outcome = _outcome(future)
+        outcome = _outcome(client, future)
         if isinstance(outcome, Done):
             batches.learn(outcome)
             keep(outcome)
@@ -103,29 +101,37 @@ def _ended(client: Client, running: list[Any]) -> Any:
     try:
         return wait(running, timeout=WORKERS, return_when="FIRST_COMPLETED").done.pop()
     except TimeoutError:
-        if client.nthreads():
-            return None
+        _require_processes(client)
+        return None
+
+
+def _require_processes(client: Client) -> None:
+    if not client.nthreads():
         raise InputError(
             "the processes that solve designs have ended, and no other began within "
             f"{WORKERS:g} s; the batches that are done are kept, for --resume",
             code="no-worker",
-        ) from None
+        )
 
 
-def _outcome(future: Any) -> Done | BaseException | None:
+def _outcome(client: Client, future: Any) -> Done | BaseException | None:
     """Of a batch that is done: its rows or its error; None where the connection is lost. Rows are
     lost with the process that holds them, until they are fetched.
+
+    Raises: InputError when the cluster has no process left.
     """
     from distributed import KilledWorker
 
-    try:
-        found: Done | BaseException | None = None
-        if future.status == "finished":
-            found = future.result()
-        elif future.status == "error":
-            found = future.exception()
-    except KilledWorker as error:
-        return error
+    found: Done | BaseException | None = None
+    while future.status == "finished" and found is None:
+        try:
+            found = future.result(timeout=WORKERS)
+        except KilledWorker as error:
+            found = error
+        except TimeoutError:
+            _require_processes(client)
+    if future.status == "error" and found is None:
+        found = future.exception(timeout=WORKERS)
     return found
 
 

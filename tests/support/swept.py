@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import os
-import signal
-
 from pinstress import Study, shipped_studies, study_from
-from pinstress.designs.batches import Batch, DesignProblem, Done, solve_batch
 
 ONE_PIN = shipped_studies()["one_pin"].read_text(encoding="utf-8")
 DIAMETER = "pin.B.profile[2].diameter"
@@ -25,10 +21,3 @@ def swept(parameters: str, head: str = 'sample = "sobol"\ncount = 4', text: str 
 
 
 DEADLY = 2
-
-
-def dying(problem: DesignProblem, batch: Batch) -> Done:
-    """As solve_batch, but one design ends its process."""
-    if DEADLY in batch.designs:
-        os.kill(os.getpid(), signal.SIGKILL)
-    return solve_batch(problem, batch)

@@ -6,10 +6,12 @@ import json
 from functools import partial
 from multiprocessing import resource_tracker
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
 import pytest
+from distributed import KilledWorker
 from pyarrow import parquet
 
 import pinstress
@@ -22,7 +24,7 @@ from pinstress.designs.sweep import Kept, planned, solved
 from pinstress.designs.table import assembled, facts, write_table
 from pinstress.designs.workers import failed_rows, local, remote, solve_on
 from tests.support.command_line import QUICK
-from tests.support.swept import DEADLY, DIAMETER, FORCE, STRENGTH, dying, swept
+from tests.support.swept import DEADLY, DIAMETER, FORCE, STRENGTH, swept
 
 resource_tracker.ensure_running()  # multiprocessing's, which stays to the end
 
@@ -219,9 +221,33 @@ def test_the_users_own_cluster_has_the_same_table(table: pa.Table) -> None:
     assert again.equals(table, check_metadata=True)
 
 
-@pytest.mark.slow
-@pytest.mark.linux
-def test_a_design_that_ends_its_process_is_a_row_and_the_others_go_on(table: pa.Table) -> None:
+class _Cluster:
+    """Of one process that a design ends each time."""
+
+    def nthreads(self) -> dict[str, int]:
+        return {"one": 1}
+
+    def submit(self, _: object, problem: DesignProblem, batch: Batch, pure: bool) -> _Future:
+        assert not pure
+        if DEADLY in batch.designs:
+            return _Future(KilledWorker("a batch", None, 1))
+        return _Future(solve_batch(problem, batch))
+
+
+class _Future:
+    def __init__(self, outcome: Done | Exception) -> None:
+        self.outcome = outcome
+        self.status = "finished" if isinstance(outcome, Done) else "error"
+
+    def result(self, timeout: float) -> Done | Exception:
+        return self.outcome
+
+    exception = result
+
+
+def test_a_design_that_ends_its_process_is_a_row_and_the_others_go_on(
+    table: pa.Table, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Also in a batch with others."""
     sweep = planned(swept(VARIED, "", QUICK))
     found: dict[int, str] = {}
@@ -231,10 +257,11 @@ def test_a_design_that_ends_its_process_is_a_row_and_the_others_go_on(table: pa.
             (i, rows[0].code) for i, rows in zip(done.batch.designs, done.rows, strict=True)
         )
 
-    with local(1) as client:
-        batches = Batches(sweep.problem.numbers, sweep.values, set(), 1)
-        batches.learn(Done(Batch((0,), ((0.0,),)), [], 1e-3))
-        lost = partial(failed_rows, (("B", "landing"),))
-        solve_on(client, sweep.problem, batches, keep, lost, dying)
+    monkeypatch.setattr("pinstress.designs.workers._ended", lambda _, running: running[0])
+    batches = Batches(sweep.problem.numbers, sweep.values, set(), 1)
+    batches.learn(Done(Batch((0,), ((0.0,),)), [], 1e-3))
+    lost = partial(failed_rows, (("B", "landing"),))
+    cluster: Any = _Cluster()
+    solve_on(cluster, sweep.problem, batches, keep, lost)
     expected = dict(enumerate(table["code"].to_pylist())) | {DEADLY: "process-died"}
     assert found == expected
