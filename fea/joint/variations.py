@@ -26,6 +26,7 @@ from fea.harmonic.evaluate import (
 from fea.joint.coarser_cells import on_coarser_cells
 from fea.joint.contact import ContactProblem
 from fea.joint.lugs.changes import changes
+from fea.joint.lugs.rings import USUAL
 from fea.joint.pressure_loads import NEGLIGIBLE, Patterns, stacked
 from fea.joint.records import JointRange, Variation
 from fea.joint.solve_joint import JointContact, JointModel
@@ -98,7 +99,7 @@ def compare(
     for contact, names, own, why in zip(at, over, each, missing, strict=True):
         first = float(maxima[0]) or 1.0  # nothing loads the pin
         (_, coarse, *others), maxima = np.split(maxima, [len(own)])
-        like = float(coarse) or 1.0  # on the same cells as the others
+        like = first if _few(model) else float(coarse) or 1.0  # on the same cells as the others
         ratios = tuple(
             replace(x, max_von_mises=float(y) / like) for x, y in zip(names, others, strict=True)
         )
@@ -125,6 +126,15 @@ def _coarse(model: JointModel, links: PinLoads, problem: ContactProblem, belongs
     return model.waves([replace(x, pressure=belongs @ x.pressure) for x in found])
 
 
+def _few(model: JointModel) -> bool:
+    """Whether twice as large cells are too large to say what a joint's properties change."""
+    return model.cells.rings < USUAL
+
+
+def _own_cells(model: JointModel) -> tuple[ContactProblem, Floats]:
+    return model.contact, np.eye(len(model.rings))
+
+
 def _varied(
     model: JointModel, at: Sequence[JointContact]
 ) -> tuple[list[list[Variation]], list[list[Floats]], list[list[str]]]:
@@ -137,7 +147,7 @@ def _varied(
     missing: list[list[str]] = [[] for _ in at]
     for change in changes(model.whole, model.lugs):
         other = model.varied(change.lugs, change.softness)
-        cells = on_coarser_cells(other)
+        cells = _own_cells(other) if _few(model) else on_coarser_cells(other)
         for contact, over, waves, why in zip(at, names, found, missing, strict=True):
             try:
                 waves.append(_coarse(other, contact.loads.links, *cells))

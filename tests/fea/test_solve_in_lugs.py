@@ -240,6 +240,30 @@ def test_the_range_says_what_it_leaves_out() -> None:
     assert found.joint.remark.startswith("not included: tilt free (the links leave a couple")
 
 
+def test_larger_cells_decide_and_have_the_range_of_the_usual_ones() -> None:
+    """The same joint by four rings and 24 sectors, with edges that are rounded."""
+    rounded = tuple(replace(lug, edge_radius=5e-4) for lug in LUGS)
+    steel = replace(STEEL, yield_strength=3e9)
+    given = InLugs(PIN, steel, rounded, (STEADY,))
+    (usual,), (decided,) = (
+        solve_in_lugs(given, asked) for asked in (QUICK, replace(QUICK, goal="decide", required=1))
+    )
+    peaks = usual.solution.peak, decided.solution.peak
+    assert decided.rings is not None
+    assert usual.rings is not None
+    assert len(decided.rings.connections) < len(usual.rings.connections)
+    assert "mesh-decides" in peaks[1].reasons
+    value, error = peaks[0].max_von_mises or 0.0, peaks[1].error_estimate or 0.0
+    assert abs((peaks[1].max_von_mises or 0.0) - value) <= error
+    ratios = []
+    for found, peak in zip((usual, decided), peaks, strict=True):
+        assert found.joint is not None
+        assert found.joint.range is not None
+        over = found.joint.range.variations
+        ratios.append([x.max_von_mises / (peak.max_von_mises or 1.0) for x in over])
+    assert ratios[1] == pytest.approx(ratios[0], abs=0.015)
+
+
 def test_a_softer_joint_is_that_of_softer_lugs() -> None:
     """What the range varies is what a model of its own would have."""
     model = JointModel(PIN, STEEL, LUGS)
