@@ -22,11 +22,11 @@ from pinstress.designs.batches import Batch, Batches, Done
 from pinstress.designs.sweep import Kept, Sweep, planned, solved
 from pinstress.designs.workers import failed_rows, local, solve_on
 
-COUNTS = 500, 2_000, 10_000
+COUNTS = 250, 500, 1_000
 JOBS = 2
-MANY = 2_000  # designs by which kinds of sweeps are compared
-COMPARED = 400  # designs by which one process and two are compared
-TASKS = 2_000  # that do nothing, by which the scheduler is measured
+MANY = 500  # designs by which kinds of sweeps are compared
+COMPARED = 200  # designs by which one process and two are compared
+TASKS = 500  # that do nothing, by which the scheduler is measured
 WORKERS = 1_000
 EACH = 30  # batches for each worker of the simulation
 LENGTHS = 0.5, 1.0, 2.0, 5.0, 10.0, 30.0  # s of work in a batch
