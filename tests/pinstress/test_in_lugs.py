@@ -15,6 +15,7 @@ from pinstress.analysis.plan import prepare
 from pinstress.analysis.results import solve
 from pinstress.cli.commands import run_command_line
 from pinstress.study.file import load_study
+from pinstress.study.in_python import changed_study
 from tests.conftest import ROOT
 from tests.support.clevis import CLEVIS
 
@@ -97,7 +98,8 @@ def test_the_field_has_the_pressure_of_the_table(out: Path, row: dict[str, Any])
 def test_stress_next_to_the_edges_of_lugs_does_not_depend_on_the_mesh() -> None:
     """Steps of pressure between cells are not read: with them it moved by a tenth."""
     gear = load_study(ROOT / "studies" / "landing_gear.toml")
-    (row,) = solve(prepare(gear, pins=["G"], cases=["landing"])).pins
+    value = changed_study(gear, {"analysis.goal": "value", "analysis.tolerance": 0.05})
+    (row,) = solve(prepare(value, pins=["G"], cases=["landing"])).pins
     maxima = [step.max_von_mises for step in row.history]
     assert len(maxima) >= 3
     assert maxima == pytest.approx([maxima[-1]] * len(maxima), rel=0.02)
