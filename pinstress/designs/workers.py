@@ -27,6 +27,7 @@ WORKERS = 30.0  # s within which it must have a worker
 AHEAD = 2  # batches for each process: one that is solved and one that waits
 
 Keep = Callable[[Done], None]
+Solve = Callable[[DesignProblem, Batch], Done]
 
 
 def solve_here(problem: DesignProblem, batches: Batches, keep: Keep) -> None:
@@ -43,9 +44,10 @@ def solve_on(
     batches: Batches,
     keep: Keep,
     lost: Callable[[Batch], Done],
+    solve: Solve = solve_batch,
 ) -> None:
     """Solve batches on a cluster. keep: called with each as it ends, in any order. lost: the rows
-    of a design whose processes died each time.
+    of a design whose processes died each time. solve: what solves a batch.
 
     Raises: InputError where the processes of a cluster cannot solve the study.
     """
@@ -54,7 +56,7 @@ def solve_on(
     alone: set[tuple[int, ...]] = set()
 
     def start(batch: Batch) -> None:
-        running[client.submit(solve_batch, problem, batch, pure=False)] = batch
+        running[client.submit(solve, problem, batch, pure=False)] = batch
 
     def fill() -> None:
         most = AHEAD * processes_of(client)

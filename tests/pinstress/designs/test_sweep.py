@@ -229,8 +229,9 @@ class _Cluster:
 
     def submit(self, _: object, problem: DesignProblem, batch: Batch, pure: bool) -> _Future:
         assert not pure
+        worker: Any = None
         if DEADLY in batch.designs:
-            return _Future(KilledWorker("a batch", None, 1))
+            return _Future(KilledWorker("a batch", worker, 1))
         return _Future(solve_batch(problem, batch))
 
 
