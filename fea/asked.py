@@ -39,11 +39,22 @@ class Asked:
 
 def decided(asked: Asked, material: Material, low: float, high: float) -> bool:
     """Whether a maximum between two stresses (Pa) decides if the required factor is reached."""
+    limit = _limit(asked, material)
+    return limit is not None and (high < limit or low > limit)
+
+
+def left_open(asked: Asked, material: Material, low: float, high: float) -> bool:
+    """Whether the maximum of which the required factor asks lies between two stresses (Pa)."""
+    limit = _limit(asked, material)
+    return limit is not None and low <= limit <= high
+
+
+def _limit(asked: Asked, material: Material) -> float | None:
+    """Maximum (Pa) with the required factor, if that is to be decided."""
     strength, required = material.yield_strength, asked.required
     if asked.goal != "decide" or strength is None or required is None:
-        return False
-    limit = strength / required
-    return high < limit or low > limit
+        return None
+    return strength / required
 
 
 def enough(asked: Asked, material: Material, seen: Seen) -> bool:

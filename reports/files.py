@@ -21,16 +21,28 @@ from reports.text.loads_summary import write_loads_summary
 
 def write_reports(results: Results, directory: Path) -> Path:
     """Write results.json, the tables and report.html; returns the page's path."""
+    write_stress_tables(results, directory)
+    return write_pages(results, directory)
+
+
+def write_stress_tables(results: Results, directory: Path) -> None:
+    """Write results.json and the tables."""
     _write_tables(results, directory, stress_tables(results))
     write_safety_factors(results, directory)
     write_hand_checks(results, directory)
     write_landing(results, directory)
-    return write_page(results, directory)
 
 
 def write_loads(results: Results, directory: Path) -> Path:
     """Write results.json, the tables and a report of what needs no stresses; returns its path."""
     _write_tables(results, directory, ())
+    return write_pages(results, directory)
+
+
+def write_pages(results: Results, directory: Path) -> Path:
+    """Write report.html and the animations that it has a place for; returns the page's path."""
+    if results.motion:
+        write_animations(results, directory)
     return write_page(results, directory)
 
 
@@ -48,5 +60,3 @@ def _write_tables(results: Results, directory: Path, others: Sequence[Table]) ->
     write_published_values(results, directory)
     if results.reactions:
         write_loads_summary(results, directory / "loads.md")
-    if results.motion:
-        write_animations(results, directory)

@@ -187,6 +187,13 @@ class Circumference:
         rows, reach = self._in_order(np.flatnonzero(among))
         best = np.full(self.count, least)
         point = np.full(self.count, rows[0] if len(rows) else 0)
+        if len(self._waves) > 1 and len(rows):
+            i, t = self._likely(rows[:POINTS], together)
+            value = self.round(i, t, np.full(len(t), least))[0]
+            order = np.argsort(value, kind="stable")
+            i, t, value = i[order], t[order], value[order]
+            more = value > best[t]
+            best[t[more]], point[t[more]] = value[more], i[more]
         for k in range(0, len(rows), POINTS):
             if reach[k] <= (best.max() if together else best.min()):
                 break
@@ -211,6 +218,17 @@ class Circumference:
                 more = value > best[t]
                 best[t[more]], point[t[more]] = value[more], here[i[more]]  # the last one stays
         return best, point
+
+    def _likely(self, points: Ints, together: bool) -> tuple[Ints, Ints]:
+        """Points and instants (P,) that can reach most: what they do reach rules out many others
+        before these are looked at closely.
+        """
+        reach = self.reach(points)
+        if not together:
+            return points[reach.argmax(axis=0)], np.arange(self.count)
+        most = np.argsort(-reach, axis=None, kind="stable")[:FIRST]
+        i, t = np.unravel_index(most, reach.shape)
+        return points[i], t
 
     def _closer(self, points: Ints, instants: Mask, beat: Floats | float) -> Floats:
         """A bound (J, T) Pa for instants of a mask, closer where it exceeds `beat` and many
@@ -337,8 +355,9 @@ class Circumference:
     def stress(self, points: Ints, instant: int, angles: Floats) -> Floats:
         """Stress (J, A, 6) in Pa at points and angles (A,): rr, tt, zz, tz, rz, rt."""
         out = np.zeros((len(points), len(angles), 6))
+        here = self._fields.stress[points]
         for wave in self._waves:
-            unit = self._fields.stress[points][:, :, self._at[wave]]
+            unit = here[:, :, self._at[wave]]
             first, second = (unit @ x[instant, wave] for x in (self._first, self._second))
             c, s = np.cos(self._n[wave.start] * angles), np.sin(self._n[wave.start] * angles)
             back = first[:, None] * c[:, None] + second[:, None] * s[:, None]

@@ -216,13 +216,17 @@ class ContactProblem:
         band = np.repeat(self.bands.band, self.sectors)
         middle = 0.5 * (self._z.min() + self._z.max())
         columns.append(self._e_r * (self._z - middle)[:, None])
+        if (np.isfinite(tilt) & (tilt > 0.0)).any():
+            self._compliance = self._compliance.copy()
         for b, stiffness in enumerate(tilt.tolist()):
             arm = (self._z - self.bands.middles[b]) * (band == b)
             column = self._e_r * arm[:, None]
             if stiffness == 0.0:
                 columns.append(column)
             elif np.isfinite(stiffness):
-                self._compliance = self._compliance + column @ column.T / stiffness
+                own = np.flatnonzero(band == b)  # neighbours, in one block
+                block = slice(own[0], own[-1] + 1)
+                self._compliance[block, block] += column[block] @ column[block].T / stiffness
         return np.hstack(columns)
 
     def solve(

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fea.asked import Asked, decided
+from fea.asked import Asked, decided, left_open
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
@@ -34,6 +34,7 @@ from fea.solve_pin import singularities_of
 
 CELLS = 0.5  # of the tolerance: what the cells may take
 APART = 0.25  # of half the interval of a maximum that depends on the excluded distance: the same
+OPEN = 0.5  # of it, where that interval leaves a decision open whatever the cells do
 ROUGHLY = 1e-2  # of the largest amplitude: what a pattern must add to that of a changed joint
 
 
@@ -54,11 +55,13 @@ class Comparison:
 
     def fine(self, material: Material, asked: Asked) -> bool:
         """Whether finer cells would not help: they take little of the tolerance, or of what is
-        uncertain anyway, or the required factor is decided.
+        uncertain anyway, or the required factor is decided, or what is excluded leaves it open.
         """
         low, high = self.interval
-        apart = APART * (high - low) / 2.0 / self.largest
-        if self.cells <= max(CELLS * asked.tolerance, apart * (asked.goal == "value")):
+        surely = low * (1.0 + self.cells), high / (1.0 + self.cells)
+        part = APART if asked.goal == "value" else OPEN * left_open(asked, material, *surely)
+        apart = part * (high - low) / 2.0 / self.largest
+        if self.cells <= max(CELLS * asked.tolerance, apart):
             return True
         return decided(asked, material, low / (1.0 + self.cells), high * (1.0 + self.cells))
 

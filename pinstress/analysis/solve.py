@@ -92,10 +92,10 @@ def _together(plan: Plan, jobs: int) -> int:
     return max(1, min(jobs, int(room)))
 
 
-def _effort(plan: Plan, task: Task) -> tuple[bool, int, int]:
-    """What takes longer has more of: tetrahedra, then cases, then instants."""
+def _effort(plan: Plan, task: Task) -> tuple[bool, int, int, int]:
+    """What takes longer has more of: tetrahedra, then lugs, cases, instants."""
     solid = plan.asked.model == "solid" or not task.pin.revolved
-    return solid, len(task.loads), sum(map(len, task.loads))
+    return solid, len(task.lugs), len(task.loads), sum(map(len, task.loads))
 
 
 def _attempt(

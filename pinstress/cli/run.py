@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
@@ -30,12 +30,13 @@ from pinstress.cli.output_folder import replacing, require_replaceable
 from pinstress.cli.plots import FOLDER, PAGE, draw_folder, print_folder
 from pinstress.cli.shared import open_page
 from pinstress.cli.streams import unneeded
-from pinstress.processes.pool import Progress, preload, processes
+from pinstress.processes.pool import Died, Job, Progress, Tell, preload, processes, side_by_side
+from pinstress.processes.system import portable
 from pinstress.study.choices import Chosen
 from pinstress.study.file import Study
 from pinstress.study.file_names import field_name
 from reports.data.results import Field, Results, Units
-from reports.files import write_loads, write_reports
+from reports.files import write_loads, write_pages, write_stress_tables
 from reports.tables.table import MOST_IN_CSV
 from reports.text.loads import print_loads
 from reports.text.safety_factors import print_safety_factors
@@ -95,7 +96,7 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
             if wanted.vtk != "none":
                 _write_flows(results, staging / "vtk")
             progress("report", 1.0)
-            write_reports(results, staging)
+            _write(results, staging, most)
             if wanted.plots:
                 draw_folder(staging, staging / FOLDER, wanted.quiet)
             if wanted.pdf:
@@ -129,6 +130,30 @@ def _second_opinion(plan: Plan, quiet: bool) -> dict[str, Any]:
     if not quiet:
         report_slow_rows(slow_rows(plan))
     return {"ask": ask_calculix}
+
+
+def _write(results: Results, staging: Path, most: int) -> None:
+    """Tables and page, at the same time where processes are forked: others would be sent all the
+    results first.
+    """
+    writers = {"page": write_pages, "tables": write_stress_tables}
+    jobs: list[Job[None]] = [
+        Job(name, partial(_written, write, results, staging)) for name, write in writers.items()
+    ]
+    made = side_by_side(jobs, 1 if portable() else most)
+    for job, nothing in zip(jobs, made, strict=True):
+        if isinstance(nothing, Died):
+            job.work(_silent)
+
+
+def _written(
+    write: Callable[[Results, Path], object], results: Results, staging: Path, _: Tell
+) -> None:
+    write(results, staging)
+
+
+def _silent(_: str) -> None:
+    pass
 
 
 def _units(study: Study) -> Units:

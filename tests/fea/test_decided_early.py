@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from fea.asked import Asked, enough
 from fea.core.material import Material
 from fea.core.mesh_result import AtSingularity, MeshResult
+from fea.core.pin_loads import PinLoads
+from fea.joint.variations import Comparison
 from fea.singular.singularities import Singularity
 from fea.verdict import Seen, judge
 
@@ -56,6 +59,26 @@ def test_ends_that_change_from_mesh_to_mesh_widen_the_interval() -> None:
     assert moved.range[0] == pytest.approx(92e6 * (1.0 - moved.relative))
     # the maximum was not governed by what is excluded before: nothing to compare with
     assert seen(mesh(100.0, 90.0), last).range == pytest.approx(steady.range)
+
+
+@pytest.mark.parametrize(
+    ("cells", "ends", "fine"),
+    [
+        (0.005, (180.0, 230.0), True),  # little of the tolerance
+        (0.05, (180.0, 230.0), True),  # open whatever cells do, and less than half as uncertain
+        (0.08, (180.0, 230.0), False),
+        (0.05, (195.0, 205.0), False),  # finer cells may decide
+        (0.05, (230.0, 260.0), True),  # decided
+        (0.05, (180.0, 200.0), False),
+    ],
+)
+def test_cells_are_fine_enough_where_what_is_excluded_leaves_a_decision_open(
+    cells: float, ends: tuple[float, float], fine: bool
+) -> None:
+    low, high = (1e6 * x for x in ends)
+    links = PinLoads("c", ("A",), np.zeros((1, 1, 3)))
+    found = Comparison((low + high) / 2.0, (low, high), cells, links, ())
+    assert found.fine(STEEL, DECIDE) is fine
 
 
 def test_two_meshes_say_that_they_are_only_two() -> None:

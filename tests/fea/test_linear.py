@@ -76,6 +76,21 @@ def test_a_wrong_solution_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
         factorize(sp.csr_matrix(sp.eye_array(3)), np.arange(3))(np.ones(3))
 
 
+@pytest.mark.parametrize("size", [1.0, 1e-9])
+def test_one_wrong_solution_among_many_is_refused(
+    monkeypatch: pytest.MonkeyPatch, size: float
+) -> None:
+    """However small its load is, and although another load is its opposite."""
+    only = np.diag([1.0, 1.0, 1.0 + 1e-6])
+    monkeypatch.setattr(linear, "has_cholmod", lambda: True)
+    monkeypatch.setattr(linear._Cholmod, "factor", lambda self, K: lambda b: only @ b)
+    loads = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, size, -size]])
+    with raises(SolveError, "backward-error"):
+        factorize(sp.csr_matrix(sp.eye_array(3)), np.arange(3))(loads)
+    only[2, 2] = 1.0
+    assert factorize(sp.csr_matrix(sp.eye_array(3)), np.arange(3))(loads) == pytest.approx(loads)
+
+
 def test_a_solution_that_round_off_makes_is_refused() -> None:
     """A chain of springs that almost nothing holds: its factor exists, and says nothing."""
     n, ground = 400, 1e-14
