@@ -19,6 +19,7 @@ from benchmarks import (
     cut_charts,
     derivatives,
     designs_page,
+    edge_peak,
     failures,
     foundation,
     gear,
@@ -58,6 +59,7 @@ ACCURACY = {
     "terms": modelling.terms,
     "instants": modelling.instants,
     "recovery": recovery.recovery,
+    "edge-peak": edge_peak.edge_peak,
     "fillet": accuracy.fillet,
     "publications": publications.publications,
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -31,6 +32,7 @@ ARTICLES = {
     "sharp corner": "a", "edge of a clamp": "the", "edge of a load": "the", "edge of a lug": "the",
     "rounded edge of a lug": "the",
 }  # fmt: skip
+_LARGER = "at least {:.1f} times as large, not resolved"
 UNRESOLVED = ", not resolved closer than the first ring of the contact pressure"
 
 
@@ -199,11 +201,23 @@ def _local(last: MeshResult, interval: tuple[float, float]) -> Note:
     worst = max(inside.felt for inside in last.governed)
     ends = " to ".join(f"{end / last.maximum - 1.0:+.0%}" for end in interval)
     return Note(
-        "away from the rounded edges of lugs, where contact stress is local (at least "
-        f"{worst / last.maximum:.1f} times as large, not resolved); half and twice the excluded "
-        f"distance give {ends}; ",
+        "away from the rounded edges of lugs, where contact stress is local "
+        f"({_LARGER.format(worst / last.maximum)}); half and twice the excluded distance give "
+        f"{ends}; ",
         ("local-contact",),
     )
+
+
+def with_estimate(note: str, times: float) -> str:
+    """A note with what contact stress at rounded edges is, over the maximum, if that is more than
+    rings and meshes show.
+    """
+
+    def larger(found: re.Match[str]) -> str:
+        shown = float(found[1])
+        return f"about {times:.1f} times as large, estimated" if times > shown else found[0]
+
+    return re.sub(_LARGER.format(0.0).replace("0.0", r"([\d.]+)"), larger, note)
 
 
 def accuracy(relative: float, tolerance: float, known: bool) -> Note:

@@ -39,6 +39,7 @@ from fea.joint.solve_joint import Cells, JointContact, JointModel
 from fea.joint.variations import Comparison, compare
 from fea.joint.what_contact_says import joint_result
 from fea.solve_pin import Progress, Solution, imbalance, singularities_of, solve_pin
+from fea.verdict import with_estimate
 from geometry import ArgumentError, CutPin, Pin, PinLike
 
 SETS = Cells(), Cells(12, 48, 16)  # until one is fine enough
@@ -287,7 +288,8 @@ class _Contact:
         peak = replace(peak, governing=links, imbalance=_imbalance(self.model, case))
         over = known.range(peak.max_von_mises or 0.0)
         found = replace(_at_all_samples(solution, self.press(case)), peak=peak)
-        joint = joint_result(contact, over, found.loads, known.left_out)
+        joint = joint_result(contact, self.given.material, over, found.loads, known.left_out)
+        found = replace(found, peak=_with_edges(found.peak, joint))
         (pressed,) = contact.contact
         pressure = CellPressure(contact.bands, pressed.pressure, pressed.angle)
         cut, rings = self.given.cut, self.model.pin
@@ -328,6 +330,14 @@ def _named(model: JointModel, peak: Peak) -> Peak:
         note = note.replace(" / ".join(zone.between), f"{first} / {second}")
         zones.append(replace(zone, between=(first, second)))
     return replace(peak, note=note, singular_at=tuple(zones))
+
+
+def _with_edges(peak: Peak, joint: JointResult) -> Peak:
+    """With what its contact at rounded edges of lugs is estimated to be."""
+    edge = max((band.edge_von_mises or 0.0 for band in joint.bands), default=0.0)
+    if not edge or not peak.max_von_mises:
+        return peak
+    return replace(peak, note=with_estimate(peak.note, edge / peak.max_von_mises))
 
 
 def _imbalance(model: JointModel, case: PinLoads) -> tuple[float, float] | None:

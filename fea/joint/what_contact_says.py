@@ -4,23 +4,30 @@ from __future__ import annotations
 
 import numpy as np
 
+from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.joint.bending import joint_forces, stations
+from fea.joint.edge_peak import EdgePeak, edge_peaks
 from fea.joint.records import BandContact, JointRange, JointResult
 from fea.joint.solve_joint import JointContact
 
 
 def joint_result(
-    contact: JointContact, over: JointRange | None, case: PinLoads, remark: str = ""
+    contact: JointContact,
+    material: Material,
+    over: JointRange | None,
+    case: PinLoads,
+    remark: str = "",
 ) -> JointResult:
-    """Of a contact at a single instant. case: what the rings do to the pin at all instants; remark:
-    what the range leaves out.
+    """Of a contact at a single instant. material: the pin's; case: what the rings do to the pin at
+    all instants; remark: what the range leaves out.
     """
+    edges = edge_peaks(contact, material)
     z = stations(contact.pin)
     moment = np.linalg.norm(contact.bending_moment(z)[0], axis=1)
     return JointResult(
         model="contact",
-        bands=tuple(_band(contact, b) for b in range(len(contact.lugs))),
+        bands=tuple(_band(contact, b, edge) for b, edge in enumerate(edges)),
         bending_moment=float(moment.max()),
         bending_moments=tuple(zip(z.tolist(), moment.tolist(), strict=True)),
         range=over,
@@ -29,7 +36,7 @@ def joint_result(
     )
 
 
-def _band(contact: JointContact, b: int) -> BandContact:
+def _band(contact: JointContact, b: int, edge: EdgePeak | None) -> BandContact:
     lug, bands = contact.lugs[b], contact.bands
     own = bands.band == b
     line = contact.line_load[0, own]
@@ -51,4 +58,6 @@ def _band(contact: JointContact, b: int) -> BandContact:
         clearance=lug.clearance,
         outer_diameter=lug.outer_diameter,
         ends=tuple(ends),
+        edge_pressure=edge and edge.pressure,
+        edge_von_mises=edge and edge.von_mises,
     )

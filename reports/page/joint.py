@@ -63,6 +63,9 @@ def _bands(joint: JointResult, units: Units) -> Grid:
         f"largest pressure [{units.stress}]", f"couple on the link [{units.force}·{units.length}]",
         f"clearance [{units.length}]", f"outer diameter [{units.length}]",
     ]  # fmt: skip
+    edges = any(band.edge_pressure is not None for band in joint.bands)
+    if edges:
+        head += [f"pressure at its edges [{units.stress}]", f"von Mises there [{units.stress}]"]
     body = [
         [
             band.name,
@@ -72,10 +75,16 @@ def _bands(joint: JointResult, units: Units) -> Grid:
             engineering(band.couple),
             short(band.clearance),
             short(band.outer_diameter),
+            *([_estimate(band.edge_pressure), _estimate(band.edge_von_mises)] if edges else []),
         ]
         for band in joint.bands
     ]
-    return Grid(head, body, [False, *[True] * 6])
+    return Grid(head, body, [False, *[True] * (len(head) - 1)])
+
+
+def _estimate(stress: float | None) -> str:
+    """With no more digits than it is known to."""
+    return DASH if stress is None else f"≈ {engineering(stress, 2)}"
 
 
 def _range(joint: JointResult, units: Units) -> Grid | None:

@@ -29,6 +29,7 @@ DIMENSIONS = {
     **dict.fromkeys(("error_mesh", "error_time", "error_series"), "stress"),
     **dict.fromkeys(("error_model", "error_cells", "error_truncation"), "stress"),
     **dict.fromkeys(("joint_low", "joint_high", "largest_pressure"), "stress"),
+    **dict.fromkeys(("edge_pressure", "edge_von_mises"), "stress"),
     **dict.fromkeys(("max_von_mises_same_mesh", "max_von_mises_calculix"), "stress"),
     **dict.fromkeys(("moment_even", "moment_concentrated", "moment_joint"), "moment"),
     **dict.fromkeys(("bending_moment", "bending_moment_calculix"), "moment"),

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from reports.data.decision import BELOW, FAILS, NOT_DECIDED, SAFE, YIELDS, outcome
 from reports.data.governing import governing
 from reports.data.results import PinResult, Results
-from reports.format.numbers import short
+from reports.format.numbers import engineering, short
 from reports.format.words import BEYOND, undecided_because
 
 LISTED = 4  # cases of a pin; of more, their number is given
@@ -69,7 +69,22 @@ def _left_out(results: Results) -> str:
         )
     )
     text = "Larger contact stress at the rounded edges of lugs is local and left out"
-    return f"{text}: {rows}." if rows else ""
+    return f"{text}: {rows}.{_largest_at_edges(results)}" if rows else ""
+
+
+def _largest_at_edges(results: Results) -> str:
+    """What it is estimated to be."""
+    edges = [
+        (band.edge_von_mises, p)
+        for p in results.pins
+        for band in (p.joint.bands if p.joint else ())
+        if band.edge_von_mises is not None
+    ]
+    if not edges:
+        return ""
+    most, p = max(edges, key=lambda edge: edge[0])
+    rows = _listed([(p.pin, p.case)])
+    return f" Its largest is about {engineering(most, 2)} {results.units.stress}: {rows}."
 
 
 def _depends_on_joint(pin: PinResult, limit: float) -> bool:

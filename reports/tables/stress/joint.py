@@ -14,6 +14,7 @@ from reports.tables.table import Table
 BANDS = (
     *("pin", "case", "connection", "force", "contact_angle", "largest_pressure", "couple"),
     *("clearance", "outer_diameter", "length_unit", "force_unit", "stress_unit"),
+    *("edge_pressure", "edge_von_mises"),
 )
 LINES = (
     *("pin", "case", "connection", "z", "line_load", "length_unit", "force_unit"),
@@ -52,6 +53,8 @@ def joint_json(joint: JointResult | None) -> dict[str, Any] | None:
                 "couple": finite(band.couple),
                 "clearance": finite(band.clearance),
                 "outer_diameter": finite(band.outer_diameter),
+                "edge_pressure": finite(band.edge_pressure),
+                "edge_von_mises": finite(band.edge_von_mises),
                 "line_load": [[finite(z), finite(load)] for z, load in band.line_load],
                 "ends": [finite(z) for z in band.ends],
             }
@@ -95,6 +98,7 @@ def _bands(results: Results) -> Iterator[list[Cell]]:
             yield [
                 *(pin.pin, pin.case, b.name, b.force, b.contact_angle, b.largest_pressure),
                 *(b.couple, b.clearance, b.outer_diameter, u.length, u.force, u.stress),
+                *(b.edge_pressure, b.edge_von_mises),
             ]
 
 
