@@ -61,6 +61,11 @@ class Material:
         E, nu = self.youngs_modulus, self.poisson_ratio
         return E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), E / (2.0 * (1.0 + nu))
 
+    @property
+    def plane_compliance(self) -> float:
+        """(1 - nu^2) / E, of plane strain, 1/Pa."""
+        return (1.0 - self.poisson_ratio**2) / self.youngs_modulus
+
     def stress(self, strain: Floats) -> Floats:
         """Stress (..., 6) in Pa from strain (..., 6): xx, yy, zz, yz, xz, xy with tensor shears."""
         lam, mu = self.lame

@@ -84,14 +84,10 @@ def _strength(pressure: Floats, length: Floats, radius: float, exponent: float) 
 
 
 def _peak(K: float, exponent: float, lug: Lug, material: Material) -> EdgePeak:
-    r, soft = lug.edge_radius, _compliance(material) + _compliance(lug.bearing)
+    r, soft = lug.edge_radius, material.plane_compliance + lug.bearing.plane_compliance
     pressure = float(np.interp(exponent, EXPONENTS, C)) * (
         K * K * r ** (-2.0 * exponent) / soft
     ) ** (1.0 / 3.0)
     nu = material.poisson_ratio
     part = max(float(np.interp(nu, POISSON, BELOW)), 1.0 - 2.0 * nu)
     return EdgePeak(pressure, part * pressure, pressure * soft * r / 0.3818)
-
-
-def _compliance(material: Material) -> float:
-    return (1.0 - material.poisson_ratio**2) / material.youngs_modulus

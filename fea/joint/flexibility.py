@@ -78,8 +78,7 @@ def lug_flexibility(eye: Pin, lug: Lug, across: float, highest: int) -> Floats:
 
 def half_plane(material: Material, radius: float) -> float:
     """n u_n / p_n of one body for high harmonics n, m/Pa."""
-    E, nu = material.youngs_modulus, material.poisson_ratio
-    return 2.0 * (1.0 - nu * nu) * radius / E
+    return 2.0 * radius * material.plane_compliance
 
 
 def wavy_flexibility(lug: Lug, pin: Material, radius: float, ends: Floats, waves: Ints) -> Floats:

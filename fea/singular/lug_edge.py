@@ -43,7 +43,7 @@ def lug_edge_exponent(pin: Material, lug: Material, angle: float = RIGHT) -> flo
 
     Raises: ArgumentError outside 0 < angle < pi. Source: as the module.
     """
-    return edge_exponent(_compliance(pin), _compliance(lug), angle)
+    return edge_exponent(pin.plane_compliance, lug.plane_compliance, angle)
 
 
 def edge_exponent(pin: float, lug: float, angle: float = RIGHT) -> float:
@@ -70,7 +70,3 @@ def edge_exponent(pin: float, lug: float, angle: float = RIGHT) -> float:
     if h(LEAST) >= 0.0:
         return 0.0
     return float(brentq(h, LEAST, 0.5, xtol=1e-15))
-
-
-def _compliance(material: Material) -> float:
-    return (1.0 - material.poisson_ratio**2) / material.youngs_modulus

@@ -276,7 +276,7 @@ def _band(found: JointFoundation, model: FoundationModel, b: int) -> BandContact
     arm = bands.z[own] - bands.middles[b]
     turning = found.loads.moments[0, own, :2].sum(axis=0) @ np.array([[0.0, -1.0], [1.0, 0.0]])
     most = float(np.linalg.norm(line, axis=1).max())
-    stiff = model.material.youngs_modulus / (1.0 - model.material.poisson_ratio**2)
+    stiff = 1.0 / model.material.plane_compliance
     gap = 0.5 * lug.clearance * stiff / most if most else 0.0
     radius = float(bands.radius[own][0])
     return BandContact(
