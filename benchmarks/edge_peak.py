@@ -53,7 +53,7 @@ def edge_peak() -> str:
     head = ("lugs [mm]", "lug", "edge radius / d", "clearance [mm]", "lugs of", "load / 50 kN")
     more = (
         "resolved [MPa]",
-        "largest on the usual cells",
+        "of it on the usual cells",
         "estimate off [%]",
         "on larger cells [%]",
     )
