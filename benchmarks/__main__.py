@@ -36,6 +36,7 @@ from benchmarks import (
     peers_motion,
     publications,
     recovery,
+    reliability,
     scissor,
     shapes,
     shoulders,
@@ -59,6 +60,7 @@ ACCURACY = {
     "instants": modelling.instants,
     "recovery": recovery.recovery,
     "fillet": accuracy.fillet,
+    "reliability": reliability.reliability,
     "publications": publications.publications,
 }
 TIMES = {

@@ -11,7 +11,7 @@ from geometry import PinLike
 from loads import Linkage
 from loads.closed_form.four_bar import four_bar
 from pinstress.designs.correlations import correlations_of
-from pinstress.designs.parameters import parameters_of
+from pinstress.designs.parameters import parameters_of, require_laws
 from pinstress.model.cases import CaseLoads, case_loads
 from pinstress.model.lugs import lugs
 from pinstress.model.mechanism.drives import span
@@ -66,17 +66,34 @@ def describe(study: Study) -> tuple[str, list[str]]:
     )
     lines.append(f"model {a.model}, tolerance {a.tolerance:g}{goal}")
     if table.vary is not None:
-        lines.append(_varied(study, table.vary))
+        lines += _varied(study, table.vary)
     return "\n".join(lines), [line for task in todo for line in _unheld(task)]
 
 
-def _varied(study: Study, vary: VaryTable) -> str:
-    parameters = parameters_of(study)
-    correlations_of(study, parameters)
-    steps = math.prod(p.steps or 1 for p in parameters)
-    count = steps if vary.sample == "grid" else vary.count
+def _varied(study: Study, vary: VaryTable) -> list[str]:
+    """What `sweep` and `reliability` would do, as far as the study asks for them: laws alone, with
+    nothing of the designs of a sweep, are for `reliability`.
+    """
+    laws = vary.parameters.values()
+    sampled = bool(vary.model_fields_set & {"sample", "count"}) or any(
+        law.steps is not None or law.from_ is not None for law in laws
+    )
+    parameters = parameters_of(study, sampled)
+    correlations_of(study, parameters, sampled)
     many = f"{len(parameters)} number{'s' * (len(parameters) > 1)}"
-    return f"varies {many} in {count:,} design{'s' * (count > 1)} ({vary.sample})"
+    lines = []
+    if sampled:
+        steps = math.prod(p.steps or 1 for p in parameters)
+        count = steps if vary.sample == "grid" else vary.count
+        lines.append(f"varies {many} in {count:,} design{'s' * (count > 1)} ({vary.sample})")
+    if not sampled or "reliability" in study.table.model_fields_set:
+        require_laws(study)
+        a = study.table.reliability
+        lines.append(
+            f"reliability: {many} scatter, a factor below {a.factor:g} is failure; "
+            f"{a.samples:,} plain and {a.importance_samples:,} importance samples"
+        )
+    return lines
 
 
 def _unheld(task: Task) -> list[str]:
