@@ -57,7 +57,7 @@ def test_the_bar_through_the_whole_chain(
     # FORM errs by the curvature alone: it is that of the exact limit state to the mesh's error.
     assert risk["form"]["probability"] == pytest.approx(EXACT, rel=0.06)
     mesh = risk["mesh"]
-    assert 0.002 < mesh["part"] < 0.01
+    assert 0.002 < mesh["most"] < 0.01
     assert mesh["lower"]["value"] < risk["weighted"]["value"] < mesh["higher"]["value"]
     assert risk["result"] == "fails"  # 0.001 is allowed
     first, second = (driver["importance"] for driver in risk["drivers"])
