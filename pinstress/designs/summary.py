@@ -29,7 +29,7 @@ def summary(table: pa.Table, console: Console) -> None:
     designs = {row["design"] for row in rows}
     failed = {row["design"] for row in rows if row["verdict"] == "failed"}
     console.print(
-        f"{len(designs):,} designs, {len(failed):,} failed"
+        f"{len(designs):,} design{'s' * (len(designs) != 1)}, {len(failed):,} failed"
         + (" in some row" if len({row["pin"] for row in rows}) > 1 else ""),
         highlight=False,
     )
