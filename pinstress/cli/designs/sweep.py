@@ -65,7 +65,7 @@ def sweep_and_write(
                 table = solved(sweep, parts, way.jobs, way.scheduler, report)
         except BaseException as error:
             if parts.count and (isinstance(error, KeyboardInterrupt) or interrupts.came()):
-                raise Unfinished(_kept(study, directory, parts)) from None
+                raise Unfinished(_kept(parts)) from None
             raise
         _write(directory, table)
         parts.remove()
@@ -152,10 +152,12 @@ def _remove(directory: Path, parts: Parts, existed: bool) -> None:
             directory.rmdir()
 
 
-def _kept(study: Study, directory: Path, parts: Parts) -> str:
+def _kept(parts: Parts) -> str:
+    """How to go on; the command itself may have options that this would have to repeat."""
+    count = parts.count
     return (
-        f"{parts.count} batches are kept. Go on with: pinstress sweep {study.path} --out "
-        f"{directory} --resume"
+        f"{count} batch{'es' * (count != 1)} {'are' if count != 1 else 'is'} kept: the same command "
+        "with --resume goes on"
     )
 
 

@@ -101,7 +101,7 @@ def test_an_unfinished_sweep_is_kept_and_goes_on(
     monkeypatch.setattr(module, "solve_batch", interrupted)
     made = run_here(*arguments, cwd=tmp_path)
     assert made.returncode == 130
-    assert "2 batches are kept. Go on with: pinstress sweep study.toml --out out" in made.stderr
+    assert "2 batches are kept: the same command with --resume goes on" in made.stderr
     monkeypatch.setattr(module, "solve_batch", whole)
     again = run_here(*arguments, cwd=tmp_path)
     assert again.returncode == 2
@@ -184,7 +184,7 @@ def test_a_sweep_that_is_killed_goes_on_to_the_same_bytes(tmp_path: Path, sign: 
             time.sleep(0.1)
     if sign == signal.SIGINT:
         assert process.returncode == 130
-        assert "batches are kept. Go on with" in err
+        assert "kept: the same command with --resume goes on" in err
         assert "Traceback" not in err
     kept = len(list(parts.glob("*.parquet")))
     assert kept >= 4
