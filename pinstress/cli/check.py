@@ -65,24 +65,27 @@ def describe(study: Study) -> tuple[str, list[str]]:
         f", required safety factor {a.required_safety_factor:g}" if a.required_safety_factor else ""
     )
     lines.append(f"model {a.model}, tolerance {a.tolerance:g}{goal}")
-    if table.vary is not None:
-        lines += _varied(study, table.vary)
+    if table.vary is not None or "reliability" in table.model_fields_set:
+        lines += _varied(study)
     return "\n".join(lines), [line for task in todo for line in _unheld(task)]
 
 
-def _varied(study: Study, vary: VaryTable) -> list[str]:
-    """What `sweep` and `reliability` would do, as far as the study asks for them: laws alone, with
-    nothing of the designs of a sweep, are for `reliability`.
-    """
-    laws = vary.parameters.values()
-    sampled = bool(vary.model_fields_set & {"sample", "count"}) or any(
-        law.steps is not None or law.from_ is not None for law in laws
+def _sampled(vary: VaryTable) -> bool:
+    """Whether anything in [vary] is of the designs of a sweep; laws alone are for `reliability`."""
+    return bool(vary.model_fields_set & {"sample", "count"}) or any(
+        law.steps is not None or law.from_ is not None for law in vary.parameters.values()
     )
+
+
+def _varied(study: Study) -> list[str]:
+    """What `sweep` and `reliability` would do, as far as the study asks for them."""
+    vary = study.table.vary
+    sampled = vary is not None and _sampled(vary)
     parameters = parameters_of(study, sampled)
     correlations_of(study, parameters, sampled)
     many = f"{len(parameters)} number{'s' * (len(parameters) > 1)}"
     lines = []
-    if sampled:
+    if vary is not None and sampled:
         steps = math.prod(p.steps or 1 for p in parameters)
         count = steps if vary.sample == "grid" else vary.count
         lines.append(f"varies {many} in {count:,} design{'s' * (count > 1)} ({vary.sample})")

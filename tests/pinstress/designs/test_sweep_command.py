@@ -201,3 +201,24 @@ def _others(group: int) -> bool:
     from tests.support.process_group import alive
 
     return alive(group)
+
+
+def test_nothing_is_left_of_a_sweep_that_solved_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nor is it said to be unfinished; an earlier table stays."""
+    import pinstress.designs.workers as module
+
+    monkeypatch.setattr(module, "ANSWERS", 0.5)
+    _study(tmp_path, LOADS, 2)
+    nowhere = "sweep", "study.toml", "--out", "out", "--scheduler", "nonsense"
+    made = run_here(*nowhere, cwd=tmp_path)
+    assert made.returncode == 2
+    assert "no scheduler of dask answers at nonsense" in made.stderr
+    assert not (tmp_path / "out").exists()
+    made = run_here("sweep", "study.toml", "--jobs", "1", "--out", "out", cwd=tmp_path)
+    assert made.returncode == 0, made.stderr
+    assert run_here(*nowhere, cwd=tmp_path).returncode == 2
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [
+        ".pinstress.json", "designs.html", "designs.parquet",
+    ]  # fmt: skip
