@@ -74,7 +74,7 @@ def lognormal(mean: float, deviation: float) -> Marginal:
 
 
 def cases() -> list[Exact]:
-    """Most of them with one random number that takes part in a plane, or in none."""
+    """Each with its probability in closed form or by an integral over one number."""
     same = normal(0.0, 1.0)
     return [
         _bar(),
@@ -223,8 +223,8 @@ def reliability() -> str:
     low, high = (int(binom.ppf(p, SEEDS, 0.95)) for p in (TAIL, 1.0 - TAIL))
     lines += [
         "",
-        f"The values are those of seed 1. Of {SEEDS} intervals of 95 %, {low} to {high} contain the "
-        f"exact value with probability {1.0 - 2.0 * TAIL:g}; those of plain sampling (Clopper and "
+        f"The values are those of seed 1. Of {SEEDS} intervals of 95 %, {low} to {high} contain "
+        f"the exact value with probability {1.0 - 2.0 * TAIL:g}; those of plain sampling (Clopper and "
         "Pearson) contain it at least as often as they say.",
     ]
     return "\n".join(lines)

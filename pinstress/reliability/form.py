@@ -9,8 +9,8 @@ inverse problem, the lowest value on a sphere about the origin, gives a quantile
 (Tu, Choi and Park 1999).
 
 Gradients are central differences. An error of the direction enters the index squared, so their
-steps may be wide where the noise of meshes would spoil small ones; there they are also averaged over
-nearby points, and the index is that of the plane through the last point.
+steps may be wide where the noise of meshes would spoil small ones; there they are also averaged
+over nearby points, and the index is that of the plane through the last point.
 """
 
 from __future__ import annotations

@@ -132,7 +132,7 @@ def test_the_linkage_of_the_docs_runs(tmp_path: Path) -> None:
 
 
 def test_the_study_that_scatters(tmp_path: Path) -> None:
-    """Its check, and a few of its designs: fits of ISO 286 in the table, in the drawing's limits."""
+    """Its check, and a few of its designs: those of fits of ISO 286 are in the limits."""
     from pyarrow import parquet
 
     text = (STUDIES / "lifting_arm.toml").read_text(encoding="utf-8")

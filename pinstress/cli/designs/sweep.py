@@ -155,10 +155,8 @@ def _remove(directory: Path, parts: Parts, existed: bool) -> None:
 def _kept(parts: Parts) -> str:
     """How to go on; the command itself may have options that this would have to repeat."""
     count = parts.count
-    return (
-        f"{count} batch{'es' * (count != 1)} {'are' if count != 1 else 'is'} kept: the same command "
-        "with --resume goes on"
-    )
+    many = "1 batch is" if count == 1 else f"{count} batches are"
+    return f"{many} kept: the same command with --resume goes on"
 
 
 @contextmanager
