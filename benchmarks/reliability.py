@@ -224,7 +224,7 @@ def reliability() -> str:
     lines += [
         "",
         f"The values are those of seed 1. Of {SEEDS} intervals of 95 %, {low} to {high} contain "
-        f"the exact value with probability {1.0 - 2.0 * TAIL:g}; those of plain sampling (Clopper and "
-        "Pearson) contain it at least as often as they say.",
+        f"the exact value with probability {1.0 - 2.0 * TAIL:g}; those of plain sampling (Clopper "
+        "and Pearson) contain it at least as often as they say.",
     ]
     return "\n".join(lines)
