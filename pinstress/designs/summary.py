@@ -54,6 +54,14 @@ def summary(table: pa.Table, console: Console) -> None:
             highlight=False,
             markup=False,
         )
+    rough = Counter(row["pin"] for row in rows if row["verdict"] in ("unconverged", "singular"))
+    if rough:
+        console.print(
+            "rows without a converged maximum (verdict, error_estimate): "
+            + ", ".join(f"{pin} {count:,}" for pin, count in rough.items()),
+            highlight=False,
+            markup=False,
+        )
 
 
 def _reasons(rows: list[dict[str, Any]]) -> list[str]:

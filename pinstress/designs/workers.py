@@ -190,7 +190,9 @@ def remote(address: str) -> Iterator[Client]:
 
     with _silent():
         try:
-            client = Closed(address, timeout=ANSWERS, set_as_default=False)
+            client = Closed(  # type: ignore[no-untyped-call]  # as all of dask
+                address, timeout=ANSWERS, set_as_default=False
+            )
         except Exception as error:  # whatever dask raises for an address or what answers there
             raise InputError(
                 f"--scheduler: no scheduler of dask answers at {address} within {ANSWERS:g} s "

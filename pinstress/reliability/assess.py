@@ -195,7 +195,7 @@ def starts_of(sampled: Sample, row: int, factor: float) -> list[Array]:
 def weighted_sample(
     designs: SolvedDesigns, centres: list[Array], asked: ReliabilityTable
 ) -> Sample | None:
-    """Designs about the centres (d,), solved; none without centres, or where none are asked for."""
+    """Designs about the centres (d,), solved; none without centres or samples in the study."""
     kept: list[Array] = []
     for centre in sorted(centres, key=lambda c: float(np.linalg.norm(c))):
         if all(np.linalg.norm(centre - other) > 0.5 for other in kept):

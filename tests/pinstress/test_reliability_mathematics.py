@@ -322,5 +322,5 @@ def test_the_exact_cases_of_the_benchmark() -> None:
     for case in cases():
         u = plain_draws(100_000, case.space.size, 3).u
         failing = int((case.used(case.space.physical(u)) > 1.0).sum())
-        low, high = binom.ppf([1e-4, 1.0 - 1e-4], len(u), case.probability)
+        low, high = (binom.ppf(p, len(u), case.probability) for p in (1e-4, 1.0 - 1e-4))
         assert low <= failing <= high, case.name
