@@ -37,6 +37,7 @@ from benchmarks import (
     peers_motion,
     publications,
     recovery,
+    reliability,
     scissor,
     shapes,
     shoulders,
@@ -61,6 +62,7 @@ ACCURACY = {
     "recovery": recovery.recovery,
     "edge-peak": edge_peak.edge_peak,
     "fillet": accuracy.fillet,
+    "reliability": reliability.reliability,
     "publications": publications.publications,
 }
 TIMES = {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections import OrderedDict
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
@@ -89,13 +90,13 @@ class FirstMesh:
 
 class EveryMesh(FirstMesh):
     """Unit fields of all meshes that were solved last, of any pins, so that other amounts of the
-    same unit loads are superposed only. most: bytes of stress that are kept.
+    same unit loads are superposed only. most: bytes that are kept, meshes included.
     """
 
     def __init__(self, most: int = 10**8) -> None:
         super().__init__()
         self._most, self._bytes = most, 0
-        self._fields: OrderedDict[Key, MeridianFields] = OrderedDict()
+        self._fields: OrderedDict[Key, tuple[MeridianFields, int]] = OrderedDict()
         self.solved = 0  # meshes
 
     def fields(
@@ -106,13 +107,14 @@ class EveryMesh(FirstMesh):
         whole = (*key, loads, read.tobytes(), ends)
         found = self._fields.pop(whole, None)
         if found is None:
-            found = make().solve(*asked)
+            fields = make().solve(*asked)
             self.solved += 1
-            self._bytes += found.stress.nbytes
+            found = fields, len(pickle.dumps(fields))  # stress is a fifth of it
+            self._bytes += found[1]
         self._fields[whole] = found
         while self._bytes > self._most and len(self._fields) > 1:
-            self._bytes -= self._fields.popitem(last=False)[1].stress.nbytes
-        return found
+            self._bytes -= self._fields.popitem(last=False)[1][1]
+        return found[0]
 
 
 @dataclass(frozen=True)

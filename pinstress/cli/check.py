@@ -11,7 +11,7 @@ from geometry import PinLike
 from loads import Linkage
 from loads.closed_form.four_bar import four_bar
 from pinstress.designs.correlations import correlations_of
-from pinstress.designs.parameters import parameters_of
+from pinstress.designs.parameters import parameters_of, require_laws
 from pinstress.model.cases import CaseLoads, case_loads
 from pinstress.model.lugs import lugs
 from pinstress.model.mechanism.drives import span
@@ -65,18 +65,38 @@ def describe(study: Study) -> tuple[str, list[str]]:
         f", required safety factor {a.required_safety_factor:g}" if a.required_safety_factor else ""
     )
     lines.append(f"model {a.model}, tolerance {a.tolerance:g}{goal}")
-    if table.vary is not None:
-        lines.append(_varied(study, table.vary))
+    if table.vary is not None or "reliability" in table.model_fields_set:
+        lines += _varied(study)
     return "\n".join(lines), [line for task in todo for line in _unheld(task)]
 
 
-def _varied(study: Study, vary: VaryTable) -> str:
-    parameters = parameters_of(study)
-    correlations_of(study, parameters)
-    steps = math.prod(p.steps or 1 for p in parameters)
-    count = steps if vary.sample == "grid" else vary.count
+def _sampled(vary: VaryTable) -> bool:
+    """Whether anything in [vary] is of the designs of a sweep; laws alone are for `reliability`."""
+    return bool(vary.model_fields_set & {"sample", "count"}) or any(
+        law.steps is not None or law.from_ is not None for law in vary.parameters.values()
+    )
+
+
+def _varied(study: Study) -> list[str]:
+    """What `sweep` and `reliability` would do, as far as the study asks for them."""
+    vary = study.table.vary
+    sampled = vary is not None and _sampled(vary)
+    parameters = parameters_of(study, sampled)
+    correlations_of(study, parameters, sampled)
     many = f"{len(parameters)} number{'s' * (len(parameters) > 1)}"
-    return f"varies {many} in {count:,} design{'s' * (count > 1)} ({vary.sample})"
+    lines = []
+    if vary is not None and sampled:
+        steps = math.prod(p.steps or 1 for p in parameters)
+        count = steps if vary.sample == "grid" else vary.count
+        lines.append(f"varies {many} in {count:,} design{'s' * (count > 1)} ({vary.sample})")
+    if not sampled or "reliability" in study.table.model_fields_set:
+        require_laws(study)
+        a = study.table.reliability
+        lines.append(
+            f"reliability: {many} scatter, a factor below {a.factor:g} is failure; "
+            f"{a.samples:,} plain and {a.importance_samples:,} importance samples"
+        )
+    return lines
 
 
 def _unheld(task: Task) -> list[str]:

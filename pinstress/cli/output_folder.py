@@ -144,6 +144,8 @@ def _claim(partial: Path, directory: Path) -> Release:
             _empty(partial)  # by a run that was killed
             manifest.begin(partial)
         except BaseException:
+            with suppress(OSError):  # what is there is not ours
+                partial.rmdir()
             release()
             raise
         return release

@@ -152,6 +152,8 @@ def _path(study: Study, raw: Any, key: str) -> Path:
             continue
         there = here[part] if _has(here, part) else None
         if there is None or (not found and part == "vary"):
+            if part == -1:
+                raise _no_number(study, key, "has the index 0; elements are counted from 1")
             said = f"[{part + 1}]" if isinstance(part, int) else shown(part)
             raise _no_number(study, key, f"the study has no {said} there; write it in the study")
         found.append(part)

@@ -98,6 +98,18 @@ def parameters_of(study: Study, sampled: bool = True) -> tuple[Parameter, ...]:
     return made
 
 
+def require_laws(study: Study) -> None:
+    """Raises: InputError for numbers that vary without a law, for which there is no probability."""
+    for key, table in study.table.vary.parameters.items() if study.table.vary else ():
+        if table.from_ is not None:
+            raise study.error(
+                f"vary.parameters.{key}: from and to say between what the number lies, not how "
+                "likely its values are; reliability needs a law, such as normal = [mean, "
+                "deviation], or uniform = [least, largest] if all are equally likely",
+                code="no-law",
+            )
+
+
 def _require_different(study: Study, made: Iterable[Parameter]) -> None:
     known: dict[Path, str] = {}
     for parameter in made:

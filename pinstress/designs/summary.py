@@ -29,7 +29,7 @@ def summary(table: pa.Table, console: Console) -> None:
     designs = {row["design"] for row in rows}
     failed = {row["design"] for row in rows if row["verdict"] == "failed"}
     console.print(
-        f"{len(designs):,} designs, {len(failed):,} failed"
+        f"{len(designs):,} design{'s' * (len(designs) != 1)}, {len(failed):,} failed"
         + (" in some row" if len({row["pin"] for row in rows}) > 1 else ""),
         highlight=False,
     )
@@ -51,6 +51,14 @@ def summary(table: pa.Table, console: Console) -> None:
     if short:
         console.print(
             f"designs below the required factor of {required:g}: {', '.join(short)}",
+            highlight=False,
+            markup=False,
+        )
+    rough = Counter(row["pin"] for row in rows if row["verdict"] in ("unconverged", "singular"))
+    if rough:
+        console.print(
+            "rows without a converged maximum (verdict, error_estimate): "
+            + ", ".join(f"{pin} {count:,}" for pin, count in rough.items()),
             highlight=False,
             markup=False,
         )

@@ -182,9 +182,17 @@ def remote(address: str) -> Iterator[Client]:
     """The user's cluster. Raises: InputError where nothing answers, or there is no process."""
     from distributed import Client
 
+    class Closed(Client):
+        """A client that is closed here, and not by Python where it has never been connected."""
+
+        def __del__(self) -> None:
+            pass
+
     with _silent():
         try:
-            client = Client(address, timeout=ANSWERS, set_as_default=False)
+            client = Closed(  # type: ignore[no-untyped-call]  # as all of dask
+                address, timeout=ANSWERS, set_as_default=False
+            )
         except Exception as error:  # whatever dask raises for an address or what answers there
             raise InputError(
                 f"--scheduler: no scheduler of dask answers at {address} within {ANSWERS:g} s "

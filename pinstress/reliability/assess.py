@@ -22,7 +22,9 @@ from pinstress.reliability.drivers import base_samples, indices
 from pinstress.reliability.form import (
     NOISY,
     SMOOTH,
+    Closeness,
     DesignPoint,
+    LimitState,
     design_point,
     distinct,
     form_quantile,
@@ -44,6 +46,7 @@ Array = NDArray[np.float64]
 
 STARTS = 3  # failing samples from which further design points are sought
 APART = 0.7  # cosine below which a sample's direction is another
+BEYOND = 1.0  # standard deviations beyond the design points: where others are looked for
 MOST_CENTRES = 40  # of importance sampling
 
 
@@ -68,7 +71,7 @@ def assess(
     sampled = Sample(plain, designs.at(plain.u, "plain sampling"))
     forms = _first_orders(study, parameters, designs, sampled, cases)
     centres = [c for form in forms for c in form.centres]
-    weighted = _weighted(designs, centres, asked)
+    weighted = weighted_sample(designs, centres, asked)
     shares = _indices(designs, asked) if space.lower is None else None
     rows = {(p.pin, p.case): p for p in nominal.pins}
     risks = []
@@ -136,12 +139,12 @@ def _first_orders(
     for pin in dict.fromkeys(pin for pin, _ in table):
         alone = designs.of_pin(Evaluator(study, parameters, [pin], cases))
         for k, row in enumerate(alone.evaluator.table):
-            starts = _starts(sampled, table.index(row), study.table.reliability.factor)
-            found[row] = _first_order(alone, k, starts, study.table.reliability)
+            starts = starts_of(sampled, table.index(row), study.table.reliability.factor)
+            found[row] = first_order(alone, k, starts, study.table.reliability)
     return [found[row] for row in table]
 
 
-def _first_order(
+def first_order(
     designs: SolvedDesigns, row: int, starts: list[Array], asked: ReliabilityTable
 ) -> _Form:
     """Design points of a row from the mean and from other starts in other directions."""
@@ -149,10 +152,8 @@ def _first_order(
     close = NOISY if any(map(shapes, designs.evaluator.numbers)) else SMOOTH
     limit = designs.limit(row, asked.factor)
     points = [design_point(limit, np.zeros(size), close)]
-    for start in starts:
-        known = [p.direction @ start for p in points if not p.why]
-        if all(cosine < APART * float(np.linalg.norm(start)) for cosine in known):
-            points.append(design_point(limit, start, close))
+    _search(points, starts, limit, close)
+    _search(points, _failing_beyond(limit, distinct(points), size), limit, close)
     kept = distinct(points)
 
     def unused(u: Array) -> Array:
@@ -170,8 +171,10 @@ def _first_order(
     return _Form(result, tuple(centres), nearest)
 
 
-def _starts(sampled: Sample, row: int, factor: float) -> list[Array]:
-    """Samples that fail, nearest to the mean first, in different directions; else the worst."""
+def starts_of(sampled: Sample, row: int, factor: float) -> list[Array]:
+    """Where to look for design points of a row: samples that fail, nearest to the mean first, in
+    different directions; else the worst.
+    """
     u, used = sampled.draws.u, sampled.answers.used[:, row]
     if np.isnan(used).all():
         return []
@@ -189,9 +192,10 @@ def _starts(sampled: Sample, row: int, factor: float) -> list[Array]:
     return kept
 
 
-def _weighted(
+def weighted_sample(
     designs: SolvedDesigns, centres: list[Array], asked: ReliabilityTable
 ) -> Sample | None:
+    """Designs about the centres (d,), solved; none without centres or samples in the study."""
     kept: list[Array] = []
     for centre in sorted(centres, key=lambda c: float(np.linalg.norm(c))):
         if all(np.linalg.norm(centre - other) > 0.5 for other in kept):
@@ -215,6 +219,27 @@ def _indices(
         return np.concatenate([found.factors, found.system.factors], axis=1)
 
     return indices(factors, designs.space.size, base, asked.seed, asked.confidence)
+
+
+def _search(
+    points: list[DesignPoint], starts: Iterable[Array], limit: LimitState, close: Closeness
+) -> None:
+    """Add the design points from starts in other directions than those that are known."""
+    for start in starts:
+        known = [p.direction @ start for p in points if not p.why]
+        if all(cosine < APART * float(np.linalg.norm(start)) for cosine in known):
+            points.append(design_point(limit, start, close))
+
+
+def _failing_beyond(limit: LimitState, known: list[DesignPoint], size: int) -> Iterable[Array]:
+    """Points (d,) that fail farther out than the nearest design point, along all axes and opposite
+    to it: further design points may be near them that no sample shows.
+    """
+    if not known or known[0].index <= 0.0:
+        return ()
+    every = np.concatenate([np.eye(size), -np.eye(size), -known[0].direction[None, :]])
+    probes = (known[0].index + BEYOND) * every
+    return list(probes[limit(probes) < 0.0])
 
 
 def _drivers(

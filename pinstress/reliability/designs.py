@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from pinstress.designs.correlations import correlations_of, root_of
 from pinstress.designs.evaluate import DesignRow, Evaluator
-from pinstress.designs.parameters import Parameter, parameters_of
+from pinstress.designs.parameters import Parameter, parameters_of, require_laws
 from pinstress.processes.pool import Died, Job, Progress, side_by_side
 from pinstress.reliability.form import LimitState
 from pinstress.reliability.space import NormalSpace
@@ -19,8 +19,9 @@ from pinstress.study.file import Study
 
 Array = NDArray[np.float64]
 
-CHUNK = 100  # designs in a job
-FEW = 200  # designs that this process solves itself
+MOST = 100  # designs in a job
+JOBS = 4  # for each process, so that all end at about the same time
+FEW = 30  # designs that this process solves itself, as FORM's, one step after another
 
 
 @dataclass(frozen=True)
@@ -46,18 +47,22 @@ class Answers:
         return Answers(*(np.take_along_axis(x, worst, axis=1) for x in (self.used, self.errors)))
 
 
+def for_values(study: Study) -> Study:
+    """The study with the goal "value": to decide the required factor says little of stress itself,
+    and probabilities need numbers.
+    """
+    if study.table.analysis.goal == "value":
+        return study
+    from pinstress.study.in_python import changed_study  # imports tomlkit
+
+    return changed_study(study, {"analysis.goal": "value"})
+
+
 def random_numbers(study: Study) -> tuple[tuple[Parameter, ...], NormalSpace]:
     """The random numbers of a study. Raises: InputError, also for numbers without a law."""
     parameters, vary = parameters_of(study, sampled=False), study.table.vary
     assert vary is not None
-    for key, table in vary.parameters.items():
-        if table.from_ is not None:
-            raise study.error(
-                f"vary.parameters.{key}: from and to say between what the number lies, not how "
-                "likely its values are; reliability needs a law, such as normal = [mean, "
-                "deviation], or uniform = [least, largest] if all are equally likely",
-                code="no-law",
-            )
+    require_laws(study)
     matrix = correlations_of(study, parameters, sampled=False)
     lower = None if matrix is None else root_of(matrix)
     return parameters, NormalSpace(tuple(p.of_normal for p in parameters), lower)
@@ -86,10 +91,11 @@ class SolvedDesigns:
         """Of designs u (n, d)."""
         self.solved[purpose] += len(u)
         values = self.space.physical(u)
-        parts = [values[k : k + CHUNK] for k in range(0, len(values), CHUNK)]
         jobs = self._jobs if len(u) > FEW else 1
+        size = min(MOST, -(-len(u) // (JOBS * jobs)))
+        parts = [values[k : k + size] for k in range(0, len(values), size)]
         work = [
-            Job(f"{purpose}, {min((k + 1) * CHUNK, len(u)):,} of {len(u):,} designs", part)
+            Job(f"{purpose}, {min((k + 1) * size, len(u)):,} of {len(u):,} designs", part)
             for k, part in enumerate(partial(_solved, self.evaluator, p) for p in parts)
         ]
         progress = self._progress if len(u) > FEW else (lambda _, __: None)

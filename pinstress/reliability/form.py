@@ -9,7 +9,8 @@ inverse problem, the lowest value on a sphere about the origin, gives a quantile
 (Tu, Choi and Park 1999).
 
 Gradients are central differences. An error of the direction enters the index squared, so their
-steps may be wide where the noise of meshes would spoil small ones.
+steps may be wide where the noise of meshes would spoil small ones; there they are also averaged
+over nearby points, and the index is that of the plane through the last point.
 """
 
 from __future__ import annotations
@@ -27,24 +28,32 @@ Array = NDArray[np.float64]
 LimitState = Callable[[Array], Array]  # at u (n, d): values (n,), failing where negative
 
 FARTHEST = 10.0  # standard deviations: where the search ends, probabilities are below 1e-18
-MOST = 30  # iterations
-HALVINGS = 12
 NEARLY = 0.01  # angle of a quantile's point, whose square is in the value
 
 
 @dataclass(frozen=True)
 class Closeness:
-    """How closely a design point is found: step of differences, standard deviations; angle of the
-    point to the normal of the limit state; value there over that at the origin.
+    """How closely a design point is found. In standard deviations: step of differences; distance of
+    the point to the limit state; how near the points are over which gradients are averaged. angle:
+    of the point to the normal of the limit state. iterations, halvings: at most so many.
     """
 
     step: float = 0.01
     angle: float = 1e-3
-    value: float = 1e-6
+    distance: float = 1e-6
+    near: float = 0.0
+    iterations: int = 30
+    halvings: int = 12
+
+    @property
+    def noisy(self) -> bool:
+        """Whether gradients are averaged."""
+        return self.near > 0.0
 
 
 SMOOTH = Closeness()
-NOISY = Closeness(0.3, 0.05, 1e-3)  # for limit states with the noise of meshes
+# For limit states with the noise of meshes: a tenth of the angle is half a per cent of the index.
+NOISY = Closeness(0.5, 0.1, 0.05, 0.8, 12, 3)
 
 
 @dataclass(frozen=True)
@@ -80,8 +89,9 @@ class FormQuantile:
 
 
 class _Counted:
-    def __init__(self, limit: LimitState, step: float) -> None:
-        self._limit, self._step = limit, step
+    def __init__(self, limit: LimitState, close: Closeness) -> None:
+        self._limit, self.close = limit, close
+        self._seen: list[tuple[Array, Array]] = []  # points and gradients
         self.calls = 0
 
     def at(self, u: Array) -> float:
@@ -92,10 +102,15 @@ class _Counted:
         return self._limit(u)
 
     def value_and_gradient(self, u: Array) -> tuple[float, Array]:
-        steps = self._step * np.eye(len(u))
+        d, step = len(u), self.close.step
+        steps = step * np.eye(d)
         found = self.many(np.concatenate([u[None, :], u + steps, u - steps]))
-        d = len(u)
-        return float(found[0]), (found[1 : d + 1] - found[d + 1 :]) / (2.0 * self._step)
+        gradient = (found[1 : d + 1] - found[d + 1 :]) / (2.0 * step)
+        if self.close.noisy and np.isfinite(gradient).all():
+            self._seen.append((u, gradient))
+            near = [g for at, g in self._seen if np.linalg.norm(at - u) <= self.close.near]
+            gradient = np.mean(near, axis=0)
+        return float(found[0]), gradient
 
 
 def design_point(limit: LimitState, start: Array, close: Closeness = SMOOTH) -> DesignPoint:
@@ -103,23 +118,23 @@ def design_point(limit: LimitState, start: Array, close: Closeness = SMOOTH) -> 
 
     A limit state with several such points needs several starts.
     """
-    g = _Counted(limit, close.step)
+    g = _Counted(limit, close)
     origin = g.at(np.zeros_like(start))
     if not np.isfinite(origin):
         return DesignPoint(start, np.nan, g.calls, "the design of the mean values fails")
     sign, scale = (1.0 if origin > 0.0 else -1.0), abs(origin) or 1.0
     u, programmed = start, False
-    for k in range(MOST + 2):
+    for k in range(close.iterations + 2):
         value, gradient = g.value_and_gradient(u)
         slope = float(np.linalg.norm(gradient))
         why = _stuck(value, slope, scale, u)
         if why:
             return DesignPoint(u, np.nan, g.calls, why)
-        if abs(value) <= close.value * scale and _aligned(u, gradient / slope, close.angle):
-            return DesignPoint(u, sign * float(np.linalg.norm(u)), g.calls)
-        if programmed:
+        if abs(value) <= close.distance * slope and _aligned(u, gradient / slope, close.angle):
+            return DesignPoint(u, sign * float(np.linalg.norm(u)) + value / slope, g.calls)
+        if programmed or (close.noisy and k >= close.iterations):
             break
-        if k >= MOST:
+        if k >= close.iterations:
             u, programmed = _by_programming(g, u, scale), True
         else:
             target = (gradient @ u - value) * gradient / slope**2
@@ -145,7 +160,7 @@ def _by_programming(g: _Counted, start: Array, scale: float) -> Array:
         return u
 
     limit: Any = {"type": "eq", "fun": on_limit, "jac": slope}
-    few: Any = {"ftol": 1e-12, "maxiter": MOST}
+    few: Any = {"ftol": 1e-12, "maxiter": g.close.iterations}
     found = minimize(
         half_square, start.tolist(), jac=itself, constraints=limit, method="SLSQP", options=few
     )
@@ -156,13 +171,13 @@ def form_quantile(
     limit: LimitState, probability: float, size: int, close: Closeness = SMOOTH
 ) -> FormQuantile:
     """The quantile of `limit` over d = size variables, by the first order."""
-    g = _Counted(limit, close.step)
+    g = _Counted(limit, close)
     radius = float(ndtri(probability))
     if abs(radius) > FARTHEST:
         return FormQuantile(np.nan, np.zeros(size), 0, "the probability is beyond 10 deviations")
     u = np.zeros(size)
     value, gradient = g.value_and_gradient(u)
-    for _ in range(MOST):
+    for _ in range(close.iterations):
         slope = float(np.linalg.norm(gradient))
         why = _stuck(value, slope, abs(value) or 1.0, u * 0.0)
         if why:
@@ -212,7 +227,7 @@ def _shortened(g: _Counted, u: Array, target: Array, weight: float, value: float
     """A part of the step to the target that decreases |u|^2 / 2 + weight |g|."""
     before = 0.5 * float(u @ u) + weight * abs(value)
     part = 1.0
-    for _ in range(HALVINGS):
+    for _ in range(g.close.halvings):
         trial = u + part * (target - u)
         after = 0.5 * float(trial @ trial) + weight * abs(g.at(trial))
         if after < before:  # not so where g is not a number
@@ -224,7 +239,7 @@ def _shortened(g: _Counted, u: Array, target: Array, weight: float, value: float
 def _on_sphere(g: _Counted, u: Array, target: Array, value: float, sign: float) -> Array:
     """A turn from u towards the target, on their sphere, that lowers g (raises it for sign 1)."""
     radius, part = float(np.linalg.norm(u)), 1.0
-    for _ in range(HALVINGS):
+    for _ in range(g.close.halvings):
         trial = u + part * (target - u)
         length = float(np.linalg.norm(trial))
         if length:

@@ -103,7 +103,8 @@ def _by_errors(best: Sample, row: AssessedRow, asked: ReliabilityTable) -> ByErr
     if not len(known):
         return None
     ends = (_bounded(best.probability(asked, row.column, part)) for part in (-1.0, 1.0))
-    return ByErrors(float(np.median(known)), *ends)
+    error = float(np.median(known))
+    return ByErrors(-error, error, *ends)
 
 
 def _by_joint(best: Sample, row: AssessedRow, asked: ReliabilityTable) -> ByErrors | None:
@@ -118,7 +119,7 @@ def _by_joint(best: Sample, row: AssessedRow, asked: ReliabilityTable) -> ByErro
         _bounded(probability(best.draws, 1.0 - asked.factor * used * s, 0.0, asked.confidence))
         for s in scales
     )
-    return ByErrors(max(abs(s - 1.0) for s in scales), *ends)
+    return ByErrors(scales[0] - 1.0, scales[1] - 1.0, *ends)
 
 
 def _curve(sample: Sample, row: AssessedRow, way: int) -> tuple[tuple[float, float, int], ...]:

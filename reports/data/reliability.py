@@ -52,11 +52,12 @@ class FirstOrder:
 
 @dataclass(frozen=True)
 class ByErrors:
-    """Probabilities of failure with all stresses lower and higher by an error of the model, and
-    the largest part of the stress that this error is.
+    """Probabilities of failure with all stresses changed by an error or a range of the model: by
+    `least`, a part of the stress that is usually negative, and by `most`.
     """
 
-    part: float
+    least: float
+    most: float
     lower: Spread
     higher: Spread
 

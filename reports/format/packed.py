@@ -24,4 +24,4 @@ def packed(values: np.ndarray[Any, Any], kind: str) -> dict[str, str]:
     if flat.dtype.kind in "iu" and len(flat):
         flat = np.diff(flat, prepend=flat.dtype.type(0))  # it wraps round, and so does the sum
     of_each = flat.astype(kind).view(np.uint8).reshape(-1, flat.dtype.itemsize)
-    return {"kind": kind[1:], "packed": deflated(of_each.T.tobytes())}
+    return {"kind": np.dtype(kind).str[1:], "packed": deflated(of_each.T.tobytes())}

@@ -5,7 +5,7 @@ The page carries it, so that an earlier run can be printed.
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import Any
 
 from reports.data.changes import command
@@ -22,6 +22,8 @@ from reports.tables.strength.envelope import READING, cell_text, matrix
 from reports.tables.strength.fatigue import fatigue_grid, fatigue_sentence
 from reports.tables.strength.margins import governing_grid, not_made_words
 from reports.tables.strength.safety_factors import TEXTS, reading, shown, shown_columns, shown_rows
+from reports.tables.strength.sensitivities import INTRODUCTION as SENSITIVE
+from reports.tables.strength.sensitivities import sensitivities_grid
 from reports.text.loads_summary import load_parts
 from reports.text.method import METHOD
 from reports.text.pin_sentence import drawing_caption, pin_sentence
@@ -29,6 +31,7 @@ from reports.text.summary import summary
 
 Content = dict[str, Any]
 ABREAST = 12  # pins of the matrix of cases
+MOST_DIMENSIONS = 5  # of a pin's sensitivities
 
 
 def document(results: Results, drawings: dict[str, str]) -> Content:
@@ -49,6 +52,7 @@ def document(results: Results, drawings: dict[str, str]) -> Content:
         "envelope": _envelope(everything),
         "margins": _margins(results),
         "changes": _changes(results),
+        "sensitivities": _sensitivities(results),
         "fatigue": _fatigue(results),
         "maxima": None if maxima is None else asdict(maxima),
         "published_source": results.published_source,
@@ -113,6 +117,18 @@ def _changes(results: Results) -> Content | None:
     notes = [INTRODUCTION, *change_notes(results)]
     size = command(results.changes, results.study, results.required_safety_factor)
     return {"grid": asdict(changes_grid(results)), "notes": notes, "command": size or None}
+
+
+def _sensitivities(results: Results) -> Content | None:
+    """Of each pin in its worst case, by the dimensions that matter most."""
+    worst: dict[str, str] = {}
+    for pin in worst_first(results):
+        worst.setdefault(pin.pin, pin.case)
+    governing = tuple(x for x in results.sensitivities if worst.get(x.pin) == x.case)
+    grid = sensitivities_grid(replace(results, sensitivities=governing), MOST_DIMENSIONS)
+    if grid is None:
+        return None
+    return {"grid": asdict(grid), "introduction": f"{SENSITIVE} Each pin is in its worst case."}
 
 
 def _pin(results: Results, name: str, drawings: dict[str, str]) -> Content:

@@ -22,7 +22,8 @@ COLUMNS = (
     "sampled", "sampled_low", "sampled_high", "failures", "samples", "unknown",
     "weighted", "weighted_low", "weighted_high",
     "form", "form_index", "form_design_points",
-    "mesh_error", "mesh_lower", "mesh_higher", "joint_range", "joint_lower", "joint_higher",
+    "mesh_error", "mesh_lower", "mesh_higher", "joint_least", "joint_most",
+    "joint_lower", "joint_higher",
     "quantile_probability", "quantile", "quantile_low", "quantile_high", "quantile_form", "remark",
 )  # fmt: skip
 DRIVERS = (
@@ -73,7 +74,7 @@ def _cells(found: Reliability, risk: Risk) -> list[Cell]:
         *_ends(risk.weighted),
         *((None,) * 3 if form is None else (finite(form.probability), finite(form.index),
                                             form.points)),
-        *_errors(risk.mesh),
+        *_errors(risk.mesh)[1:],
         *_errors(risk.joint),
         found.probability,
         *_ends(risk.quantile),
@@ -107,8 +108,8 @@ def _ends(value: Spread | None) -> tuple[float | None, ...]:
 
 def _errors(found: ByErrors | None) -> tuple[float | None, ...]:
     if found is None:
-        return None, None, None
-    return found.part, found.lower.value, found.higher.value
+        return None, None, None, None
+    return found.least, found.most, found.lower.value, found.higher.value
 
 
 def _driver_cells(found: Reliability) -> Iterator[list[Cell]]:
@@ -191,7 +192,15 @@ def _by_errors(found: ByErrors | None) -> str:
     if found is None:
         return DASH
     ends = f"{chance(found.lower.value)} to {chance(found.higher.value)}"
-    return f"{ends} (stress ±{100.0 * found.part:.2g} %)"
+    return f"{ends} (stress {change(found)})"
+
+
+def change(found: ByErrors) -> str:
+    """By how much stresses are changed, as text."""
+    least, most = 100.0 * found.least, 100.0 * found.most
+    if least == -most:
+        return f"±{most:.2g} %"
+    return f"{least:+.2g} to {most:+.2g} %".replace("-", "−")
 
 
 def drivers_grid(found: Reliability) -> Grid:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from reports.data.reliability import Reliability, Risk
 from reports.format.grid import Grid
 from reports.format.numbers import engineering
-from reports.tables.reliability import chance, drivers_grid, remark, risks_grid, ways_grid
+from reports.tables.reliability import chance, change, drivers_grid, remark, risks_grid, ways_grid
 from reports.text.fitted_table import Column, fitted_table
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def sentence(found: Reliability, risk: Risk) -> str:
     for errors, what in ((risk.mesh, "mesh"), (risk.joint, "joint")):
         if errors is not None:
             low, high = chance(errors.lower.value), chance(errors.higher.value)
-            text += f"; {what} ±{100.0 * errors.part:.2g} % of stress: {low} to {high}"
+            text += f"; {what}, {change(errors)} of stress: {low} to {high}"
     limit = engineering(found.limit, 3)
     text += "; model form not included)."
     return f"{name(risk)}: the probability of a factor below {limit} is {text}"

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from pinstress.cli.commands import run_command_line
-from pinstress.reliability.designs import random_numbers
+from pinstress.reliability.designs import for_values, random_numbers
 from pinstress.reliability.drivers import base_samples, indices
 from pinstress.study.errors import InputError
 from pinstress.study.file import parse_study
@@ -57,7 +57,7 @@ def test_the_bar_through_the_whole_chain(
     # FORM errs by the curvature alone: it is that of the exact limit state to the mesh's error.
     assert risk["form"]["probability"] == pytest.approx(EXACT, rel=0.06)
     mesh = risk["mesh"]
-    assert 0.002 < mesh["part"] < 0.01
+    assert 0.002 < mesh["most"] < 0.01
     assert mesh["lower"]["value"] < risk["weighted"]["value"] < mesh["higher"]["value"]
     assert risk["result"] == "fails"  # 0.001 is allowed
     first, second = (driver["importance"] for driver in risk["drivers"])
@@ -201,3 +201,27 @@ def test_the_page_shows_what_is_printed(tmp_path: Path, capsys: pytest.CaptureFi
     (risk,) = json.loads((tmp_path / "out" / "reliability.json").read_text())["risks"]
     assert risk["weighted"]["low"] < EXACT < risk["weighted"]["high"]
     assert risk["sampled"]["low"] < EXACT < risk["sampled"]["high"]
+
+
+def test_laws_alone_are_checked_without_a_sweep(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The page's example has no sample; a range is no law where [reliability] is asked for."""
+    path = tmp_path / "bar.toml"
+    path.write_text(BAR)
+    assert run_command_line(["check", str(path)]) == 0
+    said = "reliability: 2 numbers scatter, a factor below 1 is failure; 200 plain and 300"
+    assert said in capsys.readouterr().out
+    path.write_text(BAR.replace('{ normal = ["75 kN", "5 kN"] }', "{ from = 7e4, to = 8e4 }"))
+    assert run_command_line(["check", str(path)]) == 2
+    path.write_text(BAR.split("[vary.")[0])
+    assert run_command_line(["check", str(path)]) == 2
+    assert "has no [vary]" in capsys.readouterr().err
+
+
+def test_probabilities_do_not_take_the_goal_to_decide() -> None:
+    """With which a design far from the required factor has a beam's error."""
+    decide = BAR.replace("[reliability]", '[analysis]\ngoal = "decide"\n\n[reliability]')
+    found = for_values(parse_study(Path("bar.toml"), decide))
+    assert found.table.analysis.goal == "value"
+    assert found.table.material == parse_study(Path("bar.toml"), BAR).table.material

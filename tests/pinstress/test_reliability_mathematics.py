@@ -13,7 +13,8 @@ from scipy.optimize import minimize
 from scipy.special import ndtr, ndtri
 from scipy.stats import binom, norm
 
-from pinstress.reliability.form import design_point, distinct, form_quantile
+from benchmarks.reliability import assessed, cases
+from pinstress.reliability.form import NOISY, design_point, distinct, form_quantile
 from pinstress.reliability.sampling import (
     Draws,
     importance_draws,
@@ -279,3 +280,47 @@ def test_draws_are_the_same_for_the_same_seed() -> None:
     assert np.array_equal(first.u, again.u)
     assert not np.array_equal(first.u, other.u)
     assert isinstance(importance_draws([np.ones(2)], 10, 1), Draws)
+
+
+@pytest.mark.parametrize("size", [0.005, 0.04])
+def test_the_design_point_of_a_limit_state_with_noise(size: float) -> None:
+    """Of meshes: without averages and with narrow steps the search went on for thousands of
+    designs. size: of the noise, as an error of the index.
+    """
+    for seed in range(10):
+        random = np.random.default_rng(seed)
+        direction = random.standard_normal(5) * [1.0, 1.0, 1.0, 0.1, 0.1]
+        direction /= np.linalg.norm(direction)
+        waves = random.uniform(1e3, 1e4, (8, 5))
+
+        def limit(u: Array, n: Array = direction, waves: Array = waves) -> Array:
+            found: Array = 3.5 - u @ n + 0.5 * size * np.sin(u @ waves.T).sum(axis=1)
+            return found
+
+        found = design_point(limit, np.zeros(5), NOISY)
+        assert not found.why
+        assert found.index == pytest.approx(3.5, abs=0.01 + 3.0 * size)
+        assert found.evaluations <= 100
+        low = form_quantile(limit, 0.001, 5, NOISY)
+        assert low.value == pytest.approx(3.5 + float(ndtri(0.001)), abs=0.01 + 3.0 * size)
+        assert low.evaluations <= 100
+
+
+def test_a_design_point_that_no_sample_shows_is_found() -> None:
+    """Of two, with a probability of the farther one that leaves 2,000 samples without it every
+    fourth time: intervals would then miss what it adds.
+    """
+    case = next(case for case in cases() if "series" in case.name)
+    found = [assessed(case, seed)[0] for seed in range(25)]
+    assert {risk.form.points for risk in found if risk.form} == {2}
+    within = [risk.probability.low <= case.probability <= risk.probability.high for risk in found]
+    assert sum(within) >= int(binom.ppf(1e-4, len(within), 0.95))
+
+
+def test_the_exact_cases_of_the_benchmark() -> None:
+    """Each by integration or a closed form; here by many plain samples, which use none of that."""
+    for case in cases():
+        u = plain_draws(100_000, case.space.size, 3).u
+        failing = int((case.used(case.space.physical(u)) > 1.0).sum())
+        low, high = (binom.ppf(p, len(u), case.probability) for p in (1e-4, 1.0 - 1e-4))
+        assert low <= failing <= high, case.name

@@ -30,6 +30,7 @@ NO_COUPLER = ("crane", "hood", "scissor_lift", "planetary")  # no moving link wi
         ("slider_crank", "A", "converged"),
         ("clevis", "P", "converged"),
         ("fatigue", "P", "converged"),
+        ("lifting_arm", "O", "converged"),
         ("kuleuven2014", "trunnion", "singular"),
     ],
 )
@@ -128,3 +129,25 @@ def test_the_linkage_of_the_docs_runs(tmp_path: Path) -> None:
     study.write_text(text.split("```toml\n")[1].split("```")[0], encoding="utf-8")
     out = tmp_path / "out"
     assert run_command_line(["loads", str(study), "--out", str(out), "--no-pictures"]) == 0
+
+
+def test_the_study_that_scatters(tmp_path: Path) -> None:
+    """Its check, and a few of its designs: those of fits of ISO 286 are in the limits."""
+    from pyarrow import parquet
+
+    text = (STUDIES / "lifting_arm.toml").read_text(encoding="utf-8")
+    study, out = tmp_path / "few.toml", tmp_path / "out"
+    study.write_text(text.replace("count = 32", "count = 4"), encoding="utf-8")
+    assert run_command_line(["check", str(study)]) == 0
+    command = ["sweep", str(study), "--out", str(out), "--jobs", "1", "--quiet", "--pins", "O"]
+    assert run_command_line(command) == 0
+    designs = parquet.read_table(out / "designs.parquet").to_pydict()
+    assert len(designs["design"]) == 4
+    limits = {
+        "pin.O.profile[3].diameter": (19.979, 20.0),  # h7
+        "pin.O.profile[2].fillet": (1.2, 1.8),
+        "pin.A.lug.EYE.clearance": (0.02, 0.074),  # H8/f7
+    }
+    for key, (low, high) in limits.items():
+        assert all(low <= value <= high for value in designs[key])
+    assert all(factor > 1.0 for factor in designs["safety_factor"])

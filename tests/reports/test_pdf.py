@@ -7,7 +7,8 @@ from dataclasses import replace
 from reports.data.decision import outcome, worst_first
 from reports.data.envelope import governing_cases
 from reports.data.results import Results, TitleBlock
-from reports.page.paper import ABREAST, document
+from reports.data.sensitivities import PinSensitivities, Sensitivity
+from reports.page.paper import ABREAST, MOST_DIMENSIONS, document
 from reports.pdf.typeset import shown_plots, typeset
 from reports.plots.all import all_plots
 from reports.tables.strength.safety_factors import shown_rows
@@ -57,3 +58,20 @@ def test_names_are_not_typesetting(results: Results) -> None:
     once = typeset(content, plots)
     assert once == typeset(content, plots)
     assert once.startswith(b"%PDF-")
+
+
+def test_sensitivities_are_few_and_of_worst_cases(results: Results) -> None:
+    row = worst_first(results)[0]
+    lengths = [
+        Sensitivity(f"pin.{row.pin}.profile[{k + 1}].diameter", "length", 1.0, 0.1, -(9.0 - k),
+                    0.1, 2.0)
+        for k in range(8)
+    ]  # fmt: skip
+    found = [
+        PinSensitivities(row.pin, case, 10.0, 2.0, tuple(lengths)) for case in (row.case, "other")
+    ]
+    content = document(replace(results, sensitivities=tuple(found)), {})["sensitivities"]
+    body = content["grid"]["body"]
+    assert [cells[1] for cells in body] == [row.case] * MOST_DIMENSIONS
+    assert body[0][2] == lengths[0].key
+    assert document(replace(results, sensitivities=()), {})["sensitivities"] is None

@@ -33,7 +33,7 @@ def test_estimates_that_contradict_are_not_decided_and_the_plain_one_counts() ->
 
 def test_the_interval_decides_with_the_error_of_the_mesh() -> None:
     assert [ROW.result(p) for p in (0.01, 0.03, 0.05)] == ["fails", "not decided", "safe"]
-    wide = ByErrors(0.01, Spread(0.02, 0.01, 0.03), Spread(0.05, 0.04, 0.06))
+    wide = ByErrors(-0.01, 0.01, Spread(0.02, 0.01, 0.03), Spread(0.05, 0.04, 0.06))
     row = replace(ROW, mesh=wide)
     assert [row.result(p) for p in (0.005, 0.01, 0.05, 0.06)] == [
         "fails", "not decided", "not decided", "safe",
@@ -71,3 +71,14 @@ def test_the_worst_row_of_each_design() -> None:
     assert worst.errors[:2, 0].tolist() == [0.2, 0.3]
     assert np.isnan(worst.used[2, 0])
     assert Answers(used, errors).factors[3].tolist() == [np.inf, np.inf]
+
+
+def test_a_range_that_does_not_contain_the_maximum_is_not_a_plus_or_minus() -> None:
+    """As that over the joint of a clamped pin."""
+    spreads = Spread(0.0, 0.0, 0.01), Spread(0.02, 0.01, 0.03)
+    row = replace(ROW, joint=ByErrors(-0.81, -0.12, *spreads), mesh=ByErrors(-0.01, 0.01, *spreads))
+    found = Reliability("t", "s", 1.0, 1e-3, 0.95, 2000, 1, (), (row,))
+    said = sentence(found, row)
+    assert "joint, −81 to −12 % of stress: 0 to 0.02" in said
+    assert "mesh, ±1 % of stress" in said
+    assert risks_grid(found).body[0][-1] == "0 to 0.02 (stress −81 to −12 %)"

@@ -174,3 +174,12 @@ def test_maxima_along_the_pin_leave_out_what_is_excluded(
     assert rows["drag brace B"] == ["3.000", "1.000"]
     assert rows["strut B"] == ["4.000", "2.000"]  # the next point there is excluded
     assert rows["gap"] == ["–", "–"]  # no point is there
+
+
+@pytest.mark.parametrize("kind", ["u1", "<i1", "<i2", "<u2", "<u4", "<f4", "<f8"])
+def test_numbers_of_every_type_that_is_packed_are_unpacked(kind: str) -> None:
+    """Those of one byte have no order of bytes; "u1" was once written as "1", which left the views
+    of pins with cuts empty.
+    """
+    values = np.array([0, 3, 100, 7])
+    assert unpacked(packed(values, kind)).tolist() == values.tolist()

@@ -8,10 +8,16 @@ from base64 import b64decode
 import numpy as np
 
 from reports.data.results import Floats
+from reports.format.template import TEMPLATES
+
+# As the script of the page knows them; another one leaves a view empty.
+SCRIPT = (TEMPLATES / "packed.js").read_text(encoding="utf-8")
+KINDS = SCRIPT.split("const KINDS = {")[1].split("}")[0]
 
 
 def unpacked(data: dict[str, str]) -> Floats:
     """As packed.js does it."""
+    assert f"{data['kind']}: " in KINDS, data["kind"]
     content = zlib.decompress(b64decode(data["packed"]))
     kind = np.dtype("<" + data["kind"])
     flat = np.frombuffer(content, np.uint8).reshape(kind.itemsize, -1).T.copy().view(kind)[:, 0]

@@ -50,7 +50,8 @@ def link_forces(
     if whole and largest > MOST * np.linalg.norm(out, axis=2).max(initial=1e-300):
         raise SolveError(
             f"pin {pin.name}, case {loads.case}: the forces of its links have "
-            f"a resultant of {largest:.3g} N, which no contact reacts",
+            f"a resultant of {largest:.3g} N, which no contact reacts: load all its links, or name "
+            "a lug after a segment where none bears, which is of the structure",
             "not-in-equilibrium",
         )
     return np.asarray(out - left[:, None] / out.shape[1])

@@ -12,7 +12,7 @@ from pinstress.cli.run import SOLVERS, console, progress_bar
 from pinstress.cli.streams import unneeded
 from pinstress.processes.pool import preload, processes
 from pinstress.reliability.assess import assess
-from pinstress.reliability.designs import random_numbers
+from pinstress.reliability.designs import for_values, random_numbers
 from pinstress.study.file import Study
 from reports.data.decision import NOT_DECIDED
 from reports.data.reliability import Reliability
@@ -37,6 +37,7 @@ def reliability_and_write(
     """
     require_replaceable(directory, MARK)
     most = processes(jobs)
+    study = for_values(study)
     random_numbers(study)  # mistakes there should not wait for the stresses
     with replacing(directory, MARK) as staging:
         with progress_bar(alone=most == 1, quiet=quiet) as progress:

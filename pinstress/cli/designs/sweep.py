@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -64,8 +64,8 @@ def sweep_and_write(
             with progress(way.quiet) as report:
                 table = solved(sweep, parts, way.jobs, way.scheduler, report)
         except BaseException as error:
-            if isinstance(error, KeyboardInterrupt) or interrupts.came():
-                raise Unfinished(_kept(study, directory, parts)) from None
+            if parts.count and (isinstance(error, KeyboardInterrupt) or interrupts.came()):
+                raise Unfinished(_kept(parts)) from None
             raise
         _write(directory, table)
         parts.remove()
@@ -113,8 +113,11 @@ def _require_usable(directory: Path, parts: Parts, resume: bool) -> None:
 
 @contextmanager
 def _claimed(directory: Path, parts: Parts, resume: bool) -> Iterator[None]:
-    """The folder made, listed as ours, and locked meanwhile."""
+    """The folder made, listed as ours, and locked meanwhile. Where no batch was solved, nothing is
+    left of a sweep that was begun.
+    """
     release: Release | None = None
+    existed = directory.exists()
     try:
         directory.mkdir(parents=True, exist_ok=True)
         release = lock(directory.resolve())
@@ -136,14 +139,24 @@ def _claimed(directory: Path, parts: Parts, resume: bool) -> Iterator[None]:
         ) from error
     finally:
         if release is not None:
+            if not resume and parts.there() and not parts.count:
+                _remove(directory, parts, existed)
             release()
 
 
-def _kept(study: Study, directory: Path, parts: Parts) -> str:
-    return (
-        f"{parts.count} batches are kept. Go on with: pinstress sweep {study.path} --out "
-        f"{directory} --resume"
-    )
+def _remove(directory: Path, parts: Parts, existed: bool) -> None:
+    with suppress(OSError):
+        parts.remove()
+        if not existed and manifest.entries(directory) == {manifest.NAME}:
+            (directory / manifest.NAME).unlink()
+            directory.rmdir()
+
+
+def _kept(parts: Parts) -> str:
+    """How to go on; the command itself may have options that this would have to repeat."""
+    count = parts.count
+    many = "1 batch is" if count == 1 else f"{count} batches are"
+    return f"{many} kept: the same command with --resume goes on"
 
 
 @contextmanager

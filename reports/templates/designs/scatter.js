@@ -38,7 +38,7 @@ const scatterOf = (host, model, on) => {
     look = colours;
     scales = [of[x], of[y]];
     ratio = Math.min(2, devicePixelRatio || 1);
-    wide = host.clientWidth;
+    wide = Math.max(1, host.clientWidth);  // of a page that is not laid out yet
     tall = Math.round(Math.min(420, Math.max(280, 0.75 * wide)));
     W = Math.round(wide * ratio);
     H = Math.round(tall * ratio);

@@ -7,6 +7,7 @@ import math
 import pytest
 
 import pinstress
+from fea.harmonic.evaluate import EveryMesh
 from pinstress import InputError, Study, changed_study, load_study, shipped_studies, study_from
 from pinstress.analysis.solve import solutions
 from pinstress.designs.evaluate import Evaluator, Recent
@@ -148,3 +149,16 @@ def test_what_was_asked_for_last_is_remembered() -> None:
     assert known.get(1) == "1"
     known.put(3, "3")
     assert (known.get(1), known.get(2), known.get(3)) == ("1", None, "3")
+
+
+def test_meshes_are_kept_within_their_memory() -> None:
+    """All that is kept of them counts, of which stress is a fifth."""
+    evaluator, (diameter, force) = _evaluator(study_from(ONE_PIN), DIAMETER, FORCE)
+    evaluator.meshes = EveryMesh(4_000_000)
+    for k in range(8):
+        evaluator.rows([diameter * (1.0 + 0.01 * k), force])
+    solved = evaluator.meshes.solved
+    evaluator.rows([diameter * 1.07, 2.0 * force])
+    assert evaluator.meshes.solved == solved  # the last one is known
+    evaluator.rows([diameter, 2.0 * force])
+    assert evaluator.meshes.solved > solved

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from functools import partial
 from multiprocessing import resource_tracker
 from pathlib import Path
@@ -13,6 +14,7 @@ import pyarrow as pa
 import pytest
 from distributed import KilledWorker
 from pyarrow import parquet
+from rich.console import Console
 
 import pinstress
 from pinstress import InputError
@@ -20,10 +22,12 @@ from pinstress.designs.batches import AIM, MOST, Batch, Batches, DesignProblem, 
 from pinstress.designs.number import number_at
 from pinstress.designs.parameters import parameters_of
 from pinstress.designs.parts import Parts, identity, is_ours
+from pinstress.designs.summary import summary
 from pinstress.designs.sweep import Kept, planned, solved
 from pinstress.designs.table import assembled, facts, write_table
 from pinstress.designs.workers import failed_rows, local, remote, solve_on
 from tests.support.command_line import QUICK
+from tests.support.made_up_designs import made_up_designs
 from tests.support.swept import DEADLY, DIAMETER, FORCE, STRENGTH, swept
 
 resource_tracker.ensure_running()  # multiprocessing's, which stays to the end
@@ -266,3 +270,12 @@ def test_a_design_that_ends_its_process_is_a_row_and_the_others_go_on(
     solve_on(cluster, sweep.problem, batches, keep, lost)
     expected = dict(enumerate(table["code"].to_pylist())) | {DEADLY: "process-died"}
     assert found == expected
+
+
+def test_rows_that_are_not_converged_are_counted(capsys: pytest.CaptureFixture[str]) -> None:
+    """A factor of a row with half of its stress as error is no result like others."""
+    table = made_up_designs(40, 2, failing=0.1)
+    found = Counter(table["verdict"].to_pylist())
+    summary(table, Console(width=200))
+    rough = found["unconverged"] + found["singular"]
+    assert f"maximum (verdict, error_estimate): B {rough}\n" in capsys.readouterr().out

@@ -101,7 +101,7 @@ def test_an_unfinished_sweep_is_kept_and_goes_on(
     monkeypatch.setattr(module, "solve_batch", interrupted)
     made = run_here(*arguments, cwd=tmp_path)
     assert made.returncode == 130
-    assert "2 batches are kept. Go on with: pinstress sweep study.toml --out out" in made.stderr
+    assert "2 batches are kept: the same command with --resume goes on" in made.stderr
     monkeypatch.setattr(module, "solve_batch", whole)
     again = run_here(*arguments, cwd=tmp_path)
     assert again.returncode == 2
@@ -184,7 +184,7 @@ def test_a_sweep_that_is_killed_goes_on_to_the_same_bytes(tmp_path: Path, sign: 
             time.sleep(0.1)
     if sign == signal.SIGINT:
         assert process.returncode == 130
-        assert "batches are kept. Go on with" in err
+        assert "kept: the same command with --resume goes on" in err
         assert "Traceback" not in err
     kept = len(list(parts.glob("*.parquet")))
     assert kept >= 4
@@ -201,3 +201,24 @@ def _others(group: int) -> bool:
     from tests.support.process_group import alive
 
     return alive(group)
+
+
+def test_nothing_is_left_of_a_sweep_that_solved_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nor is it said to be unfinished; an earlier table stays."""
+    import pinstress.designs.workers as module
+
+    monkeypatch.setattr(module, "ANSWERS", 0.5)
+    _study(tmp_path, LOADS, 2)
+    nowhere = "sweep", "study.toml", "--out", "out", "--scheduler", "nonsense"
+    made = run_here(*nowhere, cwd=tmp_path)
+    assert made.returncode == 2
+    assert "no scheduler of dask answers at nonsense" in made.stderr
+    assert not (tmp_path / "out").exists()
+    made = run_here("sweep", "study.toml", "--jobs", "1", "--out", "out", cwd=tmp_path)
+    assert made.returncode == 0, made.stderr
+    assert run_here(*nowhere, cwd=tmp_path).returncode == 2
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [
+        ".pinstress.json", "designs.html", "designs.parquet",
+    ]  # fmt: skip
