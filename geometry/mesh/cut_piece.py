@@ -28,9 +28,10 @@ ALONG = 2.0  # size at the edges of slots, which are long, over that
 ARC, ARC_ALONG = 4.0, 2.5  # elements on the quarter circle of a rounded corner; of slots
 CORNER = 0.07  # size at a sharp inner corner, of a cut's size
 FACE = 0.12  # size on a flat, of the pin's diameter
-WALL, LONG_WALL = 1.5, 2.0  # size on its wall over that at its edge; of passages
+WALL, LONG_WALL = 1.5, 3.5  # size on its wall over that at its edge; of passages
 GROWTH = 0.45  # of the size with the distance from there
-REACH = 0.2  # of a cut's size: how far about a spot its elements are small
+REACH = 0.2  # of a cut's size: how far about a spot its elements are small, at most
+ROWS = 3.5  # and of these elements
 ON = 1e-3  # of a cut's size: a spot on one of its surfaces
 
 
@@ -128,8 +129,9 @@ def _mesh(piece: Piece, size: MeshSize, spots: Spots, at_spots: float) -> SolidM
         for spot in spots:
             x, y, z = (c / unit for c in spot)
             h, flat = _at_spot(small, (x, y, z))
-            d = f"Sqrt((x-({x!r}))^2+(y-({y!r}))^2+(z-({z!r}))^2)-{flat!r}"
-            fields.append(formula_size(gmsh, f"{h / at_spots!r}+{GROWTH / 2!r}*({d}+Fabs({d}))"))
+            h = h / at_spots
+            d = f"Sqrt((x-({x!r}))^2+(y-({y!r}))^2+(z-({z!r}))^2)-{min(flat, ROWS * h)!r}"
+            fields.append(formula_size(gmsh, f"{h!r}+{GROWTH / 2!r}*({d}+Fabs({d}))"))
         set_sizes(gmsh, small.profile, ELSEWHERE.finer(finer**0.5), (), fields)
         gmsh.model.mesh.generate(3)
         gmsh.model.mesh.setOrder(2)
