@@ -31,7 +31,7 @@ FACE = 0.12  # size on a flat, of the pin's diameter
 WALL, LONG_WALL = 1.5, 3.5  # size on its wall over that at its edge; of passages
 GROWTH = 0.45  # of the size with the distance from there
 REACH = 0.2  # of a cut's size: how far about a spot its elements are small, at most
-ROWS = 3.5  # and of these elements
+ROWS = 6.0  # and of these elements
 ON = 1e-3  # of a cut's size: a spot on one of its surfaces
 
 
