@@ -27,8 +27,8 @@ from fea.core.material import Material
 from fea.core.voigt import TENSOR
 from fea.cut.lost_loads import Bearing, trial_forces, trials
 from fea.cut.parity import AXES, Parities
-from fea.cut.two_level import FACTORED, TwoLevel
 from fea.cut.surface_reading import Face, FaceReading, read_face
+from fea.cut.two_level import FACTORED, TwoLevel
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import QUARTERS, area_vectors, quadrature, slopes_at, surface
 from geometry.arrays import Floats, Ints, Mask

@@ -4,7 +4,7 @@ corners, which are an eighth of the nodes and factored.
 
 Time and memory grow with the number of unknowns, those of a factorisation with its power 2 and 4/3.
 
-Source: Saad, Iterative Methods for Sparse Linear Systems, 2nd ed. (2003), 9.2 and 12.3.2; Helenbrook
+Source: Saad, Iterative Methods for Sparse Linear Systems, 2nd ed. (2003), 9.2, 12.3.2; Helenbrook
 & Atkins, AIAA J. 44 (2006) 566 (lower orders as coarse levels).
 """
 
