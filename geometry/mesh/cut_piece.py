@@ -122,7 +122,10 @@ def _mesh(piece: Piece, size: MeshSize, spots: Spots, at_spots: float) -> SolidM
     small = piece.scaled(1.0 / unit)
     finer = size.across / QUARTER
     with gmsh_model(small.profile.name) as gmsh:
-        cut_solid(gmsh, small.profile, small.cuts, small.sector)
+        if "z" in small.mirrors and any(cut.undivided for cut in small.cuts.values()):
+            _upper_half(gmsh, small)
+        else:
+            cut_solid(gmsh, small.profile, small.cuts, small.sector)
         planes = [f"mirror {m}" for m in small.mirrors if m != "z"]
         parts = named_parts(gmsh, small.profile, small.cuts, planes, whole=False)
         fields = _sizes(gmsh, small, parts, finer)
@@ -138,6 +141,21 @@ def _mesh(piece: Piece, size: MeshSize, spots: Spots, at_spots: float) -> SolidM
         jacobian, repaired = repair(gmsh)
         faces = {f"{name} {part}".rstrip(): tags for (name, part), tags in parts.items()}
         return SolidMesh(collect(gmsh, faces).scaled(unit), jacobian, repaired)
+
+
+def _upper_half(gmsh: Any, piece: Piece) -> None:
+    """What is above the mirror plane amid a piece, cut from the piece on both sides of it."""
+    occ, pin, long = gmsh.model.occ, piece.profile, piece.profile.length
+    first, *others = pin.segments
+    both = Pin(pin.name, (replace(first, length=long + first.length), *others), pin.fillet)
+    body = cut_solid(
+        gmsh, both, {n: c.moved(-long, 0.0) for n, c in piece.cuts.items()}, piece.sector
+    )
+    wide = 2.0 * pin.largest_diameter
+    box = (3, occ.addBox(-wide, -wide, -long, 2.0 * wide, 2.0 * wide, 2.0 * long))
+    left, _ = occ.cut([body], [box])
+    occ.translate(left, 0.0, 0.0, -long)
+    occ.synchronize()
 
 
 def _edge_size(piece: Piece, cut: Cut) -> float:
