@@ -26,8 +26,8 @@ from geometry import CutPin, Hole, Pin, Segment
 D, HOLE, COUNT, KINDS, SEED = 0.02, 0.004, 30, 6, 7
 NOMINAL = 32.0 * 1500.0 * 0.02 / (np.pi * D**3)
 FURTHER = 200  # instants
-TIMES, ENOUGH = 10.0, 150_000  # the unknowns of a reference: times those of a run, or so many
-LEVELS = 5  # its meshes beyond those of the run: elements at the maximum are 13 times smaller
+TIMES, ENOUGH = 10.0, 100_000  # the unknowns of a reference: times those of a run, or so many
+LEVELS = 4  # its meshes beyond those of the run: elements at the maximum are 8 times smaller
 FINER = (1.0, 2.0**0.5)  # meshes of CalculiX over the first one of the solid model
 BANDS = ("A", "B", "C", "E")
 SHAFT = Pin(

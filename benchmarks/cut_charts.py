@@ -19,18 +19,18 @@ RATIOS = (0.05, 0.1, 0.15, 0.2, 0.3)
 FINE = 1.5  # times as fine as the first mesh
 BAR = Pin("bar", (Segment(0.16, D, name="side"),))
 # Of d / D from the third power down; largest stress over the nominal one of the whole section, at
-# the extreme fibre. Young & Budynas, Roark's Formulas for Stress and Strain, 7th ed., table 17.1,
-# radial hole in a solid circular shaft.
-ROARK = {
-    "tension": (16.841, -0.421, 2.773, 3.0),
-    "bending": (-53.307, 44.739, -6.690, 3.0),
-    "torsion": (-44.576, 38.382, -6.793, 4.0),
+# the extreme fibre. Pilkey & Pilkey, Peterson's Stress Concentration Factors, 3rd ed., chapter 4:
+# tubes with a transverse hole, with an inner diameter of zero.
+PETERSON = {
+    "tension": (0.0, 11.357, 0.427, 3.0),
+    "bending": (-45.0, 41.0, -6.25, 3.0),
+    "torsion": (-38.33, 32.764, -6.055, 4.0),
 }
 
 
 def chart(load: str, ratio: float) -> float:
     """Of the literature."""
-    return float(np.polyval(ROARK[load], ratio))
+    return float(np.polyval(PETERSON[load], ratio))
 
 
 @cache
@@ -69,11 +69,12 @@ def largest(read: Read) -> tuple[float, float]:
 def cut_charts() -> str:
     """A table over loads and ratios."""
     rows = []
-    for load in ROARK:
+    for load in PETERSON:
         for ratio in RATIOS:
             principal, mises = factors(load, ratio)
             known = chart(load, ratio)
             apart = 100.0 * (known / principal - 1.0)
             rows.append((load, ratio, known, principal, f"{apart:+.1f}", mises))
-    head = ("load", "d / D", "Roark", "ours, principal", "Roark over ours, %", "ours, von Mises")
+    ours = "ours, principal", "Peterson over ours, %", "ours, von Mises"
+    head = ("load", "d / D", "Peterson", *ours)
     return table(head, rows)
