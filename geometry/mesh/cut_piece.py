@@ -24,7 +24,7 @@ Spots = Sequence[tuple[float, float, float]]
 # about what a cut disturbs: elements over the diameter, and along a fillet's quarter circle
 ELSEWHERE = MeshSize(across=2.5, corner=1.0, arc=1.0, growth=0.6)
 QUARTER = 6.0  # elements on a quarter of a hole's edge
-ALONG = 2.0  # size at the edges of slots, which are long, over that
+ALONG = 1.4  # size at the edges of slots, which are long, over that
 ARC, ARC_ALONG = 4.0, 2.5  # elements on the quarter circle of a rounded corner; of slots
 CORNER = 0.07  # size at a sharp inner corner, of a cut's size
 FACE = 0.12  # size on a flat, of the pin's diameter
