@@ -32,10 +32,10 @@ class TwoLevel:
 
     def __init__(self, space: Discretisation, stiffness: sp.csr_matrix) -> None:
         self._stiffness, self._count = stiffness, len(space.nodes)
-        self._corners, self._up = _linear(space)
+        self._corners, up = _linear(space)
         blocks = sp.bsr_matrix(stiffness, blocksize=(3, 3))
-        self._coarse = sp.csr_matrix(self._up.T @ (blocks @ self._up))
-        self._up, self._down = self._up.tocsr(), self._up.T.tocsr()
+        self._coarse = sp.csr_matrix(up.T @ (blocks @ up))
+        self._up, self._down = up.tocsr(), up.T.tocsr()
         row = np.repeat(np.arange(self._count), np.diff(blocks.indptr))
         self._own = blocks.data[blocks.indices == row][np.argsort(row[blocks.indices == row])]
         self._system = ConstrainedSystem(self._coarse, np.arange(self._coarse.shape[0]) // 3)
