@@ -54,6 +54,7 @@ ACCURACY = {
     "tension": tension.tension,
     "corners": coverage.singular,
     "cut-charts": cut_charts.cut_charts,
+    "cut-scatter": cut_charts.cut_scatter,
     "cut-pins": cut.cut_pins,
     "cut-kinds": cut.cut_kinds,
     "holding": modelling.holding,

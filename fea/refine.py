@@ -166,7 +166,7 @@ def refined(
             start = end
         if all(enough(asked, job.material, s) for s in seen.values()):
             break
-        if any(_too_short(s.results[-1], asked.tolerance) for s in seen.values()):
+        if level and any(_too_short(s.results[-1], asked.tolerance) for s in seen.values()):
             job = replace(job, beyond=LONGER * job.beyond)
     why, out = reasons(asked, job.material, model), {}
     for case in cases:

@@ -24,8 +24,9 @@ from fea.singular.singularities import Singularity
 LEAST_ORDER = {"harmonic": 1.0}  # meshes of sections have nodes on the edges of excluded zones
 # Scatter of the maximum on the first mesh with the positions of nodes, relative; ~ h^2. Sections:
 # measured on random shoulders; solids: on fillets with and without a bore, 0.07 to 0.13; local
-# solids: on holes in tension, bending and torsion.
-NOISE = {"harmonic": 0.026, "solid": 0.13, "harmonic+local": 0.03}
+# solids: on holes under superposed tension, bending and torsion (`benchmarks cut-scatter`), where
+# 95 % of maxima are off by less.
+NOISE = {"harmonic": 0.026, "solid": 0.13, "harmonic+local": 0.05}
 FEWEST = 3  # meshes before a maximum can be converged: two can agree by chance
 
 ARTICLES = {

@@ -48,15 +48,17 @@ class Analysis:
         else:
             self._factor = partial(_superlu, order=order)
 
-    def factorize(self, K: sp.csr_matrix) -> Solve:
+    def factorize(self, K: sp.csr_matrix, check: bool = True) -> Solve:
         """A function that solves K x = b for b (n,) or (n, k). It must not be called after
-        another matrix has been factored.
+        another matrix has been factored. check: whether it checks what it returns.
 
         Raises: SolveError when K is not positive definite (an unconstrained body), and from the
         returned function when a solution does not satisfy the equations, or when K is so nearly
         singular that round-off changes it by more than a thousandth.
         """
         solve = self._factor(K)
+        if not check:
+            return solve
 
         def checked(b: Floats) -> Floats:
             x = solve(b)
@@ -119,6 +121,13 @@ class ConstrainedSystem:
 
     def solve(self, K: sp.csr_matrix, free: Floats, forces: Floats) -> Floats:
         """Unknowns (n, K) under forces, zero where `free` (n,) is 0 and not 1; K is changed."""
+        return self._analysis.factorize(self._held(K, free))(forces * free[:, None])
+
+    def factorize(self, K: sp.csr_matrix, free: Floats) -> Solve:
+        """A function that solves the same for forces that are zero there, and checks nothing."""
+        return self._analysis.factorize(self._held(K, free), check=False)
+
+    def _held(self, K: sp.csr_matrix, free: Floats) -> sp.csr_matrix:
         fixed = self._diagonal[free == 0.0]
         largest = K.data.max()
         key = free.tobytes()
@@ -126,7 +135,7 @@ class ConstrainedSystem:
             self._zeroed[key] = np.flatnonzero(free[self._row] * free[K.indices] == 0.0)
         K.data[self._zeroed[key]] = 0.0
         K.data[fixed] = largest  # of no effect
-        return self._analysis.factorize(K)(forces * free[:, None])
+        return K
 
 
 def has_cholmod() -> bool:

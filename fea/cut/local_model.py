@@ -28,6 +28,7 @@ from fea.core.voigt import TENSOR
 from fea.cut.lost_loads import Bearing, trial_forces, trials
 from fea.cut.parity import AXES, Parities
 from fea.cut.surface_reading import Face, FaceReading, read_face
+from fea.cut.two_level import FACTORED, TwoLevel
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import QUARTERS, area_vectors, quadrature, slopes_at, surface
 from geometry.arrays import Floats, Ints, Mask
@@ -254,17 +255,33 @@ class LocalModel:
         """
         free = np.ones(self.unknowns)
         free[self._fixed(parity)] = 0.0
+        held = np.zeros(0, dtype=np.int64)
         if not self.clamps:
             modes = _rigid(self.space.nodes)[:, self.parities.rigid(parity)]
             forces = self._balanced(forces, modes, whole)
             if count := modes.shape[1]:
-                at = np.flatnonzero(free)
+                at = np.flatnonzero(free * self._at_corners)
                 _, _, pivot = scipy.linalg.qr(modes[at].T, mode="economic", pivoting=True)
-                free[at[pivot[:count]]] = 0.0
+                held = at[pivot[:count]]
         left, size, right = scipy.linalg.svd(free[:, None] * forces, full_matrices=False)
         rank = int(np.sum(size > LEAST * size[0]))
-        found = self._system.solve(self.stiffness.copy(), free, left[:, :rank] * size[:rank])
+        some = left[:, :rank] * size[:rank]
+        found = self._two_level.solve(free, held, some) if self.unknowns > FACTORED else None
+        if found is None:
+            free[held] = 0.0
+            found = self._system.solve(self.stiffness.copy(), free, some)
         return np.asarray(found @ right[:rank])
+
+    @cached_property
+    def _at_corners(self) -> Floats:
+        """(3 N,) 1 for unknowns of corners of elements, 0 amid their edges."""
+        out = np.zeros((len(self.space.nodes), 3))
+        out[self.space.elements[:, :4]] = 1.0
+        return out.ravel()
+
+    @cached_property
+    def _two_level(self) -> TwoLevel:
+        return TwoLevel(self.space, self.stiffness)
 
     @cached_property
     def _system(self) -> ConstrainedSystem:

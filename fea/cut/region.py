@@ -150,7 +150,6 @@ def _piece(
     if (
         not clamped
         and not parted
-        and not any(cut.undivided for cut in amid)
         and _even(pin, z0, z1, middle)
         and _symmetric(pin, amid, "z")
     ):

@@ -24,13 +24,14 @@ Spots = Sequence[tuple[float, float, float]]
 # about what a cut disturbs: elements over the diameter, and along a fillet's quarter circle
 ELSEWHERE = MeshSize(across=2.5, corner=1.0, arc=1.0, growth=0.6)
 QUARTER = 6.0  # elements on a quarter of a hole's edge
-ALONG = 2.0  # size at the edges of slots, which are long, over that
+ALONG = 1.4  # size at the edges of slots, which are long, over that
 ARC, ARC_ALONG = 4.0, 2.5  # elements on the quarter circle of a rounded corner; of slots
 CORNER = 0.07  # size at a sharp inner corner, of a cut's size
 FACE = 0.12  # size on a flat, of the pin's diameter
-WALL, LONG_WALL = 1.5, 2.0  # size on its wall over that at its edge; of passages
+WALL, LONG_WALL = 1.5, 3.5  # size on its wall over that at its edge; of passages
 GROWTH = 0.45  # of the size with the distance from there
-REACH = 0.2  # of a cut's size: how far about a spot its elements are small
+REACH = 0.2  # of a cut's size: how far about a spot its elements are small, at most
+ROWS = 6.0  # and of these elements
 ON = 1e-3  # of a cut's size: a spot on one of its surfaces
 
 
@@ -121,21 +122,40 @@ def _mesh(piece: Piece, size: MeshSize, spots: Spots, at_spots: float) -> SolidM
     small = piece.scaled(1.0 / unit)
     finer = size.across / QUARTER
     with gmsh_model(small.profile.name) as gmsh:
-        cut_solid(gmsh, small.profile, small.cuts, small.sector)
+        if "z" in small.mirrors and any(cut.undivided for cut in small.cuts.values()):
+            _upper_half(gmsh, small)
+        else:
+            cut_solid(gmsh, small.profile, small.cuts, small.sector)
         planes = [f"mirror {m}" for m in small.mirrors if m != "z"]
         parts = named_parts(gmsh, small.profile, small.cuts, planes, whole=False)
         fields = _sizes(gmsh, small, parts, finer)
         for spot in spots:
             x, y, z = (c / unit for c in spot)
             h, flat = _at_spot(small, (x, y, z))
-            d = f"Sqrt((x-({x!r}))^2+(y-({y!r}))^2+(z-({z!r}))^2)-{flat!r}"
-            fields.append(formula_size(gmsh, f"{h / at_spots!r}+{GROWTH / 2!r}*({d}+Fabs({d}))"))
+            h = h / at_spots
+            d = f"Sqrt((x-({x!r}))^2+(y-({y!r}))^2+(z-({z!r}))^2)-{min(flat, ROWS * h)!r}"
+            fields.append(formula_size(gmsh, f"{h!r}+{GROWTH / 2!r}*({d}+Fabs({d}))"))
         set_sizes(gmsh, small.profile, ELSEWHERE.finer(finer**0.5), (), fields)
         gmsh.model.mesh.generate(3)
         gmsh.model.mesh.setOrder(2)
         jacobian, repaired = repair(gmsh)
         faces = {f"{name} {part}".rstrip(): tags for (name, part), tags in parts.items()}
         return SolidMesh(collect(gmsh, faces).scaled(unit), jacobian, repaired)
+
+
+def _upper_half(gmsh: Any, piece: Piece) -> None:
+    """What is above the mirror plane amid a piece, cut from the piece on both sides of it."""
+    occ, pin, long = gmsh.model.occ, piece.profile, piece.profile.length
+    first, *others = pin.segments
+    both = Pin(pin.name, (replace(first, length=long + first.length), *others), pin.fillet)
+    body = cut_solid(
+        gmsh, both, {n: c.moved(-long, 0.0) for n, c in piece.cuts.items()}, piece.sector
+    )
+    wide = 2.0 * pin.largest_diameter
+    box = (3, occ.addBox(-wide, -wide, -long, 2.0 * wide, 2.0 * wide, 2.0 * long))
+    left, _ = occ.cut([body], [box])
+    occ.translate(left, 0.0, 0.0, -long)
+    occ.synchronize()
 
 
 def _edge_size(piece: Piece, cut: Cut) -> float:

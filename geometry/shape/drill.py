@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
 from geometry.arrays import Floats
 from geometry.coded import Place
-from geometry.shape.features import Off, SmoothPart, require
+from geometry.shape.features import Cut, Off, SmoothPart, require
 from geometry.shape.profile import Arc, Edge, kind_of, off_edge
 
 FLAT_TIP = math.pi
@@ -46,6 +47,10 @@ class Bottom:
         """With its radius rounded to so many digits, and its angle."""
         tip = round(self.tip, 9)
         return Bottom(FLAT_TIP if tip >= round(FLAT_TIP, 9) else tip, round(self.radius, digits))
+
+    def scaled(self, factor: float) -> Bottom:
+        """The same in another unit."""
+        return replace(self, radius=self.radius * factor)
 
     def height(self, diameter: float) -> float:
         """Of the cone below the full diameter, m."""
@@ -94,6 +99,26 @@ class Bottom:
 
 
 SQUARE = Bottom()  # flat, its corner sharp
+
+
+class Drilled(Cut):
+    """A cut of a drill's diameter (m), with a bottom where it is blind."""
+
+    diameter: float
+    bottom: Bottom
+
+    @property
+    def size(self) -> float:
+        """The diameter."""
+        return self.diameter
+
+    def scaled(self, factor: float) -> Self:
+        """The same in another unit."""
+        return super().scaled(factor)._with({"bottom": self.bottom.scaled(factor)})
+
+    def rounded(self, digits: int) -> Self:
+        """The same, its bottom as well."""
+        return super().rounded(digits)._with({"bottom": self.bottom.rounded(digits)})
 
 
 def drill_outline(

@@ -14,13 +14,14 @@ from geometry.coded import Place
 from geometry.shape.drill import (
     SQUARE,
     Bottom,
+    Drilled,
     Placed,
     closed_outline,
     drill_outline,
     turned_surfaces,
     wall_edges,
 )
-from geometry.shape.features import Cut, Off, SmoothPart, outer_radius, positive, radii, require
+from geometry.shape.features import Off, SmoothPart, outer_radius, positive, radii, require
 from geometry.shape.pin import Pin
 from geometry.shape.profile import Edge
 
@@ -28,7 +29,7 @@ WIDER = 1.5  # of its radius: how far a rounded mouth reaches at most
 
 
 @dataclass(frozen=True)
-class Hole(Cut):
+class Hole(Drilled):
     """A round hole across the pin: its axis crosses the pin's at z (m), at `angle` (rad) from x;
     diameter in m.
 
@@ -55,11 +56,6 @@ class Hole(Cut):
         return self.z - half, self.z + half
 
     @property
-    def size(self) -> float:
-        """The diameter."""
-        return self.diameter
-
-    @property
     def half_turn(self) -> bool:
         """If it goes through."""
         return self.depth is None
@@ -77,15 +73,6 @@ class Hole(Cut):
     def lengths(self) -> tuple[str, ...]:
         """All but angles."""
         return "z", "diameter", "depth", "chamfer", "mouth_radius"
-
-    def scaled(self, factor: float) -> Hole:
-        """The same in another unit."""
-        made = super().scaled(factor)
-        return replace(made, bottom=replace(self.bottom, radius=self.bottom.radius * factor))
-
-    def rounded(self, digits: int) -> Hole:
-        """The same, its bottom as well."""
-        return replace(super().rounded(digits), bottom=self.bottom.rounded(digits))
 
     def along(self, change: Callable[[float, float], tuple[float, float]]) -> Hole:
         """With its middle amid other ends."""

@@ -11,12 +11,13 @@ from geometry.coded import Place
 from geometry.shape.drill import (
     SQUARE,
     Bottom,
+    Drilled,
     Placed,
     closed_outline,
     drill_outline,
     turned_surfaces,
 )
-from geometry.shape.features import Cut, SmoothPart, positive, radii, require
+from geometry.shape.features import SmoothPart, positive, radii, require
 from geometry.shape.pin import FACES, Pin
 from geometry.shape.profile import Edge
 
@@ -24,7 +25,7 @@ Mouth = Literal["start", "end", "both"]
 
 
 @dataclass(frozen=True)
-class Passage(Cut):
+class Passage(Drilled):
     """A hole along the pin, its axis `offset` (m) from the pin's in the direction `angle` (rad from
     x): of a diameter (m), between z0 and z1 (m), drilled from a `mouth`: "start", "end", or "both"
     for one through the pin. bottom: of a blind one, beyond the end of its full diameter.
@@ -46,11 +47,6 @@ class Passage(Cut):
         tip = self.bottom.height(self.diameter)
         down, up = (tip if self.mouth == end else 0.0 for end in ("end", "start"))
         return self.z0 - down, self.z1 + up
-
-    @property
-    def size(self) -> float:
-        """The diameter."""
-        return self.diameter
 
     @property
     def half_turn(self) -> bool:
@@ -75,15 +71,6 @@ class Passage(Cut):
     def lengths(self) -> tuple[str, ...]:
         """All but angles."""
         return "z0", "z1", "diameter", "offset"
-
-    def scaled(self, factor: float) -> Passage:
-        """The same in another unit."""
-        made = super().scaled(factor)
-        return replace(made, bottom=replace(self.bottom, radius=self.bottom.radius * factor))
-
-    def rounded(self, digits: int) -> Passage:
-        """The same, its bottom as well."""
-        return replace(super().rounded(digits), bottom=self.bottom.rounded(digits))
 
     def along(self, change: Callable[[float, float], tuple[float, float]]) -> Passage:
         """With other ends; what exchanges them turns it round."""

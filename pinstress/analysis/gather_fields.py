@@ -65,6 +65,7 @@ def field(
         ),
         volume=_volume(solution.answer, loads, governing) if also == "solid" else None,
         contact_pressure=pressure.at(shown.points) if pressure else None,
+        solids=peak.solids,
     )
 
 

@@ -176,11 +176,11 @@ def _climbed(plan: ChartPlan, climb: Climb, meshes: int | None, calculix: bool) 
     if isinstance(pin, Pin):
         climb.to(Rung("beam"))
         climb_harmonic(climb)
+    elif climb.auto == LOCAL:
+        climb_local(climb)
     else:
         other = Measured(None, failed=f"pin {pin.name} is not a body of revolution")
         climb.done += [(Rung("beam"), other), (Rung("harmonic"), other)]
-        if climb.auto == LOCAL:
-            climb_local(climb)
     elements: tuple[Element, ...] = ("linear", "straight", "curved")
     for element in elements:
         climb_solid(climb, element, meshes)

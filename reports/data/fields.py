@@ -73,6 +73,7 @@ class Field:
     zones are excluded, the largest stress outside of them and where it is (x, y, z). time:
     None without a motion. loads: what acts at this instant. stills: along the motion, and
     volume: all of a revolved pin, if wanted. contact_pressure: (N,) of its lugs, None without.
+    solids: between which z local solids are about cuts.
     """
 
     pin: str
@@ -92,3 +93,4 @@ class Field:
     stills: tuple[Still, ...] = ()
     volume: Volume | None = None
     contact_pressure: Stresses | None = None
+    solids: tuple[tuple[Length, Length], ...] = ()

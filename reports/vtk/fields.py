@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fea.plastic.records import FlowField
 from reports.data.results import BandLoad, Field, Floats, Units, Volume
@@ -16,6 +17,7 @@ from reports.vtk.writer import Block, Data, write_block, write_multiblock, write
 
 __all__ = [
     "block",
+    "local_solids",
     "point_data",
     "render_pin",
     "renderer_problem",
@@ -68,8 +70,8 @@ def block(field: Field, units: Units) -> Block:
 
 
 def write_pin(field: Field, name: str, directory: Path, units: Units) -> None:
-    """Write NAME.vtu, and NAME.vtm, which adds loads, bands and volume (NAME/*.vtu); with stills
-    NAME.pvd, the same along the motion.
+    """Write NAME.vtu, and NAME.vtm, which adds loads, bands, volume and local solids (NAME/*.vtu);
+    with stills NAME.pvd, the same along the motion.
     """
     write_vtu(field, directory / f"{name}.vtu", units)
     if not field.loads:
@@ -84,6 +86,9 @@ def write_pin(field: Field, name: str, directory: Path, units: Units) -> None:
     if field.volume is not None:
         write_block(_volume(field.volume, units), folder / "solid.vtu")
         kinds.append("solid")
+    if field.solids:
+        write_vtu(local_solids(field), folder / "local.vtu", units)
+        kinds.append("local")
     blocks = {kind: f"{name}/{kind}.vtu" for kind in kinds}
     write_multiblock({"pin": f"{name}.vtu", **blocks}, directory / f"{name}.vtm")
     if field.stills:
@@ -175,13 +180,27 @@ def surface(field: Field) -> Field:
         np.sort(faces[:, :3], axis=1), axis=0, return_index=True, return_counts=True
     )
     outer = faces[np.sort(first[count == 1])]
-    nodes, numbers = np.unique(outer, return_inverse=True)
+    return _part(field, outer, {6: "triangle6", 3: "triangle"}[outer.shape[1]])
+
+
+def local_solids(field: Field) -> Field:
+    """The part of the surface that local solids about cuts have computed."""
+    z = field.points[field.cells, 2]
+    near = 1e-9 * float(np.ptp(field.points[:, 2]))
+    ends = [(z >= low - near).all(axis=1) & (z <= high + near).all(axis=1)
+            for low, high in field.solids]  # fmt: skip
+    return _part(field, field.cells[np.any(ends, axis=0)], field.cell_type)
+
+
+def _part(field: Field, cells: NDArray[np.int64], cell_type: str) -> Field:
+    """Some cells alone, and their nodes."""
+    nodes, numbers = np.unique(cells, return_inverse=True)
     pressure = field.contact_pressure
     return replace(
         field,
         points=field.points[nodes],
-        cells=numbers.reshape(outer.shape),
-        cell_type={6: "triangle6", 3: "triangle"}[outer.shape[1]],
+        cells=numbers.reshape(cells.shape),
+        cell_type=cell_type,
         displacement=field.displacement[nodes],
         stress=field.stress[nodes],
         von_mises=field.von_mises[nodes],

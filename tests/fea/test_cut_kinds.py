@@ -18,6 +18,7 @@ from fea.core.voigt import VON_MISES
 from fea.cut.inner_corners import inner_corners
 from fea.cut.local_model import LocalModel, Read
 from fea.cut.region import pieces, zone
+from fea.solid.assembly import Discretisation
 from fea.solve_pin import Asked, solve_pin
 from geometry import Bottom, Cut, CutPin, Flat, Hole, Passage, Pin, Segment, Slot
 from geometry.arrays import Floats
@@ -169,6 +170,21 @@ KEYWAY = Slot(MIDDLE - 0.008, MIDDLE + 0.008, 0.005, 0.003, 0.3, 0.0006)
 FLATS = tuple(Flat(MIDDLE - D / 2, MIDDLE + D / 2, 0.008, 0.3 + k * math.pi, 0.001) for k in (0, 1))
 
 
+MOUTH = replace(HOLE, mouth_radius=0.0006)
+
+
+def test_half_of_a_hole_with_rounded_mouths() -> None:
+    """Cut from the whole after rounding: half of its volume, and the same surfaces."""
+    half = piece(MOUTH)
+    profile = clipped(SHAFT, half.z0, half.z1)
+    cuts = {"hole 1": MOUTH.moved(half.z0, half.angle)}
+    whole = replace(half, profile=profile, cuts=cuts, mirrors=("x", "y"))
+    one, two = (piece_mesh(p, 1.0).mesh for p in (half, whole))
+    volume, doubled = (float(Discretisation(mesh).weights.sum()) for mesh in (one, two))
+    assert volume == pytest.approx(0.5 * doubled, rel=1e-3)
+    assert set(one.boundaries) == set(two.boundaries)
+
+
 def test_what_is_meshed_of_cuts() -> None:
     """By their symmetries: an eighth of opposite flats, a quarter of a keyway, half of a passage;
     two flats are symmetric about the plane amid them; a flat at the end reaches to it.
@@ -183,7 +199,7 @@ def test_what_is_meshed_of_cuts() -> None:
     assert piece(blind).mirrors == ("y",)
     assert piece(blind).open_ends == (False, True)
     assert piece(replace(HOLE, depth=0.006)).mirrors == ("y", "z")
-    assert piece(replace(HOLE, mouth_radius=0.0005)).mirrors == ("x", "y")
+    assert piece(MOUTH).mirrors == ("x", "y", "z")
     skew = piece(FLATS[0], replace(FLATS[0], angle=0.3 + math.pi / 2))
     assert skew.mirrors == ("y", "z")
     assert skew.angle == pytest.approx(0.3 + math.pi / 4)
@@ -196,7 +212,7 @@ def test_what_is_meshed_of_cuts() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("cuts", [FLATS[:1], (KEYWAY,)])
+@pytest.mark.parametrize("cuts", [FLATS[:1], (KEYWAY,), (MOUTH,)])
 def test_parts_answer_as_the_whole(cuts: tuple[Cut, ...]) -> None:
     """Each on a mesh of its own, in bending about an axis that is no axis of symmetry."""
 

@@ -186,6 +186,18 @@ def test_loads_and_bands_beside_the_pin(tmp_path: Path) -> None:
     assert band.bounds[4:] == pytest.approx((0.5, 2.5))
 
 
+def test_local_solids_alone(tmp_path: Path) -> None:
+    whole = tube()
+    ends = np.unique(whole.points[:, 2])
+    field = replace(whole, loads=bands(), solids=((float(ends[0]), float(ends[1])),))
+    write_pin(field, "A_cut", tmp_path, UNITS)
+    blocks: Any = pyvista.read(tmp_path / "A_cut.vtm")
+    assert blocks.keys() == ["pin", "loads", "bands", "local"]
+    assert blocks["local"].bounds[4:] == pytest.approx(ends[:2])
+    assert 0 < blocks["local"].n_cells < blocks["pin"].n_cells
+    assert blocks["local"].point_data.keys() == blocks["pin"].point_data.keys()
+
+
 def test_a_motion_is_a_series(tmp_path: Path) -> None:
     still = tube()
     size = np.array([1.0, 3.0, 2.0])

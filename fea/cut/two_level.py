@@ -1,0 +1,135 @@
+"""Conjugate gradients for quadratic tetrahedra, preconditioned on two levels: by steps of Jacobi's
+method on blocks of nodes, combined as Chebyshev polynomials, and by linear tetrahedra on the same
+corners, which are an eighth of the nodes and factored.
+
+Time and memory grow with the number of unknowns, those of a factorisation with its power 2 and 4/3.
+
+Source: Saad, Iterative Methods for Sparse Linear Systems, 2nd ed. (2003), 9.2, 12.3.2; Helenbrook
+& Atkins, AIAA J. 44 (2006) 566 (lower orders as coarse levels).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import scipy.sparse as sp
+
+from fea.core.linear_solver import ConstrainedSystem
+from fea.solid.assembly import Discretisation
+from geometry.arrays import Floats, Ints
+
+FACTORED = 8_000  # unknowns: as many or fewer are factored in less time
+CONVERGED = 1e-6  # energy of the residual over that of the largest forces, square root
+MOST_STEPS = 60  # 10 to 15 are usual
+DEGREE = 2  # of the polynomial
+SPREAD = 8.0  # largest eigenvalue over the least that it damps
+POWERS, ABOVE = 12, 1.1  # iterations to find the largest one, which is so much above what they find
+
+
+class TwoLevel:
+    """The stiffness matrix (csr, N/m) of a mesh, of whose unknowns any may be zero."""
+
+    def __init__(self, space: Discretisation, stiffness: sp.csr_matrix) -> None:
+        self._stiffness, self._count = stiffness, len(space.nodes)
+        self._corners, up = _linear(space)
+        blocks = sp.bsr_matrix(stiffness, blocksize=(3, 3))
+        self._coarse = sp.csr_matrix(up.T @ (blocks @ up))
+        self._up, self._down = up.tocsr(), up.T.tocsr()
+        row = np.repeat(np.arange(self._count), np.diff(blocks.indptr))
+        self._own = blocks.data[blocks.indices == row][np.argsort(row[blocks.indices == row])]
+        self._system = ConstrainedSystem(self._coarse, np.arange(self._coarse.shape[0]) // 3)
+
+    @property
+    def corners(self) -> Ints:
+        """Unknowns of the linear tetrahedra among all."""
+        return np.asarray((3 * self._corners[:, None] + np.arange(3)).ravel())
+
+    def solve(self, free: Floats, held: Ints, forces: Floats) -> Floats | None:
+        """Unknowns (3 N, K) under forces, zero where `free` (3 N,) is 0; None where that does not
+        converge. held: unknowns, of corners, that hold what may still move rigidly without forces;
+        they are zero on the coarse level alone.
+        """
+        free = free[:, None]
+        on_coarse = free.copy()
+        on_coarse[held] = 0.0
+        on_coarse = on_coarse[self.corners]
+        coarse = self._system.factorize(self._coarse.copy(), on_coarse[:, 0])
+        smooth = self._smoother(free)
+
+        def precondition(r: Floats) -> Floats:
+            x = smooth(r, None)
+            left = self._down @ (r - free * (self._stiffness @ x))
+            x = x + free * (self._up @ coarse(left * on_coarse))
+            return smooth(r, x)
+
+        found, r = np.zeros_like(forces), free * forces
+        z = precondition(r)
+        energy = np.sum(r * z, axis=0)
+        least, active, x, p = CONVERGED**2 * energy.max(), np.arange(r.shape[1]), found.copy(), z
+        for _ in range(MOST_STEPS):
+            done = energy <= least
+            if done.any():
+                found[:, active[done]] = x[:, done]
+                active, energy = active[~done], energy[~done]
+                x, r, p = x[:, ~done], r[:, ~done], p[:, ~done]
+            if not len(active):
+                return found
+            q = free * (self._stiffness @ p)
+            length = energy / np.sum(p * q, axis=0)
+            x, r = x + length * p, r - length * q
+            z = precondition(r)
+            before, energy = energy, np.sum(r * z, axis=0)
+            p = z + energy / before * p
+        return None
+
+    def _smoother(self, free: Floats) -> Callable[[Floats, Floats | None], Floats]:
+        """Symmetric: from zero, and from what the coarse level has corrected, the same."""
+        K = self._stiffness
+        mask = free.reshape(-1, 3)
+        blocks = self._own * mask[:, :, None] * mask[:, None]
+        blocks[:, range(3), range(3)] += 1.0 - mask
+        inverse = np.linalg.inv(blocks) * mask[:, :, None] * mask[:, None]
+        at = np.arange(self._count)
+        jacobi = sp.bsr_matrix((inverse, at, np.arange(self._count + 1)), K.shape).tocsr()
+        v = free * np.random.default_rng(0).normal(size=free.shape)
+        largest = 0.0
+        for _ in range(POWERS):
+            v = jacobi @ (K @ v)
+            largest = float(np.linalg.norm(v))
+            v /= largest
+        largest *= ABOVE
+        middle, half = 0.5 * largest * (1.0 + 1.0 / SPREAD), 0.5 * largest * (1.0 - 1.0 / SPREAD)
+
+        def smooth(b: Floats, x: Floats | None) -> Floats:
+            r = b if x is None else b - free * (K @ x)
+            step = (jacobi @ r) / middle
+            x = step if x is None else x + step
+            ratio = half / middle
+            for _ in range(DEGREE - 1):
+                r = r - free * (K @ step)
+                after = 1.0 / (2.0 * middle / half - ratio)
+                step = after * ratio * step + (2.0 * after / half) * (jacobi @ r)
+                x, ratio = x + step, after
+            return np.asarray(x)
+
+        return smooth
+
+
+def _linear(space: Discretisation) -> tuple[Ints, sp.bsr_matrix]:
+    """The nodes that are corners, and what displacements there are at all nodes if they are linear
+    along the edges.
+    """
+    e, count = space.elements, len(space.nodes)
+    corners = np.unique(e[:, :4])
+    number = np.full(count, -1)
+    number[corners] = np.arange(len(corners))
+    amid, first = np.unique(e[:, 4:], return_index=True)
+    ends = e[:, [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]]].reshape(-1, 2)[first]
+    rows = np.concatenate([corners, amid, amid])
+    columns = number[np.concatenate([corners, *ends.T])]
+    part = np.repeat([1.0, 0.5], [len(corners), 2 * len(amid)])
+    one = sp.csr_matrix((part, (rows, columns)), (count, len(corners)))
+    blocks = one.data[:, None, None] * np.eye(3)
+    shape = (3 * count, 3 * len(corners))
+    return corners, sp.bsr_matrix((blocks, one.indices, one.indptr), shape)
