@@ -45,10 +45,9 @@ def continuation(samples: Floats, points: Floats) -> sp.csr_matrix:
     count = min(NEIGHBOURS, len(samples))
     distance, near = (np.asarray(x) for x in cKDTree(samples).query(points, count))
     confidence = 1.0 - (distance / distance[:, -1:]) ** 2
-    weights = at_one_place(samples[near] - points[:, None], confidence)
-    row = np.arange(len(points)).repeat(count)
-    shape = (len(points), len(samples))
-    return sp.csr_matrix((weights.ravel(), (row, near.ravel())), shape=shape)
+    weights = at_one_place(samples.take(near, axis=0) - points[:, None], confidence)
+    ends = np.arange(0, near.size + 1, count)
+    return sp.csr_matrix((weights.ravel(), near.ravel(), ends), (len(points), len(samples)))
 
 
 def at_one_place(offsets: Floats, confidence: Floats) -> Floats:
@@ -57,7 +56,9 @@ def at_one_place(offsets: Floats, confidence: Floats) -> Floats:
     nearest samples in a row), of that with the least slope and curvature.
     """
     x, y = np.moveaxis(offsets / np.abs(offsets).max(axis=(-2, -1), keepdims=True), -1, 0)
-    terms = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=-2)
+    terms = np.empty((*x.shape[:-1], 6, x.shape[-1]))
+    terms[..., 0, :], terms[..., 1, :], terms[..., 2, :] = 1.0, x, y
+    terms[..., 3:5, :], terms[..., 5, :] = terms[..., 1:3, :] * x[..., None, :], y * y
     terms *= confidence[..., None, :]
     form = terms @ terms.swapaxes(-2, -1)
     definite = form + _LITTLE * form[..., :1, :1] * np.diag([0.0, 1, 1, 1, 1, 1])

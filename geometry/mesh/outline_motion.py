@@ -70,7 +70,7 @@ class OutlineNodes:
         self._shape = _shape(meridian(pin))
         self._reach = {reach.at: reach.distance / reach.at[0] for reach in reaches}
         rows, places = [], []
-        nodes = np.ascontiguousarray(mesh.mesh.doflocs.T)
+        nodes = mesh.nodes
         axis = {None: mesh.axis}
         named = axis | {name: np.unique(found) for name, found in mesh.edges.items()}
         for k, edge in enumerate(meridian(pin)):
