@@ -18,12 +18,13 @@ from scipy.spatial import cKDTree
 
 from fea.core.local_fit import NEIGHBOURS, at_one_place
 from fea.core.material import Material
-from fea.harmonic.assembly import Section, elasticity, strain_map, triangle_shapes
+from fea.harmonic.assembly import Section, elasticity, strain_map
 from fea.harmonic.boundary import Outline, shapes
 from fea.harmonic.pressure_edge import Jump, at_edge
 from fea.harmonic.stress_recovery import AXIS
 from fea.harmonic.surface_stress import AT, on_edges, smooth_neighbours
 from geometry.arrays import Floats, Ints
+from geometry.mesh.section_mesh import triangle_shapes
 
 _TO_UNKNOWNS = np.array([[0.5, 0.5, 0.0], [0.5, -0.5, 0.0], [0.0, 0.0, 1.0]])
 

@@ -17,8 +17,9 @@ Source: Zienkiewicz & Taylor, The Finite Element Method, ch. on semi-analytical 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -28,7 +29,7 @@ from skfem.refdom import RefTri
 from fea.core.material import Material
 from fea.core.sparsity import Pattern
 from geometry.arrays import Floats, Ints
-from geometry.mesh.section_mesh import MeridianMesh
+from geometry.mesh.section_mesh import MeridianMesh, triangle_shapes
 
 
 class Section:
@@ -100,7 +101,18 @@ class Section:
 
     @cached_property
     def pattern(self) -> Pattern:
-        return Pattern(self.elements, len(self.nodes))
+        """The pairs of nodes."""
+        found: Pattern = self.shared("pattern", lambda: Pattern(self.elements, len(self.nodes)))
+        return found
+
+    def shared(self, what: str, make: Callable[[], Any]) -> Any:
+        """What depends on the elements alone: made once for all meshes that have the same."""
+        shared = self.section.shared
+        if shared is None:
+            return make()
+        if what not in shared:
+            shared[what] = make()
+        return shared[what]
 
     def stiffness(self, materials: Material | Sequence[Material], n: int) -> sp.csr_matrix:
         """Stiffness matrix of harmonic n, for displacements as above and around the whole axis. All
@@ -189,19 +201,6 @@ def _rules() -> tuple[Floats, Floats, int]:
     samples = get_quadrature(RefTri, 2)[0]
     padded = np.append(weights, np.zeros(samples.shape[1]))
     return np.hstack([points, samples]), padded, len(weights)
-
-
-def triangle_shapes(at: Floats) -> tuple[Floats, Floats]:
-    """Quadratic shape functions (6, Q) at points (2, Q) of the triangle with corners at 0, x = 1
-    and y = 1, and their derivatives (2, 6, Q) by x and y.
-    """
-    x, y = at
-    corner = np.stack([1.0 - x - y, x, y])
-    slope = np.array([[-1.0, 1.0, 0.0], [-1.0, 0.0, 1.0]])[..., None]
-    first, second = [0, 1, 0], [1, 2, 2]
-    value = np.concatenate([corner * (2.0 * corner - 1.0), 4.0 * corner[first] * corner[second]])
-    sides = slope[:, first] * corner[second] + corner[first] * slope[:, second]
-    return value, np.concatenate([slope * (4.0 * corner - 1.0), 4.0 * sides], axis=1)
 
 
 def strain_map(n: int) -> Floats:

@@ -100,6 +100,8 @@ class Evaluator:
     ) -> None:
         self.numbers = tuple(p.number if isinstance(p, Parameter) else p for p in parameters)
         self._raw = {k: v for k, v in raw_study(study).items() if k not in APART}
+        analysis = {**self._raw.get("analysis", {}), "meshes": study.meshes}
+        self._raw["analysis"] = analysis  # whose default depends on [vary]
         self.study = with_raw(study, self._raw)
         plan = prepare(self.study, pins=pins, cases=cases)
         self._memory = plan.asked.memory  # free when it began: to ask again takes a millisecond
