@@ -139,7 +139,10 @@ class _Cholmod:
         count = np.diff(pattern.indptr).astype(np.int64)
         row = np.repeat(np.arange(len(count)), count)
         self._upper = np.flatnonzero(pattern.indices >= row)  # by rows: the lower half by columns
-        lower = matrix(pattern.indices.take(self._upper).astype(np.int64)), matrix(row.take(self._upper))
+        lower = (
+            matrix(pattern.indices.take(self._upper).astype(np.int64)),
+            matrix(row.take(self._upper)),
+        )
         self._matrix = spmatrix(1.0, *lower, pattern.shape)
         cholmod.options["supernodal"] = 2  # L L^T, which fails on a matrix that is not definite
         self._factor = cholmod.symbolic(self._matrix, *(() if order is None else (matrix(order),)))
