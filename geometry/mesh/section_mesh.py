@@ -218,7 +218,7 @@ def _collect(gmsh: Any, unit: float, outline: tuple[Edge, ...]) -> MeridianMesh:
     row = np.full(int(tags.max()) + 1, -1)
     used = np.zeros(len(row), dtype=bool)
     used[triangles] = True
-    count = np.count_nonzero(used)
+    count = int(np.count_nonzero(used))
     row[used] = np.arange(count)
     points = np.empty((len(row), 2))
     points[tags] = coordinates.reshape(-1, 3)[:, :2]

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import pinstress
-from pinstress import InputError, Study, changed_study, load_study, shipped_studies, study_from
 from geometry.mesh import near_mesh
+from pinstress import InputError, Study, changed_study, load_study, shipped_studies, study_from
 from pinstress.analysis.solve import solutions
 from pinstress.designs.evaluate import Evaluator, Recent
 from pinstress.designs.number import number_at
@@ -61,8 +61,10 @@ def test_moved_meshes_are_as_good_as_own_ones() -> None:
     (moved, _), (direct, _) = (_evaluator(s, DIAMETER) for s in (study, own))
     for diameter in np.linspace(0.04, 0.07, 7):
         a, b = (each.rows([diameter])[0] for each in (moved, direct))
-        assert a.max_von_mises is not None and b.max_von_mises is not None
-        assert a.error_estimate is not None and b.error_estimate is not None
+        assert a.max_von_mises is not None
+        assert b.max_von_mises is not None
+        assert a.error_estimate is not None
+        assert b.error_estimate is not None
         assert a.max_von_mises != b.max_von_mises
         apart = abs(a.max_von_mises - b.max_von_mises)
         assert apart < a.error_estimate + b.error_estimate
