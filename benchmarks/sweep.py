@@ -174,7 +174,8 @@ def _solved_on(client: Client, plan: Sweep, some: range) -> tuple[float, list[Do
     others = set(range(len(plan.values))) - set(some)
     batches = Batches(plan.problem.numbers, plan.values, others, processes_of(client))
     start = time.perf_counter()
-    solve_on(client, plan.problem, batches, found.append, partial(failed_rows, ()))
+    with client.as_current():  # where there is another one
+        solve_on(client, plan.problem, batches, found.append, partial(failed_rows, ()))
     return time.perf_counter() - start, found
 
 

@@ -57,7 +57,7 @@ def nearest(samples: Floats, points: Floats) -> Ints:
     """
     count = min(NEIGHBOURS, len(samples))
     found = cKDTree(samples).query(points, count)[1]
-    return np.asarray(found, np.int32).reshape(len(points), count)
+    return np.asarray(found, np.int64).reshape(len(points), count)
 
 
 def at_one_place(offsets: Floats, confidence: Floats) -> Floats:

@@ -12,7 +12,13 @@ from skfem import Basis, ElementTriP2
 
 from geometry import Pin, Segment, meridian
 from geometry.mesh import near_mesh
-from geometry.mesh.section_mesh import SMALLEST_JACOBIAN, MeridianMesh, SectionSize, Spot
+from geometry.mesh.section_mesh import (
+    SMALLEST_JACOBIAN,
+    MeridianMesh,
+    SectionSize,
+    Spot,
+    meridian_mesh,
+)
 from geometry.mesh.sizing import Grade
 from geometry.shape.profile import off_edge
 from tests.support.section_pins import PINS
@@ -89,5 +95,5 @@ def test_without_a_rounded_shape_it_is_the_shapes_own_mesh() -> None:
     pin = Pin("P", (Segment(0.02, 0.03), Segment(0.03, 0.02)), fillet=0.00499)
     found = near_mesh.near_mesh(pin, SectionSize())
     assert found.shared is None
-    own = near_mesh.meridian_mesh(pin, SectionSize())
+    own = meridian_mesh(pin, SectionSize())
     assert found.nodes.tobytes() == own.nodes.tobytes()
