@@ -193,20 +193,21 @@ def _efficiency() -> str:
     """
     plan = planned(_study(COMPARED * (ROUNDS + 1)))
     rounds = [range(k * COMPARED, (k + 1) * COMPARED) for k in range(ROUNDS + 1)]
-    rows, batches = [], []
+    times, batches = [], list[Done]()
     with local(1) as one, local(2) as two:
         for client in (one, two):  # that imports are done, and meshes kept
             _solved_on(client, plan, rounds[0])
-        for k, some in enumerate(rounds[1:], 1):
-            spent = []
+        for some in rounds[1:]:
+            spent: list[float] = []
             for client in (one, two):
                 before = _processor_time()
                 seconds, found = _solved_on(client, plan, some)
                 spent += [seconds, _processor_time() - before]
             batches += found
-            rows.append((k, *spent, f"{spent[0] / (2.0 * spent[2]):.0%}"))
-    middle = statistics.median(row[1] / (2.0 * row[3]) for row in rows)
-    more = statistics.median(row[4] / row[2] for row in rows)
+            times.append(spent)
+    good = [one / (2.0 * two) for one, _, two, _ in times]
+    middle, more = statistics.median(good), statistics.median(b / a for _, a, _, b in times)
+    rows = [(k, *x, f"{y:.0%}") for k, (x, y) in enumerate(zip(times, good, strict=True), 1)]
     head = ("round", "s by one", "processor time, s", "s by two", "processor time, s", "efficiency")
     return (
         f"{COMPARED} designs of other shapes, the same by one process and by two in turn, without "

@@ -4,6 +4,7 @@ METIS, or of their own where that is missing.
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 from functools import partial
 
@@ -110,6 +111,7 @@ class ConstrainedSystem:
         self._row = np.repeat(np.arange(K.shape[0], dtype=K.indices.dtype), np.diff(K.indptr))
         self._diagonal = np.flatnonzero(K.indices == self._row)
         self._analysis = Analysis(K, node)
+        self._lock = threading.Lock()  # between factor and solution
 
     def solve(self, K: sp.csr_matrix, free: Floats, forces: Floats) -> Floats:
         """Unknowns (n, K) under forces, zero where `free` (n,) is 0 and not 1; K is changed."""
@@ -118,7 +120,8 @@ class ConstrainedSystem:
         K.data *= free[self._row]
         K.data *= free[K.indices]
         K.data[fixed] = largest  # of no effect
-        return self._analysis.factorize(K)(forces * free[:, None])
+        with self._lock:
+            return self._analysis.factorize(K)(forces * free[:, None])
 
 
 def has_cholmod() -> bool:

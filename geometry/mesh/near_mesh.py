@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geometry.arrays import Floats, Ints
+from geometry.mesh.gmsh_session import ONE_AT_A_TIME
 from geometry.mesh.outline_motion import OutlineNodes, Reach
 from geometry.mesh.section_mesh import (
     SMALLEST_JACOBIAN,
@@ -233,13 +234,14 @@ class _Kept:
         self._meshes = OrderedDict[_Key, _RoundedMesh]()
 
     def mesh(self, key: _Key) -> _RoundedMesh:
-        found = self._meshes.pop(key, None)
-        if found is None:
-            found = _RoundedMesh(key[0], meridian_mesh(*key), key[2])
-        self._meshes[key] = found
-        while len(self._meshes) > 1 and self._nodes > NODES:
-            self._meshes.popitem(last=False)
-        return found
+        with ONE_AT_A_TIME:
+            found = self._meshes.pop(key, None)
+            if found is None:
+                found = _RoundedMesh(key[0], meridian_mesh(*key), key[2])
+            self._meshes[key] = found
+            while len(self._meshes) > 1 and self._nodes > NODES:
+                self._meshes.popitem(last=False)
+            return found
 
     @property
     def _nodes(self) -> int:

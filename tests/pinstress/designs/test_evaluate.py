@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 
 import pinstress
+from geometry import Pin
 from geometry.mesh import near_mesh
+from geometry.mesh.section_mesh import MeridianMesh, meridian_mesh
 from pinstress import InputError, Study, changed_study, load_study, shipped_studies, study_from
 from pinstress.analysis.solve import solutions
 from pinstress.designs.evaluate import Evaluator, Recent
@@ -72,10 +75,14 @@ def test_moved_meshes_are_as_good_as_own_ones() -> None:
 
 
 def test_near_designs_share_their_meshes(monkeypatch: pytest.MonkeyPatch) -> None:
-    made: list[object] = []
-    meshed = near_mesh.meridian_mesh
+    made: list[Pin] = []
+
+    def counted(pin: Pin, *more: Any) -> MeridianMesh:
+        made.append(pin)
+        return meridian_mesh(pin, *more)
+
     monkeypatch.setattr(near_mesh, "_KEPT", near_mesh._Kept())
-    monkeypatch.setattr(near_mesh, "meridian_mesh", lambda *x: made.append(x) or meshed(*x))
+    monkeypatch.setattr(near_mesh, "meridian_mesh", counted)
     evaluator, _ = _evaluator(study_from(VARIED), DIAMETER)
     for diameter in np.linspace(0.0505, 0.0510, 6):
         assert evaluator.rows([diameter])[0].verdict == "converged"
