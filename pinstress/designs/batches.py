@@ -23,9 +23,7 @@ from pinstress.designs.number import Number
 from pinstress.study.file import Study, parse_study
 
 AIM = 2.0  # s of work in a batch
-TASK = (
-    0.008  # s in which a batch is handed out to one of many processes, at most, and its rows read
-)
+TASK = 0.008  # s in which a batch is handed out to one of many processes and its rows are read
 MOST = 5000  # designs in a batch
 UNSHAPED = ("yield_strength", "ultimate_strength", "shear_strength", "bearing_strength")
 

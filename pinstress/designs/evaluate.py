@@ -149,7 +149,8 @@ class Evaluator:
         """
         table, *inner = number.path
         if table == "case":
-            return inner[0] == case or _names(self._raw["case"][case], str(inner[0]))
+            own = self._raw["case"].get(case)  # None of a case of a table with many
+            return own is None or inner[0] == case or _names(own, str(inner[0]))
         if table not in WITHOUT_LOADS:
             return True
         study, mechanism = self.study.table, self.study.table.mechanism

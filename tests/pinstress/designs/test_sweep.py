@@ -17,7 +17,17 @@ from pyarrow import parquet
 
 import pinstress
 from pinstress import InputError
-from pinstress.designs.batches import AIM, MOST, Batch, Batches, DesignProblem, Done, solve_batch
+from pinstress.designs.batches import (
+    AIM,
+    MOST,
+    TASK,
+    Batch,
+    Batches,
+    DesignProblem,
+    Done,
+    aim_of,
+    solve_batch,
+)
 from pinstress.designs.number import number_at
 from pinstress.designs.parameters import parameters_of
 from pinstress.designs.parts import Parts, identity, is_ours
@@ -168,6 +178,16 @@ def test_batches_are_as_long_as_they_should_be() -> None:
         assert len(first.designs) == 1
         batches.learn(Done(first, [], seconds))
         assert len(batches.next().designs) == size
+
+
+def test_many_processes_get_larger_batches() -> None:
+    """So that handing out one to each takes no longer than solving it."""
+    assert aim_of(1) == aim_of(250) == AIM
+    assert aim_of(1000) == pytest.approx(1000 * TASK)
+    problem = planned(swept(VARIED, "", QUICK)).problem
+    batches = Batches(problem.numbers, np.zeros((200_000, 2)), set(), 1000)
+    batches.learn(Done(batches.next(), [], 0.1))
+    assert len(batches.next().designs) == round(1000 * TASK / 0.1)
 
 
 def test_parts_are_of_one_sweep_and_damaged_ones_are_solved_again(
