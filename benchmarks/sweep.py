@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 COUNTS = 250, 500, 1_000  # designs of other shapes
 STRENGTHS = 100, 200, 400  # of each of 50 loads of one shape
 JOBS = 2
-MANY = 300  # designs by which kinds of sweeps are compared
+MANY = 150  # designs by which kinds of sweeps are compared
 ROUNDS, COMPARED = 3, 100  # by which one process and two are compared, in turn
 TASKS = 500  # that do nothing, by which the scheduler is measured
 WORKERS = 1_000
