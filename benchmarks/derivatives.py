@@ -111,7 +111,7 @@ def moved_maximum(of: SolvedCase, pin: Pin, moved: Floats, material: Material) -
     found anew.
     """
     mesh = of.solution.mesh
-    mesh = replace(mesh, mesh=replace(mesh.mesh, doflocs=mesh.mesh.doflocs + moved.T))
+    mesh = replace(mesh, nodes=mesh.nodes + moved)
     zones = singularities_of(pin, material, of.clamps, (of.loads,))
     units = tuple(of.loads.coefficients())
     ends = _ends(pin, of.clamps, units)

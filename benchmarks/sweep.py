@@ -5,57 +5,58 @@ a thousand by simulation.
 from __future__ import annotations
 
 import heapq
-import math
+import os
 import statistics
 import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from benchmarks.timing import Floats, power, table
 from pinstress import Study, shipped_studies, study_from
-from pinstress.designs.batches import Batch, Batches, Done
+from pinstress.designs.batches import Batch, Batches, Done, aim_of
 from pinstress.designs.sweep import Kept, Sweep, planned, solved
-from pinstress.designs.workers import failed_rows, local, solve_on
+from pinstress.designs.workers import failed_rows, local, processes_of, solve_on
 
-COUNTS = 250, 500, 1_000
+if TYPE_CHECKING:
+    from distributed import Client
+
+COUNTS = 250, 500, 1_000  # designs of other shapes
+STRENGTHS = 100, 200, 400  # of each of 50 loads of one shape
 JOBS = 2
-MANY = 500  # designs by which kinds of sweeps are compared
-COMPARED = 200  # designs by which one process and two are compared
+MANY = 150  # designs by which kinds of sweeps are compared
+ROUNDS, COMPARED = 3, 100  # by which one process and two are compared, in turn
 TASKS = 500  # that do nothing, by which the scheduler is measured
 WORKERS = 1_000
 EACH = 30  # batches for each worker of the simulation
 LENGTHS = 0.5, 1.0, 2.0, 5.0, 10.0, 30.0  # s of work in a batch
 GOOD = 0.85  # efficiency
+BUSY = 0.5  # load of a core, above which times of the wall say little
 
 SHAPE = '"pin.B.profile[2].diameter" = {{ from = "1.5 in", to = "3 in", steps = {} }}'
 REST = """
-"case.landing.forces.B[2]" = { normal = ["-988 lbf", "100 lbf"], steps = 50 }
-"material.AISI 4340.yield_strength" = { normal = ["225 ksi", "5 ksi"], steps = 40 }
+"case.landing.forces.B[2]" = {{ normal = ["-988 lbf", "100 lbf"], steps = 50 }}
+"material.AISI 4340.yield_strength" = {{ normal = ["225 ksi", "5 ksi"], steps = {} }}
 """
 
 
 def sweep() -> str:
     """The tables."""
-    grown = [_measured(_study(count), JOBS) for count in COUNTS]
-    rows = [
-        (f"{count:,}", m.seconds, m.cpu, 1e3 * m.cpu / count, m.most)
-        for count, m in zip(COUNTS, grown, strict=True)
-    ]
-    seconds = np.array([m.cpu for m in grown])
-    exponent = power(np.array(COUNTS, float), seconds) if len(COUNTS) > 1 else math.nan
-    head = ("designs", "s", "processor time, s", "ms of it a design", "memory, MB")
+    load = os.getloadavg()[0]
     return "\n\n".join(
         [
+            _load(load),
             f"The pin of studies/one_pin.toml by {JOBS} processes on this machine, their start "
             "and memory included. A Sobol sequence of a diameter, a force and a strength: every "
-            "design has another shape, meshed three times. Processor time grows with the power "
-            f"{exponent:.2f} of the number of designs:",
-            table(head, rows),
+            "design has another shape, meshed three times.",
+            _growth({count: _study(count) for count in COUNTS}),
+            "One shape, 50 forces and many strengths:",
+            _growth({50 * count: _study(0, 1, count) for count in STRENGTHS}),
             _kinds(),
             _efficiency(),
             _simulated(),
@@ -63,12 +64,34 @@ def sweep() -> str:
     )
 
 
-def _study(count: int, shapes: int = 0) -> Study:
+def _load(load: float) -> str:
+    cores = len(os.sched_getaffinity(0))
+    text = f"Load at the start: {load:.2f} on {cores} cores."
+    if load > BUSY * cores:
+        text += (
+            " **A shared machine**: other work took part of it, so times of the wall and the "
+            "efficiency of two processes say nothing of this program; processor times do, roughly."
+        )
+    return text
+
+
+def _growth(studies: dict[int, Study]) -> str:
+    """Times and memory of some numbers of designs."""
+    grown = {count: _measured(study, JOBS) for count, study in studies.items()}
+    rows = [(f"{n:,}", m.seconds, m.cpu, 1e3 * m.cpu / n, m.most) for n, m in grown.items()]
+    counts = np.array(list(grown), float)
+    exponent = power(counts, np.array([m.cpu for m in grown.values()]))
+    head = ("designs", "s", "processor time, s", "ms of it a design", "memory, MB")
+    text = f"Processor time grows with the power {exponent:.2f} of the number of designs."
+    return f"{table(head, rows)}\n\n{text}"
+
+
+def _study(count: int, shapes: int = 0, strengths: int = 40) -> Study:
     """A Sobol sequence of all three, or with `shapes` a grid of so many diameters."""
     text = shipped_studies()["one_pin"].read_text(encoding="utf-8")
     how = 'sample = "grid"' if shapes else f'sample = "sobol"\ncount = {count}'
-    vary = f"[vary]\n{how}\n[vary.parameters]\n{SHAPE.format(shapes or 1)}{REST}"
-    return study_from(f"{text}\n{vary}")
+    varied = f"{SHAPE.format(shapes or 1)}{REST.format(strengths)}"
+    return study_from(f"{text}\n[vary]\n{how}\n[vary.parameters]\n{varied}")
 
 
 @dataclass
@@ -130,8 +153,8 @@ def _kinds() -> str:
     rows = []
     for name, study in (
         ("every shape another", _study(MANY)),
-        ('the same, goal = "decide"', _decided(_study(MANY))),
-        ("a grid of 1 diameter, 50 forces, 40 strengths", _study(0, 1)),
+        ('the same, goal = "decide"', _asking(_study(MANY), 'goal = "decide"')),
+        ('the same, meshes = "own"', _asking(_study(MANY), 'meshes = "own"')),
         ("a grid of 5 diameters, 50 forces, 40 strengths", _study(0, 5)),
     ):
         designs = len(planned(study).values)
@@ -141,32 +164,56 @@ def _kinds() -> str:
     return "What is the same in several designs is not solved again:\n\n" + table(head, rows)
 
 
-def _decided(study: Study) -> Study:
-    text = study.text.replace("[analysis]", '[analysis]\ngoal = "decide"')
-    return study_from(text)
+def _asking(study: Study, key: str) -> Study:
+    return study_from(study.text.replace("[analysis]", f"[analysis]\n{key}"))
 
 
-def _on_cluster(plan: Sweep, jobs: int) -> tuple[float, list[Done]]:
-    """Wall time without the start of the processes, s, and the batches."""
+def _solved_on(client: Client, plan: Sweep, some: range) -> tuple[float, list[Done]]:
+    """Wall time of some designs, s, and their batches."""
     found: list[Done] = []
-    numbers = plan.problem.numbers
-    with local(jobs) as client:
-        warm = Batches(numbers, plan.values[: 4 * jobs], set(), jobs)
-        solve_on(client, plan.problem, warm, lambda _: None, partial(failed_rows, ()))
-        start = time.perf_counter()
-        batches = Batches(numbers, plan.values, set(range(4 * jobs)), jobs)
+    others = set(range(len(plan.values))) - set(some)
+    batches = Batches(plan.problem.numbers, plan.values, others, processes_of(client))
+    start = time.perf_counter()
+    with client.as_current():  # where there is another one
         solve_on(client, plan.problem, batches, found.append, partial(failed_rows, ()))
-        return time.perf_counter() - start, found
+    return time.perf_counter() - start, found
+
+
+def _processor_time() -> float:
+    """Of this process and its children, s."""
+    import psutil
+
+    us = psutil.Process()
+    return sum(sum(each.cpu_times()[:2]) for each in (us, *us.children(recursive=True)))
 
 
 def _efficiency() -> str:
-    plan = planned(_study(COMPARED))
-    (one, _), (two, batches) = (_on_cluster(plan, jobs) for jobs in (1, 2))
-    long = [b.seconds for b in batches]
+    """One process and two solve other designs of the same sweep in turn, so that the load by others
+    is the same for both.
+    """
+    plan = planned(_study(COMPARED * (ROUNDS + 1)))
+    rounds = [range(k * COMPARED, (k + 1) * COMPARED) for k in range(ROUNDS + 1)]
+    times, batches = [], list[Done]()
+    with local(1) as one, local(2) as two:
+        for client in (one, two):  # that imports are done, and meshes kept
+            _solved_on(client, plan, rounds[0])
+        for some in rounds[1:]:
+            spent: list[float] = []
+            for client in (one, two):
+                before = _processor_time()
+                seconds, found = _solved_on(client, plan, some)
+                spent += [seconds, _processor_time() - before]
+            batches += found
+            times.append(spent)
+    good = [one / (2.0 * two) for one, _, two, _ in times]
+    middle, more = statistics.median(good), statistics.median(b / a for _, a, _, b in times)
+    rows = [(k, *x, f"{y:.0%}") for k, (x, y) in enumerate(zip(times, good, strict=True), 1)]
+    head = ("round", "s by one", "processor time, s", "s by two", "processor time, s", "efficiency")
     return (
-        f"{COMPARED} designs of other shapes, without the start of the processes: by one process "
-        f"in {one:.1f} s, by two in {two:.1f} s, an efficiency of {one / (2.0 * two):.0%} "
-        f"({len(long)} batches, the median {statistics.median(long):.2f} s)."
+        f"{COMPARED} designs of other shapes, the same by one process and by two in turn, without "
+        f"the start of the processes; the median of the efficiencies is {middle:.0%}, and two "
+        f"processes take {more:.2f} times the processor time of one ({len(batches)} batches, the "
+        f"median {statistics.median(b.seconds for b in batches):.2f} s):\n\n{table(head, rows)}"
     )
 
 
@@ -174,15 +221,24 @@ def _nothing(problem: object, batch: Batch) -> Done:
     return Done(batch, [], 0.0)
 
 
-def _overhead(plan: Sweep) -> float:
-    """Seconds of the scheduler and of this process for a task that does nothing."""
+def _overhead(plan: Sweep) -> tuple[float, float]:
+    """Processor time (s) of a task that does nothing: of this process with its scheduler, and of
+    the processes that solve.
+    """
+    import psutil
+
     values = np.zeros((TASKS, len(plan.problem.numbers)))
+    us = psutil.Process()
     with local(JOBS) as client:
-        batches = _Single(plan.problem.numbers, values, set(), JOBS)
-        start = time.perf_counter()
         lost = partial(failed_rows, ())
-        solve_on(client, plan.problem, batches, lambda _: None, lost, _nothing)
-        return (time.perf_counter() - start) / TASKS
+        found = []
+        for some in (values[: 10 * JOBS], values):
+            batches = _Single(plan.problem.numbers, some, set(), JOBS)
+            here, all_ = sum(us.cpu_times()[:2]), _processor_time()
+            solve_on(client, plan.problem, batches, lambda _: None, lost, _nothing)
+            own = sum(us.cpu_times()[:2]) - here
+            found.append((own / len(some), (_processor_time() - all_ - own) / len(some)))
+    return found[-1]
 
 
 class _Single(Batches):
@@ -192,19 +248,23 @@ class _Single(Batches):
 
 def _simulated() -> str:
     plan = planned(_study(COMPARED))
-    overhead = _overhead(plan)
-    _, batches = _on_cluster(replace(plan, values=plan.values[:200]), JOBS)
+    overhead, theirs = _overhead(plan)
+    with local(JOBS) as client:
+        _, batches = _solved_on(client, plan, range(COMPARED))
     relative = np.array([b.seconds / len(b.batch.designs) for b in batches])
     relative /= relative.mean()
-    rows = [(length, _simulate(length, relative, overhead)) for length in LENGTHS]
+    aim = aim_of(WORKERS)
+    rows = [(x, _simulate(x, relative, overhead)) for x in sorted({*LENGTHS, aim})]
     good = next((f"{length:g} s" for length, found in rows if found >= GOOD), "more")
     shown = [(length, f"{found:.0%}") for length, found in rows]
     return (
-        f"A task that does nothing takes {1e3 * overhead:.2f} ms of the scheduler and of the "
-        f"process that submits it ({TASKS:,} tasks by {JOBS} processes). With that, one task "
-        f"after the other, and with batches that differ as the measured ones do, {WORKERS:,} "
-        f"simulated processes with {EACH} batches each would have the efficiencies below: batches "
-        f"must have {good} of work for {GOOD:.0%} (`AIM` in pinstress/designs/batches.py):\n\n"
+        f"A task that does nothing takes {1e3 * overhead:.2f} ms of processor time of the "
+        f"scheduler and of the process that submits it, and {1e3 * theirs:.2f} ms of the one that "
+        f"solves it ({TASKS:,} tasks by {JOBS} processes). With the first, one task after the "
+        f"other, and with batches that differ as the measured ones do, {WORKERS:,} simulated "
+        f"processes with {EACH} batches each would have the efficiencies below: batches must have "
+        f"{good} of work for {GOOD:.0%}. For so many a batch has {aim:g} s "
+        "(pinstress/designs/batches.py: aim_of):\n\n"
         + table(("s of work in a batch", "efficiency"), shown)
     )
 

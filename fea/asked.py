@@ -24,7 +24,8 @@ class Asked:
     `required` safety factor is met. distance: excluded distance around singularities, as a fraction
     of the local diameter. meshes: maximum number of meshes, by default that of the model. memory:
     limit for a mesh in MB, by default most of the free memory. because: reason for the model, where
-    this package does not choose it.
+    this package does not choose it. near: whether sections have the meshes of near shapes with
+    their nodes moved.
     """
 
     tolerance: float = 0.02
@@ -35,6 +36,7 @@ class Asked:
     meshes: int | None = None
     memory: float | None = None
     because: Note | None = None
+    near: bool = False
 
 
 def decided(asked: Asked, material: Material, low: float, high: float) -> bool:

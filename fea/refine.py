@@ -210,8 +210,9 @@ def _mesh(
     if model != "solid":
         assert isinstance(job.pin, Pin)
         problem = SectionProblem(
-            job.pin, job.material, job.constrained, cases, singularities, job.first
-        )
+            job.pin, job.material, job.constrained, cases, singularities, job.first,
+            near=job.asked.near,
+        )  # fmt: skip
         answers: dict[str, Answer]
         if model == LOCAL:
             cut = cut_solution(

@@ -4,6 +4,7 @@ METIS, or of their own where that is missing.
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 from functools import partial
 
@@ -114,14 +115,17 @@ class ConstrainedSystem:
     """
 
     def __init__(self, K: sp.csr_matrix, node: Ints | None = None) -> None:
-        self._row = np.repeat(np.arange(K.shape[0]), np.diff(K.indptr))
+        self._row = np.repeat(np.arange(K.shape[0], dtype=K.indices.dtype), np.diff(K.indptr))
         self._diagonal = np.flatnonzero(K.indices == self._row)
         self._zeroed: dict[bytes, Ints] = {}
         self._analysis = Analysis(K, node)
+        self._lock = threading.Lock()  # between factor and solution
 
     def solve(self, K: sp.csr_matrix, free: Floats, forces: Floats) -> Floats:
         """Unknowns (n, K) under forces, zero where `free` (n,) is 0 and not 1; K is changed."""
-        return self._analysis.factorize(self._held(K, free))(forces * free[:, None])
+        held = self._held(K, free)
+        with self._lock:
+            return self._analysis.factorize(held)(forces * free[:, None])
 
     def factorize(self, K: sp.csr_matrix, free: Floats) -> Solve:
         """A function that solves the same for forces that are zero there, and checks nothing."""
@@ -153,9 +157,13 @@ class _Cholmod:
         from cvxopt import cholmod, matrix, spmatrix
 
         pattern = pattern if pattern.has_sorted_indices else pattern.sorted_indices()
-        row = np.repeat(np.arange(pattern.shape[0]), np.diff(pattern.indptr))
+        count = np.diff(pattern.indptr).astype(np.int64)
+        row = np.repeat(np.arange(len(count)), count)
         self._upper = np.flatnonzero(pattern.indices >= row)  # by rows: the lower half by columns
-        lower = matrix(pattern.indices[self._upper].astype(np.int64)), matrix(row[self._upper])
+        lower = (
+            matrix(pattern.indices.take(self._upper).astype(np.int64)),
+            matrix(row.take(self._upper)),
+        )
         self._matrix = spmatrix(1.0, *lower, pattern.shape)
         cholmod.options["supernodal"] = 2  # L L^T, which fails on a matrix that is not definite
         self._factor = cholmod.symbolic(self._matrix, *(() if order is None else (matrix(order),)))

@@ -32,23 +32,32 @@ def extension(elements: Ints, samples: Floats, singularities: Floats) -> sp.csr_
     return sp.csr_matrix((value, (row, column)), shape=(len(count), q * m))
 
 
-def continuation(samples: Floats, points: Floats) -> sp.csr_matrix:
+def continuation(samples: Floats, points: Floats, near: Ints | None = None) -> sp.csr_matrix:
     """Matrix (P, S) from values at samples (S, 2) to those at points (P, 2): of the quadratic
     polynomial that fits those at the nearest samples best; the nearer, the more they count, down to
     nothing for the last, so that it does not matter which of several at its distance that is.
+    near: (P, C) which samples these are; `nearest` by default.
 
     Source: Zienkiewicz & Zhu, Int. J. Numer. Meth. Engng 33 (1992) 1331, whose patches are the
     elements round a node instead.
     """
     if not len(points):
         return sp.csr_matrix((0, len(samples)))
+    near = nearest(samples, points) if near is None else near
+    offsets = samples.take(near, axis=0) - points[:, None]
+    square = np.square(offsets).sum(axis=2)
+    weights = at_one_place(offsets, 1.0 - square / square.max(axis=1, keepdims=True))
+    ends = np.arange(0, near.size + 1, near.shape[1])
+    return sp.csr_matrix((weights.ravel(), near.ravel(), ends), (len(points), len(samples)))
+
+
+def nearest(samples: Floats, points: Floats) -> Ints:
+    """Numbers (P, C) of the samples (S, 2) that are nearest to points (P, 2): NEIGHBOURS, or all of
+    fewer.
+    """
     count = min(NEIGHBOURS, len(samples))
-    distance, near = (np.asarray(x) for x in cKDTree(samples).query(points, count))
-    confidence = 1.0 - (distance / distance[:, -1:]) ** 2
-    weights = at_one_place(samples[near] - points[:, None], confidence)
-    row = np.arange(len(points)).repeat(count)
-    shape = (len(points), len(samples))
-    return sp.csr_matrix((weights.ravel(), (row, near.ravel())), shape=shape)
+    found = cKDTree(samples).query(points, count)[1]
+    return np.asarray(found, np.int64).reshape(len(points), count)
 
 
 def at_one_place(offsets: Floats, confidence: Floats) -> Floats:
@@ -57,7 +66,9 @@ def at_one_place(offsets: Floats, confidence: Floats) -> Floats:
     nearest samples in a row), of that with the least slope and curvature.
     """
     x, y = np.moveaxis(offsets / np.abs(offsets).max(axis=(-2, -1), keepdims=True), -1, 0)
-    terms = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=-2)
+    terms = np.empty((*x.shape[:-1], 6, x.shape[-1]))
+    terms[..., 0, :], terms[..., 1, :], terms[..., 2, :] = 1.0, x, y
+    terms[..., 3:5, :], terms[..., 5, :] = terms[..., 1:3, :] * x[..., None, :], y * y
     terms *= confidence[..., None, :]
     form = terms @ terms.swapaxes(-2, -1)
     definite = form + _LITTLE * form[..., :1, :1] * np.diag([0.0, 1, 1, 1, 1, 1])

@@ -15,7 +15,6 @@ from typing import Protocol
 
 import numpy as np
 from scipy.spatial import cKDTree
-from skfem import ElementTriP2
 
 from fea.core.local_fit import NEIGHBOURS, at_one_place
 from fea.core.material import Material
@@ -25,6 +24,7 @@ from fea.harmonic.pressure_edge import Jump, at_edge
 from fea.harmonic.stress_recovery import AXIS
 from fea.harmonic.surface_stress import AT, on_edges, smooth_neighbours
 from geometry.arrays import Floats, Ints
+from geometry.mesh.section_mesh import triangle_shapes
 
 _TO_UNKNOWNS = np.array([[0.5, 0.5, 0.0], [0.5, -0.5, 0.0], [0.0, 0.0, 1.0]])
 
@@ -138,10 +138,8 @@ class Samples:
 
 def _reference(space: Section) -> tuple[Floats, Floats]:
     """Shape functions (3, 6) and their slopes (3, 6, 2) at the samples of an element."""
-    element, at = ElementTriP2(), space.sampled_at
-    found = [element.lbasis(at, i) for i in range(6)]
-    values = np.stack([v + np.zeros(at.shape[1]) for v, _ in found], axis=1)
-    return values, np.stack([np.asarray(d).T + np.zeros((at.shape[1], 2)) for _, d in found], 1)
+    values, slopes = triangle_shapes(space.sampled_at)
+    return values.T, slopes.T
 
 
 @dataclass(frozen=True)

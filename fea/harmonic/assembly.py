@@ -17,19 +17,19 @@ Source: Zienkiewicz & Taylor, The Finite Element Method, ch. on semi-analytical 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from functools import cached_property
+from collections.abc import Callable, Sequence
+from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
-from skfem import Basis, ElementTriP2
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
 from fea.core.material import Material
 from fea.core.sparsity import Pattern
 from geometry.arrays import Floats, Ints
-from geometry.mesh.section_mesh import MeridianMesh
+from geometry.mesh.section_mesh import MeridianMesh, triangle_shapes
 
 
 class Section:
@@ -40,41 +40,51 @@ class Section:
 
     def __init__(self, section: MeridianMesh, parts: Ints | None = None) -> None:
         self.section, self._parts = section, parts
-        self.sampled_at = get_quadrature(RefTri, 2)[0]  # three, where strains are most exact
-        X, W = get_quadrature(RefTri, 4)
-        points = np.hstack([X, self.sampled_at]), np.append(W, np.zeros(self.sampled_at.shape[1]))
-        self.basis = Basis(section.mesh, ElementTriP2(), quadrature=points)
-        self._quadrature, self._sampled_points = slice(0, len(W)), slice(len(W), None)
+        at, self._area_weights, exact = _rules()
+        self.sampled_at = at[:, exact:]  # three, where strains are most exact
+        self._quadrature, self._sampled_points = slice(0, exact), slice(exact, None)
+        self._values, self._slopes = triangle_shapes(at)
 
     @property
     def unknowns(self) -> int:
         """Number of unknowns, constrained ones included."""
-        return 3 * int(self.basis.N)
+        return 3 * len(self.nodes)
 
-    @cached_property
+    @property
     def nodes(self) -> Floats:
         """Node coordinates (N, 2): r, z in m."""
-        return np.ascontiguousarray(self.section.mesh.doflocs.T)
+        return self.section.nodes
 
-    @cached_property
+    @property
     def elements(self) -> Ints:
         """Node numbers (M, 6)."""
-        return np.ascontiguousarray(self.basis.element_dofs.T).astype(np.int64)
+        return self.section.elements
 
     @cached_property
+    def _mapped(self) -> tuple[Floats, Floats, Floats]:
+        """At all points: N,r N,z and N / r, (M, Q, 3, 6), 1/m; r and z, (M, 2, Q), m; areas times r
+        (M, Q), m^3, zero at the samples.
+        """
+        x = self.nodes[self.elements].swapaxes(1, 2)
+        at = x @ self._values
+        (r_x, r_y), (z_x, z_y) = ([x[:, k] @ d for d in self._slopes] for k in range(2))
+        det = r_x * z_y - r_y * z_x
+        along_x, along_y = (d.T for d in self._slopes)
+        out = np.empty((*det.shape, 3, 6))
+        part = np.stack([z_y, z_x, r_x, r_y]) / det
+        z_y, z_x, r_x, r_y = part[..., None]
+        out[:, :, 0] = z_y * along_x - z_x * along_y
+        out[:, :, 1] = r_x * along_y - r_y * along_x
+        out[:, :, 2] = self._values.T / at[:, 0, :, None]
+        return out, at, np.abs(det) * self._area_weights * at[:, 0]
+
+    @property
     def _gradients(self) -> Floats:
-        """N,r N,z and N / r at all points of the basis, (M, Q, 3, 6), 1/m."""
-        return gradients(self.basis, self._singularities[0])
+        return self._mapped[0]
 
-    @cached_property
-    def _singularities(self) -> Floats:
-        """r and z of all points of the basis, (2, M, Q), m."""
-        return np.asarray(self.basis.global_coordinates())
-
-    @cached_property
+    @property
     def _weights(self) -> Floats:
-        """Areas times r at all points of the basis (M, Q), m^3."""
-        return np.asarray(self.basis.dx * self._singularities[0])
+        return self._mapped[2]
 
     @property
     def quadrature(self) -> tuple[Floats, Floats]:
@@ -87,11 +97,22 @@ class Section:
     @property
     def radii(self) -> Floats:
         """r of those points, (M, Q), m."""
-        return np.asarray(self._singularities[0][:, self._quadrature])
+        return self._mapped[1][:, 0, self._quadrature]
 
     @cached_property
     def pattern(self) -> Pattern:
-        return Pattern(self.elements, int(self.basis.N))
+        """The pairs of nodes."""
+        found: Pattern = self.shared("pattern", lambda: Pattern(self.elements, len(self.nodes)))
+        return found
+
+    def shared(self, what: str, make: Callable[[], Any]) -> Any:
+        """What depends on the elements alone: made once for all meshes that have the same."""
+        shared = self.section.shared
+        if shared is None:
+            return make()
+        if what not in shared:
+            shared[what] = make()
+        return shared[what]
 
     def stiffness(self, materials: Material | Sequence[Material], n: int) -> sp.csr_matrix:
         """Stiffness matrix of harmonic n, for displacements as above and around the whole axis. All
@@ -123,8 +144,7 @@ class Section:
     @cached_property
     def integrals(self) -> Floats:
         """Of the shape functions times r over the section, (N,), m^3."""
-        value = np.stack([np.asarray(self.basis.basis[i][0])[0] for i in range(6)], axis=-1)
-        found = self._weights @ value
+        found = self._weights @ self._values.T
         count = len(self.nodes)
         return np.bincount(self.elements.ravel(), found.ravel(), count).astype(np.float64)
 
@@ -155,9 +175,8 @@ class Section:
     @cached_property
     def samples(self) -> Floats:
         """Where those are, (3 M, 2): r, z in m, element by element."""
-        return np.ascontiguousarray(
-            self._singularities[:, :, self._sampled_points].reshape(2, -1).T
-        )
+        found = self._mapped[1][:, :, self._sampled_points]
+        return np.ascontiguousarray(found.swapaxes(1, 2).reshape(-1, 2))
 
 
 def around(n: int) -> float:
@@ -173,14 +192,15 @@ def elasticity(material: Material) -> Floats:
     return D
 
 
-def gradients(basis: Basis, r: Floats) -> Floats:
-    """N,r N,z and N / r of the shape functions at a basis' points, which are at r (M, Q), m;
-    (M, Q, 3, 6), 1/m.
+@lru_cache
+def _rules() -> tuple[Floats, Floats, int]:
+    """Points in a triangle (2, Q): those of a rule of fourth degree, with weights (Q,), then three
+    where strains are sampled, with none; and how many the first are.
     """
-    parts = [
-        (*basis.basis[i][0].grad, np.asarray(basis.basis[i][0]) / r) for i in range(basis.Nbfun)
-    ]
-    return np.stack([np.stack(part, axis=-1) for part in parts], axis=-1)
+    points, weights = get_quadrature(RefTri, 4)
+    samples = get_quadrature(RefTri, 2)[0]
+    padded = np.append(weights, np.zeros(samples.shape[1]))
+    return np.hstack([points, samples]), padded, len(weights)
 
 
 def strain_map(n: int) -> Floats:

@@ -25,6 +25,7 @@ from fea.singular.probes import rim
 from fea.singular.singularities import VARIED, Singularity, smooth_edges
 from geometry import Pin
 from geometry.arrays import Floats, Mask
+from geometry.mesh.near_mesh import near_mesh
 from geometry.mesh.section_mesh import MeridianMesh, meridian_mesh
 from geometry.mesh.sizing import Grade, SectionSize, Spot, size_at
 
@@ -121,7 +122,8 @@ class EveryMesh(FirstMesh):
 class SectionProblem:
     """A body of revolution of a material, clamped at surfaces (by name), in some cases, with the
     singularities of any of these. first: where the first mesh is kept for other loads. besides:
-    unit loads that are solved, too.
+    unit loads that are solved, too. near: whether meshes are those of a near shape with their nodes
+    moved (geometry.mesh.near_mesh).
     """
 
     pin: Pin
@@ -131,6 +133,7 @@ class SectionProblem:
     singularities: tuple[Singularity, ...]
     first: FirstMesh | None = None
     besides: tuple[UnitLoad, ...] = ()
+    near: bool = False
 
 
 def harmonic_solution(
@@ -171,7 +174,8 @@ def harmonic_solution(
         places, read = spots(factor), np.concatenate([elsewhere, _rims(pin, singularities)])
 
         def model() -> HarmonicModel:
-            section = meridian_mesh(pin, size, places, grades, quiet)
+            made = near_mesh if problem.near else meridian_mesh
+            section = made(pin, size, places, grades, quiet)
             return HarmonicModel(pin, section, material, problem.clamps)
 
         elastic = material.youngs_modulus, material.poisson_ratio, material.density

@@ -7,6 +7,7 @@ directions, share it.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -60,7 +61,7 @@ class HarmonicBody:
         free = np.ones(K.shape[0])
         free[fixed] = 0.0
         if self._system is None:
-            self._system = ConstrainedSystem(K)
+            self._system = self.space.shared("system", lambda: ConstrainedSystem(K))
         if moved is None:
             return self._system.solve(K, free, forces)
         return self._system.solve(K, free, forces - K @ moved) + moved
@@ -185,7 +186,7 @@ class HarmonicModel(HarmonicBody):
             read.triangles,
             unread(read.jumps, read.points, read.skin),
             read.at_points(applied),
-            self.space.section,
+            replace(self.space.section, shared=None),
         )
 
     def _moved(self, n: int, loads: tuple[UnitLoad, ...], here: Ints) -> Floats | None:

@@ -69,7 +69,7 @@ def lug_flexibility(eye: Pin, lug: Lug, across: float, highest: int) -> Floats:
     else:
         interface = eye.segments[0].bore / 2.0 + bushing.thickness
         mesh = eye_mesh(eye, across, interface)
-        middles = mesh.mesh.p[0, mesh.mesh.t].mean(axis=0)
+        middles = mesh.nodes[mesh.elements[:, :3], 0].mean(axis=1)
         parts = (middles > interface).astype(np.int64)
         both = (bushing.material, lug.material)
         body = HarmonicBody(eye, Section(mesh, parts), both, pivot=0.5)

@@ -10,7 +10,7 @@ the same edges; the rate is by differences of fourth order, to 1e-10.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -70,7 +70,7 @@ class OutlineNodes:
         self._shape = _shape(meridian(pin))
         self._reach = {reach.at: reach.distance / reach.at[0] for reach in reaches}
         rows, places = [], []
-        nodes = np.ascontiguousarray(mesh.mesh.doflocs.T)
+        nodes = mesh.nodes
         axis = {None: mesh.axis}
         named = axis | {name: np.unique(found) for name, found in mesh.edges.items()}
         for k, edge in enumerate(meridian(pin)):
@@ -80,15 +80,18 @@ class OutlineNodes:
         self.rows: Ints = np.concatenate(rows)
         self._places = places
 
-    def at(self, pin: Pin) -> Floats:
-        """Where they are, (B, 2) in m, on a pin with the same edges.
+    def at(self, pin: Pin, reach: Mapping[RZ, float] | None = None) -> Floats:
+        """Where they are, (B, 2) in m, on a pin with the same edges. reach: the distances of cuts
+        there over the radius, by the vertices of the mesh's own pin; as on that by default.
 
         Raises: OtherShapeError.
         """
-        outline = meridian(pin)
+        outline, reach = meridian(pin), self._reach if reach is None else reach
         if _shape(outline) != self._shape:
             raise OtherShapeError
-        return np.concatenate([p.at(outline[p.edge], self._of(p, outline)) for p in self._places])
+        return np.concatenate(
+            [p.at(outline[p.edge], _cuts_of(p, outline, reach)) for p in self._places]
+        )
 
     def motion(self, dimension: Dimension) -> NodeMotion:
         """Of every node with a dimension.
@@ -118,15 +121,16 @@ class OutlineNodes:
         found = sorted((x for x in found if LEAST_CUT < x[1] < MOST_CUT), key=lambda x: x[1])
         return found if len(found) < 2 or found[1][1] - found[0][1] > LEAST_CUT else found[:1]
 
-    def _of(self, place: _Place, outline: tuple[Edge, ...]) -> list[float]:
-        """The fractions at which the edge of a place is cut now."""
-        edge = outline[place.edge]
-        length = math.dist(edge.start, edge.end)
-        out = []
-        for (end, _), ratio in zip(place.cuts, place.ratios(self._reach), strict=True):
-            part = ratio * (edge.end if end else edge.start)[0] / length
-            out.append(1.0 - part if end else part)
-        return out
+
+def _cuts_of(place: _Place, outline: tuple[Edge, ...], reach: Mapping[RZ, float]) -> list[float]:
+    """The fractions at which the edge of a place is cut now."""
+    edge = outline[place.edge]
+    length = math.dist(edge.start, edge.end)
+    out = []
+    for (end, _), ratio in zip(place.cuts, place.ratios(reach), strict=True):
+        part = ratio * (edge.end if end else edge.start)[0] / length
+        out.append(1.0 - part if end else part)
+    return out
 
 
 class _Place:
@@ -146,7 +150,7 @@ class _Place:
         low, high = knots[self._between], knots[self._between + 1]
         self._part = (part - low) / (high - low)
 
-    def ratios(self, reach: dict[RZ, float]) -> list[float]:
+    def ratios(self, reach: Mapping[RZ, float]) -> list[float]:
         """Of the cuts' distances to the radius where they are measured from."""
         return [reach[self._ends[end]] for end, _ in self.cuts]
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from skfem import MeshTri2
 
-from geometry.arrays import Ints
+from geometry.arrays import Floats, Ints
 from geometry.mesh.gmsh_session import MeshError, gmsh_model, set_size
 from geometry.mesh.revolve import draw
 from geometry.mesh.scale import unit_of
@@ -24,27 +25,79 @@ from geometry.mesh.sizing import (
     triangles,
 )
 from geometry.shape.pin import Pin
-from geometry.shape.profile import RZ, Edge, meridian
+from geometry.shape.profile import RZ, Arc, Edge, meridian
+
+if TYPE_CHECKING:
+    from skfem import MeshTri2
 
 __all__ = ["MeridianMesh", "SectionSize", "Spot", "meridian_mesh"]
 
 
-TRIANGLE6, LINE3 = 9, 8  # gmsh's element types
+TRIANGLE3, LINE2 = 2, 1  # gmsh's element types
 MOST_TRIANGLES = 2e5
 EVERYWHERE = 1e9  # beyond any pin, whose smallest diameter is 1
 SMALLEST_JACOBIAN = 0.1  # min / max of det J that every element must exceed
 SMALLEST_FILLET = 1e-8  # of the adjacent diameter: gmsh hangs at 1e-13
 
 
-@dataclass(frozen=True)
-class MeridianMesh:
-    """mesh: quadratic triangles, x = r and y = z, m. edges: by surface name, the edges there in no
-    order, (E, 3) node numbers: ends, then middle. axis: nodes at r = 0.
+class SharedByMeshes(dict[str, Any]):
+    """What depends on the numbers of a mesh's nodes alone, by what it is, once it was found; and
+    `still`, the mesh of which others have the elements with the nodes moved.
     """
 
-    mesh: MeshTri2
+
+@dataclass(frozen=True)
+class MeridianMesh:
+    """Quadratic triangles. nodes: (N, 2) r and z, m, first those at corners, then those amid sides.
+    elements: (M, 6) node numbers: corners, then the middles of sides 01, 12, 02. edges: by surface
+    name, the edges there in no order, (E, 3) node numbers: ends, then middle. axis: nodes at r = 0.
+    shared: by all meshes with the same elements, edges and axis, where these are known.
+    """
+
+    nodes: Floats
+    elements: Ints
     edges: dict[str, Ints]
     axis: Ints
+    shared: SharedByMeshes | None = field(default=None, repr=False, compare=False)
+
+    @classmethod
+    def of(cls, mesh: MeshTri2, edges: dict[str, Ints], axis: Ints) -> MeridianMesh:
+        """Of a mesh of scikit-fem, whose numbers of nodes edges and axis have."""
+        nodes = np.ascontiguousarray(mesh.doflocs.T)
+        elements = np.ascontiguousarray(mesh.dofs.element_dofs.T).astype(np.int64)
+        return cls(nodes, elements, edges, axis)
+
+    def distortion(self) -> Floats:
+        """Least over largest det J (M,) at corners and amid sides."""
+        x = self.nodes[self.elements].swapaxes(1, 2) @ _SLOPES
+        r, z = x[:, 0], x[:, 1]
+        det = r[:, :6] * z[:, 6:] - r[:, 6:] * z[:, :6]
+        det *= np.sign(det[:, :1])
+        return np.asarray(det.min(axis=1) / det.max(axis=1))
+
+    @cached_property
+    def mesh(self) -> MeshTri2:
+        """As scikit-fem has it, with the same numbers of nodes; making it takes a while."""
+        from skfem import MeshTri2
+
+        return MeshTri2(np.ascontiguousarray(self.nodes.T), np.ascontiguousarray(self.elements.T))
+
+
+def triangle_shapes(at: Floats) -> tuple[Floats, Floats]:
+    """Quadratic shape functions (6, Q) at points (2, Q) of the triangle with corners at 0, x = 1
+    and y = 1, and their derivatives (2, 6, Q) by x and y.
+    """
+    x, y = at
+    corner = np.stack([1.0 - x - y, x, y])
+    slope = np.array([[-1.0, 1.0, 0.0], [-1.0, 0.0, 1.0]])[..., None]
+    first, second = [0, 1, 0], [1, 2, 2]
+    value = np.concatenate([corner * (2.0 * corner - 1.0), 4.0 * corner[first] * corner[second]])
+    sides = slope[:, first] * corner[second] + corner[first] * slope[:, second]
+    return value, np.concatenate([slope * (4.0 * corner - 1.0), 4.0 * sides], axis=1)
+
+
+_AT_NODES = np.array([(0, 0), (1, 0), (0, 1), (0.5, 0), (0.5, 0.5), (0, 0.5)]).T
+_SLOPES = triangle_shapes(_AT_NODES)[1].swapaxes(0, 1).reshape(6, 12)  # by x, then by y
 
 
 def meridian_mesh(
@@ -65,13 +118,12 @@ def meridian_mesh(
     spots = tuple(spot.scaled(1.0 / unit) for spot in spots)
     outline = meridian(pin)
     with gmsh_model(pin.name) as gmsh:
-        curves = _draw(gmsh, outline, spots)
+        _draw(gmsh, outline, spots)
         more = (grade.scaled(1.0 / unit) for grade in finer)
         parts = _stretch(gmsh, stretches(pin, size), size.growth)
         _set_sizes(gmsh, parts, [*grades(pin, size, spots, quiet), *more])
         gmsh.model.mesh.generate(2)
-        gmsh.model.mesh.setOrder(2)
-        return _collect(gmsh, unit, outline, curves)
+        return _collect(gmsh, unit, outline)
 
 
 def _require_reasonable(pin: Pin, size: SectionSize) -> None:
@@ -93,13 +145,12 @@ def _require_reasonable(pin: Pin, size: SectionSize) -> None:
             )
 
 
-def _draw(gmsh: Any, outline: tuple[Edge, ...], spots: tuple[Spot, ...]) -> list[list[int]]:
-    """Curves of every edge, which is cut at the reach of spots at its ends."""
+def _draw(gmsh: Any, outline: tuple[Edge, ...], spots: tuple[Spot, ...]) -> None:
+    """Curves of every edge in turn, which is cut at the reach of spots at its ends."""
     geo = gmsh.model.geo
     curves = draw(geo, outline, lambda rz: geo.addPoint(*rz, 0.0), lambda e: _cuts(e, spots))
     geo.addPlaneSurface([geo.addCurveLoop([c for found in curves for c in found])])
     geo.synchronize()
-    return curves
 
 
 def _cuts(edge: Edge, spots: tuple[Spot, ...]) -> list[RZ]:
@@ -156,36 +207,50 @@ def _set_sizes(gmsh: Any, parts: tuple[float, list[int]], found: Iterable[Grade]
     gmsh.option.setNumber("Mesh.LcIntegrationPrecision", 1e-4)
 
 
-def _collect(
-    gmsh: Any, unit: float, outline: tuple[Edge, ...], curves: list[list[int]]
-) -> MeridianMesh:
+def _collect(gmsh: Any, unit: float, outline: tuple[Edge, ...]) -> MeridianMesh:
+    """Of gmsh's straight triangles, the middles of whose sides are added here: on arcs half-way
+    along these. Lines are in the order in which curves were drawn, once round the outline.
+    """
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
-    triangles = gmsh.model.mesh.getElementsByType(TRIANGLE6)[1].reshape(-1, 6).astype(np.int64)
+    triangles = gmsh.model.mesh.getElementsByType(TRIANGLE3)[1].astype(np.int64)
+    lines = gmsh.model.mesh.getElementsByType(LINE2)[1].astype(np.int64).reshape(-1, 2)
+    assert np.array_equal(lines[:, 1], np.roll(lines[:, 0], -1))
     row = np.full(int(tags.max()) + 1, -1)
-    corners = np.unique(triangles[:, :3])
-    used = np.concatenate([corners, np.unique(triangles[:, 3:])])
-    row[used] = np.arange(len(used))
-    where = np.empty(len(row), dtype=np.int64)
-    where[tags] = np.arange(len(tags))
-    points = coordinates.reshape(-1, 3)[where[used], :2] * unit
+    used = np.zeros(len(row), dtype=bool)
+    used[triangles] = True
+    count = int(np.count_nonzero(used))
+    row[used] = np.arange(count)
+    points = np.empty((len(row), 2))
+    points[tags] = coordinates.reshape(-1, 3)[:, :2]
+    points = points[used]
+    corners, lines = row[triangles].reshape(-1, 3), row[lines]
+    key = _sides(corners[:, [[0, 1], [1, 2], [0, 2]]], count)
+    sides = np.unique(key)
+    low, high = np.divmod(sides, count)
+    middles = (points[low] + points[high]) / 2.0
+    elements = np.hstack([corners, count + np.searchsorted(sides, key)])
+    halves = count + np.searchsorted(sides, _sides(lines, count))
+    at = {(r, z): k for k, (r, z) in enumerate(points[lines[:, 0]].tolist())}
+    ends = [*(at[e.start] for e in outline), len(lines)]
     edges: dict[str, list[Ints]] = {}
-    axis = []
-    for e, parts in zip(outline, curves, strict=True):
-        for curve in parts:
-            found = gmsh.model.mesh.getElementsByType(LINE3, curve)[1].astype(np.int64)
-            nodes = row[found].reshape(-1, 3)
-            if e.name:
-                edges.setdefault(e.name, []).append(nodes)
-            else:
-                axis.append(nodes.ravel())
-    on_axis = np.unique(np.concatenate(axis)) if axis else np.zeros(0, dtype=np.int64)
-    points[on_axis, 0] = 0.0
-    triangles = row[triangles]
-    mesh = MeshTri2(np.ascontiguousarray(points.T), np.ascontiguousarray(triangles.T))
-    renumbered = np.empty(len(points), dtype=np.int64)  # scikit-fem has its own order of edges
-    renumbered[triangles.T] = mesh.dofs.element_dofs
-    return MeridianMesh(
-        mesh,
-        {name: renumbered[np.concatenate(found)] for name, found in edges.items()},
-        renumbered[on_axis],
-    )
+    axis: list[Ints] = [np.zeros(0, dtype=np.int64)]
+    for e, (first, last) in zip(outline, pairwise(ends), strict=True):
+        here = halves[first:last] - count
+        if isinstance(e, Arc):
+            off = middles[here] - e.centre
+            middles[here] = e.centre + off * (e.radius / np.hypot(*off.T))[:, None]
+        found = np.column_stack([lines[first:last], halves[first:last]])
+        if e.name:
+            edges.setdefault(e.name, []).append(found)
+        else:
+            axis.append(found.ravel())
+    on_axis = np.unique(np.concatenate(axis))
+    nodes = np.concatenate([points, middles]) * unit
+    nodes[on_axis, 0] = 0.0
+    named = {name: np.concatenate(found) for name, found in edges.items()}
+    return MeridianMesh(nodes, elements, named, on_axis)
+
+
+def _sides(ends: Ints, count: int) -> Ints:
+    """A number for each pair (.., 2) of nodes, of which there are `count`, in whichever order."""
+    return np.asarray(ends.min(axis=-1) * count + ends.max(axis=-1))

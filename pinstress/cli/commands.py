@@ -22,7 +22,7 @@ from pinstress.cli.more_commands import (
     size,
     view,
 )
-from pinstress.cli.shared import Commands, example, names, read_study
+from pinstress.cli.shared import Commands, choices, example, names, read_study
 from pinstress.processes import interrupts
 from pinstress.processes.environment import settle_surroundings
 from pinstress.processes.interrupts import INTERRUPTED, Unfinished
@@ -104,8 +104,7 @@ def commands() -> None:
 )
 @click.argument("study", type=click.Path(path_type=Path))
 @click.option("--out", type=click.Path(path_type=Path), help="Output folder [out/<study name>].")
-@click.option("--pins", callback=names, metavar="A,B", help="Only these pins.")
-@click.option("--cases", callback=names, metavar="X,Y", help="Only these cases.")
+@choices
 @click.option(
     "--model",
     type=click.Choice(["auto", "beam", "harmonic", "solid"]),
@@ -127,12 +126,6 @@ def commands() -> None:
     help="Fields for ParaView. model: the surface of a revolved pin, all of a solid model; "
     "surface: surfaces only; solid: also the interior of revolved pins (large); motion: also a "
     "time series of every motion (large).",
-)
-@click.option(
-    "--jobs",
-    type=click.IntRange(1),
-    metavar="N",
-    help="Number of parallel processes [number of cores]; does not affect the results.",
 )
 @click.option(
     "--memory-limit",
@@ -158,7 +151,6 @@ def commands() -> None:
 )
 @click.option("--no-cache", is_flag=True, help="Solve all pins again; do not reuse cached results.")
 @click.option("--json", "as_json", is_flag=True, help="Print results.json instead of the table.")
-@click.option("--quiet", is_flag=True, help="No progress bar, no notes; errors are still reported.")
 @click.option("--open", "opens", is_flag=True, help="Open the report in the browser when done.")
 def run(
     study: Path,

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import click
 
 if TYPE_CHECKING:
     from pinstress.study.file import Study
+
+Command = TypeVar("Command", bound=Callable[..., object])
 
 
 def example(text: str) -> str:
@@ -24,6 +27,25 @@ def names(_: click.Context, __: click.Parameter, value: str | None) -> list[str]
     if not found:
         raise click.BadParameter("empty list; write for example A,B")
     return found
+
+
+def choices(command: Command) -> Command:
+    """The options --pins, --cases, --jobs and --quiet of a command that solves pins."""
+    for option in (
+        click.option(
+            "--quiet", is_flag=True, help="No progress bar, no notes; errors are still reported."
+        ),
+        click.option(
+            "--jobs",
+            type=click.IntRange(1),
+            metavar="N",
+            help="Number of parallel processes [number of cores]; does not affect the results.",
+        ),
+        click.option("--cases", callback=names, metavar="X,Y", help="Only these cases."),
+        click.option("--pins", callback=names, metavar="A,B", help="Only these pins."),
+    ):
+        command = option(command)
+    return command
 
 
 def read_study(path: Path) -> Study:

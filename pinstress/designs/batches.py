@@ -23,7 +23,8 @@ from pinstress.designs.number import Number
 from pinstress.study.file import Study, parse_study
 
 AIM = 2.0  # s of work in a batch
-MOST = 1000  # designs in a batch
+TASK = 0.008  # s in which a batch is handed out to one of many processes and its rows are read
+MOST = 5000  # designs in a batch
 UNSHAPED = ("yield_strength", "ultimate_strength", "shear_strength", "bearing_strength")
 
 _ONE_AT_A_TIME = threading.Lock()  # workers of a user's cluster may have several threads
@@ -113,6 +114,13 @@ def shapes(number: Number) -> bool:
     return table == "pin" or (table == "material" and last not in UNSHAPED)
 
 
+def aim_of(at_once: int) -> float:
+    """Seconds of work in a batch where so many are solved at a time: batches are handed out one
+    after the other, to each process before it has solved its last one.
+    """
+    return max(AIM, TASK * at_once)
+
+
 class Batches:
     """Batches of the designs that are left, as large as they should be by what earlier ones took.
     at_once: how many are solved at a time.
@@ -150,7 +158,7 @@ class Batches:
         """
         size = 1
         if self.each is not None:
-            size = min(math.ceil(AIM / max(self.each, 1e-9)), MOST)
+            size = min(math.ceil(aim_of(self._at_once) / max(self.each, 1e-9)), MOST)
             size = max(1, min(size, -(-len(self._left) // (2 * self._at_once))))
         taken = [self._left.pop() for _ in range(min(size, len(self._left)))]
         rows = tuple(tuple(float(x) for x in self._values[i]) for i in taken)

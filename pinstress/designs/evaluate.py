@@ -11,7 +11,7 @@ from __future__ import annotations
 import hashlib
 import re
 from collections import OrderedDict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Generic, TypeVar
 
@@ -21,6 +21,7 @@ from fea.core.peak import Peak, Verdict
 from fea.harmonic.evaluate import EveryMesh
 from fea.joint.solve_in_lugs import LugSolution
 from geometry import ArgumentError
+from loads import Linkage
 from pinstress.analysis.plan import asked_of, prepare
 from pinstress.analysis.solve import solutions
 from pinstress.analysis.stored import shape_of
@@ -35,7 +36,7 @@ from pinstress.model.tasks import Task, tasks
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study, raw_study, with_raw
 
-MOST_LOADS, MOST_PEAKS = 64, 4096  # that are remembered
+MOST_LOADS, MOST_PEAKS = 64, 4096  # that are remembered, loads of each case
 WITHOUT_LOADS = ("pin", "material", "analysis")  # tables of which loads do not depend
 APART = ("vary", "published", "beam_check", "motion_check", "report")
 
@@ -100,6 +101,8 @@ class Evaluator:
     ) -> None:
         self.numbers = tuple(p.number if isinstance(p, Parameter) else p for p in parameters)
         self._raw = {k: v for k, v in raw_study(study).items() if k not in APART}
+        analysis = {**self._raw.get("analysis", {}), "meshes": study.meshes}
+        self._raw["analysis"] = analysis  # whose default depends on [vary]
         self.study = with_raw(study, self._raw)
         plan = prepare(self.study, pins=pins, cases=cases)
         self._memory = plan.asked.memory  # free when it began: to ask again takes a millisecond
@@ -109,10 +112,15 @@ class Evaluator:
         self.table = tuple(
             (pin, case) for pin in self._pins for case in self._cases if (pin, case) in found
         )
-        self._loads = Recent[tuple[float, ...], dict[str, CaseLoads | InputError]](MOST_LOADS)
+        self._loads = Recent[tuple[object, ...], CaseLoads | InputError](
+            MOST_LOADS * len(self._cases)
+        )
         self.meshes = EveryMesh()
         self._peaks = Recent[str, tuple[Peak, ...]](MOST_PEAKS)
-        self._of_loads = [k for k, number in enumerate(self.numbers) if self._moves(number)]
+        self._of_loads = {
+            case: [k for k, number in enumerate(self.numbers) if self._moves(number, case)]
+            for case in self._cases
+        }
 
     def rows(self, values: Sequence[float] | Floats) -> list[DesignRow]:
         """The rows of a design, one for each of `table`. values: of the parameters (p,), SI."""
@@ -135,11 +143,14 @@ class Evaluator:
             raw = put(raw, number.path, number.in_study(value / number.factor))
         return with_raw(self.study, raw)
 
-    def _moves(self, number: Number) -> bool:
-        """Whether loads depend on a number: those of the mechanism and the cases, and what gives
-        mass to floating pins.
+    def _moves(self, number: Number, case: str) -> bool:
+        """Whether the loads of a case depend on a number: on those of the mechanism, of the case
+        and of cases that it names, and on what gives mass to floating pins.
         """
         table, *inner = number.path
+        if table == "case":
+            own = self._raw["case"].get(case)  # None of a case of a table with many
+            return own is None or inner[0] == case or _names(own, str(inner[0]))
         if table not in WITHOUT_LOADS:
             return True
         study, mechanism = self.study.table, self.study.table.mechanism
@@ -155,20 +166,22 @@ class Evaluator:
         return inner[-1] == "density" and any(study.pin[x].material == inner[0] for x in free)
 
     def _loads_of(self, study: Study, values: Sequence[float]) -> dict[str, CaseLoads | InputError]:
-        key = tuple(values[k] for k in self._of_loads)
-        known = self._loads.get(key)
-        if known is not None:
-            return known
-        mechanism = linkage(study) if study.table.mechanism else None
-        if mechanism is not None:
-            determined(study, mechanism)
         found: dict[str, CaseLoads | InputError] = {}
+        mechanism: Linkage | None = None
         for name in self._cases:
-            try:
-                found[name] = case_loads(study, name, mechanism)
-            except InputError as error:
-                found[name] = error
-        return self._loads.put(key, found)
+            key = name, *(values[k] for k in self._of_loads[name])
+            known = self._loads.get(key)
+            if known is None:
+                if mechanism is None and study.table.mechanism:
+                    mechanism = linkage(study)
+                    determined(study, mechanism)
+                try:
+                    known = case_loads(study, name, mechanism)
+                except InputError as error:
+                    known = error
+                self._loads.put(key, known)
+            found[name] = known
+        return found
 
     def _of_pin(
         self,
@@ -227,6 +240,15 @@ class Evaluator:
         peaks = (s.solution.peak if isinstance(s, LugSolution) else s.peak for s in found)
         bare = tuple(replace(p, history=(), singular_at=()) for p in peaks)
         return self._peaks.put(key, bare)
+
+
+def _names(content: object, case: str) -> bool:
+    """Whether a table has the name of a case as a text."""
+    if isinstance(content, Mapping):
+        return any(_names(each, case) for each in content.values())
+    if isinstance(content, list | tuple):
+        return any(_names(each, case) for each in content)
+    return content == case
 
 
 def elastic(material: Material) -> Material:

@@ -41,12 +41,17 @@ class Parts:
         """Whether a sweep was begun here."""
         return stated(self.folder) is not None
 
+    @property
+    def finished(self) -> bool:
+        """Whether the folder has this sweep's whole table."""
+        return not self.there() and stated(self.folder.parent) == self.sweep
+
     def require_same(self) -> None:
         """Raises: InputError where the parts are of another sweep."""
-        found = stated(self.folder)
+        found = stated(self.folder) or stated(self.folder.parent)
         if found is None:
             raise InputError(
-                f"--resume: {self.folder.parent} has no unfinished sweep; leave out --resume",
+                f"--resume: {self.folder.parent} has no sweep to go on with; leave out --resume",
                 code="nothing-to-resume",
             )
         if found != self.sweep:
@@ -83,8 +88,11 @@ class Parts:
         """How many batches there are."""
         return len(list(self.folder.glob(f"*{SUFFIX}")))
 
-    def remove(self) -> None:
-        """Remove the files and the folder, when the whole table is written."""
+    def finish(self) -> None:
+        """Remove the files and the folder, when the whole table is written; what was swept stays
+        beside that.
+        """
+        (self.folder / STATED).replace(self.folder.parent / STATED)
         for path in (*self.folder.glob(f"*{SUFFIX}*"), *self.folder.glob(f"{STATED}*")):
             path.unlink(missing_ok=True)
         self.folder.rmdir()

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from pinstress.designs.evaluate import DesignRow
 from pinstress.designs.number import unit_of
 from pinstress.designs.parameters import Parameter
+from pinstress.study.errors import InputError
 from pinstress.study.file import Study
 
 if TYPE_CHECKING:
@@ -85,6 +86,20 @@ def write_table(table: pa.Table, path: Path) -> None:
     except BaseException:
         partial.unlink(missing_ok=True)
         raise
+
+
+def read_table(path: Path) -> pa.Table:
+    """What was written. Raises: InputError where it cannot be read."""
+    from pyarrow import ArrowException, parquet
+
+    try:
+        return parquet.read_table(path)
+    except (ArrowException, OSError) as error:
+        raise InputError(
+            f"--resume: {path} cannot be read ({str(error).splitlines()[0][:200]}); leave out "
+            "--resume, to sweep again",
+            code="damaged-table",
+        ) from None
 
 
 def facts(table: pa.Table) -> dict[str, Any]:

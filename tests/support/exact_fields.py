@@ -12,7 +12,7 @@ from skfem import Basis, ElementTriP2
 from fea.core.linear_solver import factorize
 from fea.core.material import Material
 from fea.core.pin_loads import Floats
-from fea.harmonic.assembly import Section, around, elasticity, gradients, strain_map
+from fea.harmonic.assembly import Section, around, elasticity, strain_map
 from fea.harmonic.boundary import Outline, shapes, slopes
 from geometry.arrays import Ints
 
@@ -90,6 +90,16 @@ def _fine(space: Section) -> tuple[Basis, Floats, Floats, Floats, Floats]:
     return basis, r, z, np.asarray(basis.dx * r), values
 
 
+def _gradients(basis: Basis, r: Floats) -> Floats:
+    """N,r N,z and N / r of the shape functions at a basis' points, which are at r (M, Q), m;
+    (M, Q, 3, 6), 1/m.
+    """
+    parts = [
+        (*basis.basis[i][0].grad, np.asarray(basis.basis[i][0]) / r) for i in range(basis.Nbfun)
+    ]
+    return np.stack([np.stack(part, axis=-1) for part in parts], axis=-1)
+
+
 def body_forces(space: Section, exact: Exact) -> Floats:
     """Forces on the unknowns by the body force."""
     _, r, z, weight, values = _fine(space)
@@ -122,7 +132,7 @@ def errors(space: Section, material: Material, exact: Exact, u: Floats) -> tuple
     basis, r, z, weight, values = _fine(space)
     moved = np.einsum("imq,mia->mqa", values, u[space.elements][..., 0])
     local = unknowns_of(u[..., 0]).reshape(-1, 3)[space.elements]
-    strain = np.einsum("sca,mqai,mic->mqs", strain_map(exact.n), gradients(basis, r), local)
+    strain = np.einsum("sca,mqai,mic->mqs", strain_map(exact.n), _gradients(basis, r), local)
     stress = strain @ elasticity(material).T
 
     def off(found: Floats, true: Floats) -> float:

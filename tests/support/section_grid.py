@@ -34,4 +34,4 @@ def rectangle(
     nodes = np.stack([*ends, middle], axis=1).astype(np.int64)
     axis = np.flatnonzero(x[0] < tiny) if inner == 0.0 else np.zeros(0)
     edges = {name: nodes[on] for name, on in sides.items() if on.any()}
-    return MeridianMesh(mesh, edges, axis.astype(np.int64))
+    return MeridianMesh.of(mesh, edges, axis.astype(np.int64))

@@ -32,4 +32,4 @@ PINS = {
 
 def nodes(found: MeridianMesh) -> Floats:
     """(N, 2)."""
-    return np.asarray(found.mesh.doflocs.T)
+    return found.nodes

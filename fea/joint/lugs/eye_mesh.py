@@ -30,7 +30,7 @@ def eye_mesh(eye: Pin, across: float, interface: float | None = None) -> Meridia
     along = (_even(s, e, min(size, (e - s) / HALVES)) for s, e in _rings(eye))
     z = np.concatenate([[0.0], *along])
     grid = MeshTri2.from_mesh(MeshQuad.init_tensor(r, z).to_meshtri(style="x"))
-    return MeridianMesh(grid, _edges(eye, grid), np.zeros(0, dtype=np.int64))
+    return MeridianMesh.of(grid, _edges(eye, grid), np.zeros(0, dtype=np.int64))
 
 
 def _rings(eye: Pin) -> list[tuple[float, float]]:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from pinstress.cli.shared import example, names, read_study
+from pinstress.cli.shared import choices, example, read_study
 
 
 @click.command(
@@ -21,14 +21,7 @@ from pinstress.cli.shared import example, names, read_study
 )
 @click.argument("study", type=click.Path(path_type=Path))
 @click.option("--out", type=click.Path(path_type=Path), help="Output folder [out/<study>-sweep].")
-@click.option("--pins", callback=names, metavar="A,B", help="Only these pins.")
-@click.option("--cases", callback=names, metavar="X,Y", help="Only these cases.")
-@click.option(
-    "--jobs",
-    type=click.IntRange(1),
-    metavar="N",
-    help="Number of parallel processes [number of cores]; does not affect the results.",
-)
+@choices
 @click.option(
     "--scheduler",
     metavar="ADDRESS",
@@ -36,7 +29,6 @@ from pinstress.cli.shared import example, names, read_study
 )
 @click.option("--resume", is_flag=True, help="Go on with a sweep that did not end.")
 @click.option("--open", "opens", is_flag=True, help="Open the page in the browser when done.")
-@click.option("--quiet", is_flag=True, help="No progress bar, no notes; errors are still reported.")
 def sweep(
     study: Path,
     out: Path | None,
@@ -70,15 +62,7 @@ def sweep(
 @click.option(
     "--out", type=click.Path(path_type=Path), help="Output folder [out/<study name>-reliability]."
 )
-@click.option("--pins", callback=names, metavar="A,B", help="Only these pins.")
-@click.option("--cases", callback=names, metavar="X,Y", help="Only these cases.")
-@click.option(
-    "--jobs",
-    type=click.IntRange(1),
-    metavar="N",
-    help="Number of parallel processes [number of cores]; does not affect the results.",
-)
-@click.option("--quiet", is_flag=True, help="No progress bar, no notes; errors are still reported.")
+@choices
 def reliability(
     study: Path,
     out: Path | None,

@@ -20,7 +20,7 @@ from pinstress.cli.streams import unneeded
 from pinstress.designs.parts import FOLDER, STATED, Parts, identity, is_ours
 from pinstress.designs.summary import summary
 from pinstress.designs.sweep import Report, planned, solved
-from pinstress.designs.table import write_table
+from pinstress.designs.table import read_table, write_table
 from pinstress.processes import interrupts
 from pinstress.processes.folder_lock import Release, lock
 from pinstress.processes.interrupts import Unfinished
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 TABLE, PAGE = "designs.parquet", "designs.html"
-FILES = TABLE, PAGE, f"{TABLE}.partial", f"{PAGE}.partial"
+FILES = TABLE, PAGE, STATED, f"{TABLE}.partial", f"{PAGE}.partial"
 
 
 @dataclass(frozen=True)
@@ -59,6 +59,10 @@ def sweep_and_write(
     parts = Parts(directory, identity(study, pins, cases))
     _require_usable(directory, parts, way.resume)
     sweep = planned(study, pins, cases)
+    if way.resume and parts.finished:
+        if not way.quiet:
+            click.echo(f"The sweep in {directory} is complete: nothing to do.", err=True)
+        return _told(directory, read_table(directory / TABLE), way)
     with _claimed(directory, parts, way.resume):
         try:
             with progress(way.quiet) as report:
@@ -68,7 +72,12 @@ def sweep_and_write(
                 raise Unfinished(_kept(parts)) from None
             raise
         _write(directory, table)
-        parts.remove()
+        parts.finish()
+    return _told(directory, table, way)
+
+
+def _told(directory: Path, table: pa.Table, way: Way) -> int:
+    """Print what a table says; returns the exit status."""
     with unneeded(directory):
         summary(table, console())
     if not way.quiet:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas
 import pyarrow as pa
 import pytest
 from distributed import KilledWorker
@@ -18,7 +19,17 @@ from rich.console import Console
 
 import pinstress
 from pinstress import InputError
-from pinstress.designs.batches import AIM, MOST, Batch, Batches, DesignProblem, Done, solve_batch
+from pinstress.designs.batches import (
+    AIM,
+    MOST,
+    TASK,
+    Batch,
+    Batches,
+    DesignProblem,
+    Done,
+    aim_of,
+    solve_batch,
+)
 from pinstress.designs.number import number_at
 from pinstress.designs.parameters import parameters_of
 from pinstress.designs.parts import Parts, identity, is_ours
@@ -85,11 +96,26 @@ def test_units_and_the_study_are_in_the_file(table: pa.Table, tmp_path: Path) ->
 
 
 def test_pandas_reads_it(table: pa.Table, tmp_path: Path) -> None:
-    pandas = pytest.importorskip("pandas")
     write_table(table, tmp_path / "designs.parquet")
     frame = pandas.read_parquet(tmp_path / "designs.parquet")
     assert frame.groupby(DIAMETER)["safety_factor"].max().round(3).iloc[0] > 10.0
     assert frame["max_von_mises"].isna().sum() == 4
+
+
+def test_the_file_has_plain_columns(table: pa.Table, tmp_path: Path) -> None:
+    """Numbers and texts that every reader of Parquet knows: none nested, of an extension, or with a
+    dictionary as its type.
+    """
+    write_table(table, tmp_path / "designs.parquet")
+    file = parquet.ParquetFile(tmp_path / "designs.parquet")
+    kinds = {"INT64": None, "DOUBLE": None, "BYTE_ARRAY": "STRING"}
+    for k, name in enumerate(table.column_names):
+        column = file.schema.column(k)
+        assert (column.name, column.path, column.max_repetition_level) == (name, name, 0)
+        logical = column.logical_type.type
+        assert logical == (kinds[column.physical_type] or "NONE")
+    arrow = {str(field.type) for field in file.schema_arrow}
+    assert arrow == {"int64", "double", "string"}
 
 
 def test_batches_of_any_size_in_any_order_give_the_same_bytes(
@@ -158,6 +184,16 @@ def test_batches_are_as_long_as_they_should_be() -> None:
         assert len(batches.next().designs) == size
 
 
+def test_many_processes_get_larger_batches() -> None:
+    """So that handing out one to each takes no longer than solving it."""
+    assert aim_of(1) == aim_of(250) == AIM
+    assert aim_of(1000) == pytest.approx(1000 * TASK)
+    problem = planned(swept(VARIED, "", QUICK)).problem
+    batches = Batches(problem.numbers, np.zeros((200_000, 2)), set(), 1000)
+    batches.learn(Done(batches.next(), [], 0.1))
+    assert len(batches.next().designs) == round(1000 * TASK / 0.1)
+
+
 def test_parts_are_of_one_sweep_and_damaged_ones_are_solved_again(
     table: pa.Table, tmp_path: Path
 ) -> None:
@@ -180,7 +216,8 @@ def test_parts_are_of_one_sweep_and_damaged_ones_are_solved_again(
     names = {f"parts/{p.name}" for p in parts.folder.iterdir()} | {"parts/"}
     assert all(map(is_ours, names))
     assert not any(map(is_ours, ("parts/notes.txt", "other/1.parquet", "parts/x.parquet")))
-    parts.remove()
+    parts.finish()
+    assert parts.finished
     assert not parts.folder.exists()
 
 

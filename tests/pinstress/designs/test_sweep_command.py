@@ -35,7 +35,7 @@ def test_a_sweep_writes_its_table_and_says_what_is_in_it(tmp_path: Path) -> None
     assert "Table: out/study-sweep/designs.parquet" in made.stderr
     out = tmp_path / "out" / "study-sweep"
     assert sorted(p.name for p in out.iterdir()) == [
-        ".pinstress.json", "designs.html", "designs.parquet",
+        ".pinstress.json", "designs.html", "designs.parquet", "sweep.json",
     ]  # fmt: skip
     assert parquet.read_table(out / "designs.parquet").num_rows == 6
     first = (out / "designs.parquet").read_bytes()
@@ -55,7 +55,7 @@ def test_designs_that_all_fail_are_told(tmp_path: Path) -> None:
     ("prepare", "arguments", "message"),
     [
         ("notes.txt", (), "contains files that are not results of this command"),
-        ("", ("--resume",), "has no unfinished sweep"),
+        ("", ("--resume",), "has no sweep to go on with"),
         ("", ("--pins", "X"), "has no pin 'X'"),
     ],
 )
@@ -117,6 +117,28 @@ def test_an_unfinished_sweep_is_kept_and_goes_on(
     one, two = (tmp_path / x / "designs.parquet" for x in ("out", "whole"))
     assert one.read_bytes() == two.read_bytes()
     assert not (tmp_path / "out" / "parts").exists()
+    assert_complete(tmp_path, *arguments)
+
+
+def assert_complete(folder: Path, *arguments: str) -> None:
+    """A finished sweep says so; another one is none to go on with; a damaged table is named."""
+    table = folder / "out" / "designs.parquet"
+    whole, at = table.read_bytes(), table.stat().st_mtime_ns
+    done = run_here(*arguments, "--resume", cwd=folder)
+    assert done.returncode == 0
+    assert "is complete: nothing to do" in done.stderr
+    assert "6 designs, 3 failed" in done.stdout
+    assert table.stat().st_mtime_ns == at
+    text = (folder / "study.toml").read_text()
+    (folder / "study.toml").write_text(text.replace("count = 6", "count = 7"))
+    other = run_here(*arguments, "--resume", cwd=folder)
+    assert other.returncode == 2
+    assert "is of another study, other [vary]" in other.stderr
+    (folder / "study.toml").write_text(text)
+    table.write_bytes(whole[:100])
+    damaged = run_here(*arguments, "--resume", cwd=folder)
+    assert damaged.returncode == 2
+    assert "designs.parquet cannot be read" in damaged.stderr
 
 
 def test_run_ignores_vary_and_check_reads_it(tmp_path: Path) -> None:
