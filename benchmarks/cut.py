@@ -50,7 +50,9 @@ def cut() -> str:
     work = time.process_time()
     answer.maxima(_loads("bending", FURTHER))
     further = 1e3 * (time.process_time() - work)
-    rows, told = [*local, *(_row(pin, name, "solid", 0.05) for name in KNOWN)], []
+    rows: list[tuple[object, ...]] = [*local]
+    rows += [_row(pin, name, "solid", 0.05) for name in KNOWN]
+    told = []
     for (name, _, _, ours, *_), known in zip(local, KNOWN.values(), strict=True):
         if installed():
             found = [in_calculix_locally(pin, _loads(name), k, SPOTS) for k in OTHERS]

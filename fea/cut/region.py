@@ -147,12 +147,7 @@ def _piece(
     clamped = any(z0 <= b and a <= z1 for a, b in (surface_ends(CutPin(pin), c) for c in clamps))
     parted = any(a < high and low < b and not (a < low and high < b) for a, b in bands)
     amid = [cut.moved(middle, angle) for cut in cuts.values()]
-    if (
-        not clamped
-        and not parted
-        and _even(pin, z0, z1, middle)
-        and _symmetric(pin, amid, "z")
-    ):
+    if not clamped and not parted and _even(pin, z0, z1, middle) and _symmetric(pin, amid, "z"):
         half = max(middle - z0, z1 - middle)
         z0, z1, mirrors = middle - half, middle + half, (*mirrors, "z")
     start = middle if "z" in mirrors else z0
