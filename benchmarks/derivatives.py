@@ -13,6 +13,7 @@ from benchmarks.random_pins import STEEL, Trial, trials
 from benchmarks.timing import table
 from fea.asked import Asked
 from fea.core.material import Material
+from fea.core.pin_loads import PinLoads
 from fea.derivatives.derivatives import derivatives
 from fea.derivatives.records import Derivatives, SolvedCase
 from fea.derivatives.virtual_work import Interior
@@ -106,19 +107,22 @@ def velocities(of: SolvedCase) -> tuple[list[Dimension], Floats]:
     return every, Interior(Section(of.solution.mesh), nodes.rows).velocity(moved)
 
 
-def moved_maximum(of: SolvedCase, pin: Pin, moved: Floats, material: Material) -> float:
+def moved_maximum(
+    of: SolvedCase, pin: Pin, moved: Floats, material: Material, loads: PinLoads | None = None
+) -> float:
     """The stress at the governing point on the same mesh with its nodes moved (N, 2), all of it
-    found anew.
+    found anew; under other loads than before, if any.
     """
+    loads = loads or of.loads
     mesh = of.solution.mesh
     mesh = replace(mesh, mesh=replace(mesh.mesh, doflocs=mesh.mesh.doflocs + moved.T))
-    zones = singularities_of(pin, material, of.clamps, (of.loads,))
-    units = tuple(of.loads.coefficients())
+    zones = singularities_of(pin, material, of.clamps, (loads,))
+    units = tuple(loads.coefficients())
     ends = _ends(pin, of.clamps, units)
     fields = HarmonicModel(pin, mesh, material, of.clamps).solve(units, _rims(pin, zones), ends)
     before = of.solution.fields
     old = Circumference(before, of.loads).top(before.outside(of.zones))
-    value, _ = Circumference(fields, of.loads).round(np.array([old.point]), np.array([0]))
+    value, _ = Circumference(fields, loads).round(np.array([old.point]), np.array([0]))
     return float(value[0])
 
 
