@@ -16,7 +16,8 @@ from fea.derivatives.virtual_work import Interior
 from fea.harmonic.assembly import Section
 from fea.harmonic.evaluate import SectionProblem, harmonic_solution
 from fea.harmonic.model import HarmonicBody
-from fea.joint.flexibility import RingBody, lug_rings, pin_rings
+from fea.joint.contact import Pressed, rotation
+from fea.joint.flexibility import RingBody
 from fea.joint.lugs.lug import Bushing, Lug
 from fea.joint.solve_joint import Cells, JointModel
 from fea.refine import singularities_of
@@ -108,14 +109,14 @@ class WholeJoint:
         model, links = self.model, self.links
         pin, material, lugs = parameter.changed(value)
         other = model.reshaped(pin, material, lugs)
-        rings = pin_rings(model.pin, model.rings, model.material, model.cells.across)
+        rings = model.on_pin
         moved = _moved(rings.body.space.section, model.pin, other.pin)
         on = HarmonicBody(other.pin, Section(moved), material, pivot=0.5)
         highest = model.cells.highest
         other.of_pin = RingBody(on, rings.rings, rings.pushed).flexibility(highest)
         other.of_lugs, other.wavy = np.zeros_like(model.of_lugs), np.zeros_like(model.wavy)
         for (own, lug, ends), (_, old, before) in zip(other.by_lug(), model.by_lug(), strict=True):
-            was = lug_rings(model.eye(old, before), old, model.cells.across)
+            was = model.on_lugs[model.likeness(old, before)]
             eye = other.eye(lug, ends)
             space = was.body.space
             mesh = space.section
@@ -132,13 +133,20 @@ class WholeJoint:
             body = HarmonicBody(eye, Section(mesh, space.parts), both, pivot=0.5)
             found = RingBody(body, was.rings, was.pushed, guided=True).flexibility(highest)
             other.of_lugs[:, own, own], other.wavy[:, :, own, own] = found, other.wavy_of(lug, ends)
-        pressed = other.pressed(links)
-        waves = other.waves(pressed)
+        waves = other.waves([self._pressed(other)])
         loads = other.patterns([(waves, ALL)]).loads(waves, links)
         mesh = self.solved.solution.mesh
         reaches = [Reach((p.r, p.z), p.radius) for p in self.solved.zones]
         shift = _moved(mesh, model.pin, other.pin, reaches).mesh.doflocs - mesh.mesh.doflocs
         return moved_maximum(self.solved, other.pin, shift.T, material, loads)
+
+    def _pressed(self, model: JointModel) -> Pressed:
+        """With the cells where they are."""
+        (before,) = self.model.pressed(self.links)
+        turn = rotation(before.angle)
+        x, y = (model.couples(self.links)[0] @ turn).tolist()
+        forces = model.forces(self.links)[0] @ turn
+        return model.contact.solve(forces, (x, y), before.active).turned(before.angle)
 
     def derivative(self, parameter: JointParameter) -> float:
         """By differences."""

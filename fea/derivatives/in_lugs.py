@@ -26,7 +26,6 @@ from fea.derivatives.ring_work import RingWork
 from fea.derivatives.ties import tied_places, tied_times
 from fea.derivatives.virtual_work import Interior
 from fea.harmonic.assembly import elasticity
-from fea.joint.flexibility import lug_rings, pin_rings
 from fea.joint.lugs.lug import Lug
 from fea.joint.pressure_loads import others_along
 from fea.joint.solve_joint import JointModel
@@ -43,7 +42,7 @@ from geometry.mesh.outline_motion import (
 
 FORCE = 1e-4  # step of a force, of the largest
 AXES = "xy"
-SAME = 1e-14  # of the size
+SAME = 1e-13  # of the size: what round-off moves
 Joint = tuple[Pin, Material, tuple[Lug, ...]]
 
 
@@ -147,19 +146,15 @@ class _InLugs:
 
     @cached_property
     def pin_work(self) -> RingWork:
-        model = self.model
-        on = pin_rings(model.pin, model.rings, model.material, model.cells.across)
-        return RingWork(on, {"": tuple(self.contact.pairs())})
+        return RingWork(self.model.on_pin, {"": tuple(self.contact.pairs())})
 
     @cached_property
     def lug_works(self) -> dict[str, RingWork]:
         """By connection; of equal lugs one."""
-        model, out = self.model, {}
-        for equal in model.alike().values():
-            _, lug, ends = equal[0]
-            on = lug_rings(model.eye(lug, ends), lug, model.cells.across)
+        model, out = self.model, dict[str, RingWork]()
+        for key, equal in model.alike().items():
             pairs = {x.connection: tuple(self.contact.pairs(own)) for own, x, _ in equal}
-            out |= dict.fromkeys(pairs, RingWork(on, pairs))
+            out |= dict.fromkeys(pairs, RingWork(model.on_lugs[key], pairs))
         return out
 
     @cached_property
@@ -251,24 +246,24 @@ class _InLugs:
         number = self.model.lugs.index(lug)
         others = [one.lugs[number] for one in change.models]
         work, total = self.lug_works[name], 0.0
-        parts = [lambda one: one.material]
-        if lug.bushing is not None:
-            parts.insert(0, lambda one: one.bearing)
-        if any(part(one) != part(lug) for part in parts for one in others):
-            rates = [
-                rate_of([elasticity(part(one)) for one in others], change.step) for part in parts
-            ]
+        if any(_made_of(one) != _made_of(lug) for one in others):
+            each = [[elasticity(part) for part in _made_of(one)] for one in others]
+            rates = [rate_of(parts, change.step) for parts in zip(*each, strict=True)]
             total += work.by_material(name, rates)
-        eyes = [one.eye(x, one.ends[name]) for one, x in zip(change.models, others, strict=True)]
-        knots = [_knots(eye, x) for eye, x in zip(eyes, others, strict=True)]
-        at = _knots(self.model.eye(lug, self.model.ends[name]), lug)
-        nodes, sizes = work.space.nodes, at[0][-1]
-        rates = [rate_of([x[k] for x in knots], change.step) for k in (0, 1)]
-        if max(np.abs(x).max() for x in rates) * change.step <= SAME * sizes:
+        at = _knots(self.model, lug)
+        knots = [_knots(*both) for both in zip(change.models, others, strict=True)]
+        if all(
+            np.abs(x - y).max() <= SAME * y[-1]
+            for one in knots
+            for x, y in zip(one, at, strict=True)
+        ):
             return total
-        velocity = np.stack([np.interp(nodes[:, k], at[k], rates[k]) for k in (0, 1)], axis=1)
+        moved = [rate_of([one[k] for one in knots], change.step) for k in (0, 1)]
+        nodes = work.space.nodes
+        each_way = [np.interp(nodes[:, k], at[k], moved[k]) for k in (0, 1)]
+        velocity, lengths = np.stack(each_way, axis=1), [float(z[-1]) for _, z in knots]
         total += work.by_shape(name, velocity)
-        return total + work.by_reaction(name, velocity, [eye.length for eye in eyes], change.step)
+        return total + work.by_reaction(name, velocity, lengths, change.step)
 
     def _by_forces(self) -> By:
         """Of the links across, in which contact is linear, and along the axis where any act."""
@@ -301,8 +296,13 @@ class _InLugs:
         return self._of_amounts({load: both[0] for load, both in along.items()})
 
 
-def _knots(eye: Pin, lug: Lug) -> tuple[Floats, Floats]:
-    """Radii and z (m) between which the nodes of its mesh keep their places."""
-    bore, outer = eye.segments[0].bore / 2.0, eye.segments[0].diameter / 2.0
+def _made_of(lug: Lug) -> tuple[Material, ...]:
+    """The parts of its section."""
+    return (lug.material,) if lug.bushing is None else (lug.bushing.material, lug.material)
+
+
+def _knots(model: JointModel, lug: Lug) -> tuple[Floats, Floats]:
+    """Radii and z (m) of a lug between which the nodes of its mesh keep their places."""
+    bore, ends = model.whole.band(lug.connection).radius, model.ends[lug.connection]
     between = [] if lug.bushing is None else [bore + lug.bushing.thickness]
-    return np.array([bore, *between, outer]), np.array(eye.stations)
+    return np.array([bore, *between, 0.5 * lug.outer_diameter]), ends - ends[0]

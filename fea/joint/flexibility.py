@@ -20,6 +20,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from scipy.special import iti0k0, k1
@@ -146,12 +147,19 @@ def wavy_flexibility(lug: Lug, pin: Material, radius: float, ends: Floats, waves
     """C_n (2, N, R, R), m/Pa, of a lug's rings with `ends` (R + 1,) m along z, for high harmonics
     `waves` (N,): of the pin as a half-space, and of the lug as one that its faces end.
     """
-    x = waves[:, None] * ends / radius
-    on, n = _half_space(x, x), waves[:, None, None]
-    beyond = _half_space(x, -x) + _half_space(x, 2.0 * x[:, -1:] - x)
+    on, beyond = _responses(tuple((ends / radius).tolist()), tuple(waves.tolist()))
+    n = waves[:, None, None]
     layer = np.array([layered(lug, k / radius) for k in waves.tolist()])[:, None, None]
     of_lug = half_plane(lug.bearing, radius) * layer * (on + beyond) / n
     return np.stack([half_plane(pin, radius) * on / n, of_lug])
+
+
+@lru_cache(maxsize=4)
+def _responses(ends: tuple[float, ...], waves: tuple[int, ...]) -> tuple[Floats, Floats]:
+    """Of a half-space on rings with such ends, over the radius, and what mirrors add to it."""
+    x = np.outer(waves, ends)
+    beyond = _half_space(x, -x) + _half_space(x, 2.0 * x[:, -1:] - x)
+    return _half_space(x, x), beyond
 
 
 def _half_space(x: Floats, y: Floats) -> Floats:

@@ -19,12 +19,7 @@ from fea.core.pin_loads import Floats, LugEdge, PinLoads
 from fea.harmonic.evaluate import FirstMesh
 from fea.joint.bending import bending_moment, mass_per_length
 from fea.joint.contact import Bands, ContactProblem, Pressed, rotation
-from fea.joint.flexibility import (
-    half_plane,
-    lug_flexibility,
-    pin_flexibility,
-    wavy_flexibility,
-)
+from fea.joint.flexibility import RingBody, half_plane, lug_rings, pin_rings, wavy_flexibility
 from fea.joint.lugs.changes import softer
 from fea.joint.lugs.fit import fitted, on_structure
 from fea.joint.lugs.links import link_forces, link_numbers
@@ -107,7 +102,7 @@ class JointContact:
 
 class JointModel:
     """A pin in its lugs, with the flexibilities that serve all cases and clearances. first: its
-    first mesh for stress.
+    first mesh for stress. on_pin, on_lugs: the meshes of the flexibilities; of equal lugs one.
 
     Raises: ArgumentError for lugs that do not fit the pin; MeshError, SolveError.
     """
@@ -117,12 +112,15 @@ class JointModel:
     ) -> None:
         self.cells, self.first = cells, FirstMesh()
         self._shape(pin, material, lugs)
-        self.of_pin = pin_flexibility(self.pin, self.rings, material, cells.across, cells.highest)
+        self.on_pin = pin_rings(self.pin, self.rings, material, cells.across)
+        self.of_pin = self.on_pin.flexibility(cells.highest)
         self.of_lugs = np.zeros_like(self.of_pin)
         self.wavy = np.zeros((2, len(self.high), *self.of_pin.shape[1:]))  # of the pin, of the lugs
-        for equal in self.alike().values():
+        self.on_lugs: dict[Alike, RingBody] = {}
+        for key, equal in self.alike().items():
             (_, lug, ends), *_ = equal
-            low = lug_flexibility(self.eye(lug, ends), lug, cells.across, cells.highest)
+            self.on_lugs[key] = lug_rings(self.eye(lug, ends), lug, cells.across)
+            low = self.on_lugs[key].flexibility(cells.highest)
             wavy = self.wavy_of(lug, ends)
             for own, *_ in equal:
                 self.of_lugs[:, own, own], self.wavy[:, :, own, own] = low, wavy
