@@ -57,9 +57,9 @@ def price() -> str:
 
 
 def _row(trial: Trial) -> tuple[object, ...]:
-    solution, solving = _timed(lambda: _solved(trial, Asked(model="harmonic")))
+    solution, solving = timed(lambda: _solved(trial, Asked(model="harmonic")))
     every = list(dimensions(trial.pin))
-    ours, deriving = _timed(lambda: derivatives(solution, every))
+    ours, deriving = timed(lambda: derivatives(solution, every))
     scale = max(abs(one.value * ours.by_dimension[one.key]) for one in every)
     fine = derivatives(_solved(trial, Asked(FINE, model="harmonic")), every)
     theirs = by_differences(solution)
@@ -83,7 +83,8 @@ def _apart(ours: Derivatives, fine: Derivatives, every: list[Dimension]) -> floa
     return float(np.abs(one - other).max() / np.abs(other).max())
 
 
-def _timed(work: Callable[[], T]) -> tuple[T, float]:
+def timed(work: Callable[[], T]) -> tuple[T, float]:
+    """With its processor time, s."""
     start = time.process_time()
     made = work()
     return made, time.process_time() - start

@@ -4,96 +4,159 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
 
 import numpy as np
 
-from benchmarks.derivatives import moved_maximum, richardson
+from benchmarks.derivatives import moved_maximum, richardson, timed
+from benchmarks.derivatives import price as of_free_pins
+from benchmarks.random_joints import JointTrial, joint_trials
+from benchmarks.timing import table
+from fea.asked import Asked
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.derivatives.in_lugs import Joint, JointParameter
+from fea.derivatives.in_lugs import Joint, JointParameter, joint_derivatives
 from fea.derivatives.records import SolvedCase
 from fea.derivatives.virtual_work import Interior
 from fea.harmonic.assembly import Section
-from fea.harmonic.evaluate import SectionProblem, harmonic_solution
+from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
 from fea.harmonic.model import HarmonicBody
 from fea.joint.contact import Pressed, rotation
-from fea.joint.flexibility import RingBody
+from fea.joint.flexibility import RingBody, lug_rings
 from fea.joint.lugs.lug import Bushing, Lug
+from fea.joint.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
 from fea.joint.solve_joint import Cells, JointModel
 from fea.refine import singularities_of
 from geometry import Pin
 from geometry.arrays import Floats
 from geometry.mesh.outline_motion import OutlineNodes, Reach
 from geometry.mesh.section_mesh import MeridianMesh
-from geometry.shape.dimensions import dimensions
+from geometry.shape.dimensions import Dimension, dimensions
 
+JOINTS = 6
+CHECKED = 3  # parameters of each, those that matter most, that are compared with differences
+ROUGH = Cells(4, 24, 8)  # of whole solutions for differences
 ALL = 1e-15  # what a pattern of pressures must add
 STEP = 1e-4  # of a parameter
 
 
+def price() -> str:
+    """Of pins without contact, and of random ones in contact with their lugs."""
+    rows = [_row(trial) for trial in joint_trials(JOINTS, seed=22)]
+    head = (
+        "joint",
+        "rings",
+        "unknowns",
+        "parameters",
+        "solution, s",
+        "derivatives, s",
+        "price",
+        "off Richardson's",
+    )
+    ratio = float(np.median([row[-2] for row in rows]))
+    return (
+        f"{of_free_pins()}\n\nRandom pins in contact with their lugs, on the cells of their "
+        "solution: all derivatives (dimensions of pin and lugs, clearances, moduli, loads) take "
+        f"{ratio:.2g} of the solution (median). Differences are of whole solutions on "
+        f"{ROUGH.rings} rings by {ROUGH.sectors} sectors, contact included, all meshes moved with "
+        f"the parameter; the error is the largest over the {CHECKED} parameters p that matter "
+        "most, of p dσ/dp relative to its largest:\n\n" + table(head, rows)
+    )
+
+
+def _row(trial: JointTrial) -> tuple[Any, ...]:
+    pin, material = trial.pin, trial.material
+    lugs = [
+        replace(x, material=replace(x.material, name=f"lug {x.connection}")) for x in trial.lugs
+    ]
+    given = InLugs(pin, material, tuple(lugs), (trial.loads,))
+    (made,), solving = timed(lambda: solve_in_lugs(given, Asked()))
+    every = list(parameters(pin, material, lugs))
+    found, deriving = timed(lambda: joint_derivatives(*solved_in_lugs(made, material), every))
+    whole = whole_joint(pin, material, lugs, trial.loads, ROUGH)
+    ours = joint_derivatives(whole.solved, whole.model, whole.links, every).by_parameter
+    most = sorted((p for p in every if p.key in ours), key=lambda p: -abs(p.scale * ours[p.key]))[
+        :CHECKED
+    ]
+    off = max(abs(p.scale * (ours[p.key] - whole.derivative(p))) for p in most)
+    return (
+        pin.name,
+        len(made.model.rings) if made.model else 0,
+        f"{made.solution.peak.dofs:,}",
+        len(found.by_parameter),
+        solving,
+        deriving,
+        deriving / solving,
+        f"{off / abs(most[0].scale * ours[most[0].key]):.0e}",
+    )
+
+
+def solved_in_lugs(
+    made: LugSolution, material: Material
+) -> tuple[SolvedCase, JointModel, PinLoads]:
+    """What is differentiated of a solution."""
+    solution, answer = made.solution, made.solution.answer
+    assert isinstance(answer, HarmonicAnswer)
+    assert made.rings is not None
+    assert made.model is not None
+    assert solution.peak.governing is not None
+    loads = solution.loads.at(np.array([solution.instant]))
+    solved = SolvedCase(made.rings, material, (), loads, answer.solution, answer.singularities)
+    return solved, made.model, solution.peak.governing
+
+
 def parameters(pin: Pin, material: Material, lugs: Sequence[Lug]) -> Iterator[JointParameter]:
-    """All lengths and moduli of a joint, each by itself."""
-    given = tuple(lugs)
+    """All lengths and moduli of a joint, each by itself; materials are told apart by names."""
+    joint = pin, material, tuple(lugs)
     for d in dimensions(pin):
-        changed = d.changed
-        yield JointParameter(d.key, d.value, d.value, lambda x, c=changed: (c(x), material, given))
-    for k, lug in enumerate(given):
-        for key, value in (
-            ("clearance", lug.clearance),
-            ("outer_diameter", lug.outer_diameter),
-            ("edge_radius", lug.edge_radius),
+        yield JointParameter(d.key, d.value, d.value, partial(_of_pin, joint, d))
+    for k, lug in enumerate(lugs):
+        loose = 1e-3 * pin.band(lug.connection).radius
+        thickness = 0.0 if lug.bushing is None else lug.bushing.thickness
+        for key, value, scale in (
+            ("clearance", lug.clearance, loose),
+            ("outer_diameter", lug.outer_diameter, lug.outer_diameter),
+            ("edge_radius", lug.edge_radius, lug.edge_radius),
+            ("bushing.thickness", thickness, thickness),
         ):
-            if value or key == "clearance":
-                scale = value or 1e-3 * pin.band(lug.connection).radius
-                name = f"lug.{lug.connection}.{key}"
-                yield JointParameter(
-                    name,
-                    value,
-                    scale,
-                    lambda x, k=k, key=key: (pin, material, _with(given, k, **{key: x})),
-                )
-        if lug.bushing is not None:
-            ring = lug.bushing
-            yield JointParameter(
-                f"lug.{lug.connection}.bushing.thickness",
-                ring.thickness,
-                ring.thickness,
-                lambda x, k=k, ring=ring: (
-                    pin,
-                    material,
-                    _with(given, k, bushing=replace(ring, thickness=x)),
-                ),
-            )
-    every = {material, *(x.material for x in given), *(x.bearing for x in given)}
-    for one in sorted(every, key=lambda m: m.name):
+            if scale:
+                changed = partial(_of_lug, joint, k, key)
+                yield JointParameter(f"lug.{lug.connection}.{key}", value, scale, changed)
+    every = {x.name: x for lug in lugs for x in (lug.material, lug.bearing)}
+    for one in (every | {material.name: material}).values():
         for key in ("youngs_modulus", "poisson_ratio", "density"):
-            value = getattr(one, key)
-            if value:
-                yield JointParameter(
-                    f"material.{one.name}.{key}",
-                    value,
-                    value,
-                    lambda x, one=one, key=key: _made_of(
-                        (pin, material, given), one, replace(one, **{key: x})
-                    ),
-                )
+            if value := getattr(one, key):
+                changed = partial(_made_of, joint, one, key)
+                yield JointParameter(f"material.{one.name}.{key}", value, value, changed)
 
 
-def _with(lugs: tuple[Lug, ...], k: int, **changed: object) -> tuple[Lug, ...]:
-    return tuple(replace(x, **changed) if i == k else x for i, x in enumerate(lugs))
+def _of_pin(joint: Joint, dimension: Dimension, value: float) -> Joint:
+    return dimension.changed(value), *joint[1:]
 
 
-def _made_of(joint: Joint, old: Material, new: Material) -> Joint:
+def _of_lug(joint: Joint, k: int, key: str, value: float) -> Joint:
     pin, material, lugs = joint
+    if key == "bushing.thickness" and (ring := lugs[k].bushing) is not None:
+        one = replace(lugs[k], bushing=replace(ring, thickness=value))
+    else:
+        changed: dict[str, Any] = {key: value}
+        one = replace(lugs[k], **changed)
+    return pin, material, (*lugs[:k], one, *lugs[k + 1 :])
+
+
+def _made_of(joint: Joint, old: Material, key: str, value: float) -> Joint:
+    pin, material, lugs = joint
+    changed: dict[str, Any] = {key: value}
 
     def made(one: Material) -> Material:
-        return new if one == old else one
+        return replace(one, **changed) if one == old else one
 
     def of(ring: Bushing | None) -> Bushing | None:
         return ring and replace(ring, material=made(ring.material))
 
-    found = tuple(replace(x, material=made(x.material), bushing=of(x.bushing)) for x in lugs)
-    return pin, made(material), found
+    found = (replace(x, material=made(x.material), bushing=of(x.bushing)) for x in lugs)
+    return pin, made(material), tuple(found)
 
 
 @dataclass(frozen=True)
@@ -116,7 +179,7 @@ class WholeJoint:
         other.of_pin = RingBody(on, rings.rings, rings.pushed).flexibility(highest)
         other.of_lugs, other.wavy = np.zeros_like(model.of_lugs), np.zeros_like(model.wavy)
         for (own, lug, ends), (_, old, before) in zip(other.by_lug(), model.by_lug(), strict=True):
-            was = model.on_lugs[model.likeness(old, before)]
+            was = lug_rings(model.eye(old, before), old, model.cells.across)
             eye = other.eye(lug, ends)
             space = was.body.space
             mesh = space.section

@@ -21,7 +21,7 @@ import numpy as np
 
 from fea.core.pin_loads import PinLoads
 from fea.derivatives.ring_work import Pair
-from fea.joint.contact import rotation
+from fea.joint.contact import Mask, rotation
 from fea.joint.pressure_loads import waves_of_sectors
 from fea.joint.solve_joint import JointModel
 from geometry.arrays import Floats
@@ -107,7 +107,7 @@ class HeldContact:
         return float(self._at.by_asked @ self._asked(self._model, links))
 
 
-def _close(values: Floats, some: Floats) -> int:
+def _close(values: Floats, some: Mask) -> int:
     """How many of some of the values are almost none."""
     found = values[some]
     return int((found < CLOSE * found.max(initial=0.0)).sum())

@@ -291,7 +291,8 @@ class _InLugs:
         none = np.zeros_like(self.links.forces)
         one = none.copy()
         one[:, c, 2] = 1.0
-        given = replace(self.links, **{"forces": none, "moments": none, what: one}, body=none[:, 0])
+        both = (one, none) if what == "forces" else (none, one)
+        given = replace(self.links, forces=both[0], moments=both[1], body=none[:, 0])
         along = others_along(self.model.pin, self.model.rings, given).coefficients()
         return self._of_amounts({load: both[0] for load, both in along.items()})
 

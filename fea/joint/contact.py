@@ -218,7 +218,8 @@ class ContactProblem:
     def tail_weights(self, first: int) -> Floats:
         """(M,) of cos(n a) on the sectors, of what n u_n = p_n adds from a harmonic on."""
         n = np.arange(first, WAVES * self.sectors)
-        return np.bincount(n % self.sectors, self.factors(n) / n, self.sectors)
+        each = self.factors(n) / n
+        return np.asarray(np.bincount(n % self.sectors, each, self.sectors), dtype=np.float64)
 
     def _of_cells(self, flexibility: Floats, tail: Floats) -> Floats:
         """Mean displacement of cells under forces on cells, (U, U) m/N."""

@@ -54,17 +54,17 @@ def joint_parameters(study: Study, task: Task) -> Iterator[StudyParameter]:
                 one = JointParameter(f"lug.{name}.{key}", number, scale or number, changed)
                 yield StudyParameter("length", one)
     made_of = [task.material, *(m for x in task.lugs for m in (x.material, x.bearing))]
-    for one in dict.fromkeys(made_of):
-        heavy = one is task.material and any(loads.body.any() for loads in task.loads)
+    for part in dict.fromkeys(made_of):
+        heavy = part == task.material and any(loads.body.any() for loads in task.loads)
         for key, kind in (
             ("youngs_modulus", "stress"),
             ("poisson_ratio", "1"),
             *((("density", "density"),) if heavy else ()),
         ):
-            value = getattr(one, key)
+            value = getattr(part, key)
             if value:
-                changed = partial(_with_material, study, task, one.name, key)
-                full = f"material.{one.name}.{key}"
+                changed = partial(_with_material, study, task, part.name, key)
+                full = f"material.{part.name}.{key}"
                 yield StudyParameter(kind, JointParameter(full, value, value, changed))
 
 

@@ -11,13 +11,16 @@ from functools import cache
 import numpy as np
 import pytest
 
-from benchmarks.joint_derivatives import WholeJoint, parameters, whole_joint
+from benchmarks.joint_derivatives import (
+    WholeJoint,
+    parameters,
+    solved_in_lugs,
+    whole_joint,
+)
 from fea.asked import Asked
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.derivatives.in_lugs import JointDerivatives, JointParameter, joint_derivatives
-from fea.derivatives.records import SolvedCase
-from fea.harmonic.evaluate import HarmonicAnswer
 from fea.joint.lugs.lug import Bushing, Lug
 from fea.joint.solve_in_lugs import InLugs, solve_in_lugs
 from fea.joint.solve_joint import Cells
@@ -124,7 +127,7 @@ def test_moduli_loads_and_weight_in_proportion_change_no_strain(name: str) -> No
 
 
 @pytest.mark.parametrize(
-    "name, key",
+    ("name", "key"),
     [
         ("closed", "profile[1-7].diameter"),
         ("loose", "profile[4].length"),
@@ -175,14 +178,7 @@ def test_of_a_solution_by_forces_clearances_and_shape() -> None:
     """
     lugs = tuple(replace(lug, clearance=1e-5) for lug in GUIDED)
     (made,) = solve_in_lugs(InLugs(PIN, STEEL, lugs, (STEADY,)), Asked(0.1))
-    solution, links, model = made.solution, made.solution.peak.governing, made.model
-    answer = solution.answer
-    assert isinstance(answer, HarmonicAnswer)
-    assert made.rings is not None
-    assert links is not None
-    assert model is not None
-    loads = solution.loads.at(np.array([solution.instant]))
-    solved = SolvedCase(made.rings, STEEL, (), loads, answer.solution, answer.singularities)
+    solution, (solved, model, links) = made.solution, solved_in_lugs(made, STEEL)
     every = tuple(parameters(PIN, STEEL, lugs))
     ours = joint_derivatives(solved, model, links, every)
     assert ours.maximum == pytest.approx(solution.peak.max_von_mises, rel=1e-12)
