@@ -193,9 +193,15 @@ def _of_case(
         *_of_loads(found, peak.governing),
         *_of_material(found, task.material),
     )
+    return _with_rows(out, found, rows)
+
+
+def _with_rows(
+    out: PinSensitivities, found: Derivatives | JointDerivatives, rows: Iterable[_Parameter]
+) -> PinSensitivities:
     return replace(
         out,
-        rows=_sorted(rows, factor),
+        rows=_sorted(rows, out.factor),
         tied_places=found.tied_places,
         tied_times=found.tied_times,
         without=tuple(found.without.items()),
@@ -228,14 +234,7 @@ def _of_lugs(study: Study, task: Task, joined: LugSolution, step: float | None) 
     if strength is not None:
         key, more = f"material.{task.material.name}.yield_strength", SMALL * strength
         rows.append(_Parameter(key, "stress", strength, more, 0.0, 1.0 / strength))
-    return replace(
-        out,
-        rows=_sorted(rows, factor),
-        tied_places=found.tied_places,
-        tied_times=found.tied_times,
-        without=tuple(found.without.items()),
-        changing=found.changing,
-    )
+    return _with_rows(replace(out, changing=found.changing), found, rows)
 
 
 def _of_joint(
