@@ -32,7 +32,7 @@ from fea.derivatives.reading_point import SectionState
 from fea.derivatives.records import Derivatives, SolvedCase
 from fea.derivatives.ties import tied_places, tied_times
 from fea.derivatives.virtual_work import COLUMNS, Interior, integral_rate, shape_gradient, work
-from fea.harmonic.assembly import elasticity
+from fea.harmonic.assembly import around, elasticity
 from fea.harmonic.boundary import Outline
 from fea.harmonic.model import HarmonicModel, applied, generalised
 from fea.harmonic.stress_recovery import points_of_nodes
@@ -107,15 +107,37 @@ class Adjoint:
         return out
 
     def _forces(
-        self, pin: Pin, outline: Outline, integrals: Floats | None = None
+        self, pin: Pin, outline: Outline, integrals: Floats | None = None, moved: bool = False
     ) -> tuple[Floats, Floats]:
-        """Of the waves: on the unknowns (3 N, K), and tractions (E, 3, 3, K)."""
+        """Of the waves: on the unknowns (3 N, K), and tractions (E, 3, 3, K). moved: but for the
+        forces of plain pressures.
+        """
         forces = np.zeros((self.space.unknowns, len(self.waves)))
         tractions = np.zeros((*outline.nodes.shape, 3, len(self.waves)))
         for n, loads, amounts, here in self._harmonics:
+            if moved and _plain(n, loads):
+                tractions[..., here] = self.traction[..., here]
+                continue
             one, other = applied(self.model, pin, outline, n, loads, integrals)
             forces[:, here], tractions[..., here] = one @ amounts, other @ amounts
         return forces, tractions
+
+    @cached_property
+    def _plain_pressures(self) -> tuple[Ints, Floats]:
+        """Edges (E,) under them, and what the adjoints make of their nodes' weights, (E, 3)."""
+        by_edge = np.zeros(self.outline.nodes.shape)
+        for n, loads, amounts, here in self._harmonics:
+            if not _plain(n, loads):
+                continue
+            p, m = (self._lambda[c::3, here] for c in (0, 1))  # a pressure works on their sum
+            inwards = -around(n) * (p + m)
+            for load, amount in zip(loads, amounts, strict=True):
+                own = inwards @ amount
+                for surface, pressure in load.parts:
+                    rows = self.outline.rows[surface]
+                    by_edge[rows] += pressure * own[self.outline.nodes[rows]]
+        rows = np.flatnonzero(by_edge.any(axis=1))
+        return rows, by_edge[rows]
 
     def of_loads(self, k: int, loads: Sequence[UnitLoad]) -> Floats:
         """What one more of each unit load (L,), of the harmonic and part of wave k, adds to the
@@ -226,9 +248,11 @@ class Adjoint:
             nodes = self.space.nodes + step * velocity
             outline = self.outline.moved(nodes)
             integrals = None if grown is None else self.space.integrals + step * grown
-            forces, tractions = self._forces(pin, outline, integrals)
+            forces, tractions = self._forces(pin, outline, integrals, moved=True)
             state = SectionState(nodes, tractions, self._places_at(step, velocity))
-            values.append(np.array(np.sum(self._lambda * forces) + self.read(state)))
+            rows, own = self._plain_pressures
+            work = np.sum(self._lambda * forces) + np.sum(own * outline.weights(rows))
+            values.append(np.array(work + self.read(state)))
         return float(rate_of(values, motion.step))
 
     @cached_property
@@ -279,3 +303,8 @@ class Adjoint:
             at = [self.fields_at[load] for load in wave.amounts if load.kind == "body"]
             total += sum(x * float(wave.weight @ s) for x, s in zip(own, at, strict=True))
         return total / density
+
+
+def _plain(n: int, loads: Iterable[UnitLoad]) -> bool:
+    """Whether loads of a harmonic are pressures that are what they are on any pin."""
+    return n > 1 and all(load.parts for load in loads)

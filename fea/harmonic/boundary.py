@@ -79,6 +79,12 @@ class Outline:
         rows = nodes.ravel()
         return np.stack([np.bincount(rows, x, len(self._nodes)) for x in found.T], axis=1)
 
+    def weights(self, rows: Ints) -> Floats:
+        """Of the nodes' values in integrals over some edges, length times r, (E, 3) m^2."""
+        x, values = self._nodes[self.nodes[rows]], shapes(_POINTS)
+        along = np.linalg.norm(np.einsum("qi,eia->eqa", slopes(_POINTS), x), axis=2)
+        return np.asarray((_WEIGHTS * along * (x[..., 0] @ values.T)) @ values)
+
     def _quadrature(self, surface: str) -> tuple[Floats, Floats]:
         """On the edges of a surface: z (E, Q), m, and the weights (E, Q, 3) of its nodes' values in
         an integral over length times r, m^2.

@@ -126,7 +126,7 @@ class JointModel:
                 self.of_lugs[:, own, own], self.wavy[:, :, own, own] = low, wavy
 
     def _shape(self, pin: Pin, material: Material, lugs: Sequence[Lug]) -> None:
-        cells = self.cells
+        cells, before = self.cells, self.__dict__.get("_cut")
         self.given, self.material = pin, material
         self.whole = pin = on_structure(pin, lugs)
         self.lugs = fitted(pin, material, lugs)
@@ -134,7 +134,9 @@ class JointModel:
             name: ring_ends(pin.band(name), lug.edge_radius, cells.rings, cells.beside)
             for name, lug in zip(pin.connections, self.lugs, strict=True)
         }
-        self.pin = ringed(pin, self.ends)
+        cut = pin, {name: ends.tolist() for name, ends in self.ends.items()}
+        if before != cut:
+            self._cut, self.pin = cut, ringed(pin, self.ends)
         self.rings = tuple(name for c, ends in self.ends.items() for name in rings(c, ends))
 
     def reshaped(self, pin: Pin, material: Material, lugs: Sequence[Lug]) -> JointModel:
