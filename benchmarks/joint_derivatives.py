@@ -34,8 +34,8 @@ from geometry.mesh.outline_motion import OutlineNodes, Reach
 from geometry.mesh.section_mesh import MeridianMesh
 from geometry.shape.dimensions import Dimension, dimensions
 
-JOINTS = 6
-CHECKED = 3  # parameters of each, those that matter most, that are compared with differences
+JOINTS = 4
+CHECKED = 2  # parameters of each, those that matter most, that are compared with differences
 ROUGH = Cells(4, 24, 8)  # of whole solutions for differences
 ALL = 1e-15  # what a pattern of pressures must add
 STEP = 1e-4  # of a parameter
