@@ -13,6 +13,7 @@ from benchmarks.random_pins import STEEL, Trial, trials
 from benchmarks.timing import table
 from fea.asked import Asked
 from fea.core.material import Material
+from fea.core.pin_loads import PinLoads
 from fea.derivatives.derivatives import derivatives
 from fea.derivatives.records import Derivatives, SolvedCase
 from fea.derivatives.virtual_work import Interior
@@ -56,9 +57,9 @@ def price() -> str:
 
 
 def _row(trial: Trial) -> tuple[object, ...]:
-    solution, solving = _timed(lambda: _solved(trial, Asked(model="harmonic")))
+    solution, solving = timed(lambda: _solved(trial, Asked(model="harmonic")))
     every = list(dimensions(trial.pin))
-    ours, deriving = _timed(lambda: derivatives(solution, every))
+    ours, deriving = timed(lambda: derivatives(solution, every))
     scale = max(abs(one.value * ours.by_dimension[one.key]) for one in every)
     fine = derivatives(_solved(trial, Asked(FINE, model="harmonic")), every)
     theirs = by_differences(solution)
@@ -82,7 +83,8 @@ def _apart(ours: Derivatives, fine: Derivatives, every: list[Dimension]) -> floa
     return float(np.abs(one - other).max() / np.abs(other).max())
 
 
-def _timed(work: Callable[[], T]) -> tuple[T, float]:
+def timed(work: Callable[[], T]) -> tuple[T, float]:
+    """With its processor time, s."""
     start = time.process_time()
     made = work()
     return made, time.process_time() - start
@@ -106,19 +108,22 @@ def velocities(of: SolvedCase) -> tuple[list[Dimension], Floats]:
     return every, Interior(Section(of.solution.mesh), nodes.rows).velocity(moved)
 
 
-def moved_maximum(of: SolvedCase, pin: Pin, moved: Floats, material: Material) -> float:
+def moved_maximum(
+    of: SolvedCase, pin: Pin, moved: Floats, material: Material, loads: PinLoads | None = None
+) -> float:
     """The stress at the governing point on the same mesh with its nodes moved (N, 2), all of it
-    found anew.
+    found anew; under other loads than before, if any.
     """
+    loads = loads or of.loads
     mesh = of.solution.mesh
     mesh = replace(mesh, nodes=mesh.nodes + moved)
-    zones = singularities_of(pin, material, of.clamps, (of.loads,))
-    units = tuple(of.loads.coefficients())
+    zones = singularities_of(pin, material, of.clamps, (loads,))
+    units = tuple(loads.coefficients())
     ends = _ends(pin, of.clamps, units)
     fields = HarmonicModel(pin, mesh, material, of.clamps).solve(units, _rims(pin, zones), ends)
     before = of.solution.fields
     old = Circumference(before, of.loads).top(before.outside(of.zones))
-    value, _ = Circumference(fields, of.loads).round(np.array([old.point]), np.array([0]))
+    value, _ = Circumference(fields, loads).round(np.array([old.point]), np.array([0]))
     return float(value[0])
 
 

@@ -18,7 +18,7 @@ Structural Sensitivity Analysis and Optimization 1, ch. 6 (shape).
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -32,7 +32,7 @@ from fea.derivatives.reading_point import SectionState
 from fea.derivatives.records import Derivatives, SolvedCase
 from fea.derivatives.ties import tied_places, tied_times
 from fea.derivatives.virtual_work import COLUMNS, Interior, integral_rate, shape_gradient, work
-from fea.harmonic.assembly import elasticity
+from fea.harmonic.assembly import around, elasticity
 from fea.harmonic.boundary import Outline
 from fea.harmonic.model import HarmonicModel, applied, generalised
 from fea.harmonic.stress_recovery import points_of_nodes
@@ -107,24 +107,49 @@ class Adjoint:
         return out
 
     def _forces(
-        self, pin: Pin, outline: Outline, integrals: Floats | None = None
+        self, pin: Pin, outline: Outline, integrals: Floats | None = None, moved: bool = False
     ) -> tuple[Floats, Floats]:
-        """Of the waves: on the unknowns (3 N, K), and tractions (E, 3, 3, K)."""
+        """Of the waves: on the unknowns (3 N, K), and tractions (E, 3, 3, K). moved: but for the
+        forces of plain pressures.
+        """
         forces = np.zeros((self.space.unknowns, len(self.waves)))
         tractions = np.zeros((*outline.nodes.shape, 3, len(self.waves)))
         for n, loads, amounts, here in self._harmonics:
+            if moved and _plain(n, loads):
+                tractions[..., here] = self.traction[..., here]
+                continue
             one, other = applied(self.model, pin, outline, n, loads, integrals)
             forces[:, here], tractions[..., here] = one @ amounts, other @ amounts
         return forces, tractions
 
-    def of_load(self, k: int, load: UnitLoad) -> float:
-        """What one more unit load, of the same harmonic and part as wave k, adds to the stress."""
+    @cached_property
+    def _plain_pressures(self) -> tuple[Ints, Floats]:
+        """Edges (E,) under them, and what the adjoints make of their nodes' weights, (E, 3)."""
+        by_edge = np.zeros(self.outline.nodes.shape)
+        for n, loads, amounts, here in self._harmonics:
+            if not _plain(n, loads):
+                continue
+            p, m = (self._lambda[c::3, here] for c in (0, 1))  # a pressure works on their sum
+            inwards = -around(n) * (p + m)
+            for load, amount in zip(loads, amounts, strict=True):
+                own = inwards @ amount
+                for surface, pressure in load.parts:
+                    rows = self.outline.rows[surface]
+                    by_edge[rows] += pressure * own[self.outline.nodes[rows]]
+        rows = np.flatnonzero(by_edge.any(axis=1))
+        return rows, by_edge[rows]
+
+    def of_loads(self, k: int, loads: Sequence[UnitLoad]) -> Floats:
+        """What one more of each unit load (L,), of the harmonic and part of wave k, adds to the
+        stress.
+        """
         wave = self.waves[k]
-        forces, traction = applied(self.model, self.solved.pin, self.outline, wave.n, [load])
+        forces, traction = applied(self.model, self.solved.pin, self.outline, wave.n, loads)
         state = replace(self.state, traction=traction)
-        none = np.zeros((len(self.point.nodes), 3, 1))
-        read = self.point.stress(self.solved.material, state, self.n[[k]], none)
-        return float(np.sum(self._lambda[:, k] * forces[:, 0]) + wave.weight @ read[:, 0])
+        none = np.zeros((len(self.point.nodes), 3, len(loads)))
+        n = np.full(len(loads), wave.n)
+        read = self.point.stress(self.solved.material, state, n, none)
+        return np.asarray(self._lambda[:, k] @ forces + wave.weight @ read)
 
     @cached_property
     def places(self) -> Floats:
@@ -158,7 +183,7 @@ class Adjoint:
         return out
 
     def derivatives(self, dimensions: tuple[Dimension, ...]) -> Derivatives:
-        by_dimension, without = self._by_dimension(dimensions)
+        by_dimension, without = self.by_dimension(dimensions)
         top, solved = self.top, self.solved
         r, z = (float(x) for x in self.fields.points[top.point])
         by_force, by_moment = by_loads(self.fields_at, solved.loads, self.weight, top)
@@ -169,28 +194,36 @@ class Adjoint:
             without,
             by_force,
             by_moment,
-            self._by_poisson(),
-            self._by_density(),
+            self.by_poisson(),
+            self.by_density(),
             tied_places(self.around, self.fields, solved.zones, top, solved.error),
             tied_times(solved, top.value),
         )
 
-    def _by_dimension(
+    def by_dimension(
         self, dimensions: tuple[Dimension, ...]
     ) -> tuple[dict[str, float], dict[str, str]]:
-        solved = self.solved
-        reaches = [Reach((p.r, p.z), p.radius) for p in solved.zones]
-        nodes = OutlineNodes(solved.solution.mesh, solved.pin, reaches)
+        """Pa/m, by key, and why others have none."""
         motions: list[NodeMotion] = []
         without = {}
         for dimension in dimensions:
             try:
-                motions.append(nodes.motion(dimension))
+                motions.append(self.outline_nodes.motion(dimension))
             except OtherShapeError:
                 without[dimension.key] = OTHER
+        return self.by_motions(motions), without
+
+    @cached_property
+    def outline_nodes(self) -> OutlineNodes:
+        """Those of the mesh."""
+        reaches = [Reach((p.r, p.z), p.radius) for p in self.solved.zones]
+        return OutlineNodes(self.solved.solution.mesh, self.solved.pin, reaches)
+
+    def by_motions(self, motions: Sequence[NodeMotion]) -> dict[str, float]:
+        """By key, Pa/m."""
         if not motions:
-            return {}, without
-        interior = Interior(self.space, nodes.rows)
+            return {}
+        interior = Interior(self.space, self.outline_nodes.rows)
         gradient = sum(
             shape_gradient(self.space, self._D, c.n, self._unknowns(k), self._lambda[:, k])
             for k, c in enumerate(self.waves)
@@ -204,8 +237,8 @@ class Adjoint:
                 velocity = np.ascontiguousarray(every[:, :, i])
                 grown = integral_rate(self.space, velocity) if heavy else None
                 given = self._given(motion, velocity, grown)
-                out[motion.dimension.key] = given - float(np.sum(gradient * velocity))
-        return out, without
+                out[motion.key] = given - float(np.sum(gradient * velocity))
+        return out
 
     def _given(self, motion: NodeMotion, velocity: Floats, grown: Floats | None) -> float:
         """What forces, tractions and the reading change, with displacements as they are."""
@@ -215,9 +248,11 @@ class Adjoint:
             nodes = self.space.nodes + step * velocity
             outline = self.outline.moved(nodes)
             integrals = None if grown is None else self.space.integrals + step * grown
-            forces, tractions = self._forces(pin, outline, integrals)
+            forces, tractions = self._forces(pin, outline, integrals, moved=True)
             state = SectionState(nodes, tractions, self._places_at(step, velocity))
-            values.append(np.array(np.sum(self._lambda * forces) + self.read(state)))
+            rows, own = self._plain_pressures
+            work = np.sum(self._lambda * forces) + np.sum(own * outline.weights(rows))
+            values.append(np.array(work + self.read(state)))
         return float(rate_of(values, motion.step))
 
     @cached_property
@@ -241,7 +276,8 @@ class Adjoint:
         U, V, W = self.u[:, :, k].T
         return np.stack([(U + V) / 2.0, (U - V) / 2.0, W], axis=1).ravel()
 
-    def _by_poisson(self) -> float:
+    def by_poisson(self) -> float:
+        """By Poisson's ratio, Pa."""
         material = self.solved.material
         nu = material.poisson_ratio
         step = min(POISSON, 0.1 * (0.5 - nu), 0.1 * (1.0 + nu))
@@ -256,7 +292,8 @@ class Adjoint:
         )
         return float(rate(lambda x: np.array(self.read(self.state, other(x))), step)) - against
 
-    def _by_density(self) -> float:
+    def by_density(self) -> float:
+        """Pa/(kg/m^3)."""
         density = self.solved.material.density
         if not density:
             return 0.0
@@ -266,3 +303,8 @@ class Adjoint:
             at = [self.fields_at[load] for load in wave.amounts if load.kind == "body"]
             total += sum(x * float(wave.weight @ s) for x, s in zip(own, at, strict=True))
         return total / density
+
+
+def _plain(n: int, loads: Iterable[UnitLoad]) -> bool:
+    """Whether loads of a harmonic are pressures that are what they are on any pin."""
+    return n > 1 and all(load.parts for load in loads)

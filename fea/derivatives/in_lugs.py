@@ -1,94 +1,309 @@
-"""Derivatives of the largest stress of a pin in contact with its lugs: by loads and clearances.
+"""Derivatives of the largest stress of a pin in contact with its lugs: by shape, material, loads.
 
-As long as the same cells are in contact pressures are linear in both. So they are differentiated
-by differences of contact alone, with the flexibilities at hand, and stress by them with the
-adjoints of the pin under its pressures: no other stress is solved.
-
-With the dimensions of the pin and the moduli its flexibility changes, of which every one takes a
-new solution on all rings: they are not differentiated.
+As long as the same cells are in contact pressures are a smooth function of everything, and stress
+one of these and of the pin. Three adjoints serve all parameters: that of stress under given
+pressures (fea.derivatives.derivatives), on the mesh of the maximum; that of contact
+(fea.derivatives.held_contact); and the displacements of pin and lugs under the pressures and under
+the adjoint ones (fea.derivatives.ring_work), on the meshes of their flexibilities. So these are the
+derivatives of the maximum on all meshes as they are moved, with the cells of the solution.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
+from fea.core.material import Material
 from fea.core.pin_loads import PinLoads, UnitLoad
-from fea.derivatives.derivatives import Adjoint
-from fea.derivatives.governing import turned
+from fea.derivatives.derivatives import OTHER, Adjoint
+from fea.derivatives.governing import By, turned
+from fea.derivatives.held_contact import HeldContact
 from fea.derivatives.records import SolvedCase
-from fea.joint.contact import Pressed
+from fea.derivatives.ring_work import RingWork
+from fea.derivatives.ties import tied_places, tied_times
+from fea.derivatives.virtual_work import Interior
+from fea.harmonic.assembly import elasticity
+from fea.joint.lugs.lug import Lug
+from fea.joint.pressure_loads import others_along
 from fea.joint.solve_joint import JointModel
+from geometry import ArgumentError, GeometryError, Pin
 from geometry.arrays import Floats
+from geometry.mesh.outline_motion import (
+    PLACES,
+    STEPS,
+    NodeMotion,
+    OtherShapeError,
+    OutlineNodes,
+    rate_of,
+)
 
-STEPS = 1e-4, 1e-6  # of the largest force: the second where the first brings other cells in
-LOOSER = 1e-8  # clearance that is added, of the radius
+FORCE = 1e-4  # step of a force, of the largest
 AXES = "xy"
+SAME = 1e-13  # of the size: what round-off moves
+Joint = tuple[Pin, Material, tuple[Lug, ...]]
+
+
+@dataclass(frozen=True)
+class JointParameter:
+    """Anything of a pin in its lugs, by a key; scale: what steps of it are parts of; changed: the
+    joint with another value of it.
+    """
+
+    key: str
+    value: float
+    scale: float
+    changed: Callable[[float], Joint]
 
 
 @dataclass(frozen=True)
 class JointDerivatives:
-    """Of the largest stress `maximum`, Pa. by_force: Pa/N, of the force of each link across the
-    pin, by connection and axis of the pin, what is out of balance then being shared by the links;
-    by_clearance: Pa/m, by connection. Those are missing with which cells come into contact or leave
-    it at once.
+    """Of the largest stress `maximum`, Pa. by_parameter: per unit of it, by key; without: why
+    others have none. by_force: Pa/N, of the force of each link, by connection and axis of the pin,
+    what is out of balance then being shared by the links; by_moment: Pa/(N m), about its axis.
+    tied_places, tied_times as fea.derivatives.records.Derivatives has them; changing: how many
+    cells are about to open or to close, with which the derivatives hold on one side only.
     """
 
     maximum: float
-    by_force: dict[tuple[str, str], float]
-    by_clearance: dict[str, float]
+    by_parameter: dict[str, float]
+    without: dict[str, str]
+    by_force: By
+    by_moment: By
+    tied_places: tuple[tuple[float, float], ...] = ()
+    tied_times: tuple[float, ...] = ()
+    changing: int = 0
 
 
-def joint_derivatives(solved: SolvedCase, model: JointModel, links: PinLoads) -> JointDerivatives:
+def joint_derivatives(
+    solved: SolvedCase,
+    model: JointModel,
+    links: PinLoads,
+    parameters: Iterable[JointParameter] = (),
+) -> JointDerivatives:
     """Of the maximum under pressures at one instant. solved: the pin with its bands cut into rings
     under them; links: the loads that they carry.
 
-    Raises: SolveError.
+    Raises: MeshError, SolveError.
     """
-    adjoint = Adjoint(solved)
-    keys = [(c, axis) for c in range(len(links.surfaces)) for axis in range(len(AXES))]
-    by_force: dict[tuple[str, str], float] = {}
-    size = float(np.abs(links.forces).max())
-    for part in STEPS:
-        step = part * size
-        forces = np.repeat(links.forces, 1 + 2 * len(keys), axis=0)
-        for k, (c, a) in enumerate(keys):
-            forces[1 + 2 * k, c, a] += step
-            forces[2 + 2 * k, c, a] -= step
-        none = np.zeros(len(forces), dtype=np.int64)
-        before, *found = model.pressed(replace(links.at(none), forces=forces, times=None))
-        for k, (c, a) in enumerate(keys):
-            change = _change(model, adjoint, found[2 * k + 1], found[2 * k])
-            if change is not None:
-                by_force.setdefault((links.surfaces[c], AXES[a]), change / (2.0 * step))
-        if len(by_force) == len(keys):
-            break
-    by_clearance: dict[str, float] = {}
-    for k, lug in enumerate(model.lugs):
-        step = LOOSER * model.whole.band(lug.connection).radius
-        lugs = list(model.lugs)
-        lugs[k] = replace(lug, clearance=lug.clearance + step)
-        change = _change(model, adjoint, before, model.varied(tuple(lugs)).pressed(links)[0])
-        if change is not None:
-            by_clearance[lug.connection] = change / step
-    return JointDerivatives(adjoint.top.value, by_force, by_clearance)
+    return _InLugs(solved, model, links).derivatives(tuple(parameters))
 
 
-def _change(model: JointModel, adjoint: Adjoint, less: Pressed, more: Pressed) -> float | None:
-    """Of the stress, Pa, from one contact to another; None where other cells touch."""
-    if not np.array_equal(less.active, more.active):
-        return None
-    first, last = (model.waves([pressed])[:, 0] for pressed in (less, more))
-    return of_pressures(adjoint, model.rings, last - first)
+@dataclass(frozen=True)
+class _Change:
+    """Of a parameter, by its key: the joint at PLACES times a step (m, or its unit) more of it, and
+    the motions of the outline, None where the pin stays, on the mesh of the maximum and on that of
+    its flexibility.
+    """
+
+    key: str
+    models: tuple[JointModel, ...]
+    step: float
+    motions: tuple[NodeMotion, NodeMotion] | None
+
+    def rate(self, of: Callable[[JointModel], Floats | float]) -> Floats:
+        """Of what the joint has."""
+        return rate_of([np.asarray(of(one)) for one in self.models], self.step)
 
 
-def of_pressures(adjoint: Adjoint, rings: tuple[str, ...], waves: Floats) -> float:
-    """What pressures (N + 1, R, 2), Pa, of the harmonics from 0 on add to the stress, Pa."""
-    total = 0.0
-    for k, wave in enumerate(adjoint.waves):
-        if wave.n < len(waves):
-            amount = turned(wave.n, waves[wave.n].T, adjoint.top.angle)[wave.part]
-            parts = tuple(zip(rings, amount.tolist(), strict=True))
-            total += adjoint.of_load(k, UnitLoad("", "pressure", wave.n, parts))
-    return total
+class _InLugs:
+    def __init__(self, solved: SolvedCase, model: JointModel, links: PinLoads) -> None:
+        self.solved, self.model, self.links = solved, model, links
+        self.adjoint = Adjoint(solved)
+        self.contact = HeldContact(model, links, self._gradient())
+
+    def _gradient(self) -> Floats:
+        """Of the stress by the amplitudes of pressures on the rings, (N + 1, R, 2)."""
+        model, adjoint = self.model, self.adjoint
+        out = np.zeros((model.cells.highest + 1, len(model.rings), 2))
+        for k, wave in enumerate(adjoint.waves):
+            if wave.n < len(out):
+                loads = [UnitLoad("", "pressure", wave.n, ((name, 1.0),)) for name in model.rings]
+                each = turned(wave.n, np.eye(2), adjoint.top.angle)[wave.part]
+                out[wave.n] += adjoint.of_loads(k, loads)[:, None] * each
+        return out
+
+    def derivatives(self, parameters: tuple[JointParameter, ...]) -> JointDerivatives:
+        changes, without = [], {}
+        for parameter in parameters:
+            try:
+                changes.append(self._change(parameter))
+            except OtherShapeError:
+                without[parameter.key] = OTHER
+        adjoint, solved, top = self.adjoint, self.solved, self.adjoint.top
+        return JointDerivatives(
+            top.value,
+            self._by(changes),
+            without,
+            self._by_forces(),
+            self._by_moments(),
+            tied_places(adjoint.around, adjoint.fields, solved.zones, top, solved.error),
+            tied_times(solved, top.value),
+            self.contact.changing,
+        )
+
+    @cached_property
+    def pin_work(self) -> RingWork:
+        return RingWork(self.model.on_pin, {"": tuple(self.contact.pairs())})
+
+    @cached_property
+    def lug_works(self) -> dict[str, RingWork]:
+        """By connection; of equal lugs one."""
+        model, out = self.model, dict[str, RingWork]()
+        for key, equal in model.alike().items():
+            pairs = {x.connection: tuple(self.contact.pairs(own)) for own, x, _ in equal}
+            out |= dict.fromkeys(pairs, RingWork(model.on_lugs[key], pairs))
+        return out
+
+    @cached_property
+    def _flexible(self) -> OutlineNodes:
+        """The nodes of the mesh of the pin's flexibility."""
+        return OutlineNodes(self.pin_work.space.section, self.model.pin)
+
+    def _change(self, parameter: JointParameter) -> _Change:
+        """Raises: OtherShapeError."""
+        model = self.model
+        for part in STEPS:
+            step = part * parameter.scale
+            values = [parameter.value + x * step for x in PLACES]
+            try:
+                models = tuple(model.reshaped(*parameter.changed(value)) for value in values)
+            except (ArgumentError, GeometryError):
+                continue
+            if any(one.rings != model.rings for one in models):
+                continue
+            pins = tuple(one.pin for one in models)
+            if all(pin == model.pin for pin in pins):
+                return _Change(parameter.key, models, step, None)
+            try:
+                first, second = (
+                    nodes.among(parameter.key, pins, step)
+                    for nodes in (self.adjoint.outline_nodes, self._flexible)
+                )
+            except OtherShapeError:
+                continue
+            return _Change(parameter.key, models, step, (first, second))
+        raise OtherShapeError
+
+    def _by(self, changes: Sequence[_Change]) -> dict[str, float]:
+        """By key."""
+        shapes = [(x.key, x.motions) for x in changes if x.motions is not None]
+        of_pin = self.adjoint.by_motions([first for _, (first, _) in shapes])
+        if shapes:
+            moved = np.stack([second.velocity for _, (_, second) in shapes], axis=2)
+            interior = Interior(self.pin_work.space, self._flexible.rows)
+            for (key, _), v in zip(
+                shapes, np.moveaxis(interior.velocity(moved), 2, 0), strict=True
+            ):
+                of_pin[key] += self.pin_work.by_shape("", v)
+        out = {}
+        for change in changes:
+            total = of_pin.get(change.key, 0.0) + float(change.rate(self.contact.held))
+            total += self._by_material(change) + self._by_shares(change)
+            total += sum(self._by_lug(change, lug) for lug in self.model.lugs)
+            out[change.key] = total
+        return out
+
+    def _by_material(self, change: _Change) -> float:
+        """Of the pin."""
+        if all(one.material == self.model.material for one in change.models):
+            return 0.0
+        D = change.rate(lambda one: elasticity(one.material))
+        total = self.pin_work.by_material("", [D])
+        if poisson := float(change.rate(lambda one: one.material.poisson_ratio)):
+            total += poisson * self.adjoint.by_poisson()
+        if density := float(change.rate(lambda one: one.material.density or 0.0)):
+            total += density * self.adjoint.by_density()
+        return total
+
+    def _by_shares(self, change: _Change) -> float:
+        """Of what acts along the axis and about it, which rings take by their lengths."""
+        if change.motions is None or not (self._acts("forces") or self._acts("moments")):
+            return 0.0
+        each = [others_along(x.pin, x.rings, self.links).coefficients() for x in change.models]
+        rates = {load: rate_of([x[load][0] for x in each], change.step) for load in each[0]}
+        return self._of_amounts(rates)
+
+    def _acts(self, what: str) -> bool:
+        """Whether there is any along the axis."""
+        return bool(getattr(self.links, what)[..., 2].any())
+
+    def _of_amounts(self, amounts: Mapping[UnitLoad, Floats]) -> float:
+        """What amounts (2,) of unit loads, by phase, add to the stress."""
+        total, adjoint = 0.0, self.adjoint
+        for load, both in amounts.items():
+            parts = turned(load.n, both, adjoint.top.angle)
+            for k, wave in enumerate(adjoint.waves):
+                if wave.n == load.n and parts[wave.part]:
+                    total += float(parts[wave.part] * adjoint.of_loads(k, [load])[0])
+        return total
+
+    def _by_lug(self, change: _Change, lug: Lug) -> float:
+        """What the elasticity of a lug adds."""
+        name = lug.connection
+        number = self.model.lugs.index(lug)
+        others = [one.lugs[number] for one in change.models]
+        work, total = self.lug_works[name], 0.0
+        if any(_made_of(one) != _made_of(lug) for one in others):
+            each = [[elasticity(part) for part in _made_of(one)] for one in others]
+            rates = [rate_of(parts, change.step) for parts in zip(*each, strict=True)]
+            total += work.by_material(name, rates)
+        at = _knots(self.model, lug)
+        knots = [_knots(*both) for both in zip(change.models, others, strict=True)]
+        if all(
+            np.abs(x - y).max() <= SAME * y[-1]
+            for one in knots
+            for x, y in zip(one, at, strict=True)
+        ):
+            return total
+        moved = [rate_of([one[k] for one in knots], change.step) for k in (0, 1)]
+        nodes = work.space.nodes
+        each_way = [np.interp(nodes[:, k], at[k], moved[k]) for k in (0, 1)]
+        velocity, lengths = np.stack(each_way, axis=1), [float(z[-1]) for _, z in knots]
+        total += work.by_shape(name, velocity)
+        return total + work.by_reaction(name, velocity, lengths, change.step)
+
+    def _by_forces(self) -> By:
+        """Of the links across, in which contact is linear, and along the axis where any act."""
+        links, out = self.links, dict[tuple[str, str], float]()
+        step = FORCE * float(np.abs(links.forces).max())
+        before = self.contact.by_loads(links)
+        for c, surface in enumerate(links.surfaces):
+            for a, axis in enumerate(AXES):
+                one = np.zeros_like(links.forces)
+                one[:, c, a] = step
+                more = replace(links, forces=links.forces + one)
+                out[surface, axis] = (self.contact.by_loads(more) - before) / step
+            if self._acts("forces"):
+                out[surface, "z"] = self._by_one("forces", c)
+        return out
+
+    def _by_moments(self) -> By:
+        """About the axis, where any act."""
+        links = self.links
+        turns = enumerate(links.surfaces if self._acts("moments") else ())
+        return {(surface, "z"): self._by_one("moments", c) for c, surface in turns}
+
+    def _by_one(self, what: str, c: int) -> float:
+        """Of a link's force along the axis or moment about it."""
+        none = np.zeros_like(self.links.forces)
+        one = none.copy()
+        one[:, c, 2] = 1.0
+        both = (one, none) if what == "forces" else (none, one)
+        given = replace(self.links, forces=both[0], moments=both[1], body=none[:, 0])
+        along = others_along(self.model.pin, self.model.rings, given).coefficients()
+        return self._of_amounts({load: both[0] for load, both in along.items()})
+
+
+def _made_of(lug: Lug) -> tuple[Material, ...]:
+    """The parts of its section."""
+    return (lug.material,) if lug.bushing is None else (lug.bushing.material, lug.material)
+
+
+def _knots(model: JointModel, lug: Lug) -> tuple[Floats, Floats]:
+    """Radii and z (m) of a lug between which the nodes of its mesh keep their places."""
+    bore, ends = model.whole.band(lug.connection).radius, model.ends[lug.connection]
+    between = [] if lug.bushing is None else [bore + lug.bushing.thickness]
+    return np.array([bore, *between, 0.5 * lug.outer_diameter]), ends - ends[0]

@@ -32,11 +32,11 @@ COLUMNS = 32  # motions at once
 
 def shape_gradient(space: Section, D: Floats, n: int, u: Floats, adjoint: Floats) -> Floats:
     """Rate (N, 2) of adjoint^T K u, N m per m, with the coordinates r, z of every node; u, adjoint
-    (3 N,): unknowns of harmonic n. D: (6, 6) fea.harmonic.assembly.elasticity.
+    (3 N,): unknowns of harmonic n. D: fea.harmonic.assembly.elasticity, (6, 6) or of each element.
     """
     out = np.zeros((len(space.nodes), 2))
     for here, gradients, weights, (G, L) in _parts(space, (u, adjoint)):
-        P, Q = (_conjugate(D, n, x) for x in (G, L))
+        P, Q = (_conjugate(D, here, n, x) for x in (G, L))
         both = np.einsum("mqca,mqcb->mqab", L, P) + np.einsum("mqca,mqcb->mqab", G, Q)
         work = np.einsum("mqca,mqca->mq", L, P)
         of = work[..., None] - np.stack([both[..., a, a] for a in range(3)], axis=-1)
@@ -51,10 +51,10 @@ def shape_gradient(space: Section, D: Floats, n: int, u: Floats, adjoint: Floats
 
 
 def work(space: Section, D: Floats, n: int, u: Floats, adjoint: Floats) -> float:
-    """adjoint^T K u of a material D (6, 6), N m."""
+    """adjoint^T K u, N m, of such a D."""
     total = 0.0
-    for _, __, weights, (G, L) in _parts(space, (u, adjoint)):
-        total += float(np.einsum("mq,mqca,mqca->", weights, L, _conjugate(D, n, G)))
+    for here, _, weights, (G, L) in _parts(space, (u, adjoint)):
+        total += float(np.einsum("mq,mqca,mqca->", weights, L, _conjugate(D, here, n, G)))
     return around(n) * total
 
 
@@ -72,10 +72,11 @@ def _parts(
         yield here, gradients[here], weights[here], G
 
 
-def _conjugate(D: Floats, n: int, G: Floats) -> Floats:
-    """The stresses (.., 3, 3) that work on G: derivatives of half e^T D e."""
+def _conjugate(D: Floats, here: slice, n: int, G: Floats) -> Floats:
+    """The stresses (M, Q, 3, 3) that work on G: derivatives of half e^T D e."""
     E = strain_map(n).reshape(6, 9)
-    return np.asarray((G.reshape(-1, 9) @ (E.T @ D @ E)).reshape(G.shape))
+    own = D[here] if D.ndim > 2 else D
+    return np.asarray((G.reshape(*G.shape[:2], 9) @ (E.T @ own @ E)).reshape(G.shape))
 
 
 def integral_rate(space: Section, velocity: Floats) -> Floats:

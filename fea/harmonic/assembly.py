@@ -39,7 +39,7 @@ class Section:
     """
 
     def __init__(self, section: MeridianMesh, parts: Ints | None = None) -> None:
-        self.section, self._parts = section, parts
+        self.section, self.parts = section, parts
         at, self._area_weights, exact = _rules()
         self.sampled_at = at[:, exact:]  # three, where strains are most exact
         self._quadrature, self._sampled_points = slice(0, exact), slice(exact, None)
@@ -135,9 +135,9 @@ class Section:
         parts = self._gradients[:, self._quadrature] * root[..., None, None]
         x = parts.reshape(len(parts), -1, 3, 6).transpose(0, 3, 2, 1).reshape(len(parts), 18, -1)
         products = (x @ x.swapaxes(1, 2)).reshape(-1, 6, 3, 6, 3).swapaxes(2, 3)
-        if self._parts is None:
+        if self.parts is None:
             return [self.pattern.sums(products).reshape(-1, 9)]
-        masks = (self._parts == k for k in range(int(self._parts.max()) + 1))
+        masks = (self.parts == k for k in range(int(self.parts.max()) + 1))
         each = (products * mask[:, None, None, None, None] for mask in masks)
         return [self.pattern.sums(own).reshape(-1, 9) for own in each]
 

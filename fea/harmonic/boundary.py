@@ -68,12 +68,22 @@ class Outline:
 
     def forces(self, parts: tuple[Traction, ...], n: int) -> Floats:
         """Nodal forces (N, 3) along r, theta and z of tractions of harmonic n."""
-        out = np.zeros((len(self._nodes), 3))
+        if not parts:
+            return np.zeros((len(self._nodes), 3))
+        surfaces = tuple(part.surface for part in parts)
+        nodes, each = self.nodes[np.concatenate([self.rows[name] for name in surfaces])], []
         for part in parts:
             z, weight = self._quadrature(part.surface)
-            found = around(n) * np.einsum("eqi,eqa->eia", weight, part.at(z))
-            np.add.at(out, self.nodes[self.rows[part.surface]], found)
-        return out
+            each.append(np.einsum("eqi,eqa->eia", weight, part.at(z)))
+        found = around(n) * np.concatenate(each).reshape(-1, 3)
+        rows = nodes.ravel()
+        return np.stack([np.bincount(rows, x, len(self._nodes)) for x in found.T], axis=1)
+
+    def weights(self, rows: Ints) -> Floats:
+        """Of the nodes' values in integrals over some edges, length times r, (E, 3) m^2."""
+        x, values = self._nodes[self.nodes[rows]], shapes(_POINTS)
+        along = np.linalg.norm(np.einsum("qi,eia->eqa", slopes(_POINTS), x), axis=2)
+        return np.asarray((_WEIGHTS * along * (x[..., 0] @ values.T)) @ values)
 
     def _quadrature(self, surface: str) -> tuple[Floats, Floats]:
         """On the edges of a surface: z (E, Q), m, and the weights (E, Q, 3) of its nodes' values in

@@ -44,7 +44,7 @@ class HarmonicBody:
         self.pin, self.space, self.pivot = pin, space, pivot
         self.clamps = tuple(pin.surface(name) for name in clamps)
         self.outline = Outline(self.space)
-        self._materials = material
+        self.materials = material
         # one for all harmonics: constrained unknowns stay in it
         self._system: ConstrainedSystem | None = None
 
@@ -55,7 +55,7 @@ class HarmonicBody:
     def displace(self, n: int, forces: Floats, moved: Floats | None = None) -> Floats:
         """Unknowns (unknowns, K) of harmonic n under forces on them, and motions of clamps."""
         fixed = np.concatenate([self._on_axis(n), self._constrained(n)])
-        K = self.space.stiffness(self._materials, n)
+        K = self.space.stiffness(self.materials, n)
         if n < 2:
             self._require_equilibrium(K, n)
         free = np.ones(K.shape[0])

@@ -31,6 +31,7 @@ from scipy.linalg import cho_factor, cho_solve
 
 from fea.core.linear_solver import SolveError
 from fea.core.pin_loads import Floats
+from geometry.arrays import Ints
 
 Mask = NDArray[np.bool_]
 
@@ -124,6 +125,18 @@ def rotation(angle: float) -> Floats:
 
 
 @dataclass(frozen=True)
+class Adjoined:
+    """Contact of some cells: forces (U,) N and rigid motions (Y,), and what a sum of the forces
+    loses by a gap at each of the cells (U,), and gains by what is asked of each motion (Y,).
+    """
+
+    force: Floats
+    motion: Floats
+    by_gap: Floats
+    by_asked: Floats
+
+
+@dataclass(frozen=True)
 class _Answer:
     """What the cells of one active set answer: forces (U,) N and gaps (U,) m without rigid motions,
     how much each rigid motion takes off the forces and adds to the gaps, (U, Y), and the equations
@@ -162,15 +175,18 @@ class ContactProblem:
     ) -> None:
         self.bands, self.sectors = bands, sectors
         self.angles = 2.0 * np.pi * np.arange(sectors) / sectors
-        self.area = np.repeat(bands.length * bands.radius, sectors) * 2.0 * np.pi / sectors
+        self.area = self.cells_area(bands)
         mean = np.sinc(1.0 / sectors)  # of cos and sin over a sector
         e_r = mean * np.stack([np.cos(self.angles), np.sin(self.angles)], axis=1)
         self._e_r = np.tile(e_r, (len(bands.z), 1))  # (U, 2)
-        self._z = np.repeat(bands.z, sectors)
         self._link = np.repeat(bands.links[bands.band], sectors)
         self._count = int(bands.links.max()) + 1
         self._fixed = self._of_cells(flexibility, tail)
         self._fit(bands, tilt)
+
+    def cells_area(self, bands: Bands) -> Floats:
+        """Of all cells of bands with as many rings, (U,) m^2."""
+        return np.repeat(bands.length * bands.radius, self.sectors) * 2.0 * np.pi / self.sectors
 
     def changed(self, gap: Floats, tilt: Sequence[float]) -> ContactProblem:
         """The same with other gaps before any load (R,) m and tilts."""
@@ -181,8 +197,8 @@ class ContactProblem:
     def _fit(self, bands: Bands, tilt: Sequence[float]) -> None:
         self.bands = bands
         self._open = np.repeat(bands.gap, self.sectors)
-        self._compliance = self._fixed
-        self._motions = self._rigid(np.asarray(tilt, dtype=float))
+        self._motions, tilts = self.rigid(bands, tilt)
+        self._compliance = self._fixed + tilts @ tilts.T if tilts.size else self._fixed
         self._soft = SOFT / np.abs(self._compliance).max()
         # of the motions, (Y, Y): a turn counts as the shift at the far end
         self._scale = np.diag(np.square(self._motions).max(axis=0))
@@ -193,14 +209,24 @@ class ContactProblem:
         """Whether pin and bores fit everywhere before any load."""
         return not self.bands.gap.any()
 
+    def factors(self, n: Ints) -> Floats:
+        """Of harmonics in the mean over a cell under pressure on a cell, (N,)."""
+        return np.asarray(
+            np.where(n == 0, 1.0, 2.0) / self.sectors * np.sinc(n / self.sectors) ** 2
+        )
+
+    def tail_weights(self, first: int) -> Floats:
+        """(M,) of cos(n a) on the sectors, of what n u_n = p_n adds from a harmonic on."""
+        n = np.arange(first, WAVES * self.sectors)
+        each = self.factors(n) / n
+        return np.asarray(np.bincount(n % self.sectors, each, self.sectors), dtype=np.float64)
+
     def _of_cells(self, flexibility: Floats, tail: Floats) -> Floats:
         """Mean displacement of cells under forces on cells, (U, U) m/N."""
         M, n = self.sectors, np.arange(len(flexibility))
-        factors = np.where(n == 0, 1.0, 2.0) / M * np.sinc(n / M) ** 2
-        waves = np.cos(np.outer(n, self.angles)) * factors[:, None]  # (N + 1, M)
+        waves = np.cos(np.outer(n, self.angles)) * self.factors(n)[:, None]  # (N + 1, M)
         apart = np.tensordot(flexibility, waves, (0, 0))  # (R, R, M)
-        high = np.arange(len(flexibility), WAVES * M)
-        weights = np.bincount(high % M, 2.0 / M * np.sinc(high / M) ** 2 / high, M)
+        weights = self.tail_weights(len(flexibility))
         near = weights @ np.cos(np.outer(np.arange(M), self.angles))  # the same a turn further on
         apart[np.arange(len(tail)), np.arange(len(tail))] += tail[:, None] * near
         turn = (np.arange(M)[:, None] - np.arange(M)) % M
@@ -208,26 +234,24 @@ class ContactProblem:
         full = apart[:, :, turn].transpose(0, 2, 1, 3).reshape(rings * M, rings * M)
         return np.asarray(full / self.area)
 
-    def _rigid(self, tilt: Floats) -> Floats:
-        """Changes of the gap by what has no stiffness, (U, Y): shifts of the lugs, turn of the pin,
-        tilts of the lugs that are free. Those with stiffness go into the compliance.
+    def rigid(self, bands: Bands, tilt: Sequence[float]) -> tuple[Floats, Floats]:
+        """Changes of the gap on bands with as many rings by what has no stiffness, (U, Y): shifts
+        of the lugs, turn of the pin, tilts of the lugs that are free; and by the tilts of those
+        that have one, over its root, (U, S), whose products are their compliance.
         """
         columns = [self._e_r * (self._link == k)[:, None] for k in range(self._count)]
-        band = np.repeat(self.bands.band, self.sectors)
-        middle = 0.5 * (self._z.min() + self._z.max())
-        columns.append(self._e_r * (self._z - middle)[:, None])
-        if (np.isfinite(tilt) & (tilt > 0.0)).any():
-            self._compliance = self._compliance.copy()
-        for b, stiffness in enumerate(tilt.tolist()):
-            arm = (self._z - self.bands.middles[b]) * (band == b)
+        band, z = (np.repeat(x, self.sectors) for x in (bands.band, bands.z))
+        middle = 0.5 * (z.min() + z.max())
+        columns.append(self._e_r * (z - middle)[:, None])
+        elastic = [np.zeros((len(z), 0))]
+        for b, stiffness in enumerate(tilt):
+            arm = (z - bands.middles[b]) * (band == b)
             column = self._e_r * arm[:, None]
             if stiffness == 0.0:
                 columns.append(column)
             elif np.isfinite(stiffness):
-                own = np.flatnonzero(band == b)  # neighbours, in one block
-                block = slice(own[0], own[-1] + 1)
-                self._compliance[block, block] += column[block] @ column[block].T / stiffness
-        return np.hstack(columns)
+                elastic.append(column / math.sqrt(stiffness))
+        return np.hstack(columns), np.hstack(elastic)
 
     def solve(
         self, forces: Floats, couple: tuple[float, float] = (0.0, 0.0), start: Mask | None = None
@@ -239,7 +263,7 @@ class ContactProblem:
 
         Raises: SolveError where the active set does not settle.
         """
-        asked = self._asked(np.asarray(forces, dtype=float), couple)
+        asked = self.asked(forces, couple)
         facing = self._facing(forces)
         found = self._settled(asked, facing if start is None else start.ravel().copy())
         found = found or self._from_larger(asked, facing)
@@ -311,13 +335,13 @@ class ContactProblem:
         gap[rows], moving[rows] = 0.0, 0.0
         return _Answer(force, yielding, gap, moving, system, right, G)
 
-    def _asked(self, forces: Floats, couple: tuple[float, float]) -> Floats:
+    def asked(self, forces: Floats, couple: tuple[float, float] = (0.0, 0.0)) -> Floats:
         """What the cells' forces must add up to on each of the rigid motions, (Y,): they push the
         pin against e_r.
         """
         out = np.zeros(self._motions.shape[1])
         count = self._count
-        out[: 2 * count] = -forces.ravel()
+        out[: 2 * count] = -np.asarray(forces, dtype=float).ravel()
         mx, my = couple  # x: by forces along -y at z, y: by forces along x at z
         out[2 * count : 2 * count + 2] = my, -mx
         return out
@@ -337,6 +361,22 @@ class ContactProblem:
         raise SolveError(
             "the links leave a couple on the pin that no lug reacts", "couple-not-reacted"
         )
+
+    def adjoint(self, active: Mask, wanted: Floats, asked: Floats) -> Adjoined:
+        """Of contact under what is asked of the rigid motions, with these cells (R, M) in contact:
+        how a sum of their forces, each (U,) times `wanted`, goes with gaps, motions and loads.
+        """
+        rows = np.flatnonzero(active)
+        answer = self._answer(active.ravel())
+        force, _, motion = answer.under(asked)
+        C, G = self._compliance[np.ix_(rows, rows)], self._motions[rows]
+        own = np.zeros(len(force))
+        own[rows] = cho_solve(cho_factor(C, lower=True, check_finite=False), wanted[rows])
+        of_motion, lost = np.zeros(len(asked)), G.T @ own[rows]
+        for _ in range(2):  # once more for round-off, as contact itself
+            of_motion += np.asarray(np.linalg.lstsq(answer.system, lost)[0], dtype=np.float64)
+            lost = G.T @ (own[rows] - answer.yielding[rows] @ of_motion)
+        return Adjoined(force, motion, own - answer.yielding @ of_motion, of_motion)
 
     def _facing(self, forces: Floats) -> Mask:
         """The cells that face the load of their band."""

@@ -80,7 +80,7 @@ def _strength(pressure: Floats, length: Floats, radius: float, exponent: float) 
     far = min(max(BESIDE * radius, first), stations[-1] / 2.0)
     force = np.concatenate([np.zeros((1, pressure.shape[1])), np.cumsum(pressure.T * length, 1).T])
     carried = max(float(np.interp(far, stations, column)) for column in force.T)
-    return (1.0 - exponent) * carried * far ** (exponent - 1.0)
+    return float((1.0 - exponent) * carried * far ** (exponent - 1.0))
 
 
 def _peak(K: float, exponent: float, lug: Lug, material: Material) -> EdgePeak:

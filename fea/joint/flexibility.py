@@ -19,6 +19,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from scipy.special import iti0k0, k1
@@ -27,7 +29,8 @@ from fea.core.material import Material
 from fea.core.pin_loads import Floats
 from fea.core.tractions import ALONG_X, Traction
 from fea.harmonic.assembly import Section, around
-from fea.harmonic.model import HarmonicBody, rigid_motions
+from fea.harmonic.boundary import Outline
+from fea.harmonic.model import HarmonicBody, generalised, rigid_motions
 from fea.joint.lugs.eye_mesh import eye_mesh
 from fea.joint.lugs.lug import Lug
 from geometry import Pin
@@ -39,6 +42,55 @@ NONE = np.zeros(3)
 OUTWARDS = np.array([1.0, 0.0, 0.0])
 
 
+@dataclass(frozen=True)
+class RingBody:
+    """A body on one mesh, rings of its surface (by name), and where pressure on them points.
+    guided: as a lug.
+    """
+
+    body: HarmonicBody
+    rings: tuple[str, ...]
+    pushed: Floats
+    guided: bool = False
+
+    @property
+    def area(self) -> Floats:
+        """Of the rings, (R,) m^2 per radian."""
+        bands = [self.body.pin.band(name) for name in self.rings]
+        return np.array([b.radius * b.length for b in bands])
+
+    def forces(self, n: int) -> Floats:
+        """On the unknowns, (unknowns, R), of pressures of one on the rings."""
+        return self.body.forces(n, [(Traction(r, 0.0, self.pushed, NONE),) for r in self.rings])
+
+    def balanced(self, n: int, forces: Floats) -> Floats:
+        """With the reaction of what guides it."""
+        if self.guided and n == 1:
+            return self.reacted(self.body.outline, self.body.pin.length, forces)
+        return forces
+
+    def reacted(self, outline: Outline, length: float, forces: Floats) -> Floats:
+        """Forces of harmonic 1 (unknowns, K) on a lug like this one with the reaction on its outer
+        surface, of constant direction.
+        """
+        reactions = [
+            tuple(Traction(name, 0.5 * length, *parts) for name in self.body.pin.connections)
+            for parts in ((ALONG_X, NONE), (NONE, ALONG_X))
+        ]
+        against = np.stack([generalised(outline.forces(one, 1)) for one in reactions], axis=1)
+        modes = rigid_motions(outline.every_node, 1)
+        return np.asarray(forces - against @ np.linalg.solve(modes.T @ against, modes.T @ forces))
+
+    def flexibility(self, highest: int) -> Floats:
+        """C_n (highest + 1, R, R), m/Pa, towards where pressure points."""
+        out = []
+        for n in range(highest + 1):
+            forces = self.balanced(n, self.forces(n))
+            work = forces.T @ self.body.displace(n, forces) / around(n)
+            out.append(0.5 * (work + work.T) / self.area[:, None])
+        return np.stack(out)
+
+
 def pin_flexibility(
     pin: Pin, rings: Sequence[str], material: Material, across: float, highest: int
 ) -> Floats:
@@ -46,10 +98,14 @@ def pin_flexibility(
 
     across: elements over the diameter. Raises: MeshError, SolveError.
     """
+    return pin_rings(pin, rings, material, across).flexibility(highest)
+
+
+def pin_rings(pin: Pin, rings: Sequence[str], material: Material, across: float) -> RingBody:
+    """The rings of a pin, on a mesh."""
     size = SectionSize(across)
     mesh = meridian_mesh(pin, size, finer=_grades(pin, rings, size.growth))
-    body = HarmonicBody(pin, Section(mesh), material, pivot=0.5)
-    return _flexibility(body, rings, -OUTWARDS, highest, guided=False)
+    return RingBody(HarmonicBody(pin, Section(mesh), material, pivot=0.5), tuple(rings), -OUTWARDS)
 
 
 def _grades(pin: Pin, rings: Sequence[str], growth: float) -> list[Grade]:
@@ -62,7 +118,12 @@ def lug_flexibility(eye: Pin, lug: Lug, across: float, highest: int) -> Floats:
     """The same of the rings of a lug's bore, outwards under pressure; its annulus is `eye`
     (fea.joint.lugs.rings). across: elements over the bore's diameter.
     """
-    rings = [f"bore {name}" for name in eye.connections]
+    return lug_rings(eye, lug, across).flexibility(highest)
+
+
+def lug_rings(eye: Pin, lug: Lug, across: float) -> RingBody:
+    """The rings of a lug's bore, on a mesh."""
+    rings = tuple(f"bore {name}" for name in eye.connections)
     bushing = lug.bushing
     if bushing is None:
         body = HarmonicBody(eye, Section(eye_mesh(eye, across)), lug.material, pivot=0.5)
@@ -73,7 +134,7 @@ def lug_flexibility(eye: Pin, lug: Lug, across: float, highest: int) -> Floats:
         parts = (middles > interface).astype(np.int64)
         both = (bushing.material, lug.material)
         body = HarmonicBody(eye, Section(mesh, parts), both, pivot=0.5)
-    return _flexibility(body, rings, OUTWARDS, highest, guided=True)
+    return RingBody(body, rings, OUTWARDS, guided=True)
 
 
 def half_plane(material: Material, radius: float) -> float:
@@ -85,12 +146,19 @@ def wavy_flexibility(lug: Lug, pin: Material, radius: float, ends: Floats, waves
     """C_n (2, N, R, R), m/Pa, of a lug's rings with `ends` (R + 1,) m along z, for high harmonics
     `waves` (N,): of the pin as a half-space, and of the lug as one that its faces end.
     """
-    x = waves[:, None] * ends / radius
-    on, n = _half_space(x, x), waves[:, None, None]
-    beyond = _half_space(x, -x) + _half_space(x, 2.0 * x[:, -1:] - x)
+    on, beyond = _responses(tuple((ends / radius).tolist()), tuple(waves.tolist()))
+    n = waves[:, None, None]
     layer = np.array([layered(lug, k / radius) for k in waves.tolist()])[:, None, None]
     of_lug = half_plane(lug.bearing, radius) * layer * (on + beyond) / n
     return np.stack([half_plane(pin, radius) * on / n, of_lug])
+
+
+@lru_cache(maxsize=4)
+def _responses(ends: tuple[float, ...], waves: tuple[int, ...]) -> tuple[Floats, Floats]:
+    """Of a half-space on rings with such ends, over the radius, and what mirrors add to it."""
+    x = np.outer(waves, ends)
+    beyond = _half_space(x, -x) + _half_space(x, 2.0 * x[:, -1:] - x)
+    return _half_space(x, x), beyond
 
 
 def _half_space(x: Floats, y: Floats) -> Floats:
@@ -124,33 +192,3 @@ def layered(lug: Lug, waves: float) -> float:
     e = math.exp(-2.0 * x)
     more, less = 1.0 + 4.0 * x * b * e, 1.0 - (a + b + 4.0 * b * x * x) * e
     return (more - a * b * e * e) / (less + a * b * e * e)
-
-
-def _flexibility(
-    body: HarmonicBody, rings: Sequence[str], pushed: Floats, highest: int, guided: bool
-) -> Floats:
-    bands = [body.pin.band(name) for name in rings]
-    area = np.array([b.radius * b.length for b in bands])
-    parts = [(Traction(name, 0.0, pushed, NONE),) for name in rings]
-    out = []
-    for n in range(highest + 1):
-        forces = body.forces(n, parts)
-        if guided and n == 1:
-            forces = _reacted(body, forces)
-        work = forces.T @ body.displace(n, forces) / around(n)
-        out.append(0.5 * (work + work.T) / area[:, None])
-    return np.stack(out)
-
-
-def _reacted(body: HarmonicBody, forces: Floats) -> Floats:
-    """With the reaction on the lug's outer surface, of constant direction."""
-    pin = body.pin
-    middle = 0.5 * pin.length
-    bands = [pin.band(name) for name in pin.connections]
-    reactions = [
-        tuple(Traction(b.name, middle, ALONG_X, NONE) for b in bands),
-        tuple(Traction(b.name, middle, NONE, ALONG_X) for b in bands),
-    ]
-    against = body.forces(1, reactions)
-    modes = rigid_motions(body.space.nodes, 1)
-    return np.asarray(forces - against @ np.linalg.solve(modes.T @ against, modes.T @ forces))

@@ -76,7 +76,7 @@ class Patterns:
         of what else is in the loads of the links, whose surfaces are the bands that the rings cut:
         forces along the axis and torques, even over a band's rings, and the body force.
         """
-        made = _others(self.pin, self.rings, links)
+        made = others_along(self.pin, self.rings, links)
         acting = dict(PinLoads.coefficients(made))
         for n, (wave, patterns) in enumerate(zip(waves, self.by_harmonic, strict=True)):
             amounts = np.einsum("trp,kr->ktp", wave, patterns)
@@ -153,14 +153,18 @@ def amplitudes(pressure: Floats, highest: int, angle: float = 0.0) -> Floats:
     """Of harmonics 0 to `highest` of pressures (R, M), even on each sector, the first at an angle
     (rad) from the x axis: (N + 1, R, 2), of cos and sin.
     """
-    sectors, n = pressure.shape[1], np.arange(highest + 1)
+    return np.asarray(pressure @ waves_of_sectors(pressure.shape[1], highest, angle))
+
+
+def waves_of_sectors(sectors: int, highest: int, angle: float = 0.0) -> Floats:
+    """What a pressure of one on each sector adds to these, (N + 1, M, 2)."""
+    n = np.arange(highest + 1)
     factor = np.sinc(n / sectors) * np.where(n > 0, 2.0, 1.0) / sectors
     turns = np.outer(n, 2.0 * np.pi * np.arange(sectors) / sectors + angle)
-    waves = np.stack([np.cos(turns), np.sin(turns)], axis=2) * factor[:, None, None]
-    return np.asarray(pressure @ waves)
+    return np.stack([np.cos(turns), np.sin(turns)], axis=2) * factor[:, None, None]
 
 
-def _others(pin: Pin, rings: tuple[str, ...], links: PinLoads) -> PinLoads:
+def others_along(pin: Pin, rings: tuple[str, ...], links: PinLoads) -> PinLoads:
     """What the links do along the axis and about it, and the body force, on the rings."""
     forces = np.zeros((len(links), len(rings), 3))
     moments = np.zeros_like(forces)

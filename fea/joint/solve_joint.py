@@ -19,25 +19,22 @@ from fea.core.pin_loads import Floats, LugEdge, PinLoads
 from fea.harmonic.evaluate import FirstMesh
 from fea.joint.bending import bending_moment, mass_per_length
 from fea.joint.contact import Bands, ContactProblem, Pressed, rotation
-from fea.joint.flexibility import (
-    half_plane,
-    lug_flexibility,
-    pin_flexibility,
-    wavy_flexibility,
-)
+from fea.joint.flexibility import RingBody, half_plane, lug_rings, pin_rings, wavy_flexibility
 from fea.joint.lugs.changes import softer
 from fea.joint.lugs.fit import fitted, on_structure
 from fea.joint.lugs.links import link_forces, link_numbers
-from fea.joint.lugs.lug import Lug
+from fea.joint.lugs.lug import Bushing, Lug
 from fea.joint.lugs.rings import annulus, ring_ends, ringed, rings
 from fea.joint.pressure_loads import NEGLIGIBLE, Patterns, PressureLoads, amplitudes, patterns_of
 from fea.singular.lug_edge import lug_edge_exponent
 from geometry import Pin
+from geometry.arrays import Ints
 
 SAME = 1e-13  # relative: loads that differ by no more are the same
 SAME_SIZE = 12  # digits to which lugs of the same size agree
 LARGEST = 1.0 - 1e-6  # of the largest: a force that is as good as it
 WAVES = 4  # times the sectors: harmonics in which neighbouring rings feel each other
+Alike = tuple[float, Material, Bushing | None, bytes, Material]
 
 
 @dataclass(frozen=True)
@@ -105,7 +102,7 @@ class JointContact:
 
 class JointModel:
     """A pin in its lugs, with the flexibilities that serve all cases and clearances. first: its
-    first mesh for stress.
+    first mesh for stress. on_pin, on_lugs: the meshes of the flexibilities; of equal lugs one.
 
     Raises: ArgumentError for lugs that do not fit the pin; MeshError, SolveError.
     """
@@ -113,31 +110,74 @@ class JointModel:
     def __init__(
         self, pin: Pin, material: Material, lugs: Sequence[Lug], cells: Cells = Cells()
     ) -> None:
-        self.given, self.material, self.cells, self.first = pin, material, cells, FirstMesh()
+        self.cells, self.first = cells, FirstMesh()
+        self._shape(pin, material, lugs)
+        self.on_pin = pin_rings(self.pin, self.rings, material, cells.across)
+        self.of_pin = self.on_pin.flexibility(cells.highest)
+        self.of_lugs = np.zeros_like(self.of_pin)
+        self.wavy = np.zeros((2, len(self.high), *self.of_pin.shape[1:]))  # of the pin, of the lugs
+        self.on_lugs: dict[Alike, RingBody] = {}
+        for key, equal in self.alike().items():
+            (_, lug, ends), *_ = equal
+            self.on_lugs[key] = lug_rings(self.eye(lug, ends), lug, cells.across)
+            low = self.on_lugs[key].flexibility(cells.highest)
+            wavy = self.wavy_of(lug, ends)
+            for own, *_ in equal:
+                self.of_lugs[:, own, own], self.wavy[:, :, own, own] = low, wavy
+
+    def _shape(self, pin: Pin, material: Material, lugs: Sequence[Lug]) -> None:
+        cells, before = self.cells, self.__dict__.get("_cut")
+        self.given, self.material = pin, material
         self.whole = pin = on_structure(pin, lugs)
         self.lugs = fitted(pin, material, lugs)
         self.ends = {
             name: ring_ends(pin.band(name), lug.edge_radius, cells.rings, cells.beside)
             for name, lug in zip(pin.connections, self.lugs, strict=True)
         }
-        self.pin = ringed(pin, self.ends)
+        cut = pin, {name: ends.tolist() for name, ends in self.ends.items()}
+        if before != cut:
+            self._cut, self.pin = cut, ringed(pin, self.ends)
         self.rings = tuple(name for c, ends in self.ends.items() for name in rings(c, ends))
-        self.of_pin = pin_flexibility(self.pin, self.rings, material, cells.across, cells.highest)
-        self.of_lugs = np.zeros_like(self.of_pin)
-        waves = np.arange(cells.highest + 1, WAVES * cells.sectors)
-        self.wavy = np.zeros((2, len(waves), *self.of_pin.shape[1:]))  # of the pin, of the lugs
-        equal: dict[tuple[object, ...], tuple[Floats, Floats]] = {}
-        for own, lug, ends in self._by_lug():
-            eye = annulus(pin, lug.connection, lug.outer_diameter, ends)
-            size = np.round(np.append(ends, eye.segments[0].bore) / lug.outer_diameter, SAME_SIZE)
-            key = (lug.outer_diameter, lug.material, lug.bushing, size.tobytes())
-            if key not in equal:
-                low = lug_flexibility(eye, lug, cells.across, cells.highest)
-                radius = pin.band(lug.connection).radius
-                equal[key] = low, wavy_flexibility(lug, material, radius, ends, waves)
-            self.of_lugs[:, own, own], self.wavy[:, :, own, own] = equal[key]
 
-    def _by_lug(self) -> Iterator[tuple[slice, Lug, Floats]]:
+    def reshaped(self, pin: Pin, material: Material, lugs: Sequence[Lug]) -> JointModel:
+        """Another pin in other lugs on such cells, of which no flexibility is found.
+
+        Raises: ArgumentError as for any.
+        """
+        other = copy.copy(self)
+        for known in ("contact", "flexibility", "edges", "bands"):
+            other.__dict__.pop(known, None)
+        other._shape(pin, material, lugs)
+        return other
+
+    @property
+    def high(self) -> Ints:
+        """Harmonics that are felt by neighbouring rings alone."""
+        return np.arange(self.cells.highest + 1, WAVES * self.cells.sectors)
+
+    def eye(self, lug: Lug, ends: Floats) -> Pin:
+        """Of a lug, with its rings."""
+        return annulus(self.whole, lug.connection, lug.outer_diameter, ends)
+
+    def wavy_of(self, lug: Lug, ends: Floats) -> Floats:
+        """fea.joint.flexibility.wavy_flexibility of a lug's rings."""
+        radius = self.whole.band(lug.connection).radius
+        return wavy_flexibility(lug, self.material, radius, ends, self.high)
+
+    def likeness(self, lug: Lug, ends: Floats) -> Alike:
+        """What the flexibility of a lug's rings, and of the pin against them, depends on."""
+        bore = 2.0 * self.whole.band(lug.connection).radius
+        size = np.round(np.append(ends, bore) / lug.outer_diameter, SAME_SIZE)
+        return lug.outer_diameter, lug.material, lug.bushing, size.tobytes(), self.material
+
+    def alike(self) -> dict[Alike, list[tuple[slice, Lug, Floats]]]:
+        """The lugs, as `by_lug`, by this."""
+        found: dict[Alike, list[tuple[slice, Lug, Floats]]] = {}
+        for own, lug, ends in self.by_lug():
+            found.setdefault(self.likeness(lug, ends), []).append((own, lug, ends))
+        return found
+
+    def by_lug(self) -> Iterator[tuple[slice, Lug, Floats]]:
         """Which rings are its, each lug, and their ends along its band."""
         first = 0
         for lug, ends in zip(self.lugs, self.ends.values(), strict=True):
@@ -158,7 +198,7 @@ class JointModel:
         """
         softness = softness or (1.0,) * len(lugs)
         other = copy.copy(self)
-        for known in ("contact", "flexibility", "edges"):
+        for known in ("contact", "flexibility", "edges", "bands"):
             other.__dict__.pop(known, None)
         other.lugs = tuple(softer(*both) for both in zip(lugs, softness, strict=True))
         if set(softness) == {1.0}:
@@ -179,14 +219,18 @@ class JointModel:
     @cached_property
     def contact(self) -> ContactProblem:
         """Ready for any loads."""
+        tilt = [lug.tilt for lug in self.lugs]
+        return ContactProblem(self.bands, self.flexibility, self.tail, tilt, self.cells.sectors)
+
+    @cached_property
+    def bands(self) -> Bands:
+        """With their rings."""
         bands = [self.pin.band(name) for name in self.rings]
         z, length = (np.array(x) for x in zip(*((b.middle, b.length) for b in bands), strict=True))
         radius = np.array([b.radius for b in bands])
         number = np.repeat(np.arange(len(self.lugs)), self._rings_of_each)
-        tilt = [lug.tilt for lug in self.lugs]
         links = link_numbers(self.whole.connections, self.given.connections)
-        cut = Bands(z, length, radius, number, self.gap, links)
-        return ContactProblem(cut, self.flexibility, self.tail, tilt, self.cells.sectors)
+        return Bands(z, length, radius, number, self.gap, links)
 
     @property
     def gap(self) -> Floats:
@@ -197,7 +241,7 @@ class JointModel:
     def tail(self) -> Floats:
         """n u_n / p_n of pin and lug together for high harmonics, m/Pa, by ring."""
         each = []
-        for _, lug, ends in self._by_lug():
+        for _, lug, ends in self.by_lug():
             r = self.whole.band(lug.connection).radius
             both = half_plane(self.material, r) + half_plane(lug.bearing, r)
             each.append(np.full(len(ends) - 1, both))
@@ -276,7 +320,7 @@ class JointModel:
 
     def couples(self, loads: PinLoads) -> Floats:
         """About the middle of the bands along x and y, (T, 2) N m, of the body force."""
-        z = self.contact.bands.z
+        z = self.bands.z
         middle = 0.5 * (z.min() + z.max())
         arm = _centre(self.whole) - middle
         x, y = (loads.body[:, :2] * self._mass).T

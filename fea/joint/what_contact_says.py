@@ -58,6 +58,6 @@ def _band(contact: JointContact, b: int, edge: EdgePeak | None) -> BandContact:
         clearance=lug.clearance,
         outer_diameter=lug.outer_diameter,
         ends=tuple(ends),
-        edge_pressure=edge and edge.pressure,
-        edge_von_mises=edge and edge.von_mises,
+        edge_pressure=None if edge is None else edge.pressure,
+        edge_von_mises=None if edge is None else edge.von_mises,
     )

@@ -53,11 +53,11 @@ def rate_of(values: Sequence[Floats], step: float) -> Floats:
 
 @dataclass(frozen=True)
 class NodeMotion:
-    """Of the outline's nodes, (B, 2) m per m of a dimension. pins: with the dimension at PLACES
-    times `step` (m) more.
+    """Of the outline's nodes, (B, 2) m per m of a dimension, by its key. pins: with the dimension
+    at PLACES times `step` (m) more.
     """
 
-    dimension: Dimension
+    key: str
     velocity: Floats
     pins: tuple[Pin, ...]
     step: float
@@ -102,11 +102,14 @@ class OutlineNodes:
             step = part * dimension.value
             try:
                 pins = tuple(dimension.changed(dimension.value + x * step) for x in PLACES)
-                velocity = rate_of([self.at(pin) for pin in pins], step)
+                return self.among(dimension.key, pins, step)
             except (GeometryError, OtherShapeError):
                 continue
-            return NodeMotion(dimension, velocity, pins, step)
         raise OtherShapeError
+
+    def among(self, key: str, pins: tuple[Pin, ...], step: float) -> NodeMotion:
+        """With pins at PLACES times a step. Raises: OtherShapeError."""
+        return NodeMotion(key, rate_of([self.at(pin) for pin in pins], step), pins, step)
 
     def _cuts(self, edge: Edge) -> list[tuple[int, float]]:
         """The end from which each cut is measured and its fraction of the edge, by fraction."""

@@ -89,10 +89,12 @@ class Parts:
         return len(list(self.folder.glob(f"*{SUFFIX}")))
 
     def finish(self) -> None:
-        """Remove the files and the folder, when the whole table is written; what was swept stays
-        beside that.
-        """
+        """When the whole table is written; what was swept stays beside that."""
         (self.folder / STATED).replace(self.folder.parent / STATED)
+        self.remove()
+
+    def remove(self) -> None:
+        """Remove the files and the folder."""
         for path in (*self.folder.glob(f"*{SUFFIX}*"), *self.folder.glob(f"{STATED}*")):
             path.unlink(missing_ok=True)
         self.folder.rmdir()

@@ -11,7 +11,7 @@ from fea.joint.lugs.fit import beyond_foundations, fitted, on_structure
 from fea.joint.lugs.lug import Bushing, Lug, LugRange
 from geometry import ArgumentError, CutPin, Pin, PinLike
 from pinstress.model.pins import material
-from pinstress.schema.pins import LugRangeTable, LugTable
+from pinstress.schema.pins import LugRangeTable, LugTable, PinTable
 from pinstress.study.file import Study
 
 EYE = 2.5  # outer diameter over the band's
@@ -41,11 +41,9 @@ def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]
         )
     made_of = material(study, table.material)
     out = []
-    structure = [name for name in table.lug if name not in pin.connections]
-    for connection in (*pin.connections, *structure):
+    for connection in _held(pin, table):
         try:
-            given = table.lug.get(connection, LugTable())
-            out.append(_lug(study, pin, connection, given, made_of))
+            out.append(_lug(study, pin, connection, _given(table, connection), made_of))
         except ArgumentError as error:
             raise study.error(str(error), f"{at}.{connection}", error.code) from None
     try:
@@ -60,6 +58,23 @@ def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]
             "beyond-foundations",
         )
     return tuple(out)
+
+
+def lugs_about(study: Study, pin: Pin) -> tuple[Lug, ...]:
+    """The same of a pin that is known to sit in lugs. Raises: ArgumentError for impossible ones."""
+    table = study.table.pin[pin.name]
+    made_of = material(study, table.material)
+    each = _held(pin, table)
+    return tuple(_lug(study, pin, name, _given(table, name), made_of) for name in each)
+
+
+def _held(pin: Pin, table: PinTable) -> tuple[str, ...]:
+    """Where there are lugs, the structure's last."""
+    return *pin.connections, *(name for name in table.lug if name not in pin.connections)
+
+
+def _given(table: PinTable, connection: str) -> LugTable:
+    return table.lug.get(connection, LugTable())
 
 
 def _in_contact(study: Study, pin: PinLike, instead: str) -> Pin:

@@ -17,10 +17,10 @@ from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.derivatives.derivatives import derivatives
-from fea.derivatives.in_lugs import joint_derivatives
+from fea.derivatives.in_lugs import JointDerivatives, joint_derivatives
 from fea.derivatives.records import Derivatives, SolvedCase
 from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
-from fea.joint.solve_in_lugs import LugSolution
+from fea.joint.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
 from fea.refine import STEP, Solution, singularities_of
 from fea.solve_pin import solve_pin
 from geometry import Pin
@@ -32,6 +32,7 @@ from pinstress.model.mechanism.linkage import linkage
 from pinstress.model.pins import pin as pin_of
 from pinstress.model.tasks import Task, tasks
 from pinstress.remedies.dimensions import dimensions_of
+from pinstress.remedies.joint_parameters import StudyParameter, joint_parameters
 from pinstress.study.file import Study
 from reports.data.sensitivities import PinSensitivities, Sensitivity
 
@@ -40,10 +41,10 @@ SMALL = 0.01  # step of any other parameter, of its value; of a force, of the la
 POISSON = 0.01
 LOOSER = 0.01  # of the step of a dimension: that of a clearance
 IN_LUGS = (
-    "no derivatives by dimensions, because in contact with lugs the pressure depends on the shape "
-    "too: solve the changed study"
+    "in contact with its lugs, whose derivatives take about as long as the solution: "
+    "--sensitivities gives them"
 )
-MORE = "; --sensitivities gives those by forces and clearances"
+NO_CONTACT = 'no derivatives of a pin on foundations: analysis.joints = "contact" has them'
 NOT_REVOLVED = "no derivatives, only of bodies of revolution: solve the changed study"
 
 
@@ -61,7 +62,7 @@ def sensitivities(
     found = sorted((s for s in solutions if _largest(s)), key=lambda s: _largest(s), reverse=True)
     dimensions = tuple(dimensions_of(study, task.pin))
     return tuple(
-        _of_lugs(task, s, step if every else None)
+        _of_lugs(study, task, s, step if every else None)
         if isinstance(s, LugSolution)
         else _of_case(asked, task, s, dimensions, step)
         for s in found[: None if every else 1]
@@ -76,15 +77,17 @@ def _largest(found: Solution | LugSolution) -> float:
 def by_key(study: Study, pin: str, case: str) -> dict[str, float]:
     """The derivative of a pin's largest von Mises stress in a case with respect to each of its
     dimensions, Pa/m, by their keys in the pin's table: "profile[2].diameter", "profile[1-3].bore"
-    of neighbours that have it in common, "fillet". Dimensions that have none are left out.
+    of neighbours that have it in common, "fillet"; of a pin in lugs, which is taken to be in
+    contact with them, also "lug.M.clearance" and those of the lugs that are given. Dimensions that
+    have none are left out.
 
     Raises: InputError for bad input; ArithmeticError where the pin cannot be solved; ValueError
-    for a pin in lugs or one that is not a body of revolution.
+    for one that is not a body of revolution.
     """
     mechanism = linkage(study) if study.table.mechanism else None
     (task,) = tasks(study, [pin_of(study, pin)], {case: case_loads(study, case, mechanism)})
-    if task.lugs or not isinstance(task.pin, Pin):
-        raise ValueError(f"pin {pin}: {IN_LUGS if task.lugs else NOT_REVOLVED}")
+    if not isinstance(task.pin, Pin):
+        raise ValueError(f"pin {pin}: {NOT_REVOLVED}")
     table = study.table.analysis
     asked = Asked(
         table.tolerance,
@@ -93,11 +96,42 @@ def by_key(study: Study, pin: str, case: str) -> dict[str, float]:
         table.required_safety_factor,
         table.excluded_distance,
     )
+    if task.lugs:
+        given = InLugs(task.pin, task.material, task.lugs, task.loads, task.between)
+        (joined,) = solve_in_lugs(given, asked)
+        of_joint = differentiated_in_lugs(study, task, joined)
+        lengths = [x.of_joint.key for x in joint_parameters(study, task) if x.kind == "length"]
+        by = {} if of_joint is None else of_joint.by_parameter
+        return {key: by[key] for key in lengths if key in by}
     (found,) = solve_pin(
         task.pin, task.material, task.clamps, task.loads, asked, between=task.between
     )
     made = differentiated(asked, task, found, tuple(dimensions_of(study, task.pin)))
     return {} if made is None else made.by_dimension
+
+
+def differentiated_in_lugs(
+    study: Study, task: Task, joined: LugSolution
+) -> JointDerivatives | None:
+    """Of the maximum of a pin in contact; None where it has none. Raises: MeshError, SolveError."""
+    solution, model, rings = joined.solution, joined.model, joined.rings
+    peak, answer = solution.peak, solution.answer
+    if model is None or rings is None or peak.governing is None or not peak.max_von_mises:
+        return None
+    if not isinstance(answer, HarmonicAnswer):
+        return None
+    solved = SolvedCase(
+        rings,
+        task.material,
+        (),
+        solution.loads.at(np.array([solution.instant])),
+        answer.solution,
+        answer.singularities,
+        (peak.own_error or 0.0) / peak.max_von_mises,
+        solution.loads,
+    )
+    each = [x.of_joint for x in joint_parameters(study, task)]
+    return joint_derivatives(solved, model, peak.governing, each)
 
 
 def differentiated(
@@ -159,46 +193,72 @@ def _of_case(
         *_of_loads(found, peak.governing),
         *_of_material(found, task.material),
     )
+    return _with_rows(out, found, rows)
+
+
+def _with_rows(
+    out: PinSensitivities, found: Derivatives | JointDerivatives, rows: Iterable[_Parameter]
+) -> PinSensitivities:
     return replace(
         out,
-        rows=_sorted(rows, factor),
+        rows=_sorted(rows, out.factor),
         tied_places=found.tied_places,
         tied_times=found.tied_times,
         without=tuple(found.without.items()),
     )
 
 
-def _of_lugs(task: Task, joined: LugSolution, step: float | None) -> PinSensitivities:
+def _of_lugs(study: Study, task: Task, joined: LugSolution, step: float | None) -> PinSensitivities:
     """Of a pin in contact; without a step, why there are none."""
-    peak, answer = joined.solution.peak, joined.solution.answer
+    peak = joined.solution.peak
     maximum, strength = peak.max_von_mises or 0.0, task.material.yield_strength
     factor, links = peak.safety_factor(strength), peak.governing
-    out = PinSensitivities(peak.pin, peak.case, maximum, factor, note=IN_LUGS)
-    if joined.model is None or joined.rings is None or links is None:
-        return out
-    if step is None or not isinstance(answer, HarmonicAnswer):
-        return replace(out, note=IN_LUGS + MORE)
-    loads = joined.solution.loads.at(np.array([joined.solution.instant]))
-    zones, section = answer.singularities, answer.solution
-    solved = SolvedCase(joined.rings, task.material, (), loads, section, zones)
+    out = PinSensitivities(peak.pin, peak.case, maximum, factor)
+    if not isinstance(task.pin, Pin):
+        return replace(out, note=NOT_REVOLVED)
+    if joined.model is None or links is None:
+        return replace(out, note=NO_CONTACT)
+    if step is None:
+        return replace(out, note=IN_LUGS)
     try:
-        found = joint_derivatives(solved, joined.model, links)
-    except SolveError as error:
+        found = differentiated_in_lugs(study, task, joined)
+    except (MeshError, SolveError) as error:
         return replace(out, note=f"no derivatives: {error}")
+    if found is None:
+        return replace(out, note=f"no derivatives with the {peak.model} model")
     rows = [
         *_of_forces(found.by_force, "force", links.surfaces, links.forces[0], maximum),
-        *(
-            _Parameter(
-                f"lug.{lug.connection}.clearance", "length", lug.clearance, LOOSER * step,
-                found.by_clearance[lug.connection], -found.by_clearance[lug.connection] / maximum,
-            )
-            for lug in joined.model.lugs if lug.connection in found.by_clearance
-        ),
-    ]  # fmt: skip
+        *_of_forces(found.by_moment, "moment", links.surfaces, links.moments[0], maximum),
+        *_of_joint(joint_parameters(study, task), found.by_parameter, maximum, step),
+    ]
     if strength is not None:
         key, more = f"material.{task.material.name}.yield_strength", SMALL * strength
         rows.append(_Parameter(key, "stress", strength, more, 0.0, 1.0 / strength))
-    return replace(out, rows=_sorted(rows, factor))
+    return _with_rows(replace(out, changing=found.changing), found, rows)
+
+
+def _of_joint(
+    parameters: Iterable[StudyParameter], by: dict[str, float], maximum: float, step: float
+) -> Iterator[_Parameter]:
+    for parameter in parameters:
+        one, kind = parameter.of_joint, parameter.kind
+        if one.key not in by:
+            continue
+        if one.key.endswith(".clearance"):
+            more = LOOSER * step
+        elif kind == "length":
+            more = _little(step, one.value)
+        else:
+            more = POISSON if kind == "1" else SMALL * one.value
+        stress = by[one.key]
+        yield _Parameter(one.key, kind, one.value, more, stress, -stress / maximum)
+
+
+def _little(step: float, value: float) -> float:
+    """A step (m) of a dimension, a power of ten smaller where that would be no small part of it."""
+    while step > MOST * value:
+        step /= 10.0
+    return step
 
 
 @dataclass(frozen=True)
@@ -231,9 +291,7 @@ def _of_dimensions(
 ) -> Iterator[_Parameter]:
     for dimension in dimensions:
         if dimension.key in found.by_dimension:
-            more = step
-            while more > MOST * dimension.value:
-                more /= 10.0
+            more = _little(step, dimension.value)
             stress = found.by_dimension[dimension.key]
             relative = -stress / found.maximum
             yield _Parameter(dimension.key, "length", dimension.value, more, stress, relative)

@@ -41,7 +41,8 @@ class PinSensitivities:
     """Of one pin in one case, whose maximum and factor are as reported. rows: by effect on the
     factor, the largest first. tied_places (r, z), tied_times: others whose stress is within the
     error of the maximum, so that they may govern with a little more of anything. without: keys of
-    dimensions that have no derivative, and why. note: why there is none at all.
+    dimensions that have no derivative, and why. changing: how many cells of contact are
+    about to open or to close, which makes them one-sided too. note: why there is none at all.
     """
 
     pin: str
@@ -52,4 +53,5 @@ class PinSensitivities:
     tied_places: tuple[tuple[Length, Length], ...] = ()
     tied_times: tuple[Time, ...] = ()
     without: tuple[tuple[str, str], ...] = ()
+    changing: int = 0
     note: str = ""

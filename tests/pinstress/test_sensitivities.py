@@ -153,16 +153,39 @@ def test_of_a_beam_they_are_relative_to_its_maximum() -> None:
 
 
 @pytest.mark.slow
-def test_in_contact_by_forces_and_clearances(tmp_path: Path) -> None:
-    """Where asked, and why there are no others."""
+def test_in_contact_by_all_of_the_joint() -> None:
+    """Where asked; else how to get them. Eyes without an outer diameter grow with the pin, and the
+    stiffness against tilt with that of their material: so all lengths together and all moduli obey
+    the rules of sums, and differences of other studies agree. `by_key` gives the lengths.
+    """
     study = pinstress.study_from(CLEVIS)
     plan = replace(prepare(study), sensitive=True)
     (found,) = results_of(plan, solve_tasks(plan)).sensitivities
-    kinds = {row.key: row.kind for row in found.rows}
-    assert {f"lug.{c}.clearance" for c in "LMR"} <= set(kinds)
-    assert kinds["force M x"] == "force"
-    assert not any("profile" in key for key in kinds)
-    assert "no derivatives by dimensions" in found.note
+    rows = {row.key: row for row in found.rows}
+    assert {f"lug.{c}.clearance" for c in "LMR"} <= set(rows)
+    assert {f"lug.{c}.edge_radius" for c in "LMR"} <= set(rows)
+    assert "lug.M.outer_diameter" not in rows
+    assert rows["force M x"].kind == "force"
+
+    def total(*kinds: str) -> float:
+        some = (x for x in found.rows if x.kind in kinds and "yield" not in x.key)
+        return sum(x.value * x.stress for x in some) / found.maximum
+
+    forces = total("force")
+    assert total("length") + 2.0 * forces == pytest.approx(0.0, abs=1e-6)
+    assert total("stress") + forces == pytest.approx(1.0, abs=1e-6)
+    ours = by_key(study, "P", "pull")
+    stress, length = study.system.factor("stress"), study.system.factor("length")
+    lengths = {row.key: row.stress for row in found.rows if row.kind == "length"}
+    for key, value in lengths.items():
+        assert ours[key] == pytest.approx(value * stress / length, rel=1e-6), key
+    other = [
+        pinstress.run(pinstress.changed_study(study, {"pin.P.profile[4].length": 20.0 + x}))
+        for x in (0.4, -0.4)
+    ]
+    maxima = [x.pins[0].max_von_mises or 0.0 for x in other]
+    slope = (maxima[0] - maxima[1]) / 0.8
+    assert lengths["profile[4].length"] == pytest.approx(slope, rel=0.1)
     (brief,) = pinstress.run(study).sensitivities
     assert brief.rows == ()
     assert "--sensitivities" in brief.note

@@ -30,6 +30,8 @@ def on_structure(pin: Pin, lugs: Sequence[Lug]) -> Pin:
     connections.
     """
     held = {lug.connection for lug in lugs} - set(pin.connections)
+    if not held:
+        return pin
     segments = tuple(
         replace(s, connection=s.name) if s.connection is None and s.name in held else s
         for s in pin.segments

@@ -26,6 +26,7 @@ SINGULAR = (
     "Of singular rows this is of the maximum outside the excluded zones, whose size goes with the "
     "diameter where they are."
 )
+CHANGING = "one-sided: {count} cells of contact are about to open or to close."
 ONE_SIDED = "one-sided: stress is as large, within its error, {places}, which may govern instead."
 
 
@@ -54,6 +55,7 @@ def sensitivities_json(results: Results) -> list[dict[str, Any]]:
             "tied_places": [list(place) for place in found.tied_places],
             "tied_times": list(found.tied_times),
             "without": dict(found.without),
+            "changing": found.changing,
             "note": found.note,
         }
         for found in results.sensitivities
@@ -81,7 +83,7 @@ def _rows(found: PinSensitivities, units: Units) -> list[dict[str, Any]]:
 
 
 def _tied(found: PinSensitivities) -> bool:
-    return bool(found.tied_places or found.tied_times)
+    return bool(found.tied_places or found.tied_times or found.changing)
 
 
 def _unit(each: Sensitivity, units: Units) -> str:
@@ -142,6 +144,8 @@ def sensitivity_notes(results: Results) -> list[str]:
         places += [f"at t = {short(time)} {units.time}" for time in found.tied_times]
         if places and _shown(found):
             notes.append(f"{who}, {ONE_SIDED.format(places=' and '.join(places))}")
+        if found.changing and _shown(found):
+            notes.append(f"{who}, {CHANGING.format(count=found.changing)}")
         if found.without:
             keys = ", ".join(key for key, _ in found.without)
             notes.append(f"{who}, no derivative by {keys}: {found.without[0][1]}.")
