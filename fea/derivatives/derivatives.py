@@ -18,7 +18,7 @@ Structural Sensitivity Analysis and Optimization 1, ch. 6 (shape).
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -38,7 +38,7 @@ from fea.harmonic.model import HarmonicModel, applied, generalised
 from fea.harmonic.stress_recovery import points_of_nodes
 from fea.harmonic.superposition import Circumference
 from geometry import Pin
-from geometry.arrays import Floats, Ints
+from geometry.arrays import Floats, Ints, Mask
 from geometry.mesh.outline_motion import (
     PLACES,
     NodeMotion,
@@ -63,15 +63,24 @@ def derivatives(solved: SolvedCase, dimensions: Iterable[Dimension]) -> Derivati
 
 
 class Adjoint:
-    """All at the governing point and angle: `top`; `waves`: what acts there."""
+    """All at the governing point and angle: `top`; `waves`: what acts there. among: points (S,)
+    that may govern, by default all; like: another one on the same mesh, whose matrices it shares.
+    """
 
-    def __init__(self, solved: SolvedCase) -> None:
+    def __init__(
+        self, solved: SolvedCase, among: Mask | None = None, like: Adjoint | None = None
+    ) -> None:
         self.solved = solved
         self.fields = solved.solution.fields
-        self.model = HarmonicModel(solved.pin, solved.solution.mesh, solved.material, solved.clamps)
+        self.model = like.model if like else HarmonicModel(
+            solved.pin, solved.solution.mesh, solved.material, solved.clamps
+        )  # fmt: skip
+        if like and like.solved.zones == solved.zones:
+            self.outline_nodes, self.interior = like.outline_nodes, like.interior
         self.space, self.outline = self.model.space, self.model.outline
         self.around = Circumference(self.fields, solved.loads)
-        self.top = self.around.top(self.fields.outside(solved.zones))
+        outside = self.fields.outside(solved.zones)
+        self.top = self.around.top(outside if among is None else outside & among)
         self.waves, self.weight = waves_of(self.fields_at, solved.loads, self.top)
         self.n = np.array([wave.n for wave in self.waves])
         self.traction = self._forces(solved.pin, self.outline)[1]
@@ -158,7 +167,7 @@ class Adjoint:
         return out
 
     def derivatives(self, dimensions: tuple[Dimension, ...]) -> Derivatives:
-        by_dimension, without = self._by_dimension(dimensions)
+        by_dimension, without = self.by_dimension(dimensions)
         top, solved = self.top, self.solved
         r, z = (float(x) for x in self.fields.points[top.point])
         by_force, by_moment = by_loads(self.fields_at, solved.loads, self.weight, top)
@@ -175,22 +184,34 @@ class Adjoint:
             tied_times(solved, top.value),
         )
 
-    def _by_dimension(
+    def by_dimension(
         self, dimensions: tuple[Dimension, ...]
     ) -> tuple[dict[str, float], dict[str, str]]:
-        solved = self.solved
-        reaches = [Reach((p.r, p.z), p.radius) for p in solved.zones]
-        nodes = OutlineNodes(solved.solution.mesh, solved.pin, reaches)
+        """Pa/m, by key, and why others have none."""
         motions: list[NodeMotion] = []
         without = {}
         for dimension in dimensions:
             try:
-                motions.append(nodes.motion(dimension))
+                motions.append(self.outline_nodes.motion(dimension))
             except OtherShapeError:
                 without[dimension.key] = OTHER
+        return self.by_motions(motions), without
+
+    @cached_property
+    def outline_nodes(self) -> OutlineNodes:
+        """Those of the mesh."""
+        reaches = [Reach((p.r, p.z), p.radius) for p in self.solved.zones]
+        return OutlineNodes(self.solved.solution.mesh, self.solved.pin, reaches)
+
+    @cached_property
+    def interior(self) -> Interior:
+        """What moves the nodes inside."""
+        return Interior(self.space, self.outline_nodes.rows)
+
+    def by_motions(self, motions: Sequence[NodeMotion]) -> dict[str, float]:
+        """By key, Pa/m."""
         if not motions:
-            return {}, without
-        interior = Interior(self.space, nodes.rows)
+            return {}
         gradient = sum(
             shape_gradient(self.space, self._D, c.n, self._unknowns(k), self._lambda[:, k])
             for k, c in enumerate(self.waves)
@@ -199,13 +220,13 @@ class Adjoint:
         out = {}
         for k in range(0, len(motions), COLUMNS):
             some = motions[k : k + COLUMNS]
-            every = interior.velocity(np.stack([motion.velocity for motion in some], axis=2))
+            every = self.interior.velocity(np.stack([motion.velocity for motion in some], axis=2))
             for i, motion in enumerate(some):
                 velocity = np.ascontiguousarray(every[:, :, i])
                 grown = integral_rate(self.space, velocity) if heavy else None
                 given = self._given(motion, velocity, grown)
                 out[motion.dimension.key] = given - float(np.sum(gradient * velocity))
-        return out, without
+        return out
 
     def _given(self, motion: NodeMotion, velocity: Floats, grown: Floats | None) -> float:
         """What forces, tractions and the reading change, with displacements as they are."""

@@ -27,6 +27,7 @@ Array = NDArray[np.float64]
 Tell = Callable[[str], None]
 
 PENALTY = 2.0  # of excess stress; multipliers add up to 1 where stress falls with the area or faster
+STRICT = 10.0  # the same of geometric limits
 FIRST, LONGEST = 0.7, 1.1  # steps of a logarithm: to half, to a third
 SHORTEST = 2e-3
 CLOSE = 5e-4  # of the merit: a step that promises less ends the search
@@ -149,7 +150,7 @@ def least_weight(problem: Problem, start: Array, tell: Tell = lambda _: None) ->
     tangents = Tangents().then(x, places)
     solved, radius, why = 1, FIRST, ""
     while True:
-        merit = _merit(problem, x, places)
+        merit = _merit(problem, x, worst(places))
         step, promise = _step(problem, x, places, tangents, radius)
         if promise <= CLOSE:
             break
@@ -165,7 +166,7 @@ def least_weight(problem: Problem, start: Array, tell: Tell = lambda _: None) ->
             radius = 0.4 * length
             continue
         tangents = tangents.then(x + step, tried)
-        gained = merit - _merit(problem, x + step, tried)
+        gained = merit - _merit(problem, x + step, worst(tried))
         if gained >= WORTH * promise:
             x, places = x + step, tried
             radius = min(LONGEST, max(radius, 2.0 * length) if gained > 0.5 * promise else length)
@@ -201,8 +202,14 @@ def _active(problem: Problem, x: Array, places: tuple[Place, ...]) -> list[tuple
     return out
 
 
-def _merit(problem: Problem, x: Array, places: tuple[Place, ...]) -> float:
-    return problem.weight(x)[0] + PENALTY * max(0.0, worst(places))
+def _merit(problem: Problem, x: Array, stress: float) -> float:
+    """Of the largest stress over what is allowed, its logarithm."""
+    return problem.weight(x)[0] + PENALTY * max(0.0, stress) + STRICT * _broken(problem, x)
+
+
+def _broken(problem: Problem, x: Array) -> float:
+    """By how much geometric limits are broken at most."""
+    return max(0.0, -float(problem.limits(x)[0].min(initial=0.0)))
 
 
 def _step(
@@ -217,36 +224,35 @@ def _step(
     n, count = len(x), len(problem.limits(x)[0])
     lower, upper = problem.bounds
 
-    # The last variable is what stresses exceed.
+    # The last two variables are what stresses and geometric limits exceed.
     def merit(y: Array) -> tuple[float, Array]:
         value, slope = problem.weight(y[:n])
-        return value + PENALTY * float(y[n]), np.append(slope, PENALTY)
+        more = PENALTY * float(y[n]) + STRICT * float(y[n + 1])
+        return value + more, np.append(slope, [PENALTY, STRICT])
 
     def limits(y: Array) -> Array:
-        return np.append(y[n] - values - gradients @ (y[:n] - x), problem.limits(y[:n])[0])
+        geometric = problem.limits(y[:n])[0] + y[n + 1]
+        return np.append(y[n] - values - gradients @ (y[:n] - x), geometric)
 
-    def slopes_of_limits(y: Array) -> Array:
-        stress = np.column_stack([-gradients, np.ones(len(values))])
-        geometric = np.column_stack([problem.limits(y[:n])[1].reshape(-1, n), np.zeros(count)])
-        return np.concatenate([stress, geometric])
+    def slopes(y: Array) -> Array:
+        geometric = problem.limits(y[:n])[1].reshape(-1, n)
+        stress = [-gradients, np.tile([1.0, 0.0], (len(values), 1))]
+        return np.block([stress, [geometric, np.tile([0.0, 1.0], (count, 1))]])
 
-    excess = max(0.0, float(values.max(initial=0.0)))
+    def excess(y: Array) -> float:
+        return float((values + gradients @ (y - x)).max(initial=0.0))
+
     box = [*zip(np.maximum(lower, x - radius), np.minimum(upper, x + radius), strict=True)]
-    some: Any = {"type": "ineq", "fun": limits, "jac": slopes_of_limits}
+    some: Any = {"type": "ineq", "fun": limits, "jac": slopes}
     found = minimize(
         merit,
-        np.append(x, excess),
+        np.append(x, [excess(x), _broken(problem, x)]),
         jac=True,
-        bounds=[*box, (0.0, None)],
+        bounds=[*box, (0.0, None), (0.0, None)],
         constraints=some,
         method="SLSQP",
         options={"ftol": 1e-9, "maxiter": 200},
     )
     y = np.clip(found.x[:n], *np.array(box).T)
-    after = problem.weight(y)[0] + PENALTY * max(
-        0.0, float((values + gradients @ (y - x)).max(initial=0.0))
-    )
-    broken = float(np.minimum(problem.limits(y)[0], 0.0).min(initial=0.0))
-    if not np.isfinite(after) or broken < -1e-6:
-        return np.zeros(n), 0.0
-    return y - x, _merit(problem, x, places) - after
+    promise = _merit(problem, x, worst(places)) - _merit(problem, y, excess(y))
+    return (y - x, promise) if np.isfinite(promise) else (np.zeros(n), 0.0)

@@ -1,0 +1,284 @@
+"""The least weight of one pin that reaches a factor of safety in all its cases, under given loads.
+
+First it is scaled as a whole, as `size` does; the search goes on from there, so that it is never
+heavier. What is found is rounded as it is written, and solved once more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from geometry import Pin
+from geometry.arrays import Floats
+from pinstress.analysis.plan import Plan
+from pinstress.model.pins import pin as pin_of
+from pinstress.remedies.dimensions import dimensions_of
+from pinstress.remedies.secant import CLOSE, LEAP
+from pinstress.sizing.optimise import (
+    ImpossibleError,
+    Optimality,
+    Optimum,
+    Place,
+    least_weight,
+)
+from pinstress.sizing.pin_shape import FARTHEST, KINDS, Limits, PinShape, kind_of
+from pinstress.sizing.pin_stress import PinProblem, PinStress, SolvedPin
+from pinstress.sizing.scaled_study import rounded
+from pinstress.study.file import Study
+
+AIM = 0.004  # of the stress, below what is allowed: noise of meshes, and rounding
+SCALINGS = 10
+REPAIRS = 4
+STEPS_UP = 40  # of diameters rounded to steps
+ROUNDING = 2e-3  # of a geometric limit, by which four digits may break it
+UNDIFFERENTIATED = "no derivatives, so it is scaled as a whole"
+
+Tell = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Aim:
+    """What is wished: the factor, kinds of dimensions (KINDS) that may change, geometric limits,
+    the step (m) to which diameters are rounded up. more: by pin and case, times the factor that
+    the nominal design needs so that a less likely one reaches it.
+    """
+
+    required: float
+    vary: tuple[str, ...] = KINDS
+    limits: Limits = Limits()
+    step: float | None = None
+    more: Mapping[tuple[str, str], float] | None = None
+
+    def of_pin(self, pin: str) -> dict[str, float]:
+        """By case."""
+        return {case: x for (name, case), x in (self.more or {}).items() if name == pin}
+
+
+@dataclass(frozen=True)
+class Lightest:
+    """A pin: its dimensions by key, m, as they are written, None where none reach the factor, and
+    `why`. before: its factor as it was. volume, scaled: m^3, by these dimensions and if it is only
+    scaled, None where that is not known. optimality: of what the search found; binding: what
+    binds, in words, by its multiplier. solved: designs. way: why it is only scaled, if it is.
+    """
+
+    pin: str
+    values: dict[str, float] | None
+    before: float | None
+    volume: float | None = None
+    scaled: float | None = None
+    optimality: Optimality | None = None
+    binding: tuple[tuple[str, float], ...] = ()
+    solved: int = 0
+    why: str = ""
+    way: str = ""
+
+
+def lightest_pin(
+    study: Study,
+    plan: Plan,
+    pin: str,
+    aim: Aim,
+    start: Mapping[str, float] | None = None,
+    tell: Tell = lambda _: None,
+) -> Lightest:
+    """Of a pin of the study as it was given; plan: with the loads of the study as it is now.
+    start: its dimensions now. Failures are reported in the answer.
+    """
+    problem = problem_of(study, plan, pin, aim)
+    if isinstance(problem, str):
+        return Lightest(pin, None, None, why=problem)
+    stress = PinStress(problem, tell)
+    shape = problem.shape
+    values = np.array([(start or {}).get(d.key, d.value) for d in shape.dimensions])
+    before: float | None = None
+    try:
+        try:
+            first = stress.at(values)
+        except ValueError:  # in lugs, or with cuts
+            raise ImpossibleError(UNDIFFERENTIATED) from None
+        before = aim.required * float(np.exp(-first.worst))
+        return _found(_Search(problem, stress, aim), first, before)
+    except ImpossibleError as error:
+        return Lightest(pin, None, before, solved=len(stress.solved), why=str(error))
+
+
+def problem_of(study: Study, plan: Plan, pin: str, aim: Aim) -> PinProblem | str:
+    """What is posed of a pin, or why nothing can be."""
+    table = study.table.pin[pin]
+    if table.geometry is not None:
+        return "its shape comes from a file, which has no dimensions to change"
+    if study.table.material[table.material].yield_strength is None:
+        return f"its material {table.material} has no yield_strength"
+    made = pin_of(study, pin)
+    if not isinstance(made, Pin):
+        return "it has cuts, with which its stress has no derivatives: pinstress size scales it"
+    shape = PinShape(study, made, aim.vary, aim.limits)
+    if not shape.dimensions:
+        has = [kind for kind in KINDS if any(kind_of(d.key) == kind for d in dimensions_of(study, made))]
+        return f"it has none of {', '.join(aim.vary)} to vary, only {', '.join(has)}"
+    asked = replace(plan.asked, goal="value")
+    return PinProblem(study, pin, shape, asked, plan.loads, aim.required, aim.of_pin(pin))
+
+
+class _Search:
+    """The pin as a problem for pinstress.sizing.optimise."""
+
+    def __init__(self, problem: PinProblem, stress: PinStress, aim: Aim) -> None:
+        self.problem, self.stress, self.aim = problem, stress, aim
+        self.shape = problem.shape
+
+    @property
+    def bounds(self) -> tuple[Floats, Floats]:
+        now, far = np.log(self.shape.values), np.log(FARTHEST)
+        return now - far, now + far
+
+    def weight(self, x: Floats) -> tuple[float, Floats]:
+        values = np.exp(x)
+        volume, slope = self.shape.volume(values)
+        return float(np.log(volume)), slope * values / volume
+
+    def limits(self, x: Floats) -> tuple[Floats, Floats]:
+        values = np.exp(x)
+        limits, slopes = self.shape.at_limits(values)
+        return limits, slopes * values
+
+    def stresses(self, x: Floats) -> tuple[Place, ...]:
+        return self.raised(self.stress.at(np.exp(x)))
+
+    def raised(self, solved: SolvedPin) -> tuple[Place, ...]:
+        """Over what is aimed at, a little below what is allowed."""
+        return tuple(replace(p, value=p.value + AIM) for p in solved.places)
+
+    def keeps(self, values: Floats) -> bool:
+        """Whether geometric limits hold but for the digits that are written."""
+        return float(self.shape.at_limits(values)[0].min(initial=0.0)) >= -ROUNDING
+
+
+def _found(search: _Search, first: SolvedPin, before: float) -> Lightest:
+    shape, stress, aim = search.shape, search.stress, search.aim
+    whole = set(aim.vary) == set(KINDS)
+    scaled = _scaled(search, first)
+    optimum = least_weight(search, np.log(scaled.values))
+    best = _written(search, optimum)
+    volume = float(shape.volume(best.values)[0])
+    return Lightest(
+        search.problem.name,
+        dict(zip(shape.keys, map(float, best.values), strict=True)),
+        before,
+        volume,
+        float(shape.volume(scaled.values)[0]) if whole else None,
+        optimum.optimality,
+        tuple(_binding(search, optimum)),
+        len(stress.solved),
+        "",
+        optimum.why,
+    )
+
+
+def _scaled(search: _Search, first: SolvedPin) -> SolvedPin:
+    """With the factor reached, all dimensions times the same.
+
+    Raises: ImpossibleError.
+    """
+    now, best = first, None
+    for _ in range(SCALINGS):
+        if now.worst <= 0.0 and (best is None or now.values[0] < best.values[0]):
+            best = now
+        if -CLOSE <= now.worst <= 0.0:
+            return now
+        top = max((p for p in now.places if p.slope is not None), key=lambda p: p.value)
+        assert top.slope is not None  # it was found with derivatives
+        rate = min(float(top.slope.sum()), -0.5)
+        leap = np.log(LEAP)
+        by = float(np.clip((now.worst + AIM) / -rate, -leap, leap))
+        values = now.values * np.exp(by)
+        if np.any(np.abs(np.log(values / search.shape.values)) > np.log(FARTHEST)):
+            break
+        now = search.stress.at(values)
+    if best is None:
+        factor = search.aim.required * float(np.exp(-now.worst))
+        times = float(now.values[0] / search.shape.values[0])
+        raise ImpossibleError(
+            f"with {times:.3g} times these dimensions its factor is only {factor:.4g}: its bands "
+            "must be longer, its material stronger or its loads smaller"
+        )
+    return best
+
+
+def _written(search: _Search, optimum: Optimum) -> SolvedPin:
+    """The lightest design that was found and reaches the factor, with its dimensions rounded.
+
+    Raises: ImpossibleError.
+    """
+    shape, stress, step = search.shape, search.stress, search.aim.step
+    metre = search.problem.study.system.factor("length")
+    values, more = np.exp(optimum.x), 0.0
+    for k in range(STEPS_UP if step is not None else REPAIRS):
+        found = stress.at(_rounded(shape, values * (1.0 + more), step, metre))
+        if found.worst <= 0.0:
+            break
+        # Larger by what stress exceeds, were it tension, which is enough; or by a step.
+        thin = float(shape.values.min()) if step is not None else 1.0
+        more += 0.6 * found.worst + 5e-4 * (k + 1) if step is None else 0.5 * step / thin
+    lighter = [
+        s for s in stress.solved
+        if s.worst <= 0.0 and search.keeps(s.values) and step is None
+    ]  # fmt: skip
+    if found.worst <= 0.0:
+        lighter.append(found)
+    if not lighter:
+        factor = search.aim.required * float(np.exp(-found.worst))
+        raise ImpossibleError(f"the dimensions as they would be written give only {factor:.4g}")
+    best = min(lighter, key=lambda s: float(shape.volume(s.values)[0]))
+    if best is found or step is not None:
+        return best
+    try:
+        written = stress.at(_rounded(shape, best.values, step, metre))
+    except ImpossibleError:
+        return found
+    volumes = [float(shape.volume(s.values)[0]) for s in (written, found)]
+    return written if written.worst <= 0.0 and volumes[0] < volumes[1] else found
+
+
+def _rounded(shape: PinShape, values: Floats, step: float | None, metre: float) -> Floats:
+    """As they are written: four digits, diameters up, bores and fillets down; diameters up to a
+    step (m), and by further steps where a geometric limit is broken by that.
+    """
+    up = {"diameters": 1, "bores": -1, "fillets": -1}
+    out, steps = [], np.zeros(len(values))
+    for k, (dimension, value) in enumerate(zip(shape.dimensions, values, strict=True)):
+        kind = kind_of(dimension.key)
+        own = None
+        if step is not None and kind == "diameters":
+            own = (step / 2.0 if dimension.key.startswith("meridian") else step) / metre
+            steps[k] = own * metre
+        out.append(rounded(float(value) / metre, own, up[kind]) * metre)
+    found = np.array(out)
+    for _ in range(STEPS_UP if step is not None else 0):
+        limits, slopes = shape.at_limits(found)
+        if not len(limits) or limits.min() >= -ROUNDING:
+            break
+        grow = (slopes[int(limits.argmin())] > 0.0) & (steps > 0.0)
+        if not grow.any():
+            break
+        found = found + np.where(grow, steps, 0.0)
+    return found
+
+
+def _binding(search: _Search, optimum: Optimum) -> list[tuple[str, float]]:
+    """What binds, the largest multiplier first."""
+    keys, limits = search.shape.keys, search.shape.geometric
+    out = []
+    for name, multiplier in optimum.optimality.multipliers.items():
+        kind, _, number = name.rpartition(" ")
+        text = name
+        if kind == "limit":
+            text = limits[int(number) - 1].text
+        elif kind in ("least", "most"):
+            text = f"{keys[int(number) - 1]} {FARTHEST:g} times {'less' if kind == 'least' else 'more'}"
+        out.append((text, multiplier))
+    return sorted(out, key=lambda one: (-one[1], one[0]))
