@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -23,6 +24,7 @@ from pinstress.sizing.optimise import (
     Optimum,
     Place,
     least_weight,
+    optimality,
 )
 from pinstress.sizing.pin_shape import FARTHEST, KINDS, Limits, PinShape, kind_of
 from pinstress.sizing.pin_stress import PinProblem, PinStress, SolvedPin
@@ -30,6 +32,9 @@ from pinstress.sizing.scaled_study import rounded
 from pinstress.study.file import Study
 
 AIM = 0.004  # of the stress, below what is allowed: noise of meshes, and rounding
+ENOUGH = 2e-3  # of the weight, and twice of the stress: what meshes are worth
+NARROW = 5e-3  # a bracket of scales that is not looked into
+FAR = 0.05  # from the factor, where not all derivatives are worth finding
 SCALINGS = 10
 REPAIRS = 4
 STEPS_UP = 40  # of diameters rounded to steps
@@ -97,7 +102,7 @@ def lightest_pin(
     before: float | None = None
     try:
         try:
-            first = stress.at(values)
+            first = stress.at(values, FAR)
         except ValueError:  # in lugs, or with cuts
             raise ImpossibleError(UNDIFFERENTIATED) from None
         before = aim.required * float(np.exp(-first.worst))
@@ -162,15 +167,21 @@ def _found(search: _Search, first: SolvedPin, before: float) -> Lightest:
     shape, stress, aim = search.shape, search.stress, search.aim
     whole = set(aim.vary) == set(KINDS)
     scaled = _scaled(search, first)
-    optimum = least_weight(search, np.log(scaled.values))
+    if len(shape.dimensions) > 1:
+        optimum = least_weight(search, np.log(scaled.values), ENOUGH)
+    else:
+        x, places = np.log(scaled.values), scaled.places
+        optimum = Optimum(x, search.weight(x)[0], places, optimality(search, x, places), 0)
     best = _written(search, optimum)
     volume = float(shape.volume(best.values)[0])
+    metre = search.problem.study.system.factor("length")
+    as_written = partial(_rounded, shape, step=aim.step, metre=metre)
     return Lightest(
         search.problem.name,
         dict(zip(shape.keys, map(float, best.values), strict=True)),
         before,
         volume,
-        float(shape.volume(scaled.values)[0]) if whole else None,
+        float(shape.volume(as_written(scaled.values))[0]) if whole else None,
         optimum.optimality,
         tuple(_binding(search, optimum)),
         len(stress.solved),
@@ -184,21 +195,30 @@ def _scaled(search: _Search, first: SolvedPin) -> SolvedPin:
 
     Raises: ImpossibleError.
     """
-    now, best = first, None
+    now = first
+    best: SolvedPin | None = None
+    small: float | None = None  # times, with which stress is too large
     for _ in range(SCALINGS):
-        if now.worst <= 0.0 and (best is None or now.values[0] < best.values[0]):
+        here = float(np.log(now.values[0] / search.shape.values[0]))
+        if now.worst <= 0.0:
             best = now
+        else:
+            small = here if small is None else max(small, here)
         if -CLOSE <= now.worst <= 0.0:
-            return now
+            break
         top = max((p for p in now.places if p.slope is not None), key=lambda p: p.value)
         assert top.slope is not None  # it was found with derivatives
-        rate = min(float(top.slope.sum()), -0.5)
-        leap = np.log(LEAP)
-        by = float(np.clip((now.worst + AIM) / -rate, -leap, leap))
-        values = now.values * np.exp(by)
-        if np.any(np.abs(np.log(values / search.shape.values)) > np.log(FARTHEST)):
+        leap, rate = np.log(LEAP), min(float(top.slope.sum()), -0.5)
+        there = here + float(np.clip((now.worst + AIM) / -rate, -leap, leap))
+        if best is not None:
+            large = float(np.log(best.values[0] / search.shape.values[0]))
+            if large - (there if small is None else small) < NARROW:
+                break
+            if small is not None and not small < there < large:
+                there = 0.5 * (small + large)
+        if abs(there) > np.log(FARTHEST):
             break
-        now = search.stress.at(values)
+        now = search.stress.at(search.shape.values * np.exp(there), FAR)
     if best is None:
         factor = search.aim.required * float(np.exp(-now.worst))
         times = float(now.values[0] / search.shape.values[0])

@@ -30,9 +30,9 @@ PENALTY = 2.0  # of excess stress; multipliers add up to 1 where stress falls wi
 STRICT = 10.0  # the same of geometric limits
 FIRST, LONGEST = 0.7, 1.1  # steps of a logarithm: to half, to a third
 SHORTEST = 2e-3
-CLOSE = 5e-4  # of the merit: a step that promises less ends the search
+CLOSE = 5e-4  # of the merit
 WORTH = 0.1  # part of the promise that a step must keep
-NEAR = 0.01  # of the limit: a stress, ratio or bound that is active
+NEAR = 0.02  # of the limit: a stress, ratio or bound that is active; what meshes are worth
 AGREE = 1e-3  # by which an earlier tangent may exceed the stress
 KEPT = 6  # tangents of a place
 MOST = 25  # solutions
@@ -45,12 +45,13 @@ class ImpossibleError(Exception):
 @dataclass(frozen=True)
 class Place:
     """Where stress may govern: the logarithm of stress over what is allowed, and its derivatives
-    (n,), None where they were not worth finding.
+    (n,), None where they were not worth finding. guess: what they may be, until they are known.
     """
 
     name: str
     value: float
     slope: Array | None = None
+    guess: Array | None = None
 
 
 class Problem(Protocol):
@@ -129,7 +130,8 @@ class Tangents:
 
     def at(self, x: Array, places: tuple[Place, ...]) -> tuple[Array, Array]:
         """Values (J,) at a point where the places are known, and slopes (J, n)."""
-        found = [(p.value, p.slope) for p in self.completed(places) if p.slope is not None]
+        every = [(p.value, p.guess if p.slope is None else p.slope) for p in self.completed(places)]
+        found = [(value, slope) for value, slope in every if slope is not None]
         for place in places:
             for at, value, slope in self.known.get(place.name, ()):
                 here = value + float(slope @ (x - at))
@@ -139,8 +141,10 @@ class Tangents:
         return np.array(values), np.array(slopes).reshape(-1, len(x))
 
 
-def least_weight(problem: Problem, start: Array, tell: Tell = lambda _: None) -> Optimum:
-    """The optimum from a start (n,) within the geometric limits.
+def least_weight(
+    problem: Problem, start: Array, close: float = CLOSE, tell: Tell = lambda _: None
+) -> Optimum:
+    """The optimum from a start (n,). close: a step that promises less of the merit ends the search.
 
     Raises: ImpossibleError where the start cannot be solved.
     """
@@ -152,7 +156,7 @@ def least_weight(problem: Problem, start: Array, tell: Tell = lambda _: None) ->
     while True:
         merit = _merit(problem, x, worst(places))
         step, promise = _step(problem, x, places, tangents, radius)
-        if promise <= CLOSE:
+        if promise <= close:
             break
         if solved >= MOST or radius < SHORTEST:
             why = f"not converged in {solved} solutions" if solved >= MOST else ""

@@ -131,6 +131,11 @@ class PinShape:
         """Volume that is not of segments and fillets, as it is, m^3."""
         return self.pin.volume - self._plain(self.values)[0]
 
+    def part_of_diameter(self, segment: int) -> Floats:
+        """By which part a segment's mean diameter grows for each part of the dimensions, (n,)."""
+        rate = self._rates[0][segment].sum(axis=0) * self.values
+        return np.asarray(rate / self._now.outer[segment].sum())
+
     def volume(self, values: Floats) -> tuple[float, Floats]:
         """m^3, and its gradient (n,) m^2: exact but for rounded edges and fillets at cones, whose
         part stays as it is.

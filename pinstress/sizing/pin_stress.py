@@ -39,7 +39,8 @@ from pinstress.study.errors import InputError
 from pinstress.study.file import Study, raw_study
 
 WINDOW = 0.15  # of the logarithm of stress below the largest: where derivatives are found
-UNKNOWN = 0.5  # the same of places where they are not yet known
+UNKNOWN = 0.3  # the same of places where they are not yet known
+BENDING = -3.0  # power of the diameter, where nothing is known
 
 Tell = Callable[[str], None]
 
@@ -80,6 +81,7 @@ class _Found:
     name: str
     stress: float
     slopes: Callable[[], Floats]
+    guess: Floats | None = None
 
 
 def counted(peak: Peak) -> float:
@@ -110,20 +112,22 @@ class PinStress:
         every = list(zip(self._paths, map(float, values), strict=True))
         return study_with(self.problem.study, self._raw, self.problem.name, every)
 
-    def at(self, values: Floats, slopes: bool = True) -> SolvedPin:
-        """Raises: ImpossibleError."""
+    def at(self, values: Floats, far: float = np.inf) -> SolvedPin:
+        """Derivatives at all places that may govern; of the worst place only, where its stress is
+        `far` from what is allowed (its logarithm). Raises: ImpossibleError.
+        """
         for known in self.solved:
             if np.array_equal(known.values, values):
                 return known
         self._tell(f"pin {self.problem.name}, design {len(self.solved) + 1}")
         try:
-            found = self._solved(values, slopes)
+            found = self._solved(values, far)
         except (InputError, ArgumentError, ArithmeticError, MemoryError) as error:
             raise ImpossibleError(str(error) or "out of memory") from None
         self.solved.append(found)
         return found
 
-    def _solved(self, values: Floats, slopes: bool) -> SolvedPin:
+    def _solved(self, values: Floats, far: float) -> SolvedPin:
         study, name = self.study_at(values), self.problem.name
         peaks: list[Peak] = []
         found: list[tuple[_Found, float]] = []
@@ -153,10 +157,10 @@ class PinStress:
         for (part, _), value in zip(found, logs, strict=True):
             window = WINDOW if part.name in self._known else UNKNOWN
             slope = None
-            if slopes and value >= top - window:
+            if value >= top - (window if abs(top) < far else 0.0):
                 slope = values * part.slopes()
                 self._known.add(part.name)
-            places.append(Place(part.name, value, slope))
+            places.append(Place(part.name, value, slope, part.guess))
         return SolvedPin(values, tuple(peaks), tuple(places))
 
     def _dimensions(self, study: Study, task: Task) -> tuple[Dimension, ...]:
@@ -199,9 +203,14 @@ class PinStress:
         def slopes(top: PartTop, mask: Mask) -> Callable[[], Floats]:
             return lambda: parts.slopes(solved, solution.loads, top, mask) / top.top.value
 
-        named = dict(masks)
+        named = {name: (mask, k // 2) for k, (name, mask) in enumerate(masks)}
         return [
-            _Found(f"{peak.case}, {top.part}", times * top.top.value, slopes(top, named[top.part]))
+            _Found(
+                f"{peak.case}, {top.part}",
+                times * top.top.value,
+                slopes(top, named[top.part][0]),
+                BENDING * self.problem.shape.part_of_diameter(named[top.part][1]),
+            )
             for top in tops
             if top.top.value > 0.0
         ]
