@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from geometry.arrays import Floats
 from pinstress.analysis.plan import Plan
 from pinstress.model.pins import pin as pin_of
 from pinstress.remedies.dimensions import dimensions_of
-from pinstress.remedies.secant import CLOSE, LEAP
+from pinstress.remedies.secant import CLOSE, LEAP, NoSizeError, smallest
 from pinstress.sizing.optimise import (
     ImpossibleError,
     Optimality,
@@ -27,8 +26,14 @@ from pinstress.sizing.optimise import (
     optimality,
 )
 from pinstress.sizing.pin_shape import FARTHEST, KINDS, Limits, PinShape, kind_of
-from pinstress.sizing.pin_stress import PinProblem, PinStress, SolvedPin
-from pinstress.sizing.scaled_study import rounded
+from pinstress.sizing.pin_stress import (
+    PinProblem,
+    PinStress,
+    SolvedPin,
+    UndifferentiatedError,
+)
+from pinstress.sizing.scaled_study import resized_study, rounded
+from pinstress.study.errors import InputError
 from pinstress.study.file import Study
 
 AIM = 0.004  # of the stress, below what is allowed: noise of meshes, and rounding
@@ -39,7 +44,7 @@ SCALINGS = 10
 REPAIRS = 4
 STEPS_UP = 40  # of diameters rounded to steps
 ROUNDING = 2e-3  # of a geometric limit, by which four digits may break it
-UNDIFFERENTIATED = "no derivatives, so it is scaled as a whole"
+WHOLE = "scaled as a whole, because its stress has no derivatives by its dimensions"
 
 Tell = Callable[[str], None]
 
@@ -64,16 +69,18 @@ class Aim:
 
 @dataclass(frozen=True)
 class Lightest:
-    """A pin: its dimensions by key, m, as they are written, None where none reach the factor, and
-    `why`. before: its factor as it was. volume, scaled: m^3, by these dimensions and if it is only
-    scaled, None where that is not known. optimality: of what the search found; binding: what
-    binds, in words, by its multiplier. solved: designs. way: why it is only scaled, if it is.
+    """A pin: its dimensions by key, m, as they are written, or by which scale it is only scaled;
+    neither where nothing reaches the factor, and `why`. before, factor: lower end of its factor as
+    it was and with these. scaled: its volume, m^3, were it only scaled, None where that is not
+    known. optimality: of what the search found; binding: what binds, in words, by its multiplier.
+    solved: designs. way: why it is only scaled, or how the search ended if it did not converge.
     """
 
     pin: str
-    values: dict[str, float] | None
-    before: float | None
-    volume: float | None = None
+    values: dict[str, float] | None = None
+    scale: float | None = None
+    before: float | None = None
+    factor: float | None = None
     scaled: float | None = None
     optimality: Optimality | None = None
     binding: tuple[tuple[str, float], ...] = ()
@@ -82,33 +89,66 @@ class Lightest:
     way: str = ""
 
 
+@dataclass(frozen=True)
+class Start:
+    """A pin's dimensions by key, m, or its scale, and the volume of it that is only scaled, as they
+    were found under other loads.
+    """
+
+    values: dict[str, float] | None = None
+    scale: float | None = None
+    scaled: float | None = None
+
+
 def lightest_pin(
     study: Study,
     plan: Plan,
     pin: str,
     aim: Aim,
-    start: Mapping[str, float] | None = None,
+    start: Start | None = None,
     tell: Tell = lambda _: None,
 ) -> Lightest:
     """Of a pin of the study as it was given; plan: with the loads of the study as it is now.
-    start: its dimensions now. Failures are reported in the answer.
+    Failures are reported in the answer.
     """
     problem = problem_of(study, plan, pin, aim)
     if isinstance(problem, str):
-        return Lightest(pin, None, None, why=problem)
+        return Lightest(pin, why=problem)
+    start = start or Start()
     stress = PinStress(problem, tell)
-    shape = problem.shape
-    values = np.array([(start or {}).get(d.key, d.value) for d in shape.dimensions])
     before: float | None = None
     try:
-        try:
-            first = stress.at(values, FAR)
-        except ValueError:  # in lugs, or with cuts
-            raise ImpossibleError(UNDIFFERENTIATED) from None
-        before = aim.required * float(np.exp(-first.worst))
-        return _found(_Search(problem, stress, aim), first, before)
+        if start.scale is not None or not isinstance(problem.shape.pin, Pin):
+            raise UndifferentiatedError
+        shape, known = problem.shape, start.values or {}
+        first = stress.at(np.array([known.get(d.key, d.value) for d in shape.dimensions]), FAR)
+        before = problem.required * float(np.exp(-first.worst))
+        search = _Search(problem, stress, aim)
+        scaled = _scaled(search, first) if start.values is None else first
+        return replace(_found(search, scaled, start.scaled), before=before)
+    except UndifferentiatedError:
+        return _only_scaled(stress, aim, start.scale or 1.0)
     except ImpossibleError as error:
-        return Lightest(pin, None, before, solved=len(stress.solved), why=str(error))
+        return Lightest(pin, before=before, solved=stress.count, why=str(error))
+
+
+def _only_scaled(stress: PinStress, aim: Aim, start: float) -> Lightest:
+    """Without derivatives: all its dimensions times the same, as `size` does."""
+    problem, factors = stress.problem, {}
+
+    def factor_at(scale: float) -> float:
+        found = stress.of(resized_study(problem.study, {problem.name: scale}, aim.step))
+        factors[scale] = problem.required * float(np.exp(-found.worst))
+        return factors[scale]
+
+    try:
+        best = smallest(factor_at, problem.required, start)
+        scale, factor = best.scale, best.factor
+    except (NoSizeError, ImpossibleError, InputError) as error:
+        return Lightest(problem.name, before=factors.get(start), solved=len(factors), why=str(error))
+    return Lightest(
+        problem.name, None, scale, factors[start], factor, None, None, (), len(factors), "", WHOLE
+    )
 
 
 def problem_of(study: Study, plan: Plan, pin: str, aim: Aim) -> PinProblem | str:
@@ -119,10 +159,8 @@ def problem_of(study: Study, plan: Plan, pin: str, aim: Aim) -> PinProblem | str
     if study.table.material[table.material].yield_strength is None:
         return f"its material {table.material} has no yield_strength"
     made = pin_of(study, pin)
-    if not isinstance(made, Pin):
-        return "it has cuts, with which its stress has no derivatives: pinstress size scales it"
     shape = PinShape(study, made, aim.vary, aim.limits)
-    if not shape.dimensions:
+    if not shape.dimensions and isinstance(made, Pin):
         has = [kind for kind in KINDS if any(kind_of(d.key) == kind for d in dimensions_of(study, made))]
         return f"it has none of {', '.join(aim.vary)} to vary, only {', '.join(has)}"
     asked = replace(plan.asked, goal="value")
@@ -163,30 +201,27 @@ class _Search:
         return float(self.shape.at_limits(values)[0].min(initial=0.0)) >= -ROUNDING
 
 
-def _found(search: _Search, first: SolvedPin, before: float) -> Lightest:
-    shape, stress, aim = search.shape, search.stress, search.aim
-    whole = set(aim.vary) == set(KINDS)
-    scaled = _scaled(search, first)
+def _found(search: _Search, scaled: SolvedPin, before: float | None) -> Lightest:
+    """From the pin that is only scaled; before: the volume of that, if it is another."""
+    shape, aim = search.shape, search.aim
     if len(shape.dimensions) > 1:
         optimum = least_weight(search, np.log(scaled.values), ENOUGH)
     else:
         x, places = np.log(scaled.values), scaled.places
         optimum = Optimum(x, search.weight(x)[0], places, optimality(search, x, places), 0)
     best = _written(search, optimum)
-    volume = float(shape.volume(best.values)[0])
     metre = search.problem.study.system.factor("length")
-    as_written = partial(_rounded, shape, step=aim.step, metre=metre)
+    if before is None and set(aim.vary) == set(KINDS):
+        before = float(shape.volume(_rounded(shape, scaled.values, aim.step, metre))[0])
     return Lightest(
         search.problem.name,
         dict(zip(shape.keys, map(float, best.values), strict=True)),
-        before,
-        volume,
-        float(shape.volume(as_written(scaled.values))[0]) if whole else None,
-        optimum.optimality,
-        tuple(_binding(search, optimum)),
-        len(stress.solved),
-        "",
-        optimum.why,
+        factor=aim.required * float(np.exp(-best.worst)),
+        scaled=before,
+        optimality=optimum.optimality,
+        binding=tuple(_binding(search, optimum)),
+        solved=search.stress.count,
+        way=optimum.why,
     )
 
 

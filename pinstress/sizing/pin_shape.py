@@ -14,7 +14,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from geometry import Pin
+from geometry import Pin, PinLike
 from geometry.arrays import Floats
 from geometry.shape.dimensions import Dimension
 from geometry.shape.polygon import turn_at
@@ -92,11 +92,17 @@ class PinShape:
     Neighbours of equal diameter or bore stay equal; limits are those of the pin as it is.
     """
 
-    def __init__(self, study: Study, pin: Pin, kinds: Iterable[str], limits: Limits) -> None:
-        self.pin, self.limits = pin, limits
+    def __init__(self, study: Study, pin: PinLike, kinds: Iterable[str], limits: Limits) -> None:
+        self.whole, self.limits = pin, limits
         chosen = tuple(kinds)
         self.dimensions = tuple(d for d in dimensions_of(study, pin) if kind_of(d.key) in chosen)
         self.values = np.array([d.value for d in self.dimensions])
+
+    @property
+    def pin(self) -> Pin:
+        """The pin as it is; only bodies of revolution have dimensions."""
+        assert isinstance(self.whole, Pin)
+        return self.whole
 
     @property
     def keys(self) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ is. All stresses of a row are raised by the ratio of what counts of it to the la
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -94,6 +94,10 @@ def counted(peak: Peak) -> float:
     return peak.interval[1] if peak.interval else stress + (peak.error_estimate or 0.0)
 
 
+class UndifferentiatedError(Exception):
+    """Stress has no derivatives by dimensions: of a pin with cuts, or of some in contact."""
+
+
 class PinStress:
     """Solves a pin with other dimensions. scale: of all loads' allowed stress, below 1 to stay
     away from the limit.
@@ -103,9 +107,10 @@ class PinStress:
         self.problem, self._tell = problem, tell
         self._raw: dict[str, Any] = raw_study(problem.study)
         shape = problem.shape
-        self._paths = [paths_of(shape.pin, d) for d in shape.dimensions]
+        self._paths = [paths_of(shape.pin, d) for d in shape.dimensions]  # none of other pins
         self._known: set[str] = set()
         self.solved: list[SolvedPin] = []
+        self.count = 0  # of designs
 
     def study_at(self, values: Floats) -> Study:
         """Raises: InputError."""
@@ -114,41 +119,34 @@ class PinStress:
 
     def at(self, values: Floats, far: float = np.inf) -> SolvedPin:
         """Derivatives at all places that may govern; of the worst place only, where its stress is
-        `far` from what is allowed (its logarithm). Raises: ImpossibleError.
+        `far` from what is allowed (its logarithm). Raises: ImpossibleError, UndifferentiatedError.
         """
         for known in self.solved:
             if np.array_equal(known.values, values):
                 return known
-        self._tell(f"pin {self.problem.name}, design {len(self.solved) + 1}")
         try:
-            found = self._solved(values, far)
-        except (InputError, ArgumentError, ArithmeticError, MemoryError) as error:
-            raise ImpossibleError(str(error) or "out of memory") from None
+            found = self._solved(self.study_at(values), values, far)
+        except InputError as error:
+            raise ImpossibleError(str(error)) from None
         self.solved.append(found)
         return found
 
-    def _solved(self, values: Floats, far: float) -> SolvedPin:
-        study, name = self.study_at(values), self.problem.name
+    def of(self, study: Study) -> SolvedPin:
+        """Of the pin in a study, without derivatives. Raises: ImpossibleError."""
+        return self._solved(study, None, 0.0)
+
+    def _solved(self, study: Study, values: Floats | None, far: float) -> SolvedPin:
+        self.count += 1
+        self._tell(f"pin {self.problem.name}, design {self.count}")
         peaks: list[Peak] = []
         found: list[tuple[_Found, float]] = []
-        for task in tasks(study, [pin_of(study, name)], self.problem.loads):
-            dimensions = self._dimensions(study, task)
-            parts = PartsOfSection(dimensions)
-            for each in solutions(study, task, self.problem.asked, lambda _: None):
-                solution = each.solution if isinstance(each, LugSolution) else each
-                peak = solution.peak
-                _require_solved(peak)
-                if not peak.max_von_mises:
-                    continue
-                peaks.append(peak)
-                strength = task.material.yield_strength
-                assert strength is not None  # a pin without strength is refused before
-                allowed = strength / (self.problem.required * self.problem.more.get(peak.case, 1.0))
-                if isinstance(each, LugSolution):
-                    here = [self._in_lugs(study, peak)]
-                else:
-                    here = self._parts(task, each, dimensions, parts)
-                found += [(part, allowed) for part in here]
+        try:
+            for task in tasks(study, [pin_of(study, self.problem.name)], self.problem.loads):
+                for peak, parts in self._of_task(study, task, values is not None):
+                    peaks.append(peak)
+                    found += [(part, self._allowed(task, peak)) for part in parts]
+        except (InputError, ArgumentError, ArithmeticError, MemoryError) as error:
+            raise ImpossibleError(str(error) or "out of memory") from None
         if not peaks:
             raise ImpossibleError("no case loads it")
         logs = [float(np.log(part.stress / allowed)) for part, allowed in found]
@@ -157,11 +155,56 @@ class PinStress:
         for (part, _), value in zip(found, logs, strict=True):
             window = WINDOW if part.name in self._known else UNKNOWN
             slope = None
-            if value >= top - (window if abs(top) < far else 0.0):
-                slope = values * part.slopes()
+            if values is not None and value >= top - (window if abs(top) < far else 0.0):
+                slope = values * self._slope(part)
                 self._known.add(part.name)
             places.append(Place(part.name, value, slope, part.guess))
-        return SolvedPin(values, tuple(peaks), tuple(places))
+        return SolvedPin(np.zeros(0) if values is None else values, tuple(peaks), tuple(places))
+
+    def _slope(self, part: _Found) -> Floats:
+        try:
+            return part.slopes()
+        except ArithmeticError as error:
+            raise ImpossibleError(str(error)) from None
+
+    def _allowed(self, task: Task, peak: Peak) -> float:
+        """Stress, Pa."""
+        strength = task.material.yield_strength
+        assert strength is not None  # a pin without strength is refused before
+        return strength / (self.problem.required * self.problem.more.get(peak.case, 1.0))
+
+    def _of_task(
+        self, study: Study, task: Task, differentiated: bool
+    ) -> Iterator[tuple[Peak, list[_Found]]]:
+        """Peaks and what is found of each."""
+        if differentiated and not isinstance(task.pin, Pin):
+            raise UndifferentiatedError
+        made: dict[str, Floats] = {}
+        if differentiated and task.lugs:
+            made = {case.case: self._in_contact(study, case.case) for case in task.loads}
+        dimensions = self._dimensions(study, task) if differentiated else ()
+        section = PartsOfSection(dimensions)
+        for each in solutions(study, task, self.problem.asked, lambda _: None):
+            solution = each.solution if isinstance(each, LugSolution) else each
+            peak = solution.peak
+            _require_solved(peak)
+            if not peak.max_von_mises:
+                continue
+            if isinstance(each, LugSolution) or not differentiated:
+                slope = made.get(peak.case, np.zeros(0)) / peak.max_von_mises
+                yield peak, [_Found(peak.case, counted(peak), lambda slope=slope: slope)]  # type: ignore
+            else:
+                yield peak, self._parts(task, each, dimensions, section)
+
+    def _in_contact(self, study: Study, case: str) -> Floats:
+        """Derivatives of the largest stress, Pa/m. Raises: UndifferentiatedError."""
+        try:
+            by = by_key(study, self.problem.name, case)
+        except InputError:
+            raise
+        except ValueError:
+            raise UndifferentiatedError from None
+        return np.array([by.get(key, 0.0) for key in self.problem.shape.keys])
 
     def _dimensions(self, study: Study, task: Task) -> tuple[Dimension, ...]:
         by = {d.key: d for d in dimensions_of(study, task.pin)}
@@ -214,16 +257,6 @@ class PinStress:
             for top in tops
             if top.top.value > 0.0
         ]
-
-    def _in_lugs(self, study: Study, peak: Peak) -> _Found:
-        """Of a row in contact: one place."""
-
-        def whole() -> Floats:
-            made = by_key(study, self.problem.name, peak.case)
-            slope = np.array([made.get(key, 0.0) for key in self.problem.shape.keys])
-            return slope / (peak.max_von_mises or 1.0)
-
-        return _Found(peak.case, counted(peak), whole)
 
 
 def _require_solved(peak: Peak) -> None:
