@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 from pinstress.analysis.plan import Plan, prepare
@@ -26,6 +26,7 @@ SOLVERS = ("fea.solve_pin", "fea.derivatives.places", "scipy.optimize")
 class LightStudy:
     """The new study, what was found of every pin, and the new study's run. passes: how often all
     loads were found anew; settled: whether the run has the factors that the last one ended with.
+    at: by pin and case, the factor at a probability, if one was asked for.
     """
 
     study: Study
@@ -33,6 +34,7 @@ class LightStudy:
     results: Results
     passes: int
     settled: bool
+    at: Mapping[tuple[str, str], float] = field(default_factory=dict)
 
 
 def lighten(

@@ -162,7 +162,7 @@ def problem_of(study: Study, plan: Plan, pin: str, aim: Aim) -> PinProblem | str
     shape = PinShape(study, made, aim.vary, aim.limits)
     if not shape.dimensions and isinstance(made, Pin):
         has = [kind for kind in KINDS if any(kind_of(d.key) == kind for d in dimensions_of(study, made))]
-        return f"it has none of {', '.join(aim.vary)} to vary, only {', '.join(has)}"
+        return f"it has no {' or '.join(aim.vary)} to vary, only {' and '.join(has)}"
     asked = replace(plan.asked, goal="value")
     return PinProblem(study, pin, shape, asked, plan.loads, aim.required, aim.of_pin(pin))
 
