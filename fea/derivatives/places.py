@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -33,7 +34,7 @@ def halves(stations: Sequence[float], points: Floats) -> Parts:
     """The near and the far half of every segment between stations (m): points (S, 2) in each."""
     out = []
     last = len(stations) - 2
-    for k, (a, b) in enumerate(zip(stations[:-1], stations[1:], strict=True)):
+    for k, (a, b) in enumerate(pairwise(stations)):
         middle = 0.5 * (a + b)
         low = -np.inf if k == 0 else a
         high = np.inf if k == last else b
@@ -44,7 +45,7 @@ def halves(stations: Sequence[float], points: Floats) -> Parts:
 
 
 class PartsOfSection:
-    """Of the cases of a pin that were solved on one mesh. dimensions: by which it is differentiated."""
+    """Of the cases of a pin that were solved on one mesh, by some dimensions."""
 
     def __init__(self, dimensions: tuple[Dimension, ...]) -> None:
         self._dimensions = dimensions

@@ -122,9 +122,7 @@ def _density(study: Study, name: str) -> float | None:
     return study.table.material[study.table.pin[name].material].density
 
 
-def _row(
-    study: Study, found: LightStudy, each: Lightest, aim: Aim, heavy: bool
-) -> LightRow:
+def _row(study: Study, found: LightStudy, each: Lightest, aim: Aim, heavy: bool) -> LightRow:
     mine = [p for p in found.results.pins if p.pin == each.pin and p.safety_factor is not None]
     worst = min(mine, key=lambda p: low_factor(p) or 0.0) if mine else None
     before, after = (pin_of(x, each.pin).volume for x in (study, found.study))

@@ -7,7 +7,7 @@ heavier. What is found is rounded as it is written, and solved once more.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -58,7 +58,7 @@ class Aim:
 
     required: float
     vary: tuple[str, ...] = KINDS
-    limits: Limits = Limits()
+    limits: Limits = field(default_factory=Limits)
     step: float | None = None
     more: Mapping[tuple[str, str], float] | None = None
 
@@ -145,7 +145,9 @@ def _only_scaled(stress: PinStress, aim: Aim, start: float) -> Lightest:
         best = smallest(factor_at, problem.required, start)
         scale, factor = best.scale, best.factor
     except (NoSizeError, ImpossibleError, InputError) as error:
-        return Lightest(problem.name, before=factors.get(start), solved=len(factors), why=str(error))
+        return Lightest(
+            problem.name, before=factors.get(start), solved=len(factors), why=str(error)
+        )
     return Lightest(
         problem.name, None, scale, factors[start], factor, None, None, (), len(factors), "", WHOLE
     )
@@ -161,7 +163,11 @@ def problem_of(study: Study, plan: Plan, pin: str, aim: Aim) -> PinProblem | str
     made = pin_of(study, pin)
     shape = PinShape(study, made, aim.vary, aim.limits)
     if not shape.dimensions and isinstance(made, Pin):
-        has = [kind for kind in KINDS if any(kind_of(d.key) == kind for d in dimensions_of(study, made))]
+        has = [
+            kind
+            for kind in KINDS
+            if any(kind_of(d.key) == kind for d in dimensions_of(study, made))
+        ]
         return f"it has no {' or '.join(aim.vary)} to vary, only {' and '.join(has)}"
     asked = replace(plan.asked, goal="value")
     return PinProblem(study, pin, shape, asked, plan.loads, aim.required, aim.of_pin(pin))
@@ -196,6 +202,10 @@ class _Search:
         """Over what is aimed at, a little below what is allowed."""
         return tuple(replace(p, value=p.value + AIM) for p in solved.places)
 
+    def volume(self, solved: SolvedPin) -> float:
+        """m^3."""
+        return float(self.shape.volume(solved.values)[0])
+
     def keeps(self, values: Floats) -> bool:
         """Whether geometric limits hold but for the digits that are written."""
         return float(self.shape.at_limits(values)[0].min(initial=0.0)) >= -ROUNDING
@@ -210,9 +220,14 @@ def _found(search: _Search, scaled: SolvedPin, before: float | None) -> Lightest
         x, places = np.log(scaled.values), scaled.places
         optimum = Optimum(x, search.weight(x)[0], places, optimality(search, x, places), 0)
     best = _written(search, optimum)
-    metre = search.problem.study.system.factor("length")
     if before is None and set(aim.vary) == set(KINDS):
+        metre = search.problem.study.system.factor("length")
         before = float(shape.volume(_rounded(shape, scaled.values, aim.step, metre))[0])
+        if before <= search.volume(best):
+            as_scaled = _repaired(search, scaled.values)
+            if as_scaled is not None:
+                before = search.volume(as_scaled)
+                best = min(as_scaled, best, key=search.volume)
     return Lightest(
         search.problem.name,
         dict(zip(shape.keys, map(float, best.values), strict=True)),
@@ -265,38 +280,38 @@ def _scaled(search: _Search, first: SolvedPin) -> SolvedPin:
 
 
 def _written(search: _Search, optimum: Optimum) -> SolvedPin:
-    """The lightest design that was found and reaches the factor, with its dimensions rounded.
+    """The lightest design that was found and reaches the factor, as it is written.
 
     Raises: ImpossibleError.
     """
-    shape, stress, step = search.shape, search.stress, search.aim.step
+    stress, step = search.stress, search.aim.step
+    found = [x for x in [_repaired(search, np.exp(optimum.x))] if x is not None]
+    lighter = [x for x in stress.solved if x.worst <= 0.0 and search.keeps(x.values)]
+    if lighter and step is None:
+        best = min(lighter, key=search.volume)
+        if not found or search.volume(best) < search.volume(found[0]):
+            found += [x for x in [_repaired(search, best.values)] if x is not None]
+    if not found:
+        raise ImpossibleError("with its dimensions rounded it does not reach the factor")
+    return min(found, key=search.volume)
+
+
+def _repaired(search: _Search, values: Floats) -> SolvedPin | None:
+    """With the factor reached by dimensions as they are written, larger where need be; None where
+    it is not.
+    """
+    shape, step = search.shape, search.aim.step
     metre = search.problem.study.system.factor("length")
-    values, more = np.exp(optimum.x), 0.0
-    for k in range(STEPS_UP if step is not None else REPAIRS):
-        found = stress.at(_rounded(shape, values * (1.0 + more), step, metre))
+    more = 0.0
+    for k in range(REPAIRS if step is None else STEPS_UP):
+        found = search.stress.at(_rounded(shape, values * (1.0 + more), step, metre))
         if found.worst <= 0.0:
-            break
-        # Larger by what stress exceeds, were it tension, which is enough; or by a step.
-        thin = float(shape.values.min()) if step is not None else 1.0
-        more += 0.6 * found.worst + 5e-4 * (k + 1) if step is None else 0.5 * step / thin
-    lighter = [
-        s for s in stress.solved
-        if s.worst <= 0.0 and search.keeps(s.values) and step is None
-    ]  # fmt: skip
-    if found.worst <= 0.0:
-        lighter.append(found)
-    if not lighter:
-        factor = search.aim.required * float(np.exp(-found.worst))
-        raise ImpossibleError(f"the dimensions as they would be written give only {factor:.4g}")
-    best = min(lighter, key=lambda s: float(shape.volume(s.values)[0]))
-    if best is found or step is not None:
-        return best
-    try:
-        written = stress.at(_rounded(shape, best.values, step, metre))
-    except ImpossibleError:
-        return found
-    volumes = [float(shape.volume(s.values)[0]) for s in (written, found)]
-    return written if written.worst <= 0.0 and volumes[0] < volumes[1] else found
+            return found
+        if step is None:  # by what stress exceeds, were it tension, which is enough
+            more += 0.6 * found.worst + 5e-4 * (k + 1)
+        else:
+            more += 0.5 * step / float(values.min())
+    return None
 
 
 def _rounded(shape: PinShape, values: Floats, step: float | None, metre: float) -> Floats:
@@ -334,6 +349,7 @@ def _binding(search: _Search, optimum: Optimum) -> list[tuple[str, float]]:
         if kind == "limit":
             text = limits[int(number) - 1].text
         elif kind in ("least", "most"):
-            text = f"{keys[int(number) - 1]} {FARTHEST:g} times {'less' if kind == 'least' else 'more'}"
+            far = f"{FARTHEST:g} times {'less' if kind == 'least' else 'more'}"
+            text = f"{keys[int(number) - 1]} {far}"
         out.append((text, multiplier))
     return sorted(out, key=lambda one: (-one[1], one[0]))

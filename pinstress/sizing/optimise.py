@@ -4,9 +4,10 @@ Stress against a dimension is nearly a power, so the logarithm of the stress at 
 linear in the logarithms: each step takes the tangents of stress at every place, also those of
 earlier solutions that do not contradict the present one (sums of powers are convex, and then every
 tangent is a bound from below), and SciPy's SLSQP finds the least weight within a distance from
-here. Weight and geometric limits are exact in it. A step that does not lower the merit (weight, and what stresses exceed) is taken back, and the
-next one is shorter. At the end the optimality conditions are checked: the weight's gradient must
-be a sum of those of active constraints with multipliers that are not negative.
+here. Weight and geometric limits are exact in it. A step that does not lower the merit (weight,
+and what stresses exceed) is taken back, and the next one is shorter. At the end the optimality
+conditions are checked: the weight's gradient must be a sum of those of active constraints with
+multipliers that are not negative.
 
 Source: Kelley, J. SIAM 8 (1960) 703 (cutting planes); Nocedal & Wright, Numerical Optimization,
 2nd ed., 12.3 (the conditions), 18.5 (an exact penalty in a trust region); non-negative multipliers
@@ -26,7 +27,9 @@ from scipy.optimize import minimize, nnls
 Array = NDArray[np.float64]
 Tell = Callable[[str], None]
 
-PENALTY = 2.0  # of excess stress; multipliers add up to 1 where stress falls with the area or faster
+PENALTY = (
+    2.0  # of excess stress; multipliers add up to 1 where stress falls with the area or faster
+)
 STRICT = 10.0  # the same of geometric limits
 FIRST, LONGEST = 0.7, 1.1  # steps of a logarithm: to half, to a third
 SHORTEST = 2e-3
@@ -196,9 +199,7 @@ def _active(problem: Problem, x: Array, places: tuple[Place, ...]) -> list[tuple
     """Active constraints and the gradients of what must not be positive."""
     out = [(p.name, p.slope) for p in places if p.value >= -NEAR and p.slope is not None]
     values, gradients = problem.limits(x)
-    out += [
-        (f"limit {k + 1}", -gradients[k]) for k in range(len(values)) if values[k] <= NEAR
-    ]
+    out += [(f"limit {k + 1}", -gradients[k]) for k in range(len(values)) if values[k] <= NEAR]
     lower, upper = problem.bounds
     unit = np.eye(len(x))
     out += [(f"least {k + 1}", -unit[k]) for k in range(len(x)) if x[k] <= lower[k] + NEAR]

@@ -10,7 +10,6 @@ import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 
@@ -27,7 +26,7 @@ BAND = 0.25  # of a segment's length, that fillets take at most
 FARTHEST = 50.0  # times a dimension, and parts of it
 STEP = 1e-3  # of a dimension, of which shapes are linear
 CORNER = 1.0 - math.pi / 4.0  # area between a fillet and its corner, of the radius squared
-CENTRE = (10.0 - 3.0 * math.pi) / (12.0 - 3.0 * math.pi)  # its distance from the sides, of the radius
+CENTRE = (10.0 - 3.0 * math.pi) / (12.0 - 3.0 * math.pi)  # its distance from the sides
 
 
 @dataclass(frozen=True)
@@ -130,7 +129,9 @@ class PinShape:
     def _ends(self, values: Floats) -> _Ends:
         more, now = values - self.values, self._now
         outer, inner, fillets = self._rates
-        return _Ends(now.outer + outer @ more, now.inner + inner @ more, now.fillets + fillets @ more)
+        return _Ends(
+            now.outer + outer @ more, now.inner + inner @ more, now.fillets + fillets @ more
+        )
 
     @cached_property
     def _rest(self) -> float:

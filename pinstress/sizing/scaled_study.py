@@ -41,7 +41,9 @@ def resized_study(
 
     Raises: InputError for a shape that cannot be.
     """
-    return with_what_follows(study, resized(study.text, scales, study.system, step, required), scales)
+    return with_what_follows(
+        study, resized(study.text, scales, study.system, step, required), scales
+    )
 
 
 def with_what_follows(study: Study, text: str, pins: Iterable[str]) -> Study:

@@ -28,9 +28,9 @@ class Dimension:
 class LightRow:
     """A pin: its factor in the run of the new study as text and before, the case that governs;
     weights as it was, if only scaled and now, None where they are not known; residual of the
-    conditions of an optimum, dimensions that changed, what binds with its multiplier, bands that
-    changed, designs solved, the factor at a probability, if one was asked for, why the factor is not verifiably reached, if it is not, and how the
-    search went, if it was no search or did not end.
+    conditions of an optimum, dimensions that changed, what binds with its multiplier, the factor at
+    a probability, if one was asked for, bands that changed, designs solved, why the factor is not
+    verifiably reached, if it is not, and how the search went, if it was none or did not end.
     """
 
     pin: str
@@ -107,7 +107,7 @@ def _total(rows: Sequence[LightRow], required: float, what: str, unit: str) -> I
     yield (
         f"{count} of {len(rows)} pin{'s' if len(rows) != 1 else ''} "
         f"reach{'es' if len(rows) == 1 else ''} the safety factor {short(required)} in a run of "
-        "the new study; a factor that is a range counts by its lower end."
+        "the new study; one that has not converged counts by the lower end of its range."
     )
     known = [row for row in rows if row.saved is not None]
     if len(known) > 1:
