@@ -247,7 +247,7 @@ def _scaled(search: _Search, first: SolvedPin) -> SolvedPin:
     """
     now = first
     best: SolvedPin | None = None
-    small: float | None = None  # times, with which stress is too large
+    small, why = None, ""  # small: with which stress is too large
     for _ in range(SCALINGS):
         here = float(np.log(now.values[0] / search.shape.values[0]))
         if now.worst <= 0.0:
@@ -268,13 +268,17 @@ def _scaled(search: _Search, first: SolvedPin) -> SolvedPin:
                 there = 0.5 * (small + large)
         if abs(there) > np.log(FARTHEST):
             break
-        now = search.stress.at(search.shape.values * np.exp(there), FAR)
+        try:
+            now = search.stress.at(search.shape.values * np.exp(there), FAR)
+        except ImpossibleError as error:
+            why = f"; with {np.exp(there):.3g} times: {error}"
+            break
     if best is None:
         factor = search.aim.required * float(np.exp(-now.worst))
         times = float(now.values[0] / search.shape.values[0])
         raise ImpossibleError(
-            f"with {times:.3g} times these dimensions its factor is only {factor:.4g}: its bands "
-            "must be longer, its material stronger or its loads smaller"
+            f"with {times:.3g} times these dimensions its factor is only {factor:.4g}{why}; its "
+            "bands must be longer, its material stronger or its loads smaller"
         )
     return best
 

@@ -126,7 +126,7 @@ def test_a_bore_grows_to_its_limit() -> None:
     assert outer == pytest.approx(exact, rel=0.02)
     (only,) = found.pins
     assert only.scaled is not None
-    assert pin_of(found.study, "P").volume < 0.5 * only.scaled
+    assert pin_of(found.study, "P").volume < 0.56 * only.scaled
     assert next(text for text, _ in only.binding).startswith("bore of segment 1 at most 0.8")
     assert confirmed(found)
     tube = FOUR_POINT.replace("diameter = 30", "diameter = 30, bore = 8")
@@ -136,22 +136,24 @@ def test_a_bore_grows_to_its_limit() -> None:
 
 
 def test_a_stepped_cantilever_is_fully_stressed() -> None:
-    """d_i is as M_i^(1/3) where beam theory says so, at the wider end of each segment; the peaks in
-    the corners, 1.3 to 1.5 times as large, are nearly the same everywhere.
+    """d_i is as M_i^(1/3) where beam theory says so, at the wider end of each segment, times the
+    cube root of the peak in the corner, about 2 for these fillets; the first one is as wide as the
+    shoulder before the second must be.
     """
     found = lightest(STEPPED, vary=("diameters",))
     (only,) = found.pins
     values = values_of(found)
     assert only.optimality is not None
     assert only.optimality.residual < 0.02
-    assert sum(name.startswith("one, ") for name in only.optimality.multipliers) == 4
+    stressed = [name for name in only.optimality.multipliers if name.startswith("one, ")]
+    assert stressed == [f"one, segment {k}, start" for k in (2, 3, 4)]
     assert confirmed(found)
-    moments = 10000.0 * np.array([240.0, 160.0, 80.0, 20.0])  # where each segment begins
+    moments = 10000.0 * np.array([160.0, 80.0, 20.0])  # where segments 2 to 4 begin
     by_beam = np.cbrt(32.0 * moments / (math.pi * ALLOWED))
-    free = np.array([values[f"profile[{k}].diameter"] for k in (2, 3)])
-    ratio = free / by_beam[1:3]
-    assert np.all((ratio > 1.03) & (ratio < 1.16))  # the cube roots of the peaks
-    assert ratio[0] / ratio[1] == pytest.approx(1.0, abs=0.03)
+    ratio = np.array([values[f"profile[{k}].diameter"] for k in (2, 3, 4)]) / by_beam
+    assert np.all((ratio > 1.9 ** (1 / 3)) & (ratio < 2.2 ** (1 / 3)))
+    assert ratio.max() / ratio.min() < 1.03
+    assert values["profile[1].diameter"] / values["profile[2].diameter"] == pytest.approx(1.2, 2e-3)
     assert only.scaled is None  # fillets are scaled by size, too
 
 
