@@ -72,9 +72,11 @@ class Adjoint:
     ) -> None:
         self.solved = solved
         self.fields = solved.solution.fields
-        self.model = like.model if like else HarmonicModel(
-            solved.pin, solved.solution.mesh, solved.material, solved.clamps
-        )  # fmt: skip
+        mesh = solved.solution.mesh
+        made = like and like.model
+        self.model: HarmonicModel = made or HarmonicModel(
+            solved.pin, mesh, solved.material, solved.clamps
+        )
         if like and like.solved.zones == solved.zones:
             self.outline_nodes, self.interior = like.outline_nodes, like.interior
         self.space, self.outline = self.model.space, self.model.outline

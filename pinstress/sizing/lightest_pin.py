@@ -18,6 +18,7 @@ from pinstress.model.pins import pin as pin_of
 from pinstress.remedies.dimensions import dimensions_of
 from pinstress.remedies.secant import CLOSE, LEAP, NoSizeError, smallest
 from pinstress.sizing.optimise import (
+    NEAR,
     ImpossibleError,
     Optimality,
     Optimum,
@@ -118,7 +119,7 @@ def lightest_pin(
     stress = PinStress(problem, tell)
     before: float | None = None
     try:
-        if start.scale is not None or not isinstance(problem.shape.pin, Pin):
+        if start.scale is not None or not isinstance(problem.shape.whole, Pin):
             raise UndifferentiatedError
         shape, known = problem.shape, start.values or {}
         first = stress.at(np.array([known.get(d.key, d.value) for d in shape.dimensions]), FAR)
@@ -214,7 +215,7 @@ class _Search:
 def _found(search: _Search, scaled: SolvedPin, before: float | None) -> Lightest:
     """From the pin that is only scaled; before: the volume of that, if it is another."""
     shape, aim = search.shape, search.aim
-    if len(shape.dimensions) > 1:
+    if len(shape.dimensions) > 1 or not -NEAR <= scaled.worst <= 0.0:
         optimum = least_weight(search, np.log(scaled.values), ENOUGH)
     else:
         x, places = np.log(scaled.values), scaled.places
@@ -241,7 +242,7 @@ def _found(search: _Search, scaled: SolvedPin, before: float | None) -> Lightest
 
 
 def _scaled(search: _Search, first: SolvedPin) -> SolvedPin:
-    """With the factor reached, all dimensions times the same.
+    """With the factor reached, all dimensions times the same; as it is where only bores change.
 
     Raises: ImpossibleError.
     """
@@ -258,6 +259,8 @@ def _scaled(search: _Search, first: SolvedPin) -> SolvedPin:
             break
         top = max((p for p in now.places if p.slope is not None), key=lambda p: p.value)
         assert top.slope is not None  # it was found with derivatives
+        if top.slope.sum() > 0.0:  # of bores alone, which weaken it
+            return first
         leap, rate = np.log(LEAP), min(float(top.slope.sum()), -0.5)
         there = here + float(np.clip((now.worst + AIM) / -rate, -leap, leap))
         if best is not None:

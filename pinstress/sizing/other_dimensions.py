@@ -111,11 +111,12 @@ def _write(
     """At the path of a number. Places of a dimension in different units stay equal: all are what it
     is rounded to in the study's unit. The radius of a corner is rounded to half a step.
     """
-    here = table
+    here: Any = table
     for part in path[:-1]:
         here = value_of(here)[part]
     here = value_of(here)
-    old: Any = value_of(here[path[-1]])
+    last: Any = path[-1]
+    old: Any = value_of(here[last])
     unit, one = unit_of(old, "length", system)
     metre, kind = system.factor("length"), kind_of(key)
     steps = None
@@ -123,4 +124,4 @@ def _write(
         steps = (step / 2.0 if key.startswith("meridian") else step) / metre
     number = rounded(value / metre, steps, UP[kind]) * metre / one
     if not math.isclose(number * one, to_si(old, "length", system), rel_tol=1e-12):
-        replace_number(here, path[-1], float(f"{number:.12g}"), unit)
+        replace_number(here, last, float(f"{number:.12g}"), unit)
