@@ -77,7 +77,7 @@ def _as_written(table: Any, path: Path) -> Path:
         here = value_of(here)
         if not isinstance(here, dict | list):
             return path[:k]
-        here = here[part]
+        here = here[part]  # type: ignore[index]
     return path
 
 
