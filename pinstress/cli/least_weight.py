@@ -19,13 +19,13 @@ from pinstress.processes.pool import processes
 from pinstress.sizing.at_probability import lighten_at
 from pinstress.sizing.least_weight import LightStudy, lighten, low_factor
 from pinstress.sizing.lightest_pin import Aim, Lightest
-from pinstress.sizing.pin_shape import KINDS, Limits
+from pinstress.sizing.pin_shape import KINDS, Proportions
 from pinstress.sizing.scaled_study import moved
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study
 from reports.format.numbers import DASH, short
 from reports.format.ranges import factor_range
-from reports.text.least_weight import Dimension, LightRow, print_light
+from reports.text.least_weight import ChangedDimension, LightRow, print_light
 
 EACH = 4  # of what binds, that is named
 
@@ -60,8 +60,8 @@ def require_aim(study: Study, wishes: Wishes, required: float, step: float | Non
             "--step rounds diameters, which --vary leaves as they are; leave out one of them",
             code="contradiction",
         )
-    usual = Limits()
-    limits = Limits(
+    usual = Proportions()
+    limits = Proportions(
         usual.wall if wishes.wall is None else wishes.wall,
         usual.shoulder if wishes.shoulder is None else wishes.shoulder,
     )
@@ -148,7 +148,7 @@ def _row(study: Study, found: LightStudy, each: Lightest, aim: Aim, heavy: bool)
 
 
 def _unlikely(found: LightStudy, pin: str, aim: Aim) -> str:
-    """Why the factor is not reached at a probability; empty if it is, or none was asked for."""
+    """Why the factor is not reached at a probability; empty if it is, or none is requested."""
     mine = {case: x for (name, case), x in found.at.items() if name == pin}
     unknown = [case for case, x in mine.items() if not math.isfinite(x)]
     low = [case for case, x in mine.items() if x < aim.required * (1.0 - 1e-9)]
@@ -165,7 +165,7 @@ def _amount(study: Study, name: str, volume: float, heavy: bool) -> float:
     return of_one * volume / study.system.factor("force")
 
 
-def _dimensions(study: Study, new: Study, each: Lightest) -> list[Dimension]:
+def _dimensions(study: Study, new: Study, each: Lightest) -> list[ChangedDimension]:
     """Those that changed."""
     from pinstress.remedies.dimensions import dimensions_of
 
@@ -173,7 +173,7 @@ def _dimensions(study: Study, new: Study, each: Lightest) -> list[Dimension]:
     old = {d.key: d.value for d in dimensions_of(study, pin_of(study, each.pin))}
     after = {d.key: d.value for d in dimensions_of(new, pin_of(new, each.pin))}
     return [
-        Dimension(key, old[key] / unit, after[key] / unit)
+        ChangedDimension(key, old[key] / unit, after[key] / unit)
         for key in after
         if key in old and abs(after[key] - old[key]) > 1e-9 * old[key]
     ]

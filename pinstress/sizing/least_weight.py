@@ -13,7 +13,7 @@ from pinstress.processes.pool import Died, Job, Progress, preload, side_by_side
 from pinstress.remedies.secant import CLOSE
 from pinstress.sizing.lightest_pin import Aim, Lightest, Start, lightest_pin
 from pinstress.sizing.other_dimensions import written_study
-from pinstress.sizing.pin_shape import PinShape
+from pinstress.sizing.pin_shape import VariedShape
 from pinstress.sizing.scaled_study import resized_study
 from pinstress.study.file import Study
 from reports.data.results import PinResult, Results
@@ -26,7 +26,7 @@ SOLVERS = ("fea.solve_pin", "fea.derivatives.places", "scipy.optimize")
 class LightStudy:
     """The new study, what was found of every pin, and the new study's run. passes: how often all
     loads were found anew; settled: whether the run has the factors that the last one ended with.
-    at: by pin and case, the factor at a probability, if one was asked for.
+    at: by pin and case, the factor at a probability, if requested.
     """
 
     study: Study
@@ -107,7 +107,7 @@ def _written(study: Study, aim: Aim, found: list[Lightest]) -> Study:
     values = {each.pin: each.values for each in found if each.values is not None}
     shapes = {}
     for name in values:
-        shape = PinShape(study, pin_of(study, name), aim.vary, aim.limits)
+        shape = VariedShape(study, pin_of(study, name), aim.vary, aim.limits)
         shapes[name] = (shape.pin, shape.dimensions)
     return written_study(scaled, shapes, values, aim.step, aim.required)
 

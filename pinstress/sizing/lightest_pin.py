@@ -22,11 +22,11 @@ from pinstress.sizing.optimise import (
     ImpossibleError,
     Optimality,
     Optimum,
-    Place,
+    StressPlace,
     least_weight,
     optimality,
 )
-from pinstress.sizing.pin_shape import FARTHEST, KINDS, Limits, PinShape, kind_of
+from pinstress.sizing.pin_shape import FARTHEST, KINDS, Proportions, VariedShape, kind_of
 from pinstress.sizing.pin_stress import (
     PinProblem,
     PinStress,
@@ -59,7 +59,7 @@ class Aim:
 
     required: float
     vary: tuple[str, ...] = KINDS
-    limits: Limits = field(default_factory=Limits)
+    limits: Proportions = field(default_factory=Proportions)
     step: float | None = None
     more: Mapping[tuple[str, str], float] | None = None
 
@@ -162,7 +162,7 @@ def problem_of(study: Study, plan: Plan, pin: str, aim: Aim) -> PinProblem | str
     if study.table.material[table.material].yield_strength is None:
         return f"its material {table.material} has no yield_strength"
     made = pin_of(study, pin)
-    shape = PinShape(study, made, aim.vary, aim.limits)
+    shape = VariedShape(study, made, aim.vary, aim.limits)
     if not shape.dimensions and isinstance(made, Pin):
         has = [
             kind
@@ -196,10 +196,10 @@ class _Search:
         limits, slopes = self.shape.at_limits(values)
         return limits, slopes * values
 
-    def stresses(self, x: Floats) -> tuple[Place, ...]:
+    def stresses(self, x: Floats) -> tuple[StressPlace, ...]:
         return self.raised(self.stress.at(np.exp(x)))
 
-    def raised(self, solved: SolvedPin) -> tuple[Place, ...]:
+    def raised(self, solved: SolvedPin) -> tuple[StressPlace, ...]:
         """Over what is aimed at, a little below what is allowed."""
         return tuple(replace(p, value=p.value + AIM) for p in solved.places)
 
@@ -321,7 +321,7 @@ def _repaired(search: _Search, values: Floats) -> SolvedPin | None:
     return None
 
 
-def _rounded(shape: PinShape, values: Floats, step: float | None, metre: float) -> Floats:
+def _rounded(shape: VariedShape, values: Floats, step: float | None, metre: float) -> Floats:
     """As they are written: four digits, diameters up, bores and fillets down; diameters up to a
     step (m), and by further steps where a geometric limit is broken by that.
     """

@@ -46,7 +46,7 @@ class ImpossibleError(Exception):
 
 
 @dataclass(frozen=True)
-class Place:
+class StressPlace:
     """Where stress may govern: the logarithm of stress over what is allowed, and its derivatives
     (n,), None where they were not worth finding. guess: what they may be, until they are known.
     """
@@ -57,7 +57,7 @@ class Place:
     guess: Array | None = None
 
 
-class Problem(Protocol):
+class WeightProblem(Protocol):
     """What is optimised: variables x (n,), logarithms."""
 
     @property
@@ -70,7 +70,7 @@ class Problem(Protocol):
     def limits(self, x: Array) -> tuple[Array, Array]:
         """Geometric limits (m,), negative where they are broken, and their gradients (m, n)."""
 
-    def stresses(self, x: Array) -> tuple[Place, ...]:
+    def stresses(self, x: Array) -> tuple[StressPlace, ...]:
         """At all places. Raises: ImpossibleError."""
 
 
@@ -94,7 +94,7 @@ class Optimum:
 
     x: Array
     weight: float
-    places: tuple[Place, ...]
+    places: tuple[StressPlace, ...]
     optimality: Optimality
     solved: int
     why: str = ""
@@ -105,7 +105,7 @@ class Optimum:
         return worst(self.places)
 
 
-def worst(places: tuple[Place, ...]) -> float:
+def worst(places: tuple[StressPlace, ...]) -> float:
     """The largest value."""
     return max(place.value for place in places)
 
@@ -116,22 +116,22 @@ class Tangents:
 
     known: dict[str, tuple[tuple[Array, float, Array], ...]] = field(default_factory=dict)
 
-    def then(self, x: Array, places: tuple[Place, ...]) -> Tangents:
+    def then(self, x: Array, places: tuple[StressPlace, ...]) -> Tangents:
         """With those of places that have one at a point."""
         new = {p.name: (x, p.value, p.slope) for p in places if p.slope is not None}
         more = {name: (one, *self.known.get(name, ()))[:KEPT] for name, one in new.items()}
         return Tangents(self.known | more)
 
-    def completed(self, places: tuple[Place, ...]) -> tuple[Place, ...]:
+    def completed(self, places: tuple[StressPlace, ...]) -> tuple[StressPlace, ...]:
         """Places without a slope with their latest, if there is one."""
         return tuple(
-            Place(p.name, p.value, self.known[p.name][0][2])
+            StressPlace(p.name, p.value, self.known[p.name][0][2])
             if p.slope is None and p.name in self.known
             else p
             for p in places
         )
 
-    def at(self, x: Array, places: tuple[Place, ...]) -> tuple[Array, Array]:
+    def at(self, x: Array, places: tuple[StressPlace, ...]) -> tuple[Array, Array]:
         """Values (J,) at a point where the places are known, and slopes (J, n)."""
         every = [(p.value, p.guess if p.slope is None else p.slope) for p in self.completed(places)]
         found = [(value, slope) for value, slope in every if slope is not None]
@@ -145,7 +145,7 @@ class Tangents:
 
 
 def least_weight(
-    problem: Problem, start: Array, close: float = CLOSE, tell: Tell = lambda _: None
+    problem: WeightProblem, start: Array, close: float = CLOSE, tell: Tell = lambda _: None
 ) -> Optimum:
     """The optimum from a start (n,). close: a step that promises less of the merit ends the search.
 
@@ -183,7 +183,7 @@ def least_weight(
     return Optimum(x, problem.weight(x)[0], places, found, solved, why)
 
 
-def optimality(problem: Problem, x: Array, places: tuple[Place, ...]) -> Optimality:
+def optimality(problem: WeightProblem, x: Array, places: tuple[StressPlace, ...]) -> Optimality:
     """How far the conditions of an optimum hold at a point whose places have derivatives."""
     gradient = problem.weight(x)[1]
     size = float(np.linalg.norm(gradient))
@@ -195,7 +195,9 @@ def optimality(problem: Problem, x: Array, places: tuple[Place, ...]) -> Optimal
     return Optimality(float(rest) / size, {name: float(m) for name, m in named if m > 0.0})
 
 
-def _active(problem: Problem, x: Array, places: tuple[Place, ...]) -> list[tuple[str, Array]]:
+def _active(
+    problem: WeightProblem, x: Array, places: tuple[StressPlace, ...]
+) -> list[tuple[str, Array]]:
     """Active constraints and the gradients of what must not be positive."""
     out = [(p.name, p.slope) for p in places if p.value >= -NEAR and p.slope is not None]
     values, gradients = problem.limits(x)
@@ -207,20 +209,20 @@ def _active(problem: Problem, x: Array, places: tuple[Place, ...]) -> list[tuple
     return out
 
 
-def _merit(problem: Problem, x: Array, stress: float) -> float:
+def _merit(problem: WeightProblem, x: Array, stress: float) -> float:
     """Of the largest stress over what is allowed, its logarithm."""
     return problem.weight(x)[0] + PENALTY * max(0.0, stress) + STRICT * _broken(problem, x)
 
 
-def _broken(problem: Problem, x: Array) -> float:
+def _broken(problem: WeightProblem, x: Array) -> float:
     """By how much geometric limits are broken at most."""
     return max(0.0, -float(problem.limits(x)[0].min(initial=0.0)))
 
 
 def _step(
-    problem: Problem,
+    problem: WeightProblem,
     x: Array,
-    places: tuple[Place, ...],
+    places: tuple[StressPlace, ...],
     tangents: Tangents,
     radius: float,
 ) -> tuple[Array, float]:

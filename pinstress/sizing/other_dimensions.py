@@ -23,7 +23,7 @@ from pinstress.sizing.scaled_study import (
 )
 from pinstress.study.file import Study, with_raw
 
-CHANGED = 1e-3  # of a dimension, to see where it stands
+CHANGED = 1e-3  # of a dimension, to see where it is
 UP = {"diameters": 1, "bores": -1, "fillets": -1}  # where rounding up is on the safe side
 
 Path = tuple[str | int, ...]
@@ -31,7 +31,7 @@ Values = Mapping[str, Mapping[str, float]]  # m, by pin and by key of a dimensio
 
 
 def paths_of(pin: Pin, dimension: Dimension) -> tuple[Path, ...]:
-    """Where a dimension stands in the pin's table; of both ends of a segment after "profile", k
+    """Where a dimension is in the pin's table; of both ends of a segment after "profile", k
     and its key the index of the end follows.
     """
     key = dimension.key

@@ -30,7 +30,7 @@ CENTRE = (10.0 - 3.0 * math.pi) / (12.0 - 3.0 * math.pi)  # its distance from th
 
 
 @dataclass(frozen=True)
-class Limits:
+class Proportions:
     """What a shape must keep, where it has it now: wall: thickness of walls over the diameter;
     shoulder: the larger over the smaller diameter of a step.
     """
@@ -85,13 +85,15 @@ def _fillet(pin: Pin, corner: int) -> float:
     return pin.fillet_at(corner) if turn_at(left, right) == "step" else 0.0
 
 
-class PinShape:
+class VariedShape:
     """A pin of the study with other values (n,) of its dimensions, m: those of `kinds` that it has.
 
     Neighbours of equal diameter or bore stay equal; limits are those of the pin as it is.
     """
 
-    def __init__(self, study: Study, pin: PinLike, kinds: Iterable[str], limits: Limits) -> None:
+    def __init__(
+        self, study: Study, pin: PinLike, kinds: Iterable[str], limits: Proportions
+    ) -> None:
         self.whole, self.limits = pin, limits
         chosen = tuple(kinds)
         self.dimensions = tuple(d for d in dimensions_of(study, pin) if kind_of(d.key) in chosen)

@@ -32,9 +32,9 @@ from pinstress.model.pins import pin as pin_of
 from pinstress.model.tasks import Task, tasks
 from pinstress.remedies.dimensions import dimensions_of
 from pinstress.remedies.sensitivities import by_key, differentiated
-from pinstress.sizing.optimise import ImpossibleError, Place, worst
+from pinstress.sizing.optimise import ImpossibleError, StressPlace, worst
 from pinstress.sizing.other_dimensions import paths_of, study_with
-from pinstress.sizing.pin_shape import PinShape
+from pinstress.sizing.pin_shape import VariedShape
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study, raw_study
 
@@ -53,7 +53,7 @@ class PinProblem:
 
     study: Study
     name: str
-    shape: PinShape
+    shape: VariedShape
     asked: Asked
     loads: dict[str, CaseLoads]
     required: float
@@ -66,7 +66,7 @@ class SolvedPin:
 
     values: Floats
     peaks: tuple[Peak, ...]
-    places: tuple[Place, ...]
+    places: tuple[StressPlace, ...]
 
     @property
     def worst(self) -> float:
@@ -158,7 +158,7 @@ class PinStress:
             if values is not None and value >= top - (window if abs(top) < far else 0.0):
                 slope = values * self._slope(part)
                 self._known.add(part.name)
-            places.append(Place(part.name, value, slope, part.guess))
+            places.append(StressPlace(part.name, value, slope, part.guess))
         return SolvedPin(np.zeros(0) if values is None else values, tuple(peaks), tuple(places))
 
     def _slope(self, part: _Found) -> Floats:

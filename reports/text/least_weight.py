@@ -16,7 +16,7 @@ TINY = 1e-6  # a residual that is round-off
 
 
 @dataclass(frozen=True)
-class Dimension:
+class ChangedDimension:
     """By its key in the pin's table, before and after."""
 
     key: str
@@ -29,7 +29,7 @@ class LightRow:
     """A pin: its factor in the run of the new study as text and before, the case that governs;
     weights as it was, if only scaled and now, None where they are not known; residual of the
     conditions of an optimum, dimensions that changed, what binds with its multiplier, the factor at
-    a probability, if one was asked for, bands that changed, designs solved, why the factor is not
+    a probability, if requested, bands that changed, designs solved, why the factor is not
     verifiably reached, if it is not, and how the search went, if it was none or did not end.
     """
 
@@ -39,7 +39,7 @@ class LightRow:
     governs: str
     weights: tuple[float | None, float | None, float | None]
     residual: float | None
-    dimensions: tuple[Dimension, ...]
+    dimensions: tuple[ChangedDimension, ...]
     binding: tuple[tuple[str, float], ...]
     at: float | None
     bands: tuple[str, ...]

@@ -17,7 +17,7 @@ from pinstress.model.pins import pin as pin_of
 from pinstress.sizing.least_weight import LightStudy, lighten, low_factor
 from pinstress.sizing.lightest_pin import Aim, problem_of
 from pinstress.sizing.other_dimensions import paths_of, written_study
-from pinstress.sizing.pin_shape import KINDS, Limits, PinShape
+from pinstress.sizing.pin_shape import KINDS, Proportions, VariedShape
 from pinstress.sizing.pin_stress import PinStress
 from pinstress.study.file import load_study
 from tests.conftest import ROOT
@@ -178,7 +178,7 @@ def test_volume_and_limits_of_all_shipped_pins() -> None:
             pin = pin_of(study, name)
             if not isinstance(pin, Pin):
                 continue
-            shape = PinShape(study, pin, KINDS, Limits())
+            shape = VariedShape(study, pin, KINDS, Proportions())
             assert shape.at_limits(shape.values)[0].min(initial=0.0) >= 0.0
             volume, slope = shape.volume(shape.values)
             assert volume == pytest.approx(pin.volume, rel=1e-12)
@@ -198,7 +198,7 @@ def test_dimensions_are_written_where_they_stand() -> None:
     )
     study = pinstress.study_from(text)
     pin = pin_of(study, "P")
-    shape = PinShape(study, pin, KINDS, Limits())
+    shape = VariedShape(study, pin, KINDS, Proportions())
     (dimension,) = shape.dimensions
     assert isinstance(pin, Pin)
     assert len(paths_of(pin, dimension)) == 14
@@ -228,7 +228,7 @@ band.C = { z = [50, 80] }
     )
     study = pinstress.study_from(text.replace("[40, 15, 2], [40, 10]", "[40, 15], [45, 10]"))
     pin = pin_of(study, "P")
-    shape = PinShape(study, pin, KINDS, Limits())
+    shape = VariedShape(study, pin, KINDS, Proportions())
     assert shape.keys == ("meridian[1-2][2]", "meridian[3-4][2]", "bore_meridian[1-2][2]")
     assert isinstance(pin, Pin)
     values = {"P": dict(zip(shape.keys, (0.014, 0.011, 0.005), strict=True))}

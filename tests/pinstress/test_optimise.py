@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from pinstress.reliability.form import form_quantile
-from pinstress.sizing.optimise import ImpossibleError, Place, least_weight
+from pinstress.sizing.optimise import ImpossibleError, StressPlace, least_weight
 
 Array = NDArray[np.float64]
 
@@ -22,7 +22,7 @@ class Posed:
 
     terms: Array  # (T, n) exponents
     amounts: Array  # (T,)
-    at: Callable[[Array], tuple[Place, ...]]
+    at: Callable[[Array], tuple[StressPlace, ...]]
     ratio: float | None = None  # least of the first variable over the second
 
     @property
@@ -41,17 +41,17 @@ class Posed:
         slope[0, :2] = 1.0, -1.0
         return np.array([x[0] - x[1] - np.log(self.ratio)]), slope
 
-    def stresses(self, x: Array) -> tuple[Place, ...]:
+    def stresses(self, x: Array) -> tuple[StressPlace, ...]:
         return self.at(x)
 
 
-def powers(moments: Array, allowed: float) -> Callable[[Array], tuple[Place, ...]]:
+def powers(moments: Array, allowed: float) -> Callable[[Array], tuple[StressPlace, ...]]:
     """Bending stress 32 M / (pi d^3) in segments."""
 
-    def at(x: Array) -> tuple[Place, ...]:
+    def at(x: Array) -> tuple[StressPlace, ...]:
         value = np.log(32.0 * moments / (np.pi * allowed)) - 3.0 * x
         unit = np.eye(len(x))
-        return tuple(Place(f"{k}", float(v), -3.0 * unit[k]) for k, v in enumerate(value))
+        return tuple(StressPlace(f"{k}", float(v), -3.0 * unit[k]) for k, v in enumerate(value))
 
     return at
 
@@ -84,14 +84,14 @@ def test_a_limit_that_binds_takes_its_part() -> None:
 def test_places_that_govern_in_turn() -> None:
     """Two load cases for one diameter each, whose derivatives are found where they govern only."""
 
-    def at(x: Array) -> tuple[Place, ...]:
+    def at(x: Array) -> tuple[StressPlace, ...]:
         d, b = np.exp(x)
         every = (
-            Place("bending", float(np.log(4.0 / (d**3 * b))), np.array([-3.0, -1.0])),
-            Place("shear", float(np.log(2.0 / (d * b**2))), np.array([-1.0, -2.0])),
+            StressPlace("bending", float(np.log(4.0 / (d**3 * b))), np.array([-3.0, -1.0])),
+            StressPlace("shear", float(np.log(2.0 / (d * b**2))), np.array([-1.0, -2.0])),
         )
         most = max(p.value for p in every)
-        return tuple(p if p.value >= most - 0.1 else Place(p.name, p.value) for p in every)
+        return tuple(p if p.value >= most - 0.1 else StressPlace(p.name, p.value) for p in every)
 
     found = least_weight(Posed(np.array([[2.0, 0.0], [0.0, 2.0]]), np.ones(2), at), np.zeros(2))
     assert found.worst == pytest.approx(0.0, abs=1e-3)
@@ -104,7 +104,7 @@ def test_an_impossible_design_is_stepped_back_from() -> None:
     tried: list[float] = []
     exact = powers(np.array([1.0]), 10.0)
 
-    def at(x: Array) -> tuple[Place, ...]:
+    def at(x: Array) -> tuple[StressPlace, ...]:
         tried.append(float(x[0]))
         if not tried[1:] or len(tried) > 2:
             return exact(x)
@@ -132,11 +132,11 @@ def test_wus_cantilever_at_a_reliability_index() -> None:
 
     solved: list[Array] = []
 
-    def at(x: Array) -> tuple[Place, ...]:
+    def at(x: Array) -> tuple[StressPlace, ...]:
         solved.append(x)
         h = 1e-4
         slope = [float(np.log(factor(x - e) / factor(x + e))) / (2.0 * h) for e in h * np.eye(2)]
-        return (Place("yield", -float(np.log(factor(x))), np.array(slope)),)
+        return (StressPlace("yield", -float(np.log(factor(x))), np.array(slope)),)
 
     found = least_weight(Posed(np.ones((1, 2)), np.ones(1), at), np.log([2.8, 4.2]))
     assert np.exp(found.weight) == pytest.approx(9.52025, rel=1e-3)
