@@ -79,7 +79,7 @@ def _columns(rows: Sequence[LightRow], heavy: str) -> list[Column]:
         Column(heavy, [_heavy(row.weights[0]) for row in rows], 1),
         Column("scaled", [_heavy(row.weights[1]) for row in rows], 0),
         Column("least", [_heavy(row.weights[2]) for row in rows], 0),
-        Column("saved", [DASH if r.saved is None else f"{r.saved:.1%}" for r in rows], 0),
+        Column("saved", [_saved(row.saved) for row in rows], 0),
         Column("residual", [_residual(row.residual) for row in rows], 0),
         Column("governs", [row.governs for row in rows], 2, False),
         Column("FoS before", [engineering(row.factor_before) for row in rows], 3),
@@ -94,6 +94,10 @@ def _at(rows: Sequence[LightRow]) -> Iterator[Column]:
 
 def _heavy(weight: float | None) -> str:
     return DASH if weight is None else engineering(weight, 3)
+
+
+def _saved(part: float | None) -> str:
+    return DASH if part is None else f"{round(part, 3) + 0.0:.1%}"
 
 
 def _residual(residual: float | None) -> str:
