@@ -56,7 +56,7 @@ def lighten(
     for count in range(1, PASSES + 1):
         found = _all(study, plan, names, aim, starts, jobs, progress)
         first = {each.pin: each.before for each in found} | first
-        starts = {x.pin: Start(x.values, x.scale, x.scaled) for x in found}
+        starts = {x.pin: Start(x.values, x.scale, x.whole) for x in found}
         new = _written(study, aim, found)
         progress("run of the new study", 0.9)
         results = run(new, pins=names, jobs=jobs)
@@ -116,6 +116,8 @@ def _agrees(each: Lightest, results: Results, aim: Aim) -> bool:
     """Whether the run has the factor that was found for a pin, with little excess."""
     more = aim.of_pin(each.pin)
     mine = [p for p in results.pins if p.pin == each.pin]
+    if any(p.verdict == "unconverged" and p.meets_required for p in mine):
+        return all(p.meets_required is not False for p in mine)  # it ended where that was decided
     low = [f / more.get(p.case, 1.0) for p in mine if (f := low_factor(p)) is not None]
     if each.factor is None or not low:
         return True

@@ -72,9 +72,10 @@ class Aim:
 class Lightest:
     """A pin: its dimensions by key, m, as they are written, or by which scale it is only scaled;
     neither where nothing reaches the factor, and `why`. before, factor: lower end of its factor as
-    it was and with these. scaled: its volume, m^3, were it only scaled, None where that is not
-    known. optimality: of what the search found; binding: what binds, in words, by its multiplier.
-    solved: designs. way: why it is only scaled, or how the search ended if it did not converge.
+    it was and with these. scaled: its volume, m^3, were it only scaled, whole: the dimensions then,
+    m; None where that is not known. optimality: of what the search found; binding: what binds, in
+    words, by its multiplier. solved: designs. way: why it is only scaled, or how the search ended
+    if it did not converge.
     """
 
     pin: str
@@ -83,6 +84,7 @@ class Lightest:
     before: float | None = None
     factor: float | None = None
     scaled: float | None = None
+    whole: tuple[float, ...] | None = None
     optimality: Optimality | None = None
     binding: tuple[tuple[str, float], ...] = ()
     solved: int = 0
@@ -92,13 +94,13 @@ class Lightest:
 
 @dataclass(frozen=True)
 class Start:
-    """A pin's dimensions by key, m, or its scale, and the volume of it that is only scaled, as they
-    were found under other loads.
+    """A pin's dimensions by key, m, or its scale, and dimensions of it that is only scaled, m, as
+    they were found under other loads.
     """
 
     values: dict[str, float] | None = None
     scale: float | None = None
-    scaled: float | None = None
+    whole: tuple[float, ...] | None = None
 
 
 def lightest_pin(
@@ -126,7 +128,7 @@ def lightest_pin(
         before = problem.required * float(np.exp(-first.worst))
         search = _Search(problem, stress, aim)
         scaled = _scaled(search, first) if start.values is None else first
-        return replace(_found(search, scaled, start.scaled), before=before)
+        return replace(_found(search, scaled, start.whole), before=before)
     except UndifferentiatedError:
         return _only_scaled(stress, aim, start.scale or 1.0)
     except ImpossibleError as error:
@@ -150,7 +152,7 @@ def _only_scaled(stress: PinStress, aim: Aim, start: float) -> Lightest:
             problem.name, before=factors.get(start), solved=len(factors), why=str(error)
         )
     return Lightest(
-        problem.name, None, scale, factors[start], factor, None, None, (), len(factors), "", WHOLE
+        problem.name, None, scale, factors[start], factor, solved=len(factors), way=WHOLE
     )
 
 
@@ -212,8 +214,8 @@ class _Search:
         return float(self.shape.at_limits(values)[0].min(initial=0.0)) >= -ROUNDING
 
 
-def _found(search: _Search, scaled: SolvedPin, before: float | None) -> Lightest:
-    """From the pin that is only scaled; before: the volume of that, if it is another."""
+def _found(search: _Search, scaled: SolvedPin, whole: tuple[float, ...] | None) -> Lightest:
+    """From a design; whole: dimensions of the pin that is only scaled, if that is another."""
     shape, aim = search.shape, search.aim
     if len(shape.dimensions) > 1 or not -NEAR <= scaled.worst <= 0.0:
         optimum = least_weight(search, np.log(scaled.values), ENOUGH)
@@ -221,11 +223,13 @@ def _found(search: _Search, scaled: SolvedPin, before: float | None) -> Lightest
         x, places = np.log(scaled.values), scaled.places
         optimum = Optimum(x, search.weight(x)[0], places, optimality(search, x, places), 0)
     best = _written(search, optimum)
-    if before is None and set(aim.vary) == set(KINDS):
+    before: float | None = None
+    as_whole = scaled.values if whole is None else np.array(whole)
+    if set(aim.vary) == set(KINDS):
         metre = search.problem.study.system.factor("length")
-        before = float(shape.volume(_rounded(shape, scaled.values, aim.step, metre))[0])
+        before = float(shape.volume(_rounded(shape, as_whole, aim.step, metre))[0])
         if before <= search.volume(best):
-            as_scaled = _repaired(search, scaled.values)
+            as_scaled = _repaired(search, as_whole)
             if as_scaled is not None:
                 before = search.volume(as_scaled)
                 best = min(as_scaled, best, key=search.volume)
@@ -234,6 +238,7 @@ def _found(search: _Search, scaled: SolvedPin, before: float | None) -> Lightest
         dict(zip(shape.keys, map(float, best.values), strict=True)),
         factor=aim.required * float(np.exp(-best.worst)),
         scaled=before,
+        whole=tuple(map(float, as_whole)),
         optimality=optimum.optimality,
         binding=tuple(_binding(search, optimum)),
         solved=search.stress.count,
