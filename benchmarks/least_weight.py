@@ -35,7 +35,7 @@ def saved() -> str:
                     f"{name} {each.pin}",
                     f"{scaled / old:.3f}",
                     f"{new / old:.3f}",
-                    f"{1.0 - new / scaled:.1%}",
+                    f"{round(1.0 - new / scaled, 3) + 0.0:.1%}",
                     "–" if optimality is None else f"{optimality.residual:.1g}",
                     str(each.solved),
                     each.binding[0][0] if each.binding else each.why,
