@@ -38,7 +38,7 @@ from pinstress.study.errors import InputError
 from pinstress.study.file import Study
 
 AIM = 0.004  # of the stress, below what is allowed: noise of meshes, and rounding
-ENOUGH = 3e-3  # of the weight: what meshes are worth
+ENOUGH = 2e-3  # of the weight: what meshes are worth
 NARROW = 5e-3  # a bracket of scales that is not looked into
 FAR = 0.05  # from the factor, where not all derivatives are worth finding
 SCALINGS = 10

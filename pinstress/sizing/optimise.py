@@ -32,7 +32,7 @@ PENALTY = (
 )
 STRICT = 10.0  # the same of geometric limits
 FIRST, LONGEST = 0.7, 1.1  # steps of a logarithm: to half, to a third
-SHORTEST = 5e-3
+SHORTEST = 2e-3
 CLOSE = 5e-4  # of the merit
 WORTH = 0.1  # part of the promise that a step must keep
 NEAR = 0.02  # of the limit: a stress, ratio or bound that is active; what meshes are worth
