@@ -38,7 +38,7 @@ from fea.harmonic.model import HarmonicModel, applied, generalised
 from fea.harmonic.stress_recovery import points_of_nodes
 from fea.harmonic.superposition import Circumference
 from geometry import Pin
-from geometry.arrays import Floats, Ints
+from geometry.arrays import Floats, Ints, Mask
 from geometry.mesh.outline_motion import (
     PLACES,
     NodeMotion,
@@ -63,15 +63,26 @@ def derivatives(solved: SolvedCase, dimensions: Iterable[Dimension]) -> Derivati
 
 
 class Adjoint:
-    """All at the governing point and angle: `top`; `waves`: what acts there."""
+    """All at the governing point and angle: `top`; `waves`: what acts there. among: points (S,)
+    that may govern, by default all; like: another one on the same mesh, whose matrices it shares.
+    """
 
-    def __init__(self, solved: SolvedCase) -> None:
+    def __init__(
+        self, solved: SolvedCase, among: Mask | None = None, like: Adjoint | None = None
+    ) -> None:
         self.solved = solved
         self.fields = solved.solution.fields
-        self.model = HarmonicModel(solved.pin, solved.solution.mesh, solved.material, solved.clamps)
+        mesh = solved.solution.mesh
+        made = like and like.model
+        self.model: HarmonicModel = made or HarmonicModel(
+            solved.pin, mesh, solved.material, solved.clamps
+        )
+        if like and like.solved.zones == solved.zones:
+            self.outline_nodes, self.interior = like.outline_nodes, like.interior
         self.space, self.outline = self.model.space, self.model.outline
         self.around = Circumference(self.fields, solved.loads)
-        self.top = self.around.top(self.fields.outside(solved.zones))
+        outside = self.fields.outside(solved.zones)
+        self.top = self.around.top(outside if among is None else outside & among)
         self.waves, self.weight = waves_of(self.fields_at, solved.loads, self.top)
         self.n = np.array([wave.n for wave in self.waves])
         self.traction = self._forces(solved.pin, self.outline)[1]
@@ -219,11 +230,15 @@ class Adjoint:
         reaches = [Reach((p.r, p.z), p.radius) for p in self.solved.zones]
         return OutlineNodes(self.solved.solution.mesh, self.solved.pin, reaches)
 
+    @cached_property
+    def interior(self) -> Interior:
+        """What moves the nodes inside."""
+        return Interior(self.space, self.outline_nodes.rows)
+
     def by_motions(self, motions: Sequence[NodeMotion]) -> dict[str, float]:
         """By key, Pa/m."""
         if not motions:
             return {}
-        interior = Interior(self.space, self.outline_nodes.rows)
         gradient = sum(
             shape_gradient(self.space, self._D, c.n, self._unknowns(k), self._lambda[:, k])
             for k, c in enumerate(self.waves)
@@ -232,7 +247,7 @@ class Adjoint:
         out = {}
         for k in range(0, len(motions), COLUMNS):
             some = motions[k : k + COLUMNS]
-            every = interior.velocity(np.stack([motion.velocity for motion in some], axis=2))
+            every = self.interior.velocity(np.stack([motion.velocity for motion in some], axis=2))
             for i, motion in enumerate(some):
                 velocity = np.ascontiguousarray(every[:, :, i])
                 grown = integral_rate(self.space, velocity) if heavy else None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -191,9 +192,11 @@ def completion(context: click.Context, shell: str) -> None:
 @click.command(
     short_help="Find the smallest diameters that reach a safety factor.",
     help=example("pinstress size studies/one_pin.toml --fos 10 --step 0.125")
+    + example("pinstress size studies/grenier2008.toml --least-weight")
     + "\nFind the smallest diameters with which every pin reaches a safety factor in all cases; "
     "write a new study with them. Lengths do not change; diameters, bores and fillets are scaled "
-    "together. The new study is run before it is written.\n\n"
+    "together, or with --least-weight each for itself, so that the pin is as light as it can be. "
+    "The new study is run before it is written.\n\n"
     "Exit status: 0 done; 1 done, but a pin does not verifiably reach the factor; 2 bad input; "
     "3 the numerics failed; 130 interrupted.",
 )
@@ -217,6 +220,28 @@ def completion(context: click.Context, shell: str) -> None:
 )
 @click.option("--quiet", is_flag=True, help="No progress bar, no notes; errors are still reported.")
 @click.option("--jobs", type=click.IntRange(1), metavar="N", help="Pins sized in parallel.")
+@click.option("--least-weight", is_flag=True, help="Every dimension for itself: the lightest pins.")
+@click.option(
+    "--vary",
+    callback=names,
+    metavar="KINDS",
+    help="With --least-weight: what changes [diameters,bores,fillets].",
+)
+@click.option(
+    "--wall",
+    type=click.FloatRange(0.0, 0.5, min_open=True, max_open=True),
+    help="With --least-weight: thinnest wall over the diameter [0.1, or as it is].",
+)
+@click.option(
+    "--shoulder",
+    type=click.FloatRange(1.0, 10.0, min_open=True),
+    help="With --least-weight: least ratio of the diameters of a step [1.2, or as it is].",
+)
+@click.option(
+    "--probability",
+    type=click.FloatRange(0.0, 1.0, min_open=True, max_open=True),
+    help="With --least-weight: of missing the factor, by the laws in [vary.parameters].",
+)
 def size(
     study: Path,
     fos: float | None,
@@ -225,6 +250,8 @@ def size(
     out: Path | None,
     quiet: bool,
     jobs: int | None,
+    least_weight: bool,
+    **wishes: Any,
 ) -> int:
     from pinstress.schema.units import to_si
 
@@ -235,6 +262,13 @@ def size(
         raise InputError(f"--step: {error}", code="not-a-length") from None
     if metres is not None and metres <= 0.0:
         raise InputError("--step: must be positive", code="not-positive")
+    from pinstress.cli.least_weight import Wishes, lighten_and_write, require_aim
     from pinstress.cli.size import require_wish, size_and_write
 
+    asked = Wishes(**wishes)
+    if asked.given and not least_weight:
+        raise InputError(f"{asked.given[0]} needs --least-weight", code="needs-least-weight")
+    if least_weight:
+        aim = require_aim(loaded, asked, require_wish(loaded, fos, metres).required, metres)
+        return lighten_and_write(loaded, aim, out, pins, quiet, jobs, asked.probability)
     return size_and_write(loaded, require_wish(loaded, fos, metres), out, pins, quiet, jobs)

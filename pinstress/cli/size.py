@@ -46,7 +46,7 @@ def size_and_write(
 
     Raises: InputError.
     """
-    target = _target(study, out)
+    target = target_of(study, out)
     with progress_bar(alone=processes(jobs) == 1, quiet=quiet) as progress:
         new, sized, results = _sized(study, wish, pins, processes(jobs), progress)
     rows = [_row(study, new, s, results) for s in sized]
@@ -56,7 +56,7 @@ def size_and_write(
     with unneeded(target):
         print_sizes(rows, wish.required, results.units, console())
     if not quiet:
-        _close(study, new, target if changed else None)
+        close(study, new, target if changed else None)
     missed = [row for row in rows if row.why]
     for row in missed:
         click.echo(f"Not decided: pin {row.pin}: {row.why}.", err=True)
@@ -125,7 +125,8 @@ def _all(
     ]
 
 
-def _target(study: Study, out: Path | None) -> Path:
+def target_of(study: Study, out: Path | None) -> Path:
+    """The file to be written. Raises: InputError where it cannot be."""
     target = out or study.path.with_name(f"{study.name}_sized.toml")
     require_new(target, ANOTHER)
     if not target.parent.is_dir():
@@ -133,7 +134,7 @@ def _target(study: Study, out: Path | None) -> Path:
     return target
 
 
-def _close(study: Study, new: Study, target: Path | None) -> None:
+def close(study: Study, new: Study, target: Path | None) -> None:
     """Report what else changed, and the file that was written."""
     for name, table in new.table.pin.items():
         for at, lug in table.lug.items():
@@ -189,8 +190,11 @@ def _stricter(worst: PinResult) -> str:
 
 def _why(sized: Sized, found: list[PinResult]) -> str:
     """Why the factor is not verifiably reached; empty if it is."""
-    if sized.scale is None:
-        return sized.why
+    return sized.why if sized.scale is None else why_missed(found)
+
+
+def why_missed(found: list[PinResult]) -> str:
+    """The same of a pin that was found, from its rows in the run of the new study."""
     singular = [p.case for p in found if p.verdict == "singular"]
     if not found:
         return "the run of the new study gives no safety factor"

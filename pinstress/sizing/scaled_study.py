@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -41,12 +41,21 @@ def resized_study(
 
     Raises: InputError for a shape that cannot be.
     """
-    text = resized(study.text, scales, study.system, step, required)
+    return with_what_follows(
+        study, resized(study.text, scales, study.system, step, required), scales
+    )
+
+
+def with_what_follows(study: Study, text: str, pins: Iterable[str]) -> Study:
+    """A study of another text in which pins have other shapes, with what depends on these.
+
+    Raises: InputError for a shape that cannot be.
+    """
     if text == study.text:
         return study
     new = parse_study(study.path, text)
     document, before = tomlkit.parse(text), text
-    for name in scales:
+    for name in pins:
         _reweigh(document, study, new, name)
         _widen_eyes(document, study, new, name)
     text = tomlkit.dumps(document)
@@ -83,17 +92,22 @@ def resized(
             for here, at in _numbers(table, "offset"):
                 _scale(here, at, scale, system, None, -1)
         for key, up in (("meridian", 1), ("bore_meridian", -1)):
-            for corner in map(_value, _plain(table_of_pin.get(key, []))):
+            for corner in map(value_of, _plain(table_of_pin.get(key, []))):
                 radius = step / 2.0 if step is not None and up > 0 else None
                 _scale(corner, 1, scale, system, radius, up)
                 if corner[2:]:
                     _scale(corner, 2, scale, system, None, -1)
-    if required is not None:
-        analysis: Any = study.setdefault("analysis", tomlkit.table())
-        old = analysis.get("required_safety_factor")
-        if old is None or float(_value(old)) != required:
-            analysis["required_safety_factor"] = required
+    require(study, required)
     return tomlkit.dumps(study)
+
+
+def require(document: Any, required: float | None) -> None:
+    """Write a required factor of safety, if any, into a study."""
+    if required is not None:
+        analysis: Any = document.setdefault("analysis", tomlkit.table())
+        old = analysis.get("required_safety_factor")
+        if old is None or float(value_of(old)) != required:
+            analysis["required_safety_factor"] = required
 
 
 def moved(text: str, old: Path, new: Path) -> str:
@@ -102,7 +116,7 @@ def moved(text: str, old: Path, new: Path) -> str:
         return text
     document = tomlkit.parse(text)
     for table, key in _files(document):
-        path = os.path.join(old.resolve(), _value(table[key]))
+        path = os.path.join(old.resolve(), value_of(table[key]))
         try:
             name = os.path.relpath(path, new.resolve())
         except ValueError:  # on another drive
@@ -126,7 +140,7 @@ def _with_a_table(node: Any) -> Iterator[Any]:
         for entry in node:
             yield from _with_a_table(entry)
     elif isinstance(node, dict):
-        if "table" in node and isinstance(_value(node["table"]), str):
+        if "table" in node and isinstance(value_of(node["table"]), str):
             yield node
         for entry in node.values():
             yield from _with_a_table(entry)
@@ -134,10 +148,10 @@ def _with_a_table(node: Any) -> Iterator[Any]:
 
 def _plain(node: Any) -> list[Any]:
     """The entries of an array, also one that comes with its provenance."""
-    return list(_value(node))
+    return list(value_of(node))
 
 
-def _value(node: Any) -> Any:
+def value_of(node: Any) -> Any:
     return node["value"] if isinstance(node, dict) and "value" in node else node
 
 
@@ -170,34 +184,34 @@ def _widen_eyes(document: Any, old: Study, new: Study, name: str) -> None:
 
 def _numbers(table: Any, key: str) -> list[tuple[Any, Any]]:
     """Where a key's numbers are, each with its key or index: one, or one for each end."""
-    both = _value(table[key])
+    both = value_of(table[key])
     return [(both, i) for i in range(len(both))] if isinstance(both, list) else [(table, key)]
 
 
 def _scale(
     table: Any, key: Any, scale: float, system: UnitSystem, step: float | None, up: int
 ) -> None:
-    old = _value(table[key])
-    size, one = to_si(old, "length", system), _unit(old, "length", system)[1]
-    number = _rounded(size / one * scale, None if step is None else step / one, up)
+    old = value_of(table[key])
+    size, one = to_si(old, "length", system), unit_of(old, "length", system)[1]
+    number = rounded(size / one * scale, None if step is None else step / one, up)
     if not math.isclose(number * one, size, rel_tol=1e-12):
-        _replace(table, key, number, _unit(old, "length", system)[0])
+        replace_number(table, key, number, unit_of(old, "length", system)[0])
 
 
 def _write(table: Any, key: str, si: float, dimension: str, system: UnitSystem) -> None:
-    unit, one = _unit(_value(table[key]), dimension, system)
-    _replace(table, key, _rounded(si / one, None, 1), unit)
+    unit, one = unit_of(value_of(table[key]), dimension, system)
+    replace_number(table, key, rounded(si / one, None, 1), unit)
 
 
-def _unit(old: Any, dimension: str, system: UnitSystem) -> tuple[str, float]:
+def unit_of(old: Any, dimension: str, system: UnitSystem) -> tuple[str, float]:
     """The unit in which a value is written, as text, and in SI."""
     text = NUMBER.sub("", old, count=1) if isinstance(old, str) else ""
     return text, to_si(f"1{text}", dimension, system) if text.strip() else system.factor(dimension)
 
 
-def _replace(table: Any, key: Any, number: float, unit: str) -> None:
+def replace_number(table: Any, key: Any, number: float, unit: str) -> None:
     """Another number, in the same unit; where there is a source, the source is this."""
-    old = _value(table[key])
+    old = value_of(table[key])
     new = f"{number:.12g}{unit}" if isinstance(old, str) else number
     if (isinstance(table, dict) and "provenance" in table) or isinstance(table[key], dict):
         note = f"by pinstress size, from {old}"
@@ -208,7 +222,7 @@ def _replace(table: Any, key: Any, number: float, unit: str) -> None:
         table[key] = new
 
 
-def _rounded(number: float, step: float | None, up: int) -> float:
+def rounded(number: float, step: float | None, up: int) -> float:
     if number == 0.0:
         return 0.0
     step = step or 10.0 ** (math.floor(math.log10(number)) + 1 - DIGITS)

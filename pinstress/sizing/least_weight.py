@@ -1,0 +1,124 @@
+"""The least weight of all pins of a study that reach a factor of safety, loads and all."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+
+from pinstress.analysis.plan import Plan, prepare
+from pinstress.analysis.results import run
+from pinstress.model.pins import pin as pin_of
+from pinstress.processes.pool import Died, Job, Progress, preload, side_by_side
+from pinstress.remedies.secant import CLOSE
+from pinstress.sizing.lightest_pin import Aim, Lightest, Start, lightest_pin
+from pinstress.sizing.other_dimensions import written_study
+from pinstress.sizing.pin_shape import VariedShape
+from pinstress.sizing.scaled_study import resized_study
+from pinstress.study.file import Study
+from reports.data.results import PinResult, Results
+
+PASSES = 5
+SOLVERS = ("fea.solve_pin", "fea.derivatives.places", "scipy.optimize")
+
+
+@dataclass(frozen=True)
+class LightStudy:
+    """The new study, what was found of every pin, and the new study's run. passes: how often all
+    loads were found anew; settled: whether the run has the factors that the last one ended with.
+    at: by pin and case, the factor at a probability, if requested.
+    """
+
+    study: Study
+    pins: tuple[Lightest, ...]
+    results: Results
+    passes: int
+    settled: bool
+    at: Mapping[tuple[str, str], float] = field(default_factory=dict)
+
+
+def lighten(
+    study: Study,
+    aim: Aim,
+    pins: list[str] | None = None,
+    jobs: int = 1,
+    progress: Progress = lambda _, __: None,
+) -> LightStudy:
+    """Every pin's least weight. Weights of pins change the loads of others, so all are searched
+    again from where they are, under the loads of the new study, until its run confirms them.
+
+    Raises: InputError.
+    """
+    plan = prepare(study, pins=pins)
+    names = list(dict.fromkeys(task.pin.name for task in plan.tasks))
+    starts: dict[str, Start] = {}
+    first: dict[str, float | None] = {}
+    for count in range(1, PASSES + 1):
+        found = _all(study, plan, names, aim, starts, jobs, progress)
+        first = {each.pin: each.before for each in found} | first
+        starts = {x.pin: Start(x.values, x.scale, x.whole) for x in found}
+        new = _written(study, aim, found)
+        progress("run of the new study", 0.9)
+        results = run(new, pins=names, jobs=jobs)
+        settled = all(_agrees(each, results, aim) for each in found)
+        if settled or count == PASSES:
+            break
+        plan = replace(plan, loads=prepare(new, pins=pins).loads)
+    kept = tuple(replace(each, before=first[each.pin]) for each in found)
+    return LightStudy(new, kept, results, count, settled)
+
+
+def low_factor(pin: PinResult) -> float | None:
+    """The factor that counts: of a converged row as it is, of any other its lower end."""
+    if pin.safety_factor is None or pin.verdict == "converged":
+        return pin.safety_factor
+    if pin.safety_factor_interval is not None:
+        return pin.safety_factor_interval[0]
+    stress, error = pin.max_von_mises, pin.error_estimate
+    return pin.safety_factor / (1.0 + (error or 0.0) / stress) if stress else None
+
+
+def _all(
+    study: Study,
+    plan: Plan,
+    names: list[str],
+    aim: Aim,
+    starts: Mapping[str, Start],
+    jobs: int,
+    progress: Progress,
+) -> list[Lightest]:
+    if jobs > 1:
+        preload(*SOLVERS)
+    heavy = sorted(names, key=lambda n: -len(study.table.pin[n].profile or ()))  # the longest first
+    work = [
+        Job(f"pin {n}", partial(lightest_pin, study, plan, n, aim, starts.get(n))) for n in heavy
+    ]
+    made = side_by_side(work, jobs, lambda message, part: progress(message, 0.9 * part))
+    by_name = dict(zip(heavy, made, strict=True))
+    return [
+        Lightest(name, why=one.reason) if isinstance(one := by_name[name], Died) else one
+        for name in names
+    ]
+
+
+def _written(study: Study, aim: Aim, found: list[Lightest]) -> Study:
+    scales = {each.pin: each.scale for each in found if each.scale is not None}
+    scaled = resized_study(study, scales, aim.step, aim.required)
+    values = {each.pin: each.values for each in found if each.values is not None}
+    shapes = {}
+    for name in values:
+        shape = VariedShape(study, pin_of(study, name), aim.vary, aim.limits)
+        shapes[name] = (shape.pin, shape.dimensions)
+    return written_study(scaled, shapes, values, aim.step, aim.required)
+
+
+def _agrees(each: Lightest, results: Results, aim: Aim) -> bool:
+    """Whether the run has the factor that was found for a pin, with little excess."""
+    more = aim.of_pin(each.pin)
+    mine = [p for p in results.pins if p.pin == each.pin]
+    if any(p.verdict == "unconverged" and p.meets_required for p in mine):
+        return all(p.meets_required is not False for p in mine)  # it ended where that was decided
+    low = [f / more.get(p.case, 1.0) for p in mine if (f := low_factor(p)) is not None]
+    if each.factor is None or not low:
+        return True
+    return aim.required <= min(low) * (1.0 + 1e-9) <= each.factor * (1.0 + CLOSE)

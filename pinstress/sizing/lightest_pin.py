@@ -1,0 +1,367 @@
+"""The least weight of one pin that reaches a factor of safety in all its cases, under given loads.
+
+First it is scaled as a whole, as `size` does; the search goes on from there, so that it is never
+heavier. What is found is rounded as it is written, and solved once more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from geometry import Pin
+from geometry.arrays import Floats
+from pinstress.analysis.plan import Plan
+from pinstress.model.pins import pin as pin_of
+from pinstress.remedies.dimensions import dimensions_of
+from pinstress.remedies.secant import CLOSE, LEAP, NoSizeError, smallest
+from pinstress.sizing.optimise import (
+    NEAR,
+    ImpossibleError,
+    Optimality,
+    Optimum,
+    StressPlace,
+    least_weight,
+    optimality,
+)
+from pinstress.sizing.pin_shape import FARTHEST, KINDS, Proportions, VariedShape, kind_of
+from pinstress.sizing.pin_stress import (
+    PinProblem,
+    PinStress,
+    SolvedPin,
+    UndifferentiatedError,
+)
+from pinstress.sizing.scaled_study import resized_study, rounded
+from pinstress.study.errors import InputError
+from pinstress.study.file import Study
+
+AIM = 0.004  # of the stress, below what is allowed: noise of meshes, and rounding
+ENOUGH = 2e-3  # of the weight: what meshes are worth
+NARROW = 5e-3  # a bracket of scales that is not looked into
+FAR = 0.05  # from the factor, where not all derivatives are worth finding
+SCALINGS = 10
+REPAIRS = 4
+STEPS_UP = 40  # of diameters rounded to steps
+ROUNDING = 2e-3  # of a geometric limit, by which four digits may break it
+WHOLE = "scaled as a whole, because its stress has no derivatives by its dimensions"
+
+Tell = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Aim:
+    """What is wished: the factor, kinds of dimensions (KINDS) that may change, geometric limits,
+    the step (m) to which diameters are rounded up. more: by pin and case, times the factor that
+    the nominal design needs so that a less likely one reaches it.
+    """
+
+    required: float
+    vary: tuple[str, ...] = KINDS
+    limits: Proportions = field(default_factory=Proportions)
+    step: float | None = None
+    more: Mapping[tuple[str, str], float] | None = None
+
+    def of_pin(self, pin: str) -> dict[str, float]:
+        """By case."""
+        return {case: x for (name, case), x in (self.more or {}).items() if name == pin}
+
+
+@dataclass(frozen=True)
+class Lightest:
+    """A pin: its dimensions by key, m, as they are written, or by which scale it is only scaled;
+    neither where nothing reaches the factor, and `why`. before, factor: lower end of its factor as
+    it was and with these. scaled: its volume, m^3, were it only scaled, whole: the dimensions then,
+    m; None where that is not known. optimality: of what the search found; binding: what binds, in
+    words, by its multiplier. solved: designs. way: why it is only scaled, or how the search ended
+    if it did not converge.
+    """
+
+    pin: str
+    values: dict[str, float] | None = None
+    scale: float | None = None
+    before: float | None = None
+    factor: float | None = None
+    scaled: float | None = None
+    whole: tuple[float, ...] | None = None
+    optimality: Optimality | None = None
+    binding: tuple[tuple[str, float], ...] = ()
+    solved: int = 0
+    why: str = ""
+    way: str = ""
+
+
+@dataclass(frozen=True)
+class Start:
+    """A pin's dimensions by key, m, or its scale, and dimensions of it that is only scaled, m, as
+    they were found under other loads.
+    """
+
+    values: dict[str, float] | None = None
+    scale: float | None = None
+    whole: tuple[float, ...] | None = None
+
+
+def lightest_pin(
+    study: Study,
+    plan: Plan,
+    pin: str,
+    aim: Aim,
+    start: Start | None = None,
+    tell: Tell = lambda _: None,
+) -> Lightest:
+    """Of a pin of the study as it was given; plan: with the loads of the study as it is now.
+    Failures are reported in the answer.
+    """
+    problem = problem_of(study, plan, pin, aim)
+    if isinstance(problem, str):
+        return Lightest(pin, why=problem)
+    start = start or Start()
+    stress = PinStress(problem, tell)
+    before: float | None = None
+    try:
+        if start.scale is not None or not isinstance(problem.shape.whole, Pin):
+            raise UndifferentiatedError
+        shape, known = problem.shape, start.values or {}
+        first = stress.at(np.array([known.get(d.key, d.value) for d in shape.dimensions]), FAR)
+        before = problem.required * float(np.exp(-first.worst))
+        search = _Search(problem, stress, aim)
+        scaled = _scaled(search, first) if start.values is None else first
+        return replace(_found(search, scaled, start.whole), before=before)
+    except UndifferentiatedError:
+        return _only_scaled(stress, aim, start.scale or 1.0)
+    except ImpossibleError as error:
+        return Lightest(pin, before=before, solved=stress.count, why=str(error))
+
+
+def _only_scaled(stress: PinStress, aim: Aim, start: float) -> Lightest:
+    """Without derivatives: all its dimensions times the same, as `size` does."""
+    problem, factors = stress.problem, {}
+
+    def factor_at(scale: float) -> float:
+        found = stress.of(resized_study(problem.study, {problem.name: scale}, aim.step))
+        factors[scale] = problem.required * float(np.exp(-found.worst))
+        return factors[scale]
+
+    try:
+        best = smallest(factor_at, problem.required, start)
+        scale, factor = best.scale, best.factor
+    except (NoSizeError, ImpossibleError, InputError) as error:
+        return Lightest(
+            problem.name, before=factors.get(start), solved=len(factors), why=str(error)
+        )
+    return Lightest(
+        problem.name, None, scale, factors[start], factor, solved=len(factors), way=WHOLE
+    )
+
+
+def problem_of(study: Study, plan: Plan, pin: str, aim: Aim) -> PinProblem | str:
+    """What is posed of a pin, or why nothing can be."""
+    table = study.table.pin[pin]
+    if table.geometry is not None:
+        return "its shape comes from a file, which has no dimensions to change"
+    if study.table.material[table.material].yield_strength is None:
+        return f"its material {table.material} has no yield_strength"
+    made = pin_of(study, pin)
+    shape = VariedShape(study, made, aim.vary, aim.limits)
+    if not shape.dimensions and isinstance(made, Pin):
+        has = [
+            kind
+            for kind in KINDS
+            if any(kind_of(d.key) == kind for d in dimensions_of(study, made))
+        ]
+        return f"it has no {' or '.join(aim.vary)} to vary, only {' and '.join(has)}"
+    asked = replace(plan.asked, goal="value")
+    return PinProblem(study, pin, shape, asked, plan.loads, aim.required, aim.of_pin(pin))
+
+
+class _Search:
+    """The pin as a problem for pinstress.sizing.optimise."""
+
+    def __init__(self, problem: PinProblem, stress: PinStress, aim: Aim) -> None:
+        self.problem, self.stress, self.aim = problem, stress, aim
+        self.shape = problem.shape
+
+    @property
+    def bounds(self) -> tuple[Floats, Floats]:
+        now, far = np.log(self.shape.values), np.log(FARTHEST)
+        return now - far, now + far
+
+    def weight(self, x: Floats) -> tuple[float, Floats]:
+        values = np.exp(x)
+        volume, slope = self.shape.volume(values)
+        return float(np.log(volume)), slope * values / volume
+
+    def limits(self, x: Floats) -> tuple[Floats, Floats]:
+        values = np.exp(x)
+        limits, slopes = self.shape.at_limits(values)
+        return limits, slopes * values
+
+    def stresses(self, x: Floats) -> tuple[StressPlace, ...]:
+        return self.raised(self.stress.at(np.exp(x)))
+
+    def raised(self, solved: SolvedPin) -> tuple[StressPlace, ...]:
+        """Over what is aimed at, a little below what is allowed."""
+        return tuple(replace(p, value=p.value + AIM) for p in solved.places)
+
+    def volume(self, solved: SolvedPin) -> float:
+        """m^3."""
+        return float(self.shape.volume(solved.values)[0])
+
+    def keeps(self, values: Floats) -> bool:
+        """Whether geometric limits hold but for the digits that are written."""
+        return float(self.shape.at_limits(values)[0].min(initial=0.0)) >= -ROUNDING
+
+
+def _found(search: _Search, scaled: SolvedPin, whole: tuple[float, ...] | None) -> Lightest:
+    """From a design; whole: dimensions of the pin that is only scaled, if that is another."""
+    shape, aim = search.shape, search.aim
+    if len(shape.dimensions) > 1 or not -NEAR <= scaled.worst <= 0.0:
+        optimum = least_weight(search, np.log(scaled.values), ENOUGH)
+    else:
+        x, places = np.log(scaled.values), scaled.places
+        optimum = Optimum(x, search.weight(x)[0], places, optimality(search, x, places), 0)
+    best = _written(search, optimum)
+    before: float | None = None
+    as_whole = scaled.values if whole is None else np.array(whole)
+    if set(aim.vary) == set(KINDS):
+        metre = search.problem.study.system.factor("length")
+        before = float(shape.volume(_rounded(shape, as_whole, aim.step, metre))[0])
+        if before <= search.volume(best):
+            as_scaled = _repaired(search, as_whole)
+            if as_scaled is not None:
+                before = search.volume(as_scaled)
+                best = min(as_scaled, best, key=search.volume)
+    return Lightest(
+        search.problem.name,
+        dict(zip(shape.keys, map(float, best.values), strict=True)),
+        factor=aim.required * float(np.exp(-best.worst)),
+        scaled=before,
+        whole=tuple(map(float, as_whole)),
+        optimality=optimum.optimality,
+        binding=tuple(_binding(search, optimum)),
+        solved=search.stress.count,
+        way=optimum.why,
+    )
+
+
+def _scaled(search: _Search, first: SolvedPin) -> SolvedPin:
+    """With the factor reached, all dimensions times the same; as it is where only bores change.
+
+    Raises: ImpossibleError.
+    """
+    now = first
+    best: SolvedPin | None = None
+    small, why = None, ""  # small: with which stress is too large
+    for _ in range(SCALINGS):
+        here = float(np.log(now.values[0] / search.shape.values[0]))
+        if now.worst <= 0.0:
+            best = now
+        else:
+            small = here if small is None else max(small, here)
+        if -CLOSE <= now.worst <= 0.0:
+            break
+        top = max((p for p in now.places if p.slope is not None), key=lambda p: p.value)
+        assert top.slope is not None  # it was found with derivatives
+        if top.slope.sum() > 0.0:  # of bores alone, which weaken it
+            return first
+        leap, rate = np.log(LEAP), min(float(top.slope.sum()), -0.5)
+        there = here + float(np.clip((now.worst + AIM) / -rate, -leap, leap))
+        if best is not None:
+            large = float(np.log(best.values[0] / search.shape.values[0]))
+            if large - (there if small is None else small) < NARROW:
+                break
+            if small is not None and not small < there < large:
+                there = 0.5 * (small + large)
+        if abs(there) > np.log(FARTHEST):
+            break
+        try:
+            now = search.stress.at(search.shape.values * np.exp(there), FAR)
+        except ImpossibleError as error:
+            why = f"; with {np.exp(there):.3g} times: {error}"
+            break
+    if best is None:
+        factor = search.aim.required * float(np.exp(-now.worst))
+        times = float(now.values[0] / search.shape.values[0])
+        raise ImpossibleError(
+            f"with {times:.3g} times these dimensions its factor is only {factor:.4g}{why}; its "
+            "bands must be longer, its material stronger or its loads smaller"
+        )
+    return best
+
+
+def _written(search: _Search, optimum: Optimum) -> SolvedPin:
+    """The lightest design that was found and reaches the factor, as it is written.
+
+    Raises: ImpossibleError.
+    """
+    stress, step = search.stress, search.aim.step
+    found = [x for x in [_repaired(search, np.exp(optimum.x))] if x is not None]
+    lighter = [x for x in stress.solved if x.worst <= 0.0 and search.keeps(x.values)]
+    if lighter and step is None:
+        best = min(lighter, key=search.volume)
+        if not found or search.volume(best) < search.volume(found[0]):
+            found += [x for x in [_repaired(search, best.values)] if x is not None]
+    if not found:
+        raise ImpossibleError("with its dimensions rounded it does not reach the factor")
+    return min(found, key=search.volume)
+
+
+def _repaired(search: _Search, values: Floats) -> SolvedPin | None:
+    """With the factor reached by dimensions as they are written, larger where need be; None where
+    it is not.
+    """
+    shape, step = search.shape, search.aim.step
+    metre = search.problem.study.system.factor("length")
+    more = 0.0
+    for k in range(REPAIRS if step is None else STEPS_UP):
+        found = search.stress.at(_rounded(shape, values * (1.0 + more), step, metre))
+        if found.worst <= 0.0:
+            return found
+        if step is None:  # by what stress exceeds, were it tension, which is enough
+            more += 0.6 * found.worst + 5e-4 * (k + 1)
+        else:
+            more += 0.5 * step / float(values.min())
+    return None
+
+
+def _rounded(shape: VariedShape, values: Floats, step: float | None, metre: float) -> Floats:
+    """As they are written: four digits, diameters up, bores and fillets down; diameters up to a
+    step (m), and by further steps where a geometric limit is broken by that.
+    """
+    up = {"diameters": 1, "bores": -1, "fillets": -1}
+    out, steps = [], np.zeros(len(values))
+    for k, (dimension, value) in enumerate(zip(shape.dimensions, values, strict=True)):
+        kind = kind_of(dimension.key)
+        own = None
+        if step is not None and kind == "diameters":
+            own = (step / 2.0 if dimension.key.startswith("meridian") else step) / metre
+            steps[k] = own * metre
+        out.append(rounded(float(value) / metre, own, up[kind]) * metre)
+    found = np.array(out)
+    for _ in range(STEPS_UP if step is not None else 0):
+        limits, slopes = shape.at_limits(found)
+        if not len(limits) or limits.min() >= -ROUNDING:
+            break
+        grow = (slopes[int(limits.argmin())] > 0.0) & (steps > 0.0)
+        if not grow.any():
+            break
+        found = found + np.where(grow, steps, 0.0)
+    return found
+
+
+def _binding(search: _Search, optimum: Optimum) -> list[tuple[str, float]]:
+    """What binds, the largest multiplier first."""
+    keys, limits = search.shape.keys, search.shape.geometric
+    out = []
+    for name, multiplier in optimum.optimality.multipliers.items():
+        kind, _, number = name.rpartition(" ")
+        text = name
+        if kind == "limit":
+            text = limits[int(number) - 1].text
+        elif kind in ("least", "most"):
+            far = f"{FARTHEST:g} times {'less' if kind == 'least' else 'more'}"
+            text = f"{keys[int(number) - 1]} {far}"
+        out.append((text, multiplier))
+    return sorted(out, key=lambda one: (-one[1], one[0]))

@@ -1,0 +1,140 @@
+"""Pins of least weight on the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from reports.format.numbers import DASH, engineering, short
+from reports.text.fitted_table import Column, fitted_table
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+TINY = 1e-6  # a residual that is round-off
+
+
+@dataclass(frozen=True)
+class ChangedDimension:
+    """By its key in the pin's table, before and after."""
+
+    key: str
+    before: float
+    after: float
+
+
+@dataclass(frozen=True)
+class LightRow:
+    """A pin: its factor in the run of the new study as text and before, the case that governs;
+    weights as it was, if only scaled and now, None where they are not known; residual of the
+    conditions of an optimum, dimensions that changed, what binds with its multiplier, the factor at
+    a probability, if requested, bands that changed, designs solved, why the factor is not
+    verifiably reached, if it is not, and how the search went, if it was none or did not end.
+    """
+
+    pin: str
+    factor: str
+    factor_before: float | None
+    governs: str
+    weights: tuple[float | None, float | None, float | None]
+    residual: float | None
+    dimensions: tuple[ChangedDimension, ...]
+    binding: tuple[tuple[str, float], ...]
+    at: float | None
+    bands: tuple[str, ...]
+    solved: int
+    why: str = ""
+    way: str = ""
+
+    @property
+    def saved(self) -> float | None:
+        """Of the weight of the pin that is only scaled."""
+        _, scaled, now = self.weights
+        return None if scaled is None or now is None else 1.0 - now / scaled
+
+
+def print_light(
+    rows: Sequence[LightRow], required: float, units: tuple[str, str, bool], console: Console
+) -> None:
+    """Print a row per pin, the whole, and what changed. units: of length and of weight, or of
+    volume where that is what is compared.
+    """
+    from rich.text import Text
+
+    length, unit, heavy = units
+    what = "weight" if heavy else "volume"
+    console.print(fitted_table(_columns(rows, f"{what} [{unit}]"), console.width))
+    for line in (*_total(rows, required, what, unit), *_details(rows, length)):
+        console.print(Text(line))
+
+
+def _columns(rows: Sequence[LightRow], heavy: str) -> list[Column]:
+    colours = ["yellow" if row.why else "green" for row in rows]
+    return [
+        Column("Pin", [row.pin for row in rows], 0, False),
+        Column("Result", ["not decided" if r.why else "safe" for r in rows], 0, False, colours),
+        Column("FoS", [row.factor for row in rows], 0),
+        *_at(rows),
+        Column(heavy, [_heavy(row.weights[0]) for row in rows], 1),
+        Column("scaled", [_heavy(row.weights[1]) for row in rows], 0),
+        Column("least", [_heavy(row.weights[2]) for row in rows], 0),
+        Column("saved", [_saved(row.saved) for row in rows], 0),
+        Column("residual", [_residual(row.residual) for row in rows], 0),
+        Column("governs", [row.governs for row in rows], 2, False),
+        Column("FoS before", [engineering(row.factor_before) for row in rows], 3),
+        Column("designs", [str(row.solved) for row in rows], 4),
+    ]
+
+
+def _at(rows: Sequence[LightRow]) -> Iterator[Column]:
+    if any(row.at is not None for row in rows):
+        yield Column("FoS at p", [engineering(row.at) for row in rows], 0)
+
+
+def _heavy(weight: float | None) -> str:
+    return DASH if weight is None else engineering(weight, 3)
+
+
+def _saved(part: float | None) -> str:
+    return DASH if part is None else f"{round(part, 3) + 0.0:.1%}"
+
+
+def _residual(residual: float | None) -> str:
+    if residual is None:
+        return DASH
+    return f"<{TINY:g}" if residual < TINY else f"{residual:.1g}"
+
+
+def _total(rows: Sequence[LightRow], required: float, what: str, unit: str) -> Iterator[str]:
+    count = sum(not row.why for row in rows)
+    yield (
+        f"{count} of {len(rows)} pin{'s' if len(rows) != 1 else ''} "
+        f"reach{'es' if len(rows) == 1 else ''} the safety factor {short(required)} in a run of "
+        "the new study; one that has not converged counts by the lower end of its range."
+    )
+    known = [row for row in rows if row.saved is not None]
+    if len(known) > 1:
+        was, scaled, now = (sum(row.weights[k] or 0.0 for row in known) for k in range(3))
+        yield (
+            f"Together: {what} {engineering(was, 3)} {unit}; with the factor, only scaled "
+            f"{engineering(scaled, 3)}, least {engineering(now, 3)}, {1.0 - now / scaled:.1%} less."
+        )
+    yield (
+        "residual: part of the weight's gradient that active constraints do not balance; 0 at an "
+        "optimum."
+    )
+
+
+def _details(rows: Sequence[LightRow], length: str) -> Iterator[str]:
+    for row in rows:
+        if row.dimensions:
+            each = (f"{d.key} {short(d.before)} → {short(d.after)}" for d in row.dimensions)
+            yield f"Pin {row.pin} [{length}]: {', '.join(each)}."
+        if row.binding:
+            each = (f"{text} ({multiplier:.2g})" for text, multiplier in row.binding)
+            yield f"  binding, with multipliers: {'; '.join(each)}."
+        if row.bands:
+            yield f"  the bores of its links must follow: {', '.join(row.bands)}."
+        if row.way:
+            yield f"  {row.way}."
