@@ -140,7 +140,8 @@ class Evaluator:
         """The study with other values (SI) of its numbers. Raises: InputError."""
         raw = self._raw
         for number, value in zip(self.numbers, values, strict=True):
-            raw = put(raw, number.path, number.in_study(value / number.factor))
+            for path in number.paths:
+                raw = put(raw, path, number.in_study(value / number.factor))
         return with_raw(self.study, raw)
 
     def _moves(self, number: Number, case: str) -> bool:

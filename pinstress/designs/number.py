@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import copy
 import math
+import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from loads.coded import LoadsArgumentError
@@ -20,6 +21,7 @@ from pinstress.study.file import Study, raw_study
 from pinstress.study.in_python import key_parts
 
 ANGLES = {"angle": ("deg", math.pi / 180.0)}  # others are in radians
+SEVERAL = re.compile(r"\[(\d+)-(\d+)\]")  # neighbours that have a number in common
 RADIANS = {"angular velocity": "rad/s", "angular acceleration": "rad/s^2"}
 
 Path = tuple[str | int, ...]
@@ -29,7 +31,8 @@ Path = tuple[str | int, ...]
 class Number:
     """A number of the study: its key, its path in what `raw_study` returns, its dimension (empty
     of a number without one) and its value in SI. unit: of a design's values in tables, `factor` its
-    SI value; written: whether the study must give it as a text with that unit.
+    SI value; written: whether the study must give it as a text with that unit. others: paths of
+    numbers that are always the same: those of a key with a range, as "profile[1-3].diameter".
     """
 
     key: str
@@ -39,6 +42,12 @@ class Number:
     unit: str = ""
     factor: float = 1.0
     written: bool = False
+    others: tuple[Path, ...] = ()
+
+    @property
+    def paths(self) -> tuple[Path, ...]:
+        """All places of the number."""
+        return self.path, *self.others
 
     def in_study(self, value: float) -> float | str:
         """A value in its unit (not SI) as the study may write it."""
@@ -46,7 +55,26 @@ class Number:
 
 
 def number_at(study: Study, key: str) -> Number:
-    """The number with a key. Raises: InputError for a key that names no number."""
+    """The number with a key, or the one that several keys have in common.
+
+    Raises: InputError for a key that names no number, or different ones.
+    """
+    found = SEVERAL.search(key)
+    if found is None:
+        return _single(study, key)
+    first, last = (int(end) for end in found.groups())
+    if not 0 < first < last:
+        raise _no_number(study, key, f"[{first}-{last}] is no range; the smaller element first")
+    keys = [key[: found.start()] + f"[{i}]" + key[found.end() :] for i in range(first, last + 1)]
+    each = [number_at(study, one) for one in keys]
+    for one, number in zip(keys, each, strict=True):
+        if (number.nominal, number.dimension) != (each[0].nominal, each[0].dimension):
+            raise _no_number(study, key, f"{keys[0]} and {one} differ; only equal ones vary as one")
+    paths = tuple(dict.fromkeys(path for number in each for path in number.paths))
+    return replace(each[0], key=key, path=paths[0], others=paths[1:])
+
+
+def _single(study: Study, key: str) -> Number:
     raw = raw_study(study)
     path = _path(study, raw, key)
     value = _at(raw, path)

@@ -112,8 +112,8 @@ def require_laws(study: Study) -> None:
 
 def _require_different(study: Study, made: Iterable[Parameter]) -> None:
     known: dict[Path, str] = {}
-    for parameter in made:
-        other = known.setdefault(parameter.number.path, parameter.key)
+    for parameter, path in ((p, path) for p in made for path in p.number.paths):
+        other = known.setdefault(path, parameter.key)
         if other != parameter.key:
             raise study.error(
                 f"vary.parameters.{parameter.key}: names the same number as {shown(other)}; "

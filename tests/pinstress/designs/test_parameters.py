@@ -9,6 +9,7 @@ import pytest
 
 from pinstress import InputError, load_study, shipped_studies, study_from
 from pinstress.designs.correlations import correlations_of
+from pinstress.designs.evaluate import Evaluator
 from pinstress.designs.laws import Uniform
 from pinstress.designs.number import number_at, unit_of
 from pinstress.designs.parameters import parameters_of
@@ -47,6 +48,29 @@ def test_any_number_has_its_dimension_and_unit() -> None:
         assert si == pytest.approx(number.nominal, rel=1e-15)
 
 
+def test_what_neighbours_have_in_common_varies_as_one() -> None:
+    gear = load_study(LANDING_GEAR)
+    (parameter,) = parameters_of(
+        study_from(
+            varied(
+                '"pin.H.profile[1-3].diameter" = { from = 2, to = 3, steps = 2 }', text=gear.text
+            ),
+            LANDING_GEAR.parent,
+        )
+    )
+    number = parameter.number
+    assert number.nominal == pytest.approx(2.0 * 0.0254)
+    assert [path[3] for path in number.paths] == [0, 1, 2]
+    evaluator = Evaluator(gear, [number], ["H"])
+    changed = evaluator.changed([0.06]).table.pin["H"].profile
+    assert changed is not None
+    assert [segment.diameter for segment in changed] == pytest.approx([0.06] * 3)
+    text = '"pin.H.profile[1-3].diameter" = { from = 2, to = 3 }\n'
+    text += '"pin.H.profile[2].diameter" = { from = 2, to = 3 }'
+    with pytest.raises(InputError, match="names the same number"):
+        parameters_of(study_from(varied(text, text=gear.text), LANDING_GEAR.parent))
+
+
 def test_an_angle_varies_in_degrees() -> None:
     crank = load_study(shipped_studies()["slider_crank"])
     number = number_at(crank, "mechanism.drive[1].start")
@@ -76,6 +100,13 @@ def test_the_unit_of_a_dimension_can_be_read(dimension: str, system: object) -> 
         ('"pin.B.profile[3].length" = { from = 1, to = 2 }', "not-a-varying-number", "no [3]"),
         ('"pin.B.bore" = { from = 1, to = 2 }', "not-a-varying-number", "no 'bore' there"),
         ('"vary.count" = { from = 1, to = 2 }', "not-a-varying-number", "no 'vary' there"),
+        (
+            '"pin.B.profile[1-2].diameter" = { from = 1, to = 2 }',
+            "not-a-varying-number",
+            "pin.B.profile[1].diameter and pin.B.profile[2].diameter differ",
+        ),
+        ('"pin.B.profile[2-1].length" = { from = 1, to = 2 }', "not-a-varying-number", "no range"),
+        ('"pin.B.profile[1-3].length" = { from = 1, to = 2 }', "not-a-varying-number", "no [3]"),
         ('"pin.B..x" = { from = 1, to = 2 }', "not-a-key", "is not a key"),
         (f'"{DIAMETER}" = {{ from = 2, to = 1 }}', "limits-out-of-order", "must exceed"),
         (f'"{DIAMETER}" = {{ uniform = [2, 2] }}', "limits-out-of-order", "must exceed"),
