@@ -99,15 +99,25 @@ def by_key(study: Study, pin: str, case: str) -> dict[str, float]:
     if task.lugs:
         given = InLugs(task.pin, task.material, task.lugs, task.loads, task.between)
         (joined,) = solve_in_lugs(given, asked)
-        of_joint = differentiated_in_lugs(study, task, joined)
-        lengths = [x.of_joint.key for x in joint_parameters(study, task) if x.kind == "length"]
-        by = {} if of_joint is None else of_joint.by_parameter
-        return {key: by[key] for key in lengths if key in by}
+        return by_length(study, task, joined) or {}
     (found,) = solve_pin(
         task.pin, task.material, task.clamps, task.loads, asked, between=task.between
     )
     made = differentiated(asked, task, found, tuple(dimensions_of(study, task.pin)))
     return {} if made is None else made.by_dimension
+
+
+def by_length(study: Study, task: Task, joined: LugSolution) -> dict[str, float] | None:
+    """The same of a pin in contact that is solved; None where it has no derivatives.
+
+    Raises: MeshError, SolveError.
+    """
+    found = differentiated_in_lugs(study, task, joined)
+    if found is None:
+        return None
+    lengths = [x.of_joint.key for x in joint_parameters(study, task) if x.kind == "length"]
+    by = found.by_parameter
+    return {key: by[key] for key in lengths if key in by}
 
 
 def differentiated_in_lugs(

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -31,7 +32,7 @@ from pinstress.model.cases import CaseLoads
 from pinstress.model.pins import pin as pin_of
 from pinstress.model.tasks import Task, tasks
 from pinstress.remedies.dimensions import dimensions_of
-from pinstress.remedies.sensitivities import by_key, differentiated
+from pinstress.remedies.sensitivities import by_length, differentiated
 from pinstress.sizing.optimise import ImpossibleError, StressPlace, worst
 from pinstress.sizing.other_dimensions import paths_of, study_with
 from pinstress.sizing.pin_shape import VariedShape
@@ -179,9 +180,6 @@ class PinStress:
         """Peaks and what is found of each."""
         if differentiated and not isinstance(task.pin, Pin):
             raise UndifferentiatedError
-        made: dict[str, Floats] = {}
-        if differentiated and task.lugs:
-            made = {case.case: self._in_contact(study, case.case) for case in task.loads}
         dimensions = self._dimensions(study, task) if differentiated else ()
         section = PartsOfSection(dimensions)
         for each in solutions(study, task, self.problem.asked, lambda _: None):
@@ -190,21 +188,20 @@ class PinStress:
             _require_solved(peak)
             if not peak.max_von_mises:
                 continue
-            if isinstance(each, LugSolution) or not differentiated:
-                slope = made.get(peak.case, np.zeros(0)) / peak.max_von_mises
-                yield peak, [_Found(peak.case, counted(peak), lambda slope=slope: slope)]  # type: ignore
+            if not differentiated:
+                yield peak, [_Found(peak.case, counted(peak), lambda: np.zeros(0))]
+            elif isinstance(each, LugSolution):
+                slopes = partial(self._in_contact, study, task, each, peak.max_von_mises)
+                yield peak, [_Found(peak.case, counted(peak), slopes)]
             else:
                 yield peak, self._parts(task, each, dimensions, section)
 
-    def _in_contact(self, study: Study, case: str) -> Floats:
-        """Derivatives of the largest stress, Pa/m. Raises: UndifferentiatedError."""
-        try:
-            by = by_key(study, self.problem.name, case)
-        except InputError:
-            raise
-        except ValueError:
-            raise UndifferentiatedError from None
-        return np.array([by.get(key, 0.0) for key in self.problem.shape.keys])
+    def _in_contact(self, study: Study, task: Task, joined: LugSolution, maximum: float) -> Floats:
+        """Relative derivatives of the largest stress, 1/m. Raises: UndifferentiatedError."""
+        by = by_length(study, task, joined)
+        if by is None:
+            raise UndifferentiatedError
+        return np.array([by.get(key, 0.0) for key in self.problem.shape.keys]) / maximum
 
     def _dimensions(self, study: Study, task: Task) -> tuple[Dimension, ...]:
         by = {d.key: d for d in dimensions_of(study, task.pin)}
