@@ -136,7 +136,7 @@ def test_units_and_sizes() -> None:
 
 def test_a_pin_that_nothing_holds() -> None:
     f = holding.free_pin()
-    assert np.all((f.stress > 1e7) & (f.stress < 1e9))  # plausible, each of them
+    assert np.all((f.stress > 1e6) & (f.stress < 1e11))  # round-off that looks like stress
     assert f.stress.max() > 1.5 * f.stress.min()
     assert f.motion.min() > 1e6
     assert (f.found.verdict, f.found.max_von_mises) == ("rigid", None)

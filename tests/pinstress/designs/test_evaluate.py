@@ -201,7 +201,7 @@ def test_what_was_asked_for_last_is_remembered() -> None:
 def test_meshes_are_kept_within_their_memory() -> None:
     """All that is kept of them counts, of which stress is a fifth."""
     evaluator, (diameter, force) = _evaluator(study_from(ONE_PIN), DIAMETER, FORCE)
-    evaluator.meshes = EveryMesh(4_000_000)
+    evaluator.meshes = EveryMesh(2_000_000)
     for k in range(8):
         evaluator.rows([diameter * (1.0 + 0.01 * k), force])
     solved = evaluator.meshes.solved

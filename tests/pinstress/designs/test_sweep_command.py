@@ -242,5 +242,5 @@ def test_nothing_is_left_of_a_sweep_that_solved_nothing(
     assert made.returncode == 0, made.stderr
     assert run_here(*nowhere, cwd=tmp_path).returncode == 2
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [
-        ".pinstress.json", "designs.html", "designs.parquet",
+        ".pinstress.json", "designs.html", "designs.parquet", "sweep.json",
     ]  # fmt: skip
