@@ -84,7 +84,7 @@ def _largest_at_edges(results: Results) -> str:
         return ""
     most, p = max(edges, key=lambda edge: edge[0])
     rows = _listed([(p.pin, p.case)])
-    return f" Its largest is about {engineering(most, 2)} {results.units.stress}: {rows}."
+    return f" The largest is estimated at {engineering(most, 2)} {results.units.stress}: {rows}."
 
 
 def _depends_on_joint(pin: PinResult, limit: float) -> bool:
