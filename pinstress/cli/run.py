@@ -36,7 +36,7 @@ from pinstress.study.choices import Chosen
 from pinstress.study.file import Study
 from pinstress.study.file_names import field_name
 from reports.data.results import Field, Results, Units
-from reports.files import write_loads, write_pages, write_stress_tables
+from reports.files import write_loads, write_pages, write_reports, write_stress_tables
 from reports.tables.table import MOST_IN_CSV
 from reports.text.loads import print_loads
 from reports.text.safety_factors import print_safety_factors
@@ -136,11 +136,14 @@ def _write(results: Results, staging: Path, most: int) -> None:
     """Tables and page, at the same time where processes are forked: others would be sent all the
     results first.
     """
+    if most == 1 or portable():
+        write_reports(results, staging)
+        return
     writers = {"page": write_pages, "tables": write_stress_tables}
     jobs: list[Job[None]] = [
         Job(name, partial(_written, write, results, staging)) for name, write in writers.items()
     ]
-    made = side_by_side(jobs, 1 if portable() else most)
+    made = side_by_side(jobs, most)
     for job, nothing in zip(jobs, made, strict=True):
         if isinstance(nothing, Died):
             job.work(_silent)
