@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from pinstress.designs.batches import Batch, Batches, DesignProblem, Done, solve_batch
 from pinstress.designs.evaluate import DesignRow
-from pinstress.processes.threads import hold_threads
+from pinstress.processes.threads import THREADS, hold_threads
 from pinstress.study.errors import InputError
 
 if TYPE_CHECKING:
@@ -156,6 +156,8 @@ def local(jobs: int) -> Iterator[Client]:
         "distributed.admin.system-monitor.interval": "10s",
         "distributed.scheduler.http.routes": [],  # a port is opened, but nothing is served there
         "distributed.worker.http.routes": [],
+        # dask would have every large array returned to the system: half of the time, measured
+        "distributed.nanny.pre-spawn-environ": dict.fromkeys(THREADS, 1),
     }
     with dask.config.set(quiet), _silent():
         with _ignored_by_children():
