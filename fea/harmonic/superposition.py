@@ -189,11 +189,7 @@ class Circumference:
         point = np.full(self.count, rows[0] if len(rows) else 0)
         if len(self._waves) > 1 and len(rows):
             i, t = self._likely(rows[:POINTS], together)
-            value = self.round(i, t, np.full(len(t), least))[0]
-            order = np.argsort(value, kind="stable")
-            i, t, value = i[order], t[order], value[order]
-            more = value > best[t]
-            best[t[more]], point[t[more]] = value[more], i[more]
+            _raise(best, point, t, self.round(i, t, np.full(len(t), least))[0], i)
         for k in range(0, len(rows), POINTS):
             if reach[k] <= (best.max() if together else best.min()):
                 break
@@ -213,10 +209,7 @@ class Circumference:
                 beat = np.full(len(t), best.max()) if together else best[t]
                 value = self.round(here[i], t, beat)[0]
                 bound[i, t] = -1.0
-                order = np.argsort(value, kind="stable")
-                i, t, value = i[order], t[order], value[order]
-                more = value > best[t]
-                best[t[more]], point[t[more]] = value[more], here[i[more]]  # the last one stays
+                _raise(best, point, t, value, here[i])
         return best, point
 
     def _likely(self, points: Ints, together: bool) -> tuple[Ints, Ints]:
@@ -364,6 +357,14 @@ class Circumference:
             forth = first[:, None] * s[:, None] - second[:, None] * c[:, None]
             out += np.where(BACK, back, forth)
         return out
+
+
+def _raise(best: Floats, point: Ints, t: Ints, value: Floats, at: Ints) -> None:
+    """Put values (J,) at points into the best so far of their instants (T,), if they exceed it."""
+    order = np.argsort(value, kind="stable")
+    t, value, at = t[order], value[order], at[order]
+    more = value > best[t]
+    best[t[more]], point[t[more]] = value[more], at[more]  # the last one stays
 
 
 def _sampled(n: Ints, back: Floats, forth: Floats, degree: int) -> Floats:
