@@ -291,7 +291,7 @@ def applied(
     forces, tractions = spread([tractions_of(pin, load) for load in alone])
     if alone != list(loads):
         share = shares(alone, loads)
-        forces, tractions = forces @ share, tractions @ share
+        forces, tractions = (np.asarray(x @ share) for x in (forces, tractions))
     for k, load in enumerate(loads):
         if load.kind == "body":
             within = model.space.integrals if integrals is None else integrals
