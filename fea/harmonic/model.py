@@ -291,7 +291,8 @@ def applied(
     forces, tractions = spread([tractions_of(pin, load) for load in alone])
     if alone != list(loads):
         share = shares(alone, loads)
-        forces, tractions = (np.asarray(x @ share) for x in (forces, tractions))
+        forces = np.asarray(forces @ share, np.float64)
+        tractions = np.asarray(tractions @ share, np.float64)
     for k, load in enumerate(loads):
         if load.kind == "body":
             within = model.space.integrals if integrals is None else integrals
@@ -304,9 +305,9 @@ def applied(
         phases = (0,) if n else (0, 1)
         closing = [c for p in phases for c in closing_tractions(pin, n, p, not shears)]
         against, over = spread(closing)
-        share = -np.linalg.solve(modes.T @ against, modes.T @ forces[:, here])
-        forces[:, here] += against @ share
-        tractions[..., here] += over @ share
+        closed = -np.linalg.solve(modes.T @ against, modes.T @ forces[:, here])
+        forces[:, here] += against @ closed
+        tractions[..., here] += over @ closed
     return forces, tractions
 
 
