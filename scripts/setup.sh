@@ -137,5 +137,7 @@ say "installing pinstress into .venv"
     --no-deps --no-build-isolation --editable .
 .venv/bin/python -m pip check >/dev/null ||
     fail "$(.venv/bin/python -m pip check)" "requirements.lock is behind pyproject.toml: make lock"
+# Half a second of every start where Python may not write what it has compiled.
+.venv/bin/python -m compileall -q geometry loads fea pinstress reports
 printf '%s\n' "$from" >.venv/.ready
 say "ready"

@@ -54,6 +54,15 @@ class UnitLoad(NamedTuple):
         return (self.surface,) if self.surface else ()
 
     @property
+    def alone(self) -> dict[UnitLoad, float]:
+        """What it is the sum of: a pressure of one on each of its surfaces, so many times, Pa;
+        itself where it acts on one.
+        """
+        if not self.parts:
+            return {self: 1.0}
+        return {self._replace(parts=((name, 1.0),)): amount for name, amount in self.parts}
+
+    @property
     def shears(self) -> bool:
         """Whether its traction has a shear that jumps at the band's edge."""
         return self.kind in ("force", "moment")

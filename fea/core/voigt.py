@@ -20,5 +20,5 @@ ENTRIES = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))  # and the reverse
 
 def von_mises(stress: Floats) -> Floats:
     """Von Mises' equivalent stress (...) of stresses (..., 6)."""
-    square = np.einsum("...a,ab,...b->...", stress, VON_MISES, stress)
+    square = np.einsum("...a,...a->...", stress @ VON_MISES, stress)
     return np.asarray(np.sqrt(np.maximum(square, 0.0)))

@@ -31,6 +31,7 @@ MOST = 4  # local maxima
 COUNTS = 0.3  # of the largest: lower ones are no candidates
 APART = 0.25  # of the distance from the axis: so far apart local maxima are
 SAME = 0.05  # of that: nearer points are one
+SOME = 2  # of the points one in so many is compared with others
 TRIED = 500  # points whose neighbours are compared
 CLOSE = 9  # points about a local maximum that are compared at all angles
 CHUNK = 4096  # points and angles at once
@@ -130,9 +131,9 @@ def _local_maxima(cases: Sequence[_Case]) -> Iterator[_Place]:
     rows = np.flatnonzero(base.surface)
     if not len(rows):
         return
-    points = base.points[rows]
+    every, points = base.points[rows], base.points[rows[::SOME]]
     score = _score(cases, points, COARSE, FEW).max(axis=1)
-    tree, radius = KDTree(points), np.hypot(points[:, 0], points[:, 1])
+    whole, tree, radius = KDTree(every), KDTree(points), np.hypot(points[:, 0], points[:, 1])
     order = np.argsort(-score, kind="stable")[:TRIED]
     chosen: list[int] = []
     for k in order:
@@ -142,13 +143,13 @@ def _local_maxima(cases: Sequence[_Case]) -> Iterator[_Place]:
         if score[near].max() > score[k] or set(near) & set(chosen):
             continue
         chosen.append(int(k))
-        _, about = tree.query(points[k], min(CLOSE, len(points)))
+        _, about = whole.query(points[k], min(CLOSE, len(every)))
         about = np.atleast_1d(about)
-        fine = _score(cases, points[about], FINE, MORE)
+        fine = _score(cases, every[about], FINE, MORE)
         row, turn = np.unravel_index(fine.argmax(), fine.shape)
         angle = 2.0 * np.pi * float(turn) / FINE if base.revolved else 0.0
         text = "largest range of stress" if len(chosen) == 1 else "local maximum of the range"
-        yield _Place(points[about[row]], angle, text)
+        yield _Place(every[about[row]], angle, text)
 
 
 def _score(cases: Sequence[_Case], points: Floats, turns: int, instants: int) -> Floats:

@@ -16,7 +16,7 @@ from fea.core.pin_loads import AnyLoads, PinLoads, UnitLoad
 from fea.core.solution import Picture
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.model import HarmonicModel
-from fea.harmonic.near_singularities import CLOSE, inside, interval
+from fea.harmonic.near_singularities import CLOSE, felt_beyond, inside, interval
 from fea.harmonic.quiet_corners import crowd, quiet_corners
 from fea.harmonic.revolve import revolve
 from fea.harmonic.stress_recovery import NOWHERE
@@ -328,6 +328,19 @@ def harmonic_result(
         energy=fields.energy,
     )
     return replace(result, interval=interval(fields, around, mine)) if result.governed else result
+
+
+def around_governing(
+    solution: HarmonicSolution,
+    singularities: tuple[Singularity, ...],
+    loads: AnyLoads,
+    maximum: float,
+) -> tuple[float, float] | None:
+    """The interval of a mesh result without the rest of it, of which the maximum (Pa) is known."""
+    around = Circumference(solution.fields, loads)
+    if not felt_beyond(solution.fields, around, singularities, maximum):
+        return None
+    return interval(solution.fields, around, singularities)
 
 
 def high_places(

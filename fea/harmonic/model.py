@@ -7,7 +7,7 @@ directions, share it.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -116,6 +116,53 @@ class HarmonicBody:
         return np.array([3 * near + 1, 3 * far + 1])
 
 
+@dataclass(frozen=True)
+class Moved:
+    """Displacements u (N, 3, K), m, of a section's nodes under K unit loads, which are the forces
+    `applied` to them (N, 3, K), N, and tractions on the outline's edges (E, 3, 3, K), Pa.
+    """
+
+    loads: tuple[UnitLoad, ...]
+    u: Floats
+    applied: Floats
+    tractions: Floats
+
+    @property
+    def harmonics(self) -> Ints:
+        """Of the loads, (K,)."""
+        return np.array([load.n for load in self.loads])
+
+    def joined(self, other: Moved) -> Moved:
+        """With other loads."""
+        both = ((getattr(x, name) for x in (self, other)) for name in ("u", "applied", "tractions"))
+        return Moved(self.loads + other.loads, *(np.concatenate([*x], axis=-1) for x in both))
+
+    def summed(self, loads: tuple[UnitLoad, ...]) -> Moved:
+        """Under loads that are sums of these (UnitLoad.alone)."""
+        if loads == self.loads:
+            return self
+        share = shares(self.loads, loads)
+        none = (
+            np.zeros((*x.shape[:-1], len(loads))) for x in (self.u, self.applied, self.tractions)
+        )
+        found, wanted = Moved(loads, *none), np.array([load.n for load in loads])
+        for n in np.unique(wanted):
+            here, there = np.flatnonzero(self.harmonics == n), np.flatnonzero(wanted == n)
+            part = share[np.ix_(here, there)]
+            for name in ("u", "applied", "tractions"):
+                getattr(found, name)[..., there] = getattr(self, name)[..., here] @ part
+        return found
+
+
+def shares(alone: Sequence[UnitLoad], loads: Sequence[UnitLoad]) -> Floats:
+    """How much of loads that act on one surface each is in others, (A, K)."""
+    number, out = {load: k for k, load in enumerate(alone)}, np.zeros((len(alone), len(loads)))
+    for k, load in enumerate(loads):
+        for one, amount in load.alone.items():
+            out[number[one], k] = amount
+    return out
+
+
 class HarmonicModel(HarmonicBody):
     """A pin on one mesh of its section, clamped at surfaces (by name).
 
@@ -135,6 +182,7 @@ class HarmonicModel(HarmonicBody):
     ) -> None:
         super().__init__(pin, Section(section), material, clamps, pivot)
         self.material = material
+        self._moved: Moved | None = None
         self._found: MeridianFields | None = None
 
     def solve_more(
@@ -144,15 +192,26 @@ class HarmonicModel(HarmonicBody):
         ends: Iterable[tuple[float, float]] = (),
     ) -> MeridianFields:
         """The same as `solve`, of at least these loads: with those of former calls for the same
-        points, which are not solved again.
+        points, which are not solved again. What presses on several surfaces is superposed of what
+        presses on each, since other such pressures may come later.
         """
         known = self._found
         new = loads if known is None else tuple(x for x in loads if x not in known.loads)
         if new:
-            fields = self.solve(new, extra, ends)
+            fields = self._read(self._superposed(new), extra, ends)
             self._found = fields if known is None else known.joined(fields)
         assert self._found is not None
         return self._found
+
+    def _superposed(self, loads: tuple[UnitLoad, ...]) -> Moved:
+        known = self._moved
+        alone = tuple(dict.fromkeys(one for load in loads for one in load.alone))
+        new = alone if known is None else tuple(x for x in alone if x not in known.loads)
+        if new:
+            moved = self._solved(new)
+            self._moved = moved if known is None else known.joined(moved)
+        assert self._moved is not None
+        return self._moved.summed(loads)
 
     def solve(
         self,
@@ -165,31 +224,39 @@ class HarmonicModel(HarmonicBody):
 
         Raises: SolveError when the pin is not constrained or a check fails.
         """
-        read = reading(self.space, self.outline, self.material, self.clamps, extra, ends)
-        harmonics = np.array([load.n for load in loads])
+        return self._read(self._solved(loads), extra, ends)
+
+    def _solved(self, loads: tuple[UnitLoad, ...]) -> Moved:
         u = np.zeros((len(self.space.nodes), 3, len(loads)))
         applied = np.zeros_like(u)
         tractions = np.zeros((*self.outline.nodes.shape, 3, len(loads)))
-        for n in sorted(set(harmonics.tolist())):
-            here = np.flatnonzero(harmonics == n)
+        found = Moved(loads, u, applied, tractions)
+        for n in sorted(set(found.harmonics.tolist())):
+            here = np.flatnonzero(found.harmonics == n)
             forces, tractions[..., here] = self._applied(n, [loads[k] for k in here])
             applied[:, :, here] = _polar(forces) * [[0.5], [0.5], [1.0]]
-            u[:, :, here] = _polar(self.displace(n, forces, self._moved(n, loads, here)))
-        displacement, stress = read.of(harmonics, u, tractions)
+            u[:, :, here] = _polar(self.displace(n, forces, self._shifted(n, loads, here)))
+        return found
+
+    def _read(
+        self, moved: Moved, extra: Floats, ends: Iterable[tuple[float, float]]
+    ) -> MeridianFields:
+        read = reading(self.space, self.outline, self.material, self.clamps, extra, ends)
+        displacement, stress = read.of(moved.harmonics, moved.u, moved.tractions)
         return MeridianFields(
             read.points,
-            loads,
+            moved.loads,
             stress,
             displacement,
             read.skin,
             self.space.unknowns,
             read.triangles,
             unread(read.jumps, read.points, read.skin),
-            read.at_points(applied),
+            read.at_points(moved.applied),
             replace(self.space.section, shared=None),
         )
 
-    def _moved(self, n: int, loads: tuple[UnitLoad, ...], here: Ints) -> Floats | None:
+    def _shifted(self, n: int, loads: tuple[UnitLoad, ...], here: Ints) -> Floats | None:
         """Motions of clamps (unknowns, K); None where there are none."""
         own = [loads[k] for k in here]
         moves = [load.kind in ("shift", "turn") for load in own]
@@ -220,7 +287,12 @@ def applied(
         forces = [generalised(outline.forces(part, n)) for part in parts]
         return np.stack(forces, axis=1), np.stack([outline.traction(p) for p in parts], axis=3)
 
-    forces, tractions = spread([tractions_of(pin, load) for load in loads])
+    alone = list(dict.fromkeys(one for load in loads for one in load.alone))
+    forces, tractions = spread([tractions_of(pin, load) for load in alone])
+    if alone != list(loads):
+        share = shares(alone, loads)
+        forces = np.asarray(forces @ share, np.float64)
+        tractions = np.asarray(tractions @ share, np.float64)
     for k, load in enumerate(loads):
         if load.kind == "body":
             within = model.space.integrals if integrals is None else integrals
@@ -233,9 +305,9 @@ def applied(
         phases = (0,) if n else (0, 1)
         closing = [c for p in phases for c in closing_tractions(pin, n, p, not shears)]
         against, over = spread(closing)
-        share = -np.linalg.solve(modes.T @ against, modes.T @ forces[:, here])
-        forces[:, here] += against @ share
-        tractions[..., here] += over @ share
+        closed = -np.linalg.solve(modes.T @ against, modes.T @ forces[:, here])
+        forces[:, here] += against @ closed
+        tractions[..., here] += over @ closed
     return forces, tractions
 
 

@@ -5,7 +5,7 @@ strongly, and how much the maximum outside depends on the distance that is left 
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -16,7 +16,7 @@ from fea.harmonic.superposition import Circumference
 from fea.singular.fit_exponent import growth_exponent, strength
 from fea.singular.singularities import VARIED, Singularity
 from fea.singular.williams import notch_factor
-from geometry.arrays import Floats
+from geometry.arrays import Floats, Mask
 
 CLOSE = (1e-2, 1e-3, 1e-4)  # element at a corner or clamp's edge, of the diameter, mesh by mesh
 READ = (4.0, 0.01)  # exponents: from so many elements to so much of the diameter
@@ -28,18 +28,37 @@ def inside(
     """What is inside of a singularity. close: its element, of the diameter, before it is scaled to
     a small feature; nu: Poisson's ratio.
     """
-    r, z = fields.points.T
-    distance = np.hypot(r - singularity.r, z - singularity.z)
-    within = distance <= singularity.radius
-    top = around.top(within)
-    felt = around.top(within & (distance >= FELT * singularity.feature * (1.0 - 1e-9))).value
+    distance, within, felt = _places(fields, singularity)
+    far = around.top(felt)
+    near = around.top(within & ~felt, far.value)
+    top = near if near.value > far.value else far
     c, s = math.cos(top.angle), math.sin(top.angle)
     at = (singularity.r * c, singularity.r * s, singularity.z)
-    found = AtSingularity(top.value, felt, at, bounded=singularity.bounded)
+    found = AtSingularity(top.value, far.value, at, bounded=singularity.bounded)
     if not singularity.measured or close != CLOSE[-1]:
         return found
     exponent, how_strong = _growth(fields, around, singularity, distance, top.instant, nu)
     return replace(found, exponent=exponent, strength=how_strong)
+
+
+def _places(fields: MeridianFields, singularity: Singularity) -> tuple[Floats, Mask, Mask]:
+    """Distances (S,) from a singularity, m, which points are in it, and at which of them it is
+    felt.
+    """
+    r, z = fields.points.T
+    distance = np.hypot(r - singularity.r, z - singularity.z)
+    within = distance <= singularity.radius
+    return distance, within, within & (distance >= FELT * singularity.feature * (1.0 - 1e-9))
+
+
+def felt_beyond(
+    fields: MeridianFields,
+    around: Circumference,
+    singularities: Iterable[Singularity],
+    maximum: float,
+) -> bool:
+    """Whether in one of them stress is felt to be larger than a maximum, Pa."""
+    return any(around.exceeds(_places(fields, p)[2], maximum) for p in singularities)
 
 
 def _growth(

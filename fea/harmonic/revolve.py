@@ -6,7 +6,6 @@ import numpy as np
 
 from fea.core.pin_loads import PinLoads
 from fea.core.solution import Picture
-from fea.core.voigt import ENTRIES, TENSOR
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.superposition import Circumference
 from geometry.arrays import Floats, Ints
@@ -59,16 +58,24 @@ def _turned(
     """Of every point on all meridians: x, y, z (P, 3), displacement (P, 3), stress (P, 6)."""
     r, z = np.repeat(fields.points[rows], SECTORS, axis=0).T
     angle = np.tile(_angles(), len(rows))
-    stress = around.stress(rows, instant, _angles()).reshape(-1, 6)
-    turn = np.zeros((len(angle), 3, 3))  # columns: unit vectors along r, theta, z
-    turn[:, 0, 0], turn[:, 1, 0] = np.cos(angle), np.sin(angle)
-    turn[:, 0, 1], turn[:, 1, 1] = -np.sin(angle), np.cos(angle)
-    turn[:, 2, 2] = 1.0
-    tensor = turn @ stress[:, TENSOR] @ turn.transpose(0, 2, 1)
+    rr, tt, zz, tz, rz, rt = around.stress(rows, instant, _angles()).reshape(-1, 6).T
+    u_r, u_t, u_z = _moved(fields, loads, rows, instant).T
+    c, s = np.cos(angle), np.sin(angle)
+    twice = 2.0 * c * s * rt
     return (
-        np.stack([r * np.cos(angle), r * np.sin(angle), z], axis=1),
-        np.einsum("pab,pb->pa", turn, _moved(fields, loads, rows, instant)),
-        np.stack([tensor[:, a, b] for a, b in ENTRIES], axis=1),
+        np.stack([r * c, r * s, z], axis=1),
+        np.stack([c * u_r - s * u_t, s * u_r + c * u_t, u_z], axis=1),
+        np.stack(
+            [
+                c * c * rr - twice + s * s * tt,
+                s * s * rr + twice + c * c * tt,
+                zz,
+                s * rz + c * tz,
+                c * rz - s * tz,
+                c * s * (rr - tt) + (c * c - s * s) * rt,
+            ],
+            axis=1,
+        ),
     )
 
 

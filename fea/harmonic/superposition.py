@@ -26,7 +26,7 @@ import numpy as np
 
 from fea.core.pin_loads import AnyLoads, require_solved
 from fea.harmonic.fields import MeridianFields
-from fea.harmonic.trigonometric_maximum import at_most, highest_crest
+from fea.harmonic.trigonometric_maximum import at_most, closed, highest_crest, one_wave
 from geometry.arrays import Floats, Ints, Mask
 
 Instants = slice | Ints
@@ -35,6 +35,7 @@ SAMPLES_PER_WAVE = 5  # of von Mises squared
 FIRST = 16  # pairs of points and instants that are sampled to begin with
 CHUNK = 4096  # pairs sampled at once
 POINTS = 64  # points looked at together
+FEWER = 16  # the same at all instants and angles, so that they stay in the processor's cache
 LOWEST = 4  # harmonics whose sum is sampled for a closer bound
 FEW = 4  # unit loads of a harmonic: up to so many, quadratic forms of them take less than sums
 EVERY = slice(None)
@@ -138,7 +139,7 @@ class Circumference:
         else:
             apart = even - odd
             total = _forms(even + odd, first + second)
-            square = _closed(total, _forms(apart, first - second), _forms(apart, mixed))
+            square = closed(total, _forms(apart, first - second), _forms(apart, mixed))
         return np.sqrt(np.maximum(square, 0.0, out=square), out=square)
 
     def _summed(self, five: Floats, wave: slice, instants: Instants) -> Floats:
@@ -152,7 +153,7 @@ class Circumference:
         else:
             one[:, _ODD], other[:, _ODD] = -other[:, _ODD], one[:, _ODD].copy()
             A, C = np.square(one).sum(axis=1), np.square(other).sum(axis=1)
-            square = _closed(A + C, A - C, np.einsum("jit,jit->jt", one, other))
+            square = closed(A + C, A - C, np.einsum("jit,jit->jt", one, other))
         return np.asarray(np.sqrt(np.maximum(square, 0.0)))
 
     def _products(self, wave: slice) -> tuple[Floats, Floats, Floats]:
@@ -171,16 +172,25 @@ class Circumference:
         """
         return self._search(among, together=False, least=least)[0]
 
-    def top(self, among: Mask) -> Top:
-        """Over the points of a mask (S,) and all instants."""
-        value, point = self._search(among, together=True)
+    def exceeds(self, among: Mask, value: float) -> bool:
+        """Whether any of the points of a mask (S,) does so at any instant; value: Pa."""
+        return bool(self._search(among, together=True, least=value, soon=True)[0].max() > value)
+
+    def top(self, among: Mask, least: float = 0.0) -> Top:
+        """Over the points of a mask (S,) and all instants; of the value `least`, Pa, where none
+        exceeds that.
+        """
+        value, point = self._search(among, together=True, least=least)
         instant = int(value.argmax())
         angle = self.round(point[[instant]], np.array([instant]))[1]
         return Top(float(value[instant]), int(point[instant]), instant, float(angle[0]))
 
-    def _search(self, among: Mask, together: bool, least: float = 0.0) -> tuple[Floats, Ints]:
+    def _search(
+        self, among: Mask, together: bool, least: float = 0.0, soon: bool = False
+    ) -> tuple[Floats, Ints]:
         """At every instant the maximum (T,) Pa, at least `least`, and its point (T,); `together`:
-        the largest of all is right, those of other instants need not be.
+        the largest of all is right, those of other instants need not be; soon: any beyond `least`
+        will do.
 
         Points are looked at in the order of what they can reach at most.
         """
@@ -192,6 +202,8 @@ class Circumference:
             _raise(best, point, t, self.round(i, t, np.full(len(t), least))[0], i)
         for k in range(0, len(rows), POINTS):
             if reach[k] <= (best.max() if together else best.min()):
+                break
+            if soon and best.max() > least:
                 break
             here = rows[k : k + POINTS]
             hopeful = self.reach(here).max(axis=0) > (best.max() if together else best)
@@ -294,7 +306,7 @@ class Circumference:
         n = self._n[[wave.start for wave in self._waves]]
         back, forth = self._parts(points, instants, self._waves)  # (J, 5, W)
         if len(n) < 2:
-            return _one_wave(n, back, forth)
+            return one_wave(n, back, forth)
         degree = 2 * int(n[-1])  # of von Mises squared
         angle = highest_crest(_sampled(n, back, forth, degree), degree, beat**2)
         there = n * angle[:, None]
@@ -323,9 +335,8 @@ class Circumference:
 
     def envelope(self, points: Ints, angles: Floats) -> Floats:
         """Largest von Mises stress (J, A) Pa over all instants at points (J,) and angles (rad)."""
-        out = [
-            self._over_time(points[k : k + POINTS], angles) for k in range(0, len(points), POINTS)
-        ]
+        parts = (points[k : k + FEWER] for k in range(0, len(points), FEWER))
+        out = [self._over_time(part, angles) for part in parts]
         return np.asarray(np.sqrt(np.concatenate([np.zeros((0, len(angles))), *out])))
 
     def _over_time(self, points: Ints, angles: Floats) -> Floats:
@@ -378,18 +389,3 @@ def _sampled(n: Ints, back: Floats, forth: Floats, degree: int) -> Floats:
 def _forms(form: Floats, products: Floats) -> Floats:
     """Quadratic forms (J, K, K) of T pairs of vectors, whose products are (T, K, K); (J, T)."""
     return np.asarray(form.reshape(len(form), -1) @ products.reshape(len(products), -1).T)
-
-
-def _closed(total: Floats, apart: Floats, mixed: Floats) -> Floats:
-    """Largest of A cos^2 + 2 B cos sin + C sin^2: total A + C, apart A - C, mixed B."""
-    return np.asarray(total / 2.0 + np.sqrt(apart * apart / 4.0 + mixed * mixed))
-
-
-def _one_wave(n: Ints, back: Floats, forth: Floats) -> tuple[Floats, Floats]:
-    """Largest von Mises stress and its angle, (J,) each, of no wave or of one of harmonic n."""
-    A, B, C = ((x * y).sum(axis=(1, 2)) for x, y in ((back, back), (back, forth), (forth, forth)))
-    if not n.any():
-        return np.sqrt(A), np.zeros(len(A))
-    largest = np.maximum(_closed(A + C, A - C, B), 0.0)
-    angle = 0.5 * np.arctan2(2.0 * B, A - C) / n[0]
-    return np.sqrt(largest), np.asarray(angle)

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.arrays import Floats
+from geometry.arrays import Floats, Ints
 
 FINER = 4  # times as many angles as samples: D h = 0.3 where there are 5 samples for a degree
 STEPS = 40  # of Newton's method at most, or of bisection where that leaves the interval
@@ -69,3 +69,18 @@ def _crests(c: Floats, low: Floats, angle: Floats, high: Floats) -> Floats:
         if np.all(np.abs(angle - last) * k[-1] <= CLOSE):
             break
     return angle
+
+
+def closed(total: Floats, apart: Floats, mixed: Floats) -> Floats:
+    """Largest of A cos^2 + 2 B cos sin + C sin^2: total A + C, apart A - C, mixed B."""
+    return np.asarray(total / 2.0 + np.sqrt(apart * apart / 4.0 + mixed * mixed))
+
+
+def one_wave(n: Ints, back: Floats, forth: Floats) -> tuple[Floats, Floats]:
+    """Largest von Mises stress and its angle, (J,) each, of no wave or of one of harmonic n."""
+    A, B, C = ((x * y).sum(axis=(1, 2)) for x, y in ((back, back), (back, forth), (forth, forth)))
+    if not n.any():
+        return np.sqrt(A), np.zeros(len(A))
+    largest = np.maximum(closed(A + C, A - C, B), 0.0)
+    angle = 0.5 * np.arctan2(2.0 * B, A - C) / n[0]
+    return np.sqrt(largest), np.asarray(angle)

@@ -20,7 +20,7 @@ from fea.core.pin_loads import Floats, PinLoads
 from fea.harmonic.evaluate import (
     HarmonicAnswer,
     SectionProblem,
-    harmonic_result,
+    around_governing,
     harmonic_solution,
 )
 from fea.joint.coarser_cells import on_coarser_cells
@@ -107,7 +107,7 @@ def compare(
             replace(x, max_von_mises=float(y) / like) for x, y in zip(names, others, strict=True)
         )
         cells = abs(float(coarse) / first - 1.0) if coarse else 0.0
-        interval = harmonic_result(section, singular, own[0]).interval or (first, first)
+        interval = around_governing(section, singular, own[0], first) or (first, first)
         left_out = f"not included: {'; '.join(why)}" if why else ""
         links = contact.loads.links
         out.append(Comparison(first, interval, cells, links, ratios, left_out))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import asdict, replace
 from importlib.metadata import version
 
@@ -12,7 +12,6 @@ from fea.checks.records import BeamCheck
 from fea.core.peak import Peak, decides
 from fea.core.pin_loads import PinLoads
 from fea.joint.records import JointResult
-from fea.plastic.records import LimitLoad
 from fea.solve_pin import Solution
 from geometry import CutPin
 from pinstress.analysis.gather_fatigue import fatigue_margins, fatigue_of
@@ -26,7 +25,7 @@ from pinstress.model.pins import far_ends, outline, weight
 from pinstress.model.sequence import chosen_cases
 from pinstress.model.tasks import Task
 from pinstress.schema.tables import ReportTable
-from pinstress.strength.checked import Checked, checked, factor_assumption
+from pinstress.strength.checked import Checked, factor_assumption
 from pinstress.study.file import Study
 from pinstress.study.inputs import inputs
 from pinstress.study.published_tables import Published, read_published
@@ -43,9 +42,11 @@ def results_of(plan: Plan, found: list[Solved]) -> plain.Results:
     ]
     pins, cases = list(study.table.pin), list(plan.loads)
     rows = [
-        (task, peak, joint)
+        (task, *row)
         for task, made in zip(plan.tasks, found, strict=True)
-        for peak, joint in zip(made.peaks, made.joints or [None] * len(made.peaks), strict=True)
+        for row in zip(
+            made.peaks, made.joints or [None] * len(made.peaks), made.strength, strict=True
+        )
     ]
     opinions = {(o.pin, o.case): o for made in found for o in made.opinions}
     limits = {
@@ -55,7 +56,7 @@ def results_of(plan: Plan, found: list[Solved]) -> plain.Results:
     }
     rows.sort(key=lambda row: (pins.index(row[1].pin), cases.index(row[1].case)))
     beam = next((made.beam for made in found if made.beam is not None), None)
-    results = _results(study, plan.loads, rows, beam, plan.published, plan.asked.tolerance, limits)
+    results = _results(study, plan.loads, rows, beam, plan.published, plan.asked.tolerance)
     fatigue = fatigue_of(plan, found)
     results = replace(
         results,
@@ -104,27 +105,21 @@ def loads_only(study: Study, cases: Iterable[str] | None = None) -> plain.Result
     published = read_published(study)
     loads = all_loads(study, chosen_cases(study, cases))
     tolerance = study.table.analysis.tolerance
-    return _in_study_units(_results(study, loads, [], None, published, tolerance, {}), study)
+    return _in_study_units(_results(study, loads, [], None, published, tolerance), study)
 
 
 def _results(
     study: Study,
     loads: dict[str, CaseLoads],
-    rows: list[tuple[Task, Peak, JointResult | None]],
+    rows: list[tuple[Task, Peak, JointResult | None, Checked]],
     beam: BeamCheck | None,
     published: Published,
     tolerance: float,
-    limits: Mapping[tuple[str, str], LimitLoad | None],
 ) -> plain.Results:
-    """Everything a run found, in SI. rows: each peak with its task, in the order of the table.
-    limits: loads, by pin and case.
-    """
+    """Everything a run found, in SI. rows: each peak with its task, in the order of the table."""
     table = study.table
-    tasks = {task.pin.name: task for task, _, _ in reversed(rows)}
-    strength = [
-        checked(study, task, peak, joint, limits.get((peak.pin, peak.case)))
-        for task, peak, joint in rows
-    ]
+    tasks = {task.pin.name: task for task, *_ in reversed(rows)}
+    strength = [found for *_, found in rows]
     return plain.Results(
         title=table.title,
         study=study.path.name,
@@ -132,12 +127,9 @@ def _results(
         units=plain.SI,
         required_safety_factor=table.analysis.required_safety_factor,
         tolerance=tolerance,
-        pins=tuple(
-            _pin_result(study, loads, *row, found, published)
-            for row, found in zip(rows, strength, strict=True)
-        ),
+        pins=tuple(_pin_result(study, loads, *row, published) for row in rows),
         shapes=tuple(
-            _shape(tasks[name], [peak for _, peak, _ in rows if peak.pin == name])
+            _shape(tasks[name], [peak for _, peak, *_ in rows if peak.pin == name])
             for name in table.pin
             if name in tasks
         ),

@@ -30,6 +30,7 @@ from pinstress.model.tasks import Task
 from pinstress.processes.pool import Died, Job, Progress, Tell, side_by_side
 from pinstress.remedies.changes import change
 from pinstress.remedies.sensitivities import sensitivities
+from pinstress.strength.checked import checked
 from pinstress.study.file import Study
 from reports.data.in_units import Unit, in_units
 from reports.data.results import Field
@@ -106,7 +107,7 @@ def _attempt(
             solved = _solve(plan, task, keep, tell)
         else:
             solved = _solve_once(plan, task, keep, cache, tell)
-        return replace(solved, opinions=ask(plan, task, solved, tell))
+        return _checked(plan, task, replace(solved, opinions=ask(plan, task, solved, tell)))
     except MemoryError:
         return _failed(plan, task, "out of memory; a larger tolerance needs less")
     except ArithmeticError as error:  # MeshError, SolveError and what numpy raises
@@ -135,9 +136,15 @@ def _solve_once(plan: Plan, task: Task, keep: Keep, cache: Cache, tell: Tell) ->
 
 
 def _failed(plan: Plan, task: Task, reason: str) -> Solved:
-    return Solved(
-        tuple(Peak(task.pin.name, c.case, plan.asked.model, "failed", reason) for c in task.loads)
-    )
+    name, model = task.pin.name, plan.asked.model
+    peaks = tuple(Peak(name, case.case, model, "failed", reason) for case in task.loads)
+    return _checked(plan, task, Solved(peaks))
+
+
+def _checked(plan: Plan, task: Task, solved: Solved) -> Solved:
+    none = (None,) * len(solved.peaks)
+    rows = zip(solved.peaks, solved.joints or none, solved.limits or none, strict=True)
+    return replace(solved, strength=tuple(checked(plan.study, task, *row) for row in rows))
 
 
 def solutions(

@@ -20,6 +20,7 @@ from loads import read_regular
 from pinstress.analysis.limits import limit_rung
 from pinstress.analysis.plan import Plan
 from pinstress.model.tasks import Task
+from pinstress.strength.checked import Checked
 from reports.data.changes import Change
 from reports.data.results import Field, LandingRange
 from reports.data.sensitivities import PinSensitivities
@@ -34,7 +35,8 @@ class Solved:
     joints: in the same order, empty where nothing is in contact. change: what would make the pin
     reach its factor, if it does not. histories: of stress at its critical points. before: whether
     an earlier run found it. limits: limit loads, in the order of the cases too. sensitivities: of
-    the worst case, or of all.
+    the worst case, or of all. strength: in that order; found anew by every run, as it takes little
+    and depends on more of the study.
     """
 
     peaks: tuple[Peak, ...]
@@ -48,6 +50,7 @@ class Solved:
     before: bool = False
     limits: tuple[LimitLoad | None, ...] = ()
     sensitivities: tuple[PinSensitivities, ...] = ()
+    strength: tuple[Checked, ...] = ()
 
 
 @dataclass(frozen=True)

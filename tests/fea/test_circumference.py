@@ -213,3 +213,18 @@ def test_no_load_has_no_harmonic_and_no_stress() -> None:
     order, largest = around.last(np.arange(3))
     assert order == 0
     assert largest.tolist() == [[0.0, 0.0]] * 3
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 10**6), st.floats(0.0, 6.3))
+def test_whether_a_value_is_exceeded_is_what_the_maximum_says(seed: int, angle: float) -> None:
+    """Just below it and at it; with a least value the maximum is that where it is higher."""
+    loads = bearing(angle)
+    around = Circumference(unit_fields(loads, 200, seed), loads)
+    some = np.random.default_rng(seed).random(200) < 0.5
+    top = around.top(some).value
+    assert around.exceeds(some, 0.999 * top)
+    assert not around.exceeds(some, top)
+    assert around.top(some, 0.5 * top).value == top
+    assert around.top(some, 2.0 * top).value == 2.0 * top
+    assert not around.exceeds(np.zeros(200, dtype=bool), 0.0)

@@ -187,3 +187,25 @@ def test_inertia_sums_to_the_mass(section: MeridianMesh, steel: Material) -> Non
     weighed = 2.0 * np.pi * np.sum(space.integrals * z) / PIN.volume
     across = rigid_motions(space.nodes, 1).T @ body_force(model.material, 1, model.space.integrals)
     assert across[1] / across[0] == pytest.approx(weighed, rel=1e-5)
+
+
+def test_patterns_of_pressure_are_superposed_of_each_surface(
+    section: MeridianMesh, steel: Material
+) -> None:
+    """On the first mesh, whatever came before: stress and displacement as if solved themselves."""
+    bands = PIN.connections
+
+    def pressure(n: int, *amounts: float) -> UnitLoad:
+        return UnitLoad("", "pressure", n, tuple(zip(bands, amounts, strict=False)))
+
+    first = pressure(0, 1.0, -2.0), pressure(2, 0.5, 3.0)
+    later = pressure(2, 1.0, 1.0), pressure(1, -1.0, 2.0), UnitLoad(bands[0], "force", 1)
+    model = HarmonicModel(PIN, section, steel, ())
+    model.solve_more(first)
+    found, exact = model.solve_more(later), model.solve((*first, *later))
+    assert found.loads == exact.loads
+    for name in ("stress", "displacement"):
+        one, other = getattr(found, name), getattr(exact, name)
+        assert np.abs(one - other).max(axis=(0, 1)) == pytest.approx(
+            0.0, abs=1e-9 * np.abs(other).max()
+        )
