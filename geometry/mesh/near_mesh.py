@@ -13,8 +13,9 @@ from __future__ import annotations
 
 import math
 from collections import OrderedDict
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, replace
+from functools import lru_cache, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -69,7 +70,9 @@ def _moved(
     quiet: tuple[int, ...],
 ) -> MeridianMesh | None:
     reaches = [Reach((spot.r, spot.z), spot.reach) for spot in spots]
-    for between in _near_shapes(pin):
+    for between in map(partial(_near_shape, pin), (False, True)):
+        if between is None:
+            continue
         try:
             there = tuple(between.spot(spot) for spot in spots)
         except KeyError:  # one that is at no vertex of the outline
@@ -81,13 +84,11 @@ def _moved(
     return None
 
 
-def _near_shapes(pin: Pin) -> Iterator[_Between]:
-    """Of rounded dimensions, then of rounded edges, where there are such."""
-    for shape in (rounded, rounded_edges):
-        other = shape(pin)
-        between = None if other is None else _Between.of(pin, other)
-        if between is not None:
-            yield between
+@lru_cache(64)
+def _near_shape(pin: Pin, edges: bool) -> _Between | None:
+    """Of rounded dimensions or of rounded edges, where there is such a shape."""
+    other = rounded_edges(pin) if edges else rounded(pin)
+    return None if other is None else _Between.of(pin, other)
 
 
 def rounded(pin: Pin) -> Pin | None:
@@ -268,20 +269,18 @@ class _Kept:
 
     def __init__(self) -> None:
         self._meshes = OrderedDict[_Key, _RoundedMesh]()
+        self._nodes = 0
 
     def mesh(self, key: _Key) -> _RoundedMesh:
         with ONE_AT_A_TIME:
             found = self._meshes.pop(key, None)
             if found is None:
                 found = _RoundedMesh(key[0], meridian_mesh(*key), key[2])
+                self._nodes += len(found.mesh.nodes)
             self._meshes[key] = found
             while len(self._meshes) > 1 and self._nodes > NODES:
-                self._meshes.popitem(last=False)
+                self._nodes -= len(self._meshes.popitem(last=False)[1].mesh.nodes)
             return found
-
-    @property
-    def _nodes(self) -> int:
-        return sum(len(each.mesh.nodes) for each in self._meshes.values())
 
 
 _KEPT = _Kept()
