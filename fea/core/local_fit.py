@@ -70,11 +70,13 @@ def at_one_place(offsets: Floats, confidence: Floats) -> Floats:
     quadratic polynomial that fits them best; where several do (long thin elements have their
     nearest samples in a row), of that with the least slope and curvature.
     """
-    x, y = np.moveaxis(offsets / np.abs(offsets).max(axis=(-2, -1), keepdims=True), -1, 0)
+    x, y = np.moveaxis(offsets, -1, 0)
+    largest = np.maximum(*(np.abs(part).max(axis=-1, keepdims=True) for part in (x, y)))
+    x, y = x / largest, y / largest
     terms = np.empty((*x.shape[:-1], 6, x.shape[-1]))
-    terms[..., 0, :], terms[..., 1, :], terms[..., 2, :] = 1.0, x, y
-    terms[..., 3:5, :], terms[..., 5, :] = terms[..., 1:3, :] * x[..., None, :], y * y
-    terms *= confidence[..., None, :]
+    terms[..., 0, :] = confidence
+    for k, term in enumerate((x, y, x * x, y * x, y * y), 1):
+        np.multiply(term, confidence, out=terms[..., k, :])
     form = terms @ terms.swapaxes(-2, -1)
     definite = form + _LITTLE * form[..., :1, :1] * np.diag([0.0, 1, 1, 1, 1, 1])
     one = np.broadcast_to(np.eye(6)[:, :1], (*form.shape[:-1], 1))
