@@ -6,6 +6,8 @@ A stiffness matrix has a block for each such pair. The pairs are sorted once per
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import scipy.sparse as sp
 
@@ -31,7 +33,7 @@ class Pattern:
         self.columns = by_pair.indices[first]
         self.pointer = np.searchsorted(first, by_pair.indptr).astype(np.int32)
         ones, pointer = np.ones(count), np.append(first, count)
-        self._known: dict[int, tuple[Ints, Ints, Ints]] = {}
+        self._known: dict[int, tuple[Any, Any, Any]] = {}
         self._sum = sp.csr_matrix((ones, by_pair.data, pointer), (len(first), count))
 
     def __len__(self) -> int:
@@ -50,7 +52,7 @@ class Pattern:
         found.has_sorted_indices = True
         return found
 
-    def _entries(self, d: int) -> tuple[Ints, Ints, Ints]:
+    def _entries(self, d: int) -> tuple[Any, Any, Any]:
         """Of matrices with blocks (d, d): which number of the blocks each entry is, its column, and
         where rows begin; found once.
         """
