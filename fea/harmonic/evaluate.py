@@ -6,6 +6,7 @@ from collections import OrderedDict
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache, partial
+from typing import Any
 
 import numpy as np
 
@@ -109,7 +110,7 @@ class EveryMesh(FirstMesh):
         if found is None:
             fields = make().solve(*asked)
             self.solved += 1
-            found = fields, _size(fields)  # stress is a fifth of it
+            found = fields, _size(fields)
             self._bytes += found[1]
         self._fields[whole] = found
         while self._bytes > self._most and len(self._fields) > 1:
@@ -119,8 +120,8 @@ class EveryMesh(FirstMesh):
 
 def _size(fields: MeridianFields) -> int:
     """Bytes of the arrays, roughly."""
-    forces, mesh = fields.forces, fields.mesh
-    parts = [fields.points, fields.stress, fields.displacement, fields.triangles, fields.unread]
+    of, forces, mesh = fields, fields.forces, fields.mesh
+    parts: list[Any] = [of.points, of.stress, of.displacement, of.triangles, of.unread]
     if forces is not None:
         parts += [forces.data, forces.indices, forces.indptr]
     if mesh is not None:

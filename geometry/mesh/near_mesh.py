@@ -100,16 +100,20 @@ def rounded_edges(pin: Pin) -> Pin | None:
     """The pin of which what roundings leave of cylinders and shoulders is rounded, and what they
     take; None where there is no such pin.
     """
-    sides = {leg.name: leg for leg in pin.legs}
+    sides = iter(pin.legs[1:])  # from the start face on, each segment's after its shoulder's
+
+    def side(name: str) -> float:
+        return _side(next(leg for leg in sides if leg.name == name))
+
     segments: list[Segment] = []
     for i, (s, plain) in enumerate(zip(pin.segments, map(_rounded, pin.segments), strict=True)):
-        length = plain.length if s.cone else _side(sides[pin.labels[i]])
         start = plain.diameter
         if segments:
             before, now = pin.segments[i - 1].diameters[1], s.diameter
-            shoulder = _side(sides[f"shoulder {i}"]) if now != before else 0.0
+            shoulder = side(f"shoulder {i}") if now != before else 0.0
             start = segments[-1].diameters[1] + math.copysign(2.0 * shoulder, now - before)
-        more = s.diameters[1] - s.diameter
+        along, more = side(pin.labels[i]), s.diameters[1] - s.diameter
+        length = plain.length if s.cone else along
         end = start + math.copysign(step(abs(more)), more) if s.cone else None
         segments.append(replace(plain, length=length, diameter=start, end_diameter=end))
     return _made(pin, segments)

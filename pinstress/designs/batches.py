@@ -107,7 +107,7 @@ def ordered(numbers: Sequence[Number], values: Floats) -> list[int]:
     meshes are moved from that of the same rounded shape.
     """
     shape = [values[:, k] for k, number in enumerate(numbers) if shapes(number)]
-    near = [[step(x) for x in each] for each in shape]
+    near = [np.array([step(x) for x in each]) for each in shape]
     keys = [np.arange(len(values)), *reversed(shape), *reversed(near)]
     return [int(i) for i in np.lexsort(keys)]
 
