@@ -9,6 +9,7 @@ from scipy.spatial import cKDTree
 from geometry.arrays import Floats, Ints
 
 NEIGHBOURS = 24  # samples whose stress a quadratic polynomial is fitted to; it has six terms
+MANY = 4  # samples for each point: with more, a tree that is sooner built
 _LITTLE = 1e-10  # added where samples leave slope or curvature open, of their number
 
 
@@ -44,9 +45,12 @@ def continuation(samples: Floats, points: Floats, near: Ints | None = None) -> s
     if not len(points):
         return sp.csr_matrix((0, len(samples)))
     near = nearest(samples, points) if near is None else near
-    offsets = samples.take(near, axis=0) - points[:, None]
-    square = np.square(offsets).sum(axis=2)
-    weights = at_one_place(offsets, 1.0 - square / square.max(axis=1, keepdims=True))
+    offsets = np.empty((2, *near.shape))
+    for out, sample, point in zip(offsets, samples.T, points.T, strict=True):
+        np.subtract(sample.take(near), point[:, None], out=out)
+    square = offsets[0] * offsets[0] + offsets[1] * offsets[1]
+    confidence = 1.0 - square / square.max(axis=1, keepdims=True)
+    weights = at_one_place(offsets.transpose(1, 2, 0), confidence)
     ends = np.arange(0, near.size + 1, near.shape[1])
     return sp.csr_matrix((weights.ravel(), near.ravel(), ends), (len(points), len(samples)))
 
@@ -56,7 +60,8 @@ def nearest(samples: Floats, points: Floats) -> Ints:
     fewer.
     """
     count = min(NEIGHBOURS, len(samples))
-    found = cKDTree(samples).query(points, count)[1]
+    slow = MANY * len(points) > len(samples)  # to build, and quick to ask
+    found = cKDTree(samples, compact_nodes=slow, balanced_tree=slow).query(points, count)[1]
     return np.asarray(found, np.int64).reshape(len(points), count)
 
 
@@ -65,11 +70,13 @@ def at_one_place(offsets: Floats, confidence: Floats) -> Floats:
     quadratic polynomial that fits them best; where several do (long thin elements have their
     nearest samples in a row), of that with the least slope and curvature.
     """
-    x, y = np.moveaxis(offsets / np.abs(offsets).max(axis=(-2, -1), keepdims=True), -1, 0)
+    x, y = np.moveaxis(offsets, -1, 0)
+    largest = np.maximum(*(np.abs(part).max(axis=-1, keepdims=True) for part in (x, y)))
+    x, y = x / largest, y / largest
     terms = np.empty((*x.shape[:-1], 6, x.shape[-1]))
-    terms[..., 0, :], terms[..., 1, :], terms[..., 2, :] = 1.0, x, y
-    terms[..., 3:5, :], terms[..., 5, :] = terms[..., 1:3, :] * x[..., None, :], y * y
-    terms *= confidence[..., None, :]
+    terms[..., 0, :] = confidence
+    for k, term in enumerate((x, y, x * x, y * x, y * y), 1):
+        np.multiply(term, confidence, out=terms[..., k, :])
     form = terms @ terms.swapaxes(-2, -1)
     definite = form + _LITTLE * form[..., :1, :1] * np.diag([0.0, 1, 1, 1, 1, 1])
     one = np.broadcast_to(np.eye(6)[:, :1], (*form.shape[:-1], 1))

@@ -19,6 +19,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -132,6 +133,10 @@ class PinLoads:
 
     def coefficients(self) -> dict[UnitLoad, Floats]:
         """How much of each unit load acts, (T, 2) by phase; only of those that ever act."""
+        return dict(self._coefficients)
+
+    @cached_property
+    def _coefficients(self) -> dict[UnitLoad, Floats]:
         out: dict[UnitLoad, Floats] = {}
 
         def add(load: UnitLoad, first: Floats, second: Floats) -> None:

@@ -6,6 +6,8 @@ A stiffness matrix has a block for each such pair. The pairs are sorted once per
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import scipy.sparse as sp
 
@@ -31,6 +33,7 @@ class Pattern:
         self.columns = by_pair.indices[first]
         self.pointer = np.searchsorted(first, by_pair.indptr).astype(np.int32)
         ones, pointer = np.ones(count), np.append(first, count)
+        self._known: dict[int, tuple[Any, Any, Any]] = {}
         self._sum = sp.csr_matrix((ones, by_pair.data, pointer), (len(first), count))
 
     def __len__(self) -> int:
@@ -43,5 +46,19 @@ class Pattern:
 
     def matrix(self, blocks: Floats) -> sp.csr_matrix:
         """The sparse matrix with a block (d, d) for each pair, (P, d, d)."""
-        size = blocks.shape[1] * (len(self.pointer) - 1)
-        return sp.bsr_matrix((blocks, self.columns, self.pointer), (size, size)).tocsr()
+        entries, indices, pointer = self._entries(blocks.shape[1])
+        size = len(pointer) - 1
+        found = sp.csr_matrix((blocks.ravel().take(entries), indices, pointer), (size, size))
+        found.has_sorted_indices = True
+        return found
+
+    def _entries(self, d: int) -> tuple[Any, Any, Any]:
+        """Of matrices with blocks (d, d): which number of the blocks each entry is, its column, and
+        where rows begin; found once.
+        """
+        if d not in self._known:
+            size = d * (len(self.pointer) - 1)
+            numbers = np.arange(d * d * len(self)).reshape(-1, d, d)
+            found = sp.bsr_matrix((numbers, self.columns, self.pointer), (size, size)).tocsr()
+            self._known[d] = found.data, found.indices, found.indptr
+        return self._known[d]

@@ -72,10 +72,13 @@ class Reading:
         """Forces (N, 3, K) on the nodes as forces (3 D, K) on the points that have a
         displacement.
         """
-        rows = (3 * self.rows[:, None] + np.arange(3)).ravel()
-        found = sp.coo_matrix(forces.reshape(len(rows), -1))
-        count = 3 * (self.skin + len(self.inner))
-        return sp.csc_matrix((found.data, (rows[found.row], found.col)), (count, found.shape[1]))
+        count, loads = self.skin + len(self.inner), forces.shape[2]
+        dense = np.zeros((loads, count, 3))
+        dense[:, self.rows] = forces.transpose(2, 0, 1)
+        load, row = np.nonzero(dense.reshape(loads, -1))
+        ends = np.searchsorted(load, np.arange(loads + 1))
+        values = dense.reshape(loads, -1)[load, row]
+        return sp.csc_matrix((values, row, ends), (3 * count, loads))
 
     @property
     def triangles(self) -> Ints:
@@ -101,12 +104,20 @@ def _near(space: Section, nodes: Ints, inside: Floats) -> Ints:
 def points_of_nodes(outline: Outline, count: int) -> Ints:
     """(N,) which of a reading's points is at each of `count` nodes."""
     row = np.zeros(count, dtype=np.int64)
-    inner = np.setdiff1d(np.arange(count), outline.nodes)
+    inner = np.flatnonzero(~_mask(count, outline.nodes))
     row[inner] = len(AT) * len(outline.nodes) + np.arange(len(inner))
     first = len(AT) * np.arange(len(outline.nodes))
     for node, at in ((2, len(AT) // 2), (1, len(AT) - 1), (0, 0)):
         row[outline.nodes[:, node]] = first + at
     return row
+
+
+def _mask(count: int, *nodes: Ints) -> Mask:
+    """Which of `count` nodes are among some."""
+    found = np.zeros(count, dtype=bool)
+    for some in nodes:
+        found[some] = True
+    return found
 
 
 def reading(
@@ -123,11 +134,12 @@ def reading(
     found = jumps(space, outline, material, ends)
     on_jumps = np.array([[j.r, j.z] for j in found]).reshape(-1, 2).repeat(DIRECTIONS, axis=0)
     skin_at = np.einsum("qi,eia->eqa", shapes(AT), space.nodes[outline.nodes])
-    inner = np.setdiff1d(np.arange(len(space.nodes)), outline.nodes)
+    count = len(space.nodes)
+    inner = np.flatnonzero(~_mask(count, outline.nodes))
     constrained = outline.constrained(clamps)
     on_axis = AXIS * space.nodes[:, 0].max()
     axis = outline.nodes[space.nodes[outline.nodes, 0] < on_axis]
-    rough = np.union1d(outline.nodes[constrained], axis)
+    rough = np.flatnonzero(_mask(count, outline.nodes[constrained], axis))
     points = [skin_at.reshape(-1, 2), space.nodes[inner], inside, on_jumps]
     there = np.concatenate([space.nodes[inner], space.nodes[rough], inside])
     continued = continuation(space.samples, there, _near(space, np.append(inner, rough), inside))

@@ -25,7 +25,7 @@ def rim(pin: Pin, singularity: Singularity, distance: float) -> Floats:
     """Points (P, 2), r and z in m, inside the pin at a `distance` (m) from a singularity."""
     angle = 2.0 * np.pi * (np.arange(RIM) + 0.5) / RIM
     x = distance * np.stack([np.cos(angle), np.sin(angle)], axis=1) + [singularity.r, singularity.z]
-    inner, outer = np.array([pin.radii(float(z)) for z in x[:, 1]]).T
+    inner, outer = pin.radii_at(x[:, 1])
     little = min(1e-3 * singularity.radius, 1e-2 * distance)
     inside = (x[:, 0] > inner + little) & (x[:, 0] < outer - little)
     found: Floats = x[inside & (x[:, 1] > little) & (x[:, 1] < pin.length - little)]

@@ -4,8 +4,9 @@ Every dimension is rounded to one of STEPS values in each factor of two. That sh
 fine as asked for, by amounts that are rounded too, and kept. On the shape itself every node of the
 outline keeps its place on its own edge (geometry.mesh.outline_motion), exactly, and those inside
 move by a harmonic function. Where the rounded shape has other edges, or edges of quite another
-length, or moved elements are poor, the shape itself is meshed. So the mesh depends on the shape
-alone, whatever was meshed before it.
+length (what a fillet leaves of a shoulder is a small difference of large dimensions), or moved
+elements are poor, the edges are rounded instead; where that does no better, the shape itself is
+meshed. So the mesh depends on the shape alone, whatever was meshed before it.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import math
 from collections import OrderedDict
 from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, replace
+from functools import lru_cache, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -29,6 +31,7 @@ from geometry.mesh.section_mesh import (
 )
 from geometry.mesh.sizing import Grade, SectionSize, Spot
 from geometry.shape.pin import GeometryError, Pin
+from geometry.shape.polygon import Leg
 from geometry.shape.profile import RZ, Arc, Edge, meridian
 from geometry.shape.segment import Segment
 
@@ -66,32 +69,70 @@ def _moved(
     finer: tuple[Grade, ...],
     quiet: tuple[int, ...],
 ) -> MeridianMesh | None:
-    other = rounded(pin)
-    between = None if other is None else _Between.of(pin, other)
-    if other is None or between is None:
-        return None
-    try:
-        there = tuple(between.spot(spot) for spot in spots)
-    except KeyError:  # one that is at no vertex of the outline
-        return None
-    key = other, size, there, tuple(between.grade(grade) for grade in finer), quiet
     reaches = [Reach((spot.r, spot.z), spot.reach) for spot in spots]
-    return _KEPT.mesh(key).on(pin, reaches, between)
+    for between in map(partial(_near_shape, pin), (False, True)):
+        if between is None:
+            continue
+        try:
+            there = tuple(between.spot(spot) for spot in spots)
+        except KeyError:  # one that is at no vertex of the outline
+            return None
+        grades = tuple(between.grade(grade) for grade in finer)
+        found = _KEPT.mesh((between.other, size, there, grades, quiet)).on(pin, reaches, between)
+        if found is not None:
+            return found
+    return None
+
+
+@lru_cache(64)
+def _near_shape(pin: Pin, edges: bool) -> _Between | None:
+    """Of rounded dimensions or of rounded edges, where there is such a shape."""
+    other = rounded_edges(pin) if edges else rounded(pin)
+    return None if other is None else _Between.of(pin, other)
 
 
 def rounded(pin: Pin) -> Pin | None:
     """The pin with rounded dimensions; None where there is no such pin."""
+    return _made(pin, [_rounded(segment) for segment in pin.segments])
+
+
+def rounded_edges(pin: Pin) -> Pin | None:
+    """The pin of which what roundings leave of cylinders and shoulders is rounded, and what they
+    take; None where there is no such pin.
+    """
+    sides = iter(pin.legs[1:])  # from the start face on, each segment's after its shoulder's
+
+    def side(name: str) -> float:
+        return _side(next(leg for leg in sides if leg.name == name))
+
+    segments: list[Segment] = []
+    for i, (s, plain) in enumerate(zip(pin.segments, map(_rounded, pin.segments), strict=True)):
+        start = plain.diameter
+        if segments:
+            before, now = pin.segments[i - 1].diameters[1], s.diameter
+            shoulder = side(f"shoulder {i}") if now != before else 0.0
+            start = segments[-1].diameters[1] + math.copysign(2.0 * shoulder, now - before)
+        along, more = side(pin.labels[i]), s.diameters[1] - s.diameter
+        length = plain.length if s.cone else along
+        end = start + math.copysign(step(abs(more)), more) if s.cone else None
+        segments.append(replace(plain, length=length, diameter=start, end_diameter=end))
+    return _made(pin, segments)
+
+
+def _made(pin: Pin, segments: Iterable[Segment]) -> Pin | None:
     try:
-        segments = tuple(_rounded(segment) for segment in pin.segments)
-        return replace(pin, segments=segments, fillet=_step(pin.fillet, STEPS))
+        return replace(pin, segments=tuple(segments), fillet=step(pin.fillet))
     except GeometryError:
         return None
 
 
-def _rounded(s: Segment) -> Segment:
-    def step(x: float) -> float:
-        return _step(x, STEPS)
+def _side(leg: Leg) -> float:
+    """The length of a side whose parts are rounded, m."""
+    straight = math.dist(leg.start, leg.end)
+    return step(straight) + sum(map(step, leg.taken))
 
+
+def _rounded(s: Segment) -> Segment:
     def some(x: float | None) -> float | None:
         return None if x is None else step(x)
 
@@ -108,7 +149,7 @@ def _rounded(s: Segment) -> Segment:
     )
 
 
-def _step(x: float, steps: int) -> float:
+def step(x: float, steps: int = STEPS) -> float:
     """The nearest of so many values in a factor of two."""
     return float(2.0 ** (round(math.log2(x) * steps) / steps)) if x > 0.0 else x
 
@@ -158,7 +199,7 @@ class _Between:
              part * round(float(np.interp(z, *self.z)) / part))
             for r, z in grade.points
         )  # fmt: skip
-        near, flat = (_step(x, SIZES) for x in (grade.near, grade.flat))
+        near, flat = (step(x, SIZES) for x in (grade.near, grade.flat))
         return Grade(points, near, flat, grade.growth)
 
 
@@ -232,20 +273,18 @@ class _Kept:
 
     def __init__(self) -> None:
         self._meshes = OrderedDict[_Key, _RoundedMesh]()
+        self._nodes = 0
 
     def mesh(self, key: _Key) -> _RoundedMesh:
         with ONE_AT_A_TIME:
             found = self._meshes.pop(key, None)
             if found is None:
                 found = _RoundedMesh(key[0], meridian_mesh(*key), key[2])
+                self._nodes += len(found.mesh.nodes)
             self._meshes[key] = found
             while len(self._meshes) > 1 and self._nodes > NODES:
-                self._meshes.popitem(last=False)
+                self._nodes -= len(self._meshes.popitem(last=False)[1].mesh.nodes)
             return found
-
-    @property
-    def _nodes(self) -> int:
-        return sum(len(each.mesh.nodes) for each in self._meshes.values())
 
 
 _KEPT = _Kept()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 from geometry.shape.pin import Pin
 from geometry.shape.polygon import RZ, cross
@@ -26,6 +27,7 @@ class Vertex:
     between: tuple[str, str]
 
 
+@lru_cache(64)
 def vertices(pin: Pin) -> tuple[Vertex, ...]:
     """All vertices off the axis, counter-clockwise in (r, z), from the start face's outer rim on.
 

@@ -9,6 +9,9 @@ from functools import cached_property
 from itertools import pairwise
 from typing import ClassVar
 
+import numpy as np
+
+from geometry.arrays import Floats
 from geometry.coded import Coded
 from geometry.shape.polygon import Leg, Rounding, bore_turn_at, corners, legs, roundings, turn_at
 from geometry.shape.profile import meridian, volume_within
@@ -127,6 +130,14 @@ class Pin:
         """
         i = min(max(bisect_left(self.stations, z) - 1, 0), len(self.segments) - 1)
         return self.segments[i].radii(z - self.stations[i])
+
+    def radii_at(self, z: Floats) -> tuple[Floats, Floats]:
+        """The same at many z (P,), m."""
+        i = np.clip(np.searchsorted(self.stations, z) - 1, 0, len(self.segments) - 1)
+        each = [(*s.bores, *s.diameters, s.length) for s in self.segments]
+        b0, b1, d0, d1, length = np.array(each)[i].T
+        x = (z - np.array(self.stations)[i]) / length
+        return (b0 + x * (b1 - b0)) / 2.0, (d0 + x * (d1 - d0)) / 2.0
 
     def fillet_at(self, corner: int) -> float:
         """Radius (m) of the inner corner between segments `corner` and `corner` + 1 (from 0); 0

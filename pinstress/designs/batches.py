@@ -17,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
+from geometry.mesh.near_mesh import step
 from pinstress.designs.evaluate import DesignRow, Evaluator
 from pinstress.designs.laws import Floats
 from pinstress.designs.number import Number
@@ -102,9 +103,12 @@ def evaluator_of(problem: DesignProblem) -> Evaluator:
 
 
 def ordered(numbers: Sequence[Number], values: Floats) -> list[int]:
-    """The designs (N, p) so that those with the same shapes follow each other."""
-    shape = [k for k, number in enumerate(numbers) if shapes(number)]
-    keys = [np.arange(len(values)), *(values[:, k] for k in reversed(shape))]
+    """The designs (N, p) so that those with the same shapes follow each other, and those whose
+    meshes are moved from that of the same rounded shape.
+    """
+    shape = [values[:, k] for k, number in enumerate(numbers) if shapes(number)]
+    near = [np.array([step(x) for x in each]) for each in shape]
+    keys = [np.arange(len(values)), *reversed(shape), *reversed(near)]
     return [int(i) for i in np.lexsort(keys)]
 
 

@@ -154,6 +154,8 @@ def local(jobs: int) -> Iterator[Client]:
         "distributed.comm.timeouts.connect": "30s",
         "distributed.scheduler.allowed-failures": 1,
         "distributed.admin.system-monitor.interval": "10s",
+        "distributed.admin.tick.interval": "1s",  # of 20 ms and with a profile of the stack these
+        "distributed.worker.profile.enabled": False,  # take 3 % of a core while they wait
         "distributed.scheduler.http.routes": [],  # a port is opened, but nothing is served there
         "distributed.worker.http.routes": [],
         # dask would have every large array returned to the system: half of the time, measured

@@ -90,9 +90,19 @@ def test_a_node_stays_at_the_reach_of_a_spot() -> None:
         assert np.abs(distance - reach).min() < 1e-12 * r
 
 
+def test_what_a_fillet_leaves_of_a_shoulder_is_rounded_itself() -> None:
+    """Where the rest, rounded with the diameters, would be quite another part of the shoulder."""
+    for fillet in (0.00499, 0.0046, 0.0037):
+        pin = Pin("P", (Segment(0.02, 0.03), Segment(0.03, 0.02)), fillet=fillet)
+        one, other = (near_mesh.near_mesh(pin.scaled(x), SectionSize()) for x in (1.0, 1.001))
+        assert one.shared is other.shared is not None
+        assert volume(one) == pytest.approx(pin.volume, rel=1e-5)
+        assert one.distortion().min() > SMALLEST_JACOBIAN
+
+
 def test_without_a_rounded_shape_it_is_the_shapes_own_mesh() -> None:
-    """Of a fillet that takes nearly all of a shoulder, whose rest would be another part of it."""
-    pin = Pin("P", (Segment(0.02, 0.03), Segment(0.03, 0.02)), fillet=0.00499)
+    """Of a small step in a bore, which rounded diameters do not have."""
+    pin = Pin("P", (Segment(0.02, 0.03, bore=0.01), Segment(0.03, 0.03, bore=0.0102)))
     found = near_mesh.near_mesh(pin, SectionSize())
     assert found.shared is None
     own = meridian_mesh(pin, SectionSize())

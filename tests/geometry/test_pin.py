@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -49,6 +50,16 @@ def pins(draw: st.DrawFn) -> Pin:
 @given(pins())
 def test_the_volume_is_exact(pin: Pin) -> None:
     assert pin.volume == pytest.approx(integrated_volume(pin), rel=1e-10)
+
+
+@settings(max_examples=20, deadline=None)
+@given(pins())
+def test_radii_at_many_places_are_those_at_each(pin: Pin) -> None:
+    """To the last bit, at stations and beyond the ends too."""
+    cone = Segment(0.7, 0.9, end_diameter=0.81, bore=0.1, end_bore=0.2)
+    for one in (pin, replace(pin, segments=(*pin.segments, cone), fillet=0.0)):
+        z = np.append(np.linspace(-0.1, one.length + 0.1, 37), one.stations)
+        assert np.array_equal(one.radii_at(z), np.transpose([one.radii(float(x)) for x in z]))
 
 
 @settings(max_examples=50, deadline=None)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections import Counter
 from functools import partial
+from itertools import pairwise
 from multiprocessing import resource_tracker
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,8 @@ from pyarrow import parquet
 from rich.console import Console
 
 import pinstress
-from pinstress import InputError
+from geometry.mesh.near_mesh import step
+from pinstress import InputError, load_study, shipped_studies
 from pinstress.designs.batches import (
     AIM,
     MOST,
@@ -28,6 +30,7 @@ from pinstress.designs.batches import (
     DesignProblem,
     Done,
     aim_of,
+    ordered,
     solve_batch,
 )
 from pinstress.designs.number import number_at
@@ -172,6 +175,18 @@ def test_designs_of_the_same_shape_follow_each_other_in_a_batch() -> None:
         order += list(batch.designs)
     assert sorted(order) == sorted(set(range(40)) - {5, 6})
     assert (np.diff(values[order, 0]) >= 0.0).all()
+
+
+def test_designs_whose_rounded_shapes_are_the_same_follow_each_other() -> None:
+    """Of two dimensions that vary together: else two designs of a class of the second one would be
+    as far apart as the first has values.
+    """
+    study = load_study(shipped_studies()["one_pin"])
+    numbers = [number_at(study, f"pin.B.profile[{k}].diameter") for k in (1, 2)]
+    values = np.random.default_rng(2).uniform(0.03, 0.05, (300, 2))
+    classes = [tuple(map(step, values[i])) for i in ordered(numbers, values)]
+    changes = sum(a != b for a, b in pairwise(classes))
+    assert changes == len(set(classes)) - 1 < 150
 
 
 def test_batches_are_as_long_as_they_should_be() -> None:
