@@ -96,7 +96,7 @@ def solve_in_lugs(
     near: Mapping[str, Near] = {}
     done: dict[str, LugSolution] = {}
     left = given.cases
-    sets = (ROUGH_CELLS, *SETS) if asked.goal == "decide" else SETS
+    sets = _sets(asked)
     for cells, finer in zip(sets, (*sets[1:], None), strict=True):
         progress(f"pin {given.pin.name}, flexibility of {cells.rings} rings of each lug")
         model = JointModel(given.pin, given.material, given.lugs, cells)
@@ -111,12 +111,19 @@ def solve_in_lugs(
         for case, found in contact.solved(fine, asked, progress).items():
             if last or _enough(found.solution.peak, given.material, asked):
                 done[case] = found
-        if cells is not ROUGH_CELLS:
+        if finer is None or cells is not ROUGH_CELLS:
             done |= {case: _failed(given, case, why) for case, why in contact.failed.items()}
         left = tuple(case for case in left if case.case not in done)
         if not left:
             break
     return tuple(done[case.case] for case in given.cases)
+
+
+def _sets(asked: Asked) -> tuple[Cells, ...]:
+    """Cells, one after the other."""
+    if asked.cells is not None:
+        return (ROUGH_CELLS if asked.cells == "rough" else SETS[0],)
+    return (ROUGH_CELLS, *SETS) if asked.goal == "decide" else SETS
 
 
 def _enough(peak: Peak, material: Material, asked: Asked) -> bool:

@@ -6,7 +6,7 @@ the harmonic model's first mesh are taken, relative to its own maximum.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,7 +17,7 @@ from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.derivatives.derivatives import derivatives
-from fea.derivatives.in_lugs import JointDerivatives, joint_derivatives
+from fea.derivatives.in_lugs import JointDerivatives, JointParameter, joint_derivatives
 from fea.derivatives.records import Derivatives, SolvedCase
 from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
 from fea.joint.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
@@ -107,23 +107,26 @@ def by_key(study: Study, pin: str, case: str) -> dict[str, float]:
     return {} if made is None else made.by_dimension
 
 
-def by_length(study: Study, task: Task, joined: LugSolution) -> dict[str, float] | None:
-    """The same of a pin in contact that is solved; None where it has no derivatives.
+def by_length(
+    study: Study, task: Task, joined: LugSolution, keys: Collection[str] | None = None
+) -> dict[str, float] | None:
+    """The same of a pin in contact that is solved; None where it has no derivatives. keys: of those
+    that are asked for; without, of all.
 
     Raises: MeshError, SolveError.
     """
-    found = differentiated_in_lugs(study, task, joined)
-    if found is None:
-        return None
-    lengths = [x.of_joint.key for x in joint_parameters(study, task) if x.kind == "length"]
-    by = found.by_parameter
-    return {key: by[key] for key in lengths if key in by}
+    lengths = [x.of_joint for x in joint_parameters(study, task) if x.kind == "length"]
+    asked = [x for x in lengths if keys is None or x.key in keys]
+    found = differentiated_in_lugs(joined, task, asked, alone=True)
+    return None if found is None else found.by_parameter
 
 
 def differentiated_in_lugs(
-    study: Study, task: Task, joined: LugSolution
+    joined: LugSolution, task: Task, parameters: Iterable[JointParameter], *, alone: bool = False
 ) -> JointDerivatives | None:
-    """Of the maximum of a pin in contact; None where it has none. Raises: MeshError, SolveError."""
+    """Of the maximum of a pin in contact; None where it has none. alone: by the parameters only,
+    not by loads. Raises: MeshError, SolveError.
+    """
     solution, model, rings = joined.solution, joined.model, joined.rings
     peak, answer = solution.peak, solution.answer
     if model is None or rings is None or peak.governing is None or not peak.max_von_mises:
@@ -140,8 +143,7 @@ def differentiated_in_lugs(
         (peak.own_error or 0.0) / peak.max_von_mises,
         solution.loads,
     )
-    each = [x.of_joint for x in joint_parameters(study, task)]
-    return joint_derivatives(solved, model, peak.governing, each)
+    return joint_derivatives(solved, model, peak.governing, parameters, alone=alone)
 
 
 def differentiated(
@@ -231,7 +233,8 @@ def _of_lugs(study: Study, task: Task, joined: LugSolution, step: float | None) 
     if step is None:
         return replace(out, note=IN_LUGS)
     try:
-        found = differentiated_in_lugs(study, task, joined)
+        parameters = [x.of_joint for x in joint_parameters(study, task)]
+        found = differentiated_in_lugs(joined, task, parameters)
     except (MeshError, SolveError) as error:
         return replace(out, note=f"no derivatives: {error}")
     if found is None:
