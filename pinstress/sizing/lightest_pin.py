@@ -49,7 +49,8 @@ DOUBT = 0.03  # of the weight of a pin that is only scaled, where that was told 
 REPAIRS = 4
 STEPS_UP = 40  # of diameters rounded to steps
 ROUNDING = 2e-3  # of a geometric limit, by which four digits may break it
-WHOLE = "scaled as a whole, because its stress has no derivatives by its dimensions"
+WHOLE = "scaled as a whole, because its stress has no derivatives by its dimensions{}"
+CUTS = ": it has cuts, or is no body of revolution"
 
 Tell = Callable[[str], None]
 
@@ -156,12 +157,13 @@ def _only_scaled(stress: PinStress, aim: Aim, start: float) -> Lightest:
     try:
         best = smallest(factor_at, problem.required, start)
         scale, factor = best.scale, best.factor
+        way = WHOLE.format("" if isinstance(problem.shape.whole, Pin) else CUTS)
     except (NoSizeError, ImpossibleError, InputError) as error:
         return Lightest(
             problem.name, before=factors.get(start), solved=len(factors), why=str(error)
         )
     return Lightest(
-        problem.name, None, scale, factors[start], factor, solved=len(factors), way=WHOLE
+        problem.name, None, scale, factors[start], factor, solved=len(factors), way=way
     )
 
 
