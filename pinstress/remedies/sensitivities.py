@@ -20,17 +20,13 @@ from fea.derivatives.derivatives import derivatives
 from fea.derivatives.in_lugs import JointDerivatives, JointParameter, joint_derivatives
 from fea.derivatives.records import Derivatives, SolvedCase
 from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
-from fea.joint.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
+from fea.joint.solve_in_lugs import LugSolution
 from fea.refine import STEP, Solution, singularities_of
-from fea.solve_pin import solve_pin
 from geometry import Pin
 from geometry.arrays import Floats
 from geometry.mesh.gmsh_session import MeshError
 from geometry.shape.dimensions import Dimension
-from pinstress.model.cases import case_loads
-from pinstress.model.mechanism.linkage import linkage
-from pinstress.model.pins import pin as pin_of
-from pinstress.model.tasks import Task, tasks
+from pinstress.model.tasks import Task
 from pinstress.remedies.dimensions import dimensions_of
 from pinstress.remedies.joint_parameters import StudyParameter, joint_parameters
 from pinstress.study.file import Study
@@ -74,44 +70,12 @@ def _largest(found: Solution | LugSolution) -> float:
     return solution.peak.max_von_mises or 0.0
 
 
-def by_key(study: Study, pin: str, case: str) -> dict[str, float]:
-    """The derivative of a pin's largest von Mises stress in a case with respect to each of its
-    dimensions, Pa/m, by their keys in the pin's table: "profile[2].diameter", "profile[1-3].bore"
-    of neighbours that have it in common, "fillet"; of a pin in lugs, which is taken to be in
-    contact with them, also "lug.M.clearance" and those of the lugs that are given. Dimensions that
-    have none are left out.
-
-    Raises: InputError for bad input; ArithmeticError where the pin cannot be solved; ValueError
-    for one that is not a body of revolution.
-    """
-    mechanism = linkage(study) if study.table.mechanism else None
-    (task,) = tasks(study, [pin_of(study, pin)], {case: case_loads(study, case, mechanism)})
-    if not isinstance(task.pin, Pin):
-        raise ValueError(f"pin {pin}: {NOT_REVOLVED}")
-    table = study.table.analysis
-    asked = Asked(
-        table.tolerance,
-        table.model,
-        table.goal,
-        table.required_safety_factor,
-        table.excluded_distance,
-    )
-    if task.lugs:
-        given = InLugs(task.pin, task.material, task.lugs, task.loads, task.between)
-        (joined,) = solve_in_lugs(given, asked)
-        return by_length(study, task, joined) or {}
-    (found,) = solve_pin(
-        task.pin, task.material, task.clamps, task.loads, asked, between=task.between
-    )
-    made = differentiated(asked, task, found, tuple(dimensions_of(study, task.pin)))
-    return {} if made is None else made.by_dimension
-
-
 def by_length(
     study: Study, task: Task, joined: LugSolution, keys: Collection[str] | None = None
 ) -> dict[str, float] | None:
-    """The same of a pin in contact that is solved; None where it has no derivatives. keys: of those
-    that are asked for; without, of all.
+    """The derivative of the largest von Mises stress of a pin in contact, solved, with respect to
+    each of its lengths, Pa/m, by their keys in the pin's table: "profile[2].diameter", "fillet",
+    "lug.M.clearance"; None where it has no derivatives. keys: those asked for; without, all.
 
     Raises: MeshError, SolveError.
     """
