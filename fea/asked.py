@@ -25,7 +25,7 @@ class Asked:
     of the local diameter. meshes: maximum number of meshes, by default that of the model. memory:
     limit for a mesh in MB, by default most of the free memory. because: reason for the model, where
     this package does not choose it. near: whether sections have the meshes of near shapes with
-    their nodes moved. cells: of contact with lugs, these alone; without, until they are fine enough.
+    their nodes moved. cells: of contact with lugs, these alone; None: until they are fine enough.
     """
 
     tolerance: float = 0.02

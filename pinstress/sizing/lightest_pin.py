@@ -162,9 +162,7 @@ def _only_scaled(stress: PinStress, aim: Aim, start: float) -> Lightest:
         return Lightest(
             problem.name, before=factors.get(start), solved=len(factors), why=str(error)
         )
-    return Lightest(
-        problem.name, None, scale, factors[start], factor, solved=len(factors), way=way
-    )
+    return Lightest(problem.name, None, scale, factors[start], factor, solved=len(factors), way=way)
 
 
 def problem_of(study: Study, plan: Plan, pin: str, aim: Aim) -> PinProblem | str:

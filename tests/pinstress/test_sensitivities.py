@@ -15,8 +15,6 @@ from pinstress.analysis.gather import results_of
 from pinstress.analysis.plan import prepare
 from pinstress.analysis.solve import solve_tasks
 from pinstress.cli.commands import run_command_line
-from pinstress.model.pins import pin as pin_of
-from pinstress.remedies.dimensions import dimensions_of
 from pinstress.remedies.sensitivities import by_length
 from reports.data.results import PinSensitivities
 from tests.support.clevis import CLEVIS

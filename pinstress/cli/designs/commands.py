@@ -28,7 +28,9 @@ from pinstress.cli.shared import choices, example, read_study
     metavar="ADDRESS",
     help="Solve on your own cluster of dask, tcp://host:8786, instead of this machine.",
 )
-@click.option("--resume", is_flag=True, help="Go on with a sweep that did not end, or with a larger count.")
+@click.option(
+    "--resume", is_flag=True, help="Go on with a sweep that did not end, or with a larger count."
+)
 @click.option("--open", "opens", is_flag=True, help="Open the page in the browser when done.")
 def sweep(
     study: Path,
