@@ -130,15 +130,14 @@ def lightest_pin(
             raise UndifferentiatedError
         shape, known = problem.shape, start.values or {}
         values = np.array([known.get(d.key, d.value) for d in shape.dimensions])
-        first = stress.at(values, FAR)
+        stress.at(values, FAR)
         before = problem.required * float(np.exp(-stress.sure(values).worst))
         first = stress.at(values)
         search = _Search(problem, stress, aim)
-        near, whole = first, start.whole
-        if start.values is None:
-            near, as_whole = _scaled(search, first, len(values) > 1)
-            whole = tuple(map(float, as_whole))
-        return replace(_found(search, near, whole), before=before)
+        if start.values is not None:
+            return replace(_found(search, first, start.whole), before=before)
+        near, whole = _scaled(search, first, roughly=len(values) > 1)
+        return replace(_found(search, near, tuple(map(float, whole))), before=before)
     except UndifferentiatedError:
         return _only_scaled(stress, aim, start.scale or 1.0)
     except ImpossibleError as error:
@@ -156,13 +155,13 @@ def _only_scaled(stress: PinStress, aim: Aim, start: float) -> Lightest:
 
     try:
         best = smallest(factor_at, problem.required, start)
-        scale, factor = best.scale, best.factor
         way = WHOLE.format("" if isinstance(problem.shape.whole, Pin) else CUTS)
     except (NoSizeError, ImpossibleError, InputError) as error:
         return Lightest(
             problem.name, before=factors.get(start), solved=len(factors), why=str(error)
         )
-    return Lightest(problem.name, None, scale, factors[start], factor, solved=len(factors), way=way)
+    before, count = factors[start], len(factors)
+    return Lightest(problem.name, None, best.scale, before, best.factor, solved=count, way=way)
 
 
 def problem_of(study: Study, plan: Plan, pin: str, aim: Aim) -> PinProblem | str:
@@ -238,8 +237,7 @@ def _found(search: _Search, near: SolvedPin, whole: tuple[float, ...] | None) ->
     shape, aim = search.shape, search.aim
     optimum = _optimum(search, near)
     best = _written(search, optimum)
-    before: float | None = None
-    as_whole = near.values if whole is None else np.array(whole)
+    before, as_whole = None, near.values if whole is None else np.array(whole)
     if set(aim.vary) == set(KINDS):
         before = float(shape.volume(search.written(as_whole))[0])
         if before <= search.volume(best) * (1.0 + DOUBT):

@@ -111,7 +111,7 @@ class UndifferentiatedError(Exception):
 
 
 class PinStress:
-    """Solves a pin with other dimensions. in_contact: whether its lugs hold it, as solutions say."""
+    """Solves a pin with other dimensions. in_contact: whether lugs hold it, once solved."""
 
     def __init__(self, problem: PinProblem, tell: Tell) -> None:
         self.problem, self._tell = problem, tell
@@ -151,7 +151,7 @@ class PinStress:
         return self._as_finer(known)
 
     def sure(self, values: Floats) -> SolvedPin:
-        """As a run has it; what is rough elsewhere is corrected by what it is here. Raises as `at`."""
+        """As a run has it; what is rough elsewhere is corrected by that. Raises as `at`."""
         rough = self.at(values)
         if not self.in_contact:
             return rough

@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 
 import pinstress
+from fea.joint.solve_in_lugs import LugSolution
 from pinstress.analysis.gather import results_of
 from pinstress.analysis.plan import prepare
-from pinstress.analysis.solve import solve_tasks
+from pinstress.analysis.solve import solutions, solve_tasks
 from pinstress.cli.commands import run_command_line
 from pinstress.remedies.sensitivities import by_length
 from reports.data.results import PinSensitivities
