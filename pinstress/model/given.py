@@ -62,9 +62,9 @@ def balance_warnings(study: Study) -> list[str]:
             if BALANCED * largest < left <= REACTED * largest:
                 unit, factor = study.system.force, study.system.factor("force")
                 text = (
-                    f"case.{name}: the forces on pin {pin} are not quite in equilibrium: a "
-                    f"resultant of {left / factor:.3g} {unit}, {left / largest:.1%} of the largest, "
-                    "is left, which its bands share"
+                    f"case.{name}: the forces on pin {pin} are not quite in equilibrium: "
+                    f"{left / factor:.3g} {unit}, {left / largest:.1%} of the largest, are left, "
+                    "which its bands share"
                 )
                 out.append(str(study.error(text)))
     return out

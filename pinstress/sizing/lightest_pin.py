@@ -278,9 +278,8 @@ def _optimum(search: _Search, near: SolvedPin) -> Optimum:
 
 
 def _scaled(search: _Search, first: SolvedPin, roughly: bool) -> tuple[SolvedPin, Floats]:
-    """With all dimensions times the same the design nearest to the factor that was solved, and
-    dimensions that reach it: `roughly` by the slope of stress there. As it is where only bores
-    change.
+    """All dimensions times the same: the design nearest to the factor that was solved, and what
+    reaches it, `roughly` by the slope of stress there. As it is where only bores change.
 
     Raises: ImpossibleError.
     """
