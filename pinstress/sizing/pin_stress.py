@@ -5,8 +5,8 @@ Of a body of revolution the largest stress is found in both halves of each segme
 singular stress is read half the excluded distance away, where the upper end of the reported range
 is. All stresses of a row are raised by the ratio of what counts of it to the largest of them.
 
-A pin in contact is searched on rough cells, which take a tenth of the time of those that a run ends
-with; by how much these differ is found where it matters (`sure`), and added to all that is found on
+A pin in contact is searched on rough cells, which take a fifth or less of the time of the finest;
+by how much usual cells differ is found where it matters (`sure`), and added to all that is found on
 the rough ones. Cases far below the largest are left out until the pin is quite another.
 """
 
