@@ -25,7 +25,7 @@ class Asked:
     of the local diameter. meshes: maximum number of meshes, by default that of the model. memory:
     limit for a mesh in MB, by default most of the free memory. because: reason for the model, where
     this package does not choose it. near: whether sections have the meshes of near shapes with
-    their nodes moved.
+    their nodes moved. cells: of contact with lugs, these alone; None: until they are fine enough.
     """
 
     tolerance: float = 0.02
@@ -37,6 +37,7 @@ class Asked:
     memory: float | None = None
     because: Note | None = None
     near: bool = False
+    cells: Literal["rough", "usual"] | None = None
 
 
 def decided(asked: Asked, material: Material, low: float, high: float) -> bool:

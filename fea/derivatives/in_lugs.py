@@ -82,13 +82,15 @@ def joint_derivatives(
     model: JointModel,
     links: PinLoads,
     parameters: Iterable[JointParameter] = (),
+    *,
+    alone: bool = False,
 ) -> JointDerivatives:
     """Of the maximum under pressures at one instant. solved: the pin with its bands cut into rings
-    under them; links: the loads that they carry.
+    under them; links: the loads that they carry; alone: the parameters, without loads and ties.
 
     Raises: MeshError, SolveError.
     """
-    return _InLugs(solved, model, links).derivatives(tuple(parameters))
+    return _InLugs(solved, model, links).derivatives(tuple(parameters), alone)
 
 
 @dataclass(frozen=True)
@@ -125,7 +127,7 @@ class _InLugs:
                 out[wave.n] += adjoint.of_loads(k, loads)[:, None] * each
         return out
 
-    def derivatives(self, parameters: tuple[JointParameter, ...]) -> JointDerivatives:
+    def derivatives(self, parameters: tuple[JointParameter, ...], alone: bool) -> JointDerivatives:
         changes, without = [], {}
         for parameter in parameters:
             try:
@@ -133,6 +135,8 @@ class _InLugs:
             except OtherShapeError:
                 without[parameter.key] = OTHER
         adjoint, solved, top = self.adjoint, self.solved, self.adjoint.top
+        if alone:
+            return JointDerivatives(top.value, self._by(changes), without, {}, {})
         return JointDerivatives(
             top.value,
             self._by(changes),

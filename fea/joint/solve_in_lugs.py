@@ -31,6 +31,8 @@ from fea.joint.cell_pressure import CellPressure
 from fea.joint.contact import Pressed
 from fea.joint.cut_in_lugs import neglected, with_neglected
 from fea.joint.error_parts import with_cells
+from fea.joint.lugs.fit import fitted, on_structure
+from fea.joint.lugs.links import link_forces
 from fea.joint.lugs.lug import Lug
 from fea.joint.lugs.rings import whole_names
 from fea.joint.pressure_loads import NEGLIGIBLE, ROUGH, Patterns, PressureLoads
@@ -94,10 +96,12 @@ def solve_in_lugs(
     Raises: ArgumentError for lugs that do not fit; MeshError, SolveError.
     """
     near: Mapping[str, Near] = {}
-    done: dict[str, LugSolution] = {}
-    left = given.cases
-    sets = (ROUGH_CELLS, *SETS) if asked.goal == "decide" else SETS
+    done = _refused(given)
+    left = tuple(case for case in given.cases if case.case not in done)
+    sets = _sets(asked)
     for cells, finer in zip(sets, (*sets[1:], None), strict=True):
+        if not left:
+            break
         progress(f"pin {given.pin.name}, flexibility of {cells.rings} rings of each lug")
         model = JointModel(given.pin, given.material, given.lugs, cells)
         progress(f"pin {given.pin.name}, contact")
@@ -111,12 +115,33 @@ def solve_in_lugs(
         for case, found in contact.solved(fine, asked, progress).items():
             if last or _enough(found.solution.peak, given.material, asked):
                 done[case] = found
-        if cells is not ROUGH_CELLS:
+        if finer is None or cells is not ROUGH_CELLS:
             done |= {case: _failed(given, case, why) for case, why in contact.failed.items()}
         left = tuple(case for case in left if case.case not in done)
-        if not left:
-            break
     return tuple(done[case.case] for case in given.cases)
+
+
+def _refused(given: InLugs) -> dict[str, LugSolution]:
+    """The cases whose loads no contact can carry, before anything is meshed. Raises: ArgumentError
+    for lugs that do not fit.
+    """
+    whole = on_structure(given.pin, given.lugs)
+    fitted(whole, given.material, given.lugs)
+    structure = len(given.lugs) > len(given.pin.connections)
+    mass, out = (given.material.density or 0.0) * whole.volume, dict[str, LugSolution]()
+    for case in given.cases:
+        try:
+            link_forces(given.pin, mass, case, structure)
+        except SolveError as error:
+            out[case.case] = _failed(given, case.case, str(error))
+    return out
+
+
+def _sets(asked: Asked) -> tuple[Cells, ...]:
+    """Cells, one after the other."""
+    if asked.cells is not None:
+        return (ROUGH_CELLS if asked.cells == "rough" else SETS[0],)
+    return (ROUGH_CELLS, *SETS) if asked.goal == "decide" else SETS
 
 
 def _enough(peak: Peak, material: Material, asked: Asked) -> bool:

@@ -50,11 +50,12 @@ def choices(command: Command) -> Command:
 
 def read_study(path: Path) -> Study:
     """Load a study; warn of implausible or contradictory numbers. Raises: InputError."""
+    from pinstress.model.given import balance_warnings
     from pinstress.model.weights import weight_warnings
     from pinstress.study.file import load_study
 
     study = load_study(path)
-    for warning in (*study.warnings, *weight_warnings(study)):
+    for warning in (*study.warnings, *weight_warnings(study), *balance_warnings(study)):
         click.echo(f"Warning: {warning}", err=True)
     return study
 

@@ -6,10 +6,11 @@ from __future__ import annotations
 
 import hashlib
 import json
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pinstress.designs.table import write_table
+from pinstress.designs.table import read_table, write_table
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study
 from pinstress.study.inputs import inputs
@@ -21,18 +22,35 @@ FOLDER = "parts"
 STATED = "sweep.json"  # what is swept, in the folder of parts
 SCHEMA = "pinstress-sweep/1"
 SUFFIX = ".parquet"
+TABLE = "designs.parquet"
+CONTINUED = "sobol", "random"  # samples of which more begin with the same designs
+
+
+@dataclass(frozen=True)
+class Identity:
+    """What is swept: a hash of all on which numbers depend; of all but the number of designs; that
+    number; and the kind of sample.
+    """
+
+    sweep: str
+    but_count: str
+    count: int
+    sample: str
 
 
 class Parts:
     """Files in a folder `parts` of an output folder, of one sweep. sweep: its identity."""
 
-    def __init__(self, directory: Path, sweep: str) -> None:
-        self.folder, self.sweep = directory / FOLDER, sweep
+    def __init__(self, directory: Path, identity: Identity) -> None:
+        self.folder, self.identity = directory / FOLDER, identity
+        self.sweep = identity.sweep
 
     def begin(self) -> None:
         """Make the folder, with nothing in it but what is swept."""
         self.folder.mkdir(parents=True, exist_ok=True)
-        text = json.dumps({"schema": SCHEMA, "sweep": self.sweep}, indent=1) + "\n"
+        mine = self.identity
+        stated = {"sweep": mine.sweep, "but_count": mine.but_count, "count": mine.count}
+        text = json.dumps({"schema": SCHEMA, **stated}, indent=1) + "\n"
         partial = self.folder / f"{STATED}.partial"
         partial.write_text(text, encoding="utf-8")
         partial.replace(self.folder / STATED)
@@ -48,19 +66,61 @@ class Parts:
 
     def require_same(self) -> None:
         """Raises: InputError where the parts are of another sweep."""
-        found = stated(self.folder) or stated(self.folder.parent)
-        if found is None:
+        found, mine, before = self._stated, self.identity, self.count_before
+        if not found:
             raise InputError(
                 f"--resume: {self.folder.parent} has no sweep to go on with; leave out --resume",
                 code="nothing-to-resume",
             )
-        if found != self.sweep:
+        if before is not None and mine.sample not in CONTINUED:
+            raise InputError(
+                f"--resume: the sweep in {self.folder.parent} has count = {before}, the study "
+                f"{mine.count}: a {mine.sample} sample of another count has other designs, so that "
+                f"only {' and '.join(CONTINUED)} ones can be continued; choose another folder",
+                code="other-count",
+            )
+        if before is not None and before > mine.count:
+            raise InputError(
+                f"--resume: the sweep in {self.folder.parent} has count = {before}, more than the "
+                f"study's {mine.count}: it can only be continued, to more designs; choose another "
+                "folder",
+                code="fewer-designs",
+            )
+        if found.get("sweep") != self.sweep and before is None:
             raise InputError(
                 f"--resume: the sweep in {self.folder.parent} is of another study, other [vary], "
                 "pins or cases, other tables, or of another version of pinstress; go on with "
                 "those, or choose another folder",
                 code="other-sweep",
             )
+
+    @property
+    def _stated(self) -> dict[str, Any]:
+        """Of the sweep that is here."""
+        return _read(self.folder) or _read(self.folder.parent)
+
+    @property
+    def count_before(self) -> int | None:
+        """Of a sweep that is here and differs in nothing but the number of its designs: this."""
+        found, mine = self._stated, self.identity
+        other = found.get("sweep") != mine.sweep and found.get("but_count") == mine.but_count
+        return int(found["count"]) if other else None
+
+    def continue_with(self, schema: pa.Schema) -> None:
+        """Take over the designs of a sweep with fewer: its batches, or its whole table. Killed
+        meanwhile it is taken over again.
+        """
+        from pyarrow import parquet
+
+        if self.there():
+            tables = [parquet.read_table(path) for path in sorted(self.folder.glob(f"*{SUFFIX}"))]
+        else:
+            tables = [read_table(self.folder.parent / TABLE)]
+        self.folder.mkdir(exist_ok=True)
+        for table in tables:
+            if table.schema.equals(schema):
+                self.write(table.replace_schema_metadata(schema.metadata))
+        self.begin()
 
     def write(self, table: pa.Table) -> None:
         """Keep a batch, named by its first design; its file is complete or absent."""
@@ -111,18 +171,36 @@ def is_ours(name: str) -> bool:
     )
 
 
-def identity(study: Study, *chosen: object) -> str:
-    """Hash of all on which a sweep's numbers depend. chosen: pins, cases."""
+def identity(study: Study, *chosen: object) -> Identity:
+    """Of a study; the hashes are of all on which a sweep's numbers depend. chosen:
+    pins, cases.
+    """
+    import tomlkit
+
     from pinstress.cache.store import program
 
-    asked = study.text, inputs(study), chosen, program()
-    return hashlib.sha256(repr(asked).encode()).hexdigest()
+    vary = study.table.vary  # a sweep of a study without is refused by who reads its parameters
+    document = tomlkit.parse(study.text)
+    document.get("vary", {}).pop("count", None)
+    values, version = inputs(study), program()
+    others = {key: value for key, value in values.items() if key != "vary.count"}
+    asked = study.text, values, chosen, version
+    but_count = tomlkit.dumps(document), others, chosen, version
+    hashes = (hashlib.sha256(repr(x).encode()).hexdigest() for x in (asked, but_count))
+    return Identity(*hashes, *((vary.count, vary.sample) if vary else (0, "")))
 
 
 def stated(folder: Path) -> str | None:
     """The identity of the sweep whose parts a folder has."""
+    found: str | None = _read(folder).get("sweep")
+    return found
+
+
+def _read(folder: Path) -> dict[str, Any]:
+    """What a folder states of its sweep; empty if nothing."""
     try:
         found: Any = json.loads((folder / STATED).read_text(encoding="utf-8"))
-        return str(found["sweep"]) if found["schema"] == SCHEMA else None
+        ours = found["schema"] == SCHEMA and isinstance(found["sweep"], str)
+        return dict(found) if ours else {}
     except (OSError, ValueError, KeyError, TypeError):
-        return None
+        return {}

@@ -6,7 +6,7 @@ the harmonic model's first mesh are taken, relative to its own maximum.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,20 +17,16 @@ from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.derivatives.derivatives import derivatives
-from fea.derivatives.in_lugs import JointDerivatives, joint_derivatives
+from fea.derivatives.in_lugs import JointDerivatives, JointParameter, joint_derivatives
 from fea.derivatives.records import Derivatives, SolvedCase
 from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
-from fea.joint.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
+from fea.joint.solve_in_lugs import LugSolution
 from fea.refine import STEP, Solution, singularities_of
-from fea.solve_pin import solve_pin
 from geometry import Pin
 from geometry.arrays import Floats
 from geometry.mesh.gmsh_session import MeshError
 from geometry.shape.dimensions import Dimension
-from pinstress.model.cases import case_loads
-from pinstress.model.mechanism.linkage import linkage
-from pinstress.model.pins import pin as pin_of
-from pinstress.model.tasks import Task, tasks
+from pinstress.model.tasks import Task
 from pinstress.remedies.dimensions import dimensions_of
 from pinstress.remedies.joint_parameters import StudyParameter, joint_parameters
 from pinstress.study.file import Study
@@ -74,56 +70,27 @@ def _largest(found: Solution | LugSolution) -> float:
     return solution.peak.max_von_mises or 0.0
 
 
-def by_key(study: Study, pin: str, case: str) -> dict[str, float]:
-    """The derivative of a pin's largest von Mises stress in a case with respect to each of its
-    dimensions, Pa/m, by their keys in the pin's table: "profile[2].diameter", "profile[1-3].bore"
-    of neighbours that have it in common, "fillet"; of a pin in lugs, which is taken to be in
-    contact with them, also "lug.M.clearance" and those of the lugs that are given. Dimensions that
-    have none are left out.
-
-    Raises: InputError for bad input; ArithmeticError where the pin cannot be solved; ValueError
-    for one that is not a body of revolution.
-    """
-    mechanism = linkage(study) if study.table.mechanism else None
-    (task,) = tasks(study, [pin_of(study, pin)], {case: case_loads(study, case, mechanism)})
-    if not isinstance(task.pin, Pin):
-        raise ValueError(f"pin {pin}: {NOT_REVOLVED}")
-    table = study.table.analysis
-    asked = Asked(
-        table.tolerance,
-        table.model,
-        table.goal,
-        table.required_safety_factor,
-        table.excluded_distance,
-    )
-    if task.lugs:
-        given = InLugs(task.pin, task.material, task.lugs, task.loads, task.between)
-        (joined,) = solve_in_lugs(given, asked)
-        return by_length(study, task, joined) or {}
-    (found,) = solve_pin(
-        task.pin, task.material, task.clamps, task.loads, asked, between=task.between
-    )
-    made = differentiated(asked, task, found, tuple(dimensions_of(study, task.pin)))
-    return {} if made is None else made.by_dimension
-
-
-def by_length(study: Study, task: Task, joined: LugSolution) -> dict[str, float] | None:
-    """The same of a pin in contact that is solved; None where it has no derivatives.
+def by_length(
+    study: Study, task: Task, joined: LugSolution, keys: Collection[str] | None = None
+) -> dict[str, float] | None:
+    """The derivative of the largest von Mises stress of a pin in contact, solved, with respect to
+    each of its lengths, Pa/m, by their keys in the pin's table: "profile[2].diameter", "fillet",
+    "lug.M.clearance"; None where it has no derivatives. keys: those asked for; without, all.
 
     Raises: MeshError, SolveError.
     """
-    found = differentiated_in_lugs(study, task, joined)
-    if found is None:
-        return None
-    lengths = [x.of_joint.key for x in joint_parameters(study, task) if x.kind == "length"]
-    by = found.by_parameter
-    return {key: by[key] for key in lengths if key in by}
+    lengths = [x.of_joint for x in joint_parameters(study, task) if x.kind == "length"]
+    asked = [x for x in lengths if keys is None or x.key in keys]
+    found = differentiated_in_lugs(joined, task, asked, alone=True)
+    return None if found is None else found.by_parameter
 
 
 def differentiated_in_lugs(
-    study: Study, task: Task, joined: LugSolution
+    joined: LugSolution, task: Task, parameters: Iterable[JointParameter], *, alone: bool = False
 ) -> JointDerivatives | None:
-    """Of the maximum of a pin in contact; None where it has none. Raises: MeshError, SolveError."""
+    """Of the maximum of a pin in contact; None where it has none. alone: by the parameters only,
+    not by loads. Raises: MeshError, SolveError.
+    """
     solution, model, rings = joined.solution, joined.model, joined.rings
     peak, answer = solution.peak, solution.answer
     if model is None or rings is None or peak.governing is None or not peak.max_von_mises:
@@ -140,8 +107,7 @@ def differentiated_in_lugs(
         (peak.own_error or 0.0) / peak.max_von_mises,
         solution.loads,
     )
-    each = [x.of_joint for x in joint_parameters(study, task)]
-    return joint_derivatives(solved, model, peak.governing, each)
+    return joint_derivatives(solved, model, peak.governing, parameters, alone=alone)
 
 
 def differentiated(
@@ -231,7 +197,8 @@ def _of_lugs(study: Study, task: Task, joined: LugSolution, step: float | None) 
     if step is None:
         return replace(out, note=IN_LUGS)
     try:
-        found = differentiated_in_lugs(study, task, joined)
+        parameters = [x.of_joint for x in joint_parameters(study, task)]
+        found = differentiated_in_lugs(joined, task, parameters)
     except (MeshError, SolveError) as error:
         return replace(out, note=f"no derivatives: {error}")
     if found is None:

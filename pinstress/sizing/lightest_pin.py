@@ -40,12 +40,17 @@ from pinstress.study.file import Study
 AIM = 0.004  # of the stress, below what is allowed: noise of meshes, and rounding
 ENOUGH = 2e-3  # of the weight: what meshes are worth
 NARROW = 5e-3  # a bracket of scales that is not looked into
-FAR = 0.05  # from the factor, where not all derivatives are worth finding
+FAR = 0.06  # from the factor (its logarithm): nearer, its slope says which scale reaches it
+SETTLED = 0.05  # of the stress of a pin in contact, below what is allowed: near enough
+ROUGH_AIM, ROUGH_ENOUGH = 0.015, 1e-2  # AIM and ENOUGH in contact, where meshes and cells scatter
+CORRECTIONS = 3  # of what rough cells say
 SCALINGS = 10
+DOUBT = 0.03  # of the weight of a pin that is only scaled, where that was told by slopes
 REPAIRS = 4
 STEPS_UP = 40  # of diameters rounded to steps
 ROUNDING = 2e-3  # of a geometric limit, by which four digits may break it
-WHOLE = "scaled as a whole, because its stress has no derivatives by its dimensions"
+WHOLE = "scaled as a whole, because its stress has no derivatives by its dimensions{}"
+CUTS = ": it has cuts, or is no body of revolution"
 
 Tell = Callable[[str], None]
 
@@ -124,11 +129,15 @@ def lightest_pin(
         if start.scale is not None or not isinstance(problem.shape.whole, Pin):
             raise UndifferentiatedError
         shape, known = problem.shape, start.values or {}
-        first = stress.at(np.array([known.get(d.key, d.value) for d in shape.dimensions]), FAR)
-        before = problem.required * float(np.exp(-first.worst))
+        values = np.array([known.get(d.key, d.value) for d in shape.dimensions])
+        stress.at(values, FAR)
+        before = problem.required * float(np.exp(-stress.sure(values).worst))
+        first = stress.at(values)
         search = _Search(problem, stress, aim)
-        scaled = _scaled(search, first) if start.values is None else first
-        return replace(_found(search, scaled, start.whole), before=before)
+        if start.values is not None:
+            return replace(_found(search, first, start.whole), before=before)
+        near, whole = _scaled(search, first, roughly=len(values) > 1)
+        return replace(_found(search, near, tuple(map(float, whole))), before=before)
     except UndifferentiatedError:
         return _only_scaled(stress, aim, start.scale or 1.0)
     except ImpossibleError as error:
@@ -146,14 +155,13 @@ def _only_scaled(stress: PinStress, aim: Aim, start: float) -> Lightest:
 
     try:
         best = smallest(factor_at, problem.required, start)
-        scale, factor = best.scale, best.factor
+        way = WHOLE.format("" if isinstance(problem.shape.whole, Pin) else CUTS)
     except (NoSizeError, ImpossibleError, InputError) as error:
         return Lightest(
             problem.name, before=factors.get(start), solved=len(factors), why=str(error)
         )
-    return Lightest(
-        problem.name, None, scale, factors[start], factor, solved=len(factors), way=WHOLE
-    )
+    before, count = factors[start], len(factors)
+    return Lightest(problem.name, None, best.scale, before, best.factor, solved=count, way=way)
 
 
 def problem_of(study: Study, plan: Plan, pin: str, aim: Aim) -> PinProblem | str:
@@ -203,32 +211,37 @@ class _Search:
 
     def raised(self, solved: SolvedPin) -> tuple[StressPlace, ...]:
         """Over what is aimed at, a little below what is allowed."""
-        return tuple(replace(p, value=p.value + AIM) for p in solved.places)
+        aim = ROUGH_AIM if self.stress.in_contact else AIM
+        return tuple(replace(p, value=p.value + aim) for p in solved.places)
+
+    def least_weight(self, start: Floats) -> Optimum:
+        """From dimensions' logarithms."""
+        return least_weight(self, start, ROUGH_ENOUGH if self.stress.in_contact else ENOUGH)
 
     def volume(self, solved: SolvedPin) -> float:
         """m^3."""
         return float(self.shape.volume(solved.values)[0])
+
+    def written(self, values: Floats) -> Floats:
+        """As they are written."""
+        metre = self.problem.study.system.factor("length")
+        return _rounded(self.shape, values, self.aim.step, metre)
 
     def keeps(self, values: Floats) -> bool:
         """Whether geometric limits hold but for the digits that are written."""
         return float(self.shape.at_limits(values)[0].min(initial=0.0)) >= -ROUNDING
 
 
-def _found(search: _Search, scaled: SolvedPin, whole: tuple[float, ...] | None) -> Lightest:
-    """From a design; whole: dimensions of the pin that is only scaled, if that is another."""
+def _found(search: _Search, near: SolvedPin, whole: tuple[float, ...] | None) -> Lightest:
+    """From a design near the factor; whole: dimensions of the pin that is only scaled, if known."""
     shape, aim = search.shape, search.aim
-    if len(shape.dimensions) > 1 or not -NEAR <= scaled.worst <= 0.0:
-        optimum = least_weight(search, np.log(scaled.values), ENOUGH)
-    else:
-        x, places = np.log(scaled.values), scaled.places
-        optimum = Optimum(x, search.weight(x)[0], places, optimality(search, x, places), 0)
+    optimum = _optimum(search, near)
     best = _written(search, optimum)
-    before: float | None = None
-    as_whole = scaled.values if whole is None else np.array(whole)
+    before, as_whole = None, near.values if whole is None else np.array(whole)
     if set(aim.vary) == set(KINDS):
-        metre = search.problem.study.system.factor("length")
-        before = float(shape.volume(_rounded(shape, as_whole, aim.step, metre))[0])
-        if before <= search.volume(best):
+        before = float(shape.volume(search.written(as_whole))[0])
+        if before <= search.volume(best) * (1.0 + DOUBT):
+            _, as_whole = _scaled(search, search.stress.at(as_whole), roughly=False)
             as_scaled = _repaired(search, as_whole)
             if as_scaled is not None:
                 before = search.volume(as_scaled)
@@ -246,16 +259,35 @@ def _found(search: _Search, scaled: SolvedPin, whole: tuple[float, ...] | None) 
     )
 
 
-def _scaled(search: _Search, first: SolvedPin) -> SolvedPin:
-    """With the factor reached, all dimensions times the same; as it is where only bores change.
+def _optimum(search: _Search, near: SolvedPin) -> Optimum:
+    """From a design near the factor. Of a pin in contact what rough cells say is corrected at the
+    optimum, and that is searched again from there, until the finer ones agree.
+    """
+    if len(search.shape.dimensions) > 1 or not -NEAR <= near.worst <= 0.0:
+        found = search.least_weight(np.log(near.values))
+    else:
+        x, places = np.log(near.values), near.places
+        found = Optimum(x, search.weight(x)[0], places, optimality(search, x, places), 0)
+    if search.stress.in_contact:
+        for _ in range(CORRECTIONS):
+            sure = search.stress.sure(search.written(np.exp(found.x)))
+            if -SETTLED <= sure.worst <= 0.0:
+                break
+            found = search.least_weight(found.x)
+    return found
+
+
+def _scaled(search: _Search, first: SolvedPin, roughly: bool) -> tuple[SolvedPin, Floats]:
+    """All dimensions times the same: the design nearest to the factor that was solved, and what
+    reaches it, `roughly` by the slope of stress there. As it is where only bores change.
 
     Raises: ImpossibleError.
     """
-    now = first
+    now, values = first, search.shape.values
     best: SolvedPin | None = None
     small, why = None, ""  # small: with which stress is too large
     for _ in range(SCALINGS):
-        here = float(np.log(now.values[0] / search.shape.values[0]))
+        here = float(np.log(now.values[0] / values[0]))
         if now.worst <= 0.0:
             best = now
         else:
@@ -265,11 +297,13 @@ def _scaled(search: _Search, first: SolvedPin) -> SolvedPin:
         top = max((p for p in now.places if p.slope is not None), key=lambda p: p.value)
         assert top.slope is not None  # it was found with derivatives
         if top.slope.sum() > 0.0:  # of bores alone, which weaken it
-            return first
+            return first, first.values
         leap, rate = np.log(LEAP), min(float(top.slope.sum()), -0.5)
         there = here + float(np.clip((now.worst + AIM) / -rate, -leap, leap))
+        if roughly and abs(now.worst) <= FAR:
+            return now, values * np.exp(there)
         if best is not None:
-            large = float(np.log(best.values[0] / search.shape.values[0]))
+            large = float(np.log(best.values[0] / values[0]))
             if large - (there if small is None else small) < NARROW:
                 break
             if small is not None and not small < there < large:
@@ -277,18 +311,19 @@ def _scaled(search: _Search, first: SolvedPin) -> SolvedPin:
         if abs(there) > np.log(FARTHEST):
             break
         try:
-            now = search.stress.at(search.shape.values * np.exp(there), FAR)
+            tried = values * np.exp(there)
+            now = search.stress.at(tried if roughly else search.written(tried), FAR)
         except ImpossibleError as error:
             why = f"; with {np.exp(there):.3g} times: {error}"
             break
     if best is None:
         factor = search.aim.required * float(np.exp(-now.worst))
-        times = float(now.values[0] / search.shape.values[0])
+        times = float(now.values[0] / values[0])
         raise ImpossibleError(
             f"with {times:.3g} times these dimensions its factor is only {factor:.4g}{why}; its "
             "bands must be longer, its material stronger or its loads smaller"
         )
-    return best
+    return best, best.values
 
 
 def _written(search: _Search, optimum: Optimum) -> SolvedPin:
@@ -312,11 +347,9 @@ def _repaired(search: _Search, values: Floats) -> SolvedPin | None:
     """With the factor reached by dimensions as they are written, larger where need be; None where
     it is not.
     """
-    shape, step = search.shape, search.aim.step
-    metre = search.problem.study.system.factor("length")
-    more = 0.0
+    step, more = search.aim.step, 0.0
     for k in range(REPAIRS if step is None else STEPS_UP):
-        found = search.stress.at(_rounded(shape, values * (1.0 + more), step, metre))
+        found = search.stress.sure(search.written(values * (1.0 + more)))
         if found.worst <= 0.0:
             return found
         if step is None:  # by what stress exceeds, were it tension, which is enough

@@ -170,16 +170,30 @@ def _density(study: Study, name: str) -> float | None:
 
 
 def _widen_eyes(document: Any, old: Study, new: Study, name: str) -> None:
-    """Widen the eyes about a pin that are given and have become too narrow."""
+    for at, least in wider_eyes(old, new, name).items():
+        _write(document["pin"][name]["lug"][at], "outer_diameter", least, "length", new.system)
+
+
+def wider_eyes(old: Study, new: Study, name: str) -> dict[str, float]:
+    """Outer diameters, m, that eyes about a pin need, of those that are given and have become too
+    narrow, by connection.
+    """
+    out = {}
     for at, lug in new.table.pin[name].lug.items():
         if lug.outer_diameter is None:
             continue
-        ring = 2.0 * lug.bushing.thickness if lug.bushing else 0.0
-        before, after = (2.0 * pin(x, name).band(at).radius + ring for x in (old, new))
+        before, after = (hole_in_eye(x, name, at) for x in (old, new))
         least = min(LEAST_EYE, lug.outer_diameter / before) * after
         if lug.outer_diameter < least * (1.0 - 1e-9):
-            table = document["pin"][name]["lug"][at]
-            _write(table, "outer_diameter", least, "length", new.system)
+            out[at] = least
+    return out
+
+
+def hole_in_eye(study: Study, name: str, connection: str) -> float:
+    """Diameter of the hole in an eye about a pin, bushing and all, m."""
+    bushing = study.table.pin[name].lug[connection].bushing
+    ring = 2.0 * bushing.thickness if bushing else 0.0
+    return 2.0 * pin(study, name).band(connection).radius + ring
 
 
 def _numbers(table: Any, key: str) -> list[tuple[Any, Any]]:

@@ -11,13 +11,12 @@ import numpy as np
 import pytest
 
 import pinstress
+from fea.joint.solve_in_lugs import LugSolution
 from pinstress.analysis.gather import results_of
 from pinstress.analysis.plan import prepare
-from pinstress.analysis.solve import solve_tasks
+from pinstress.analysis.solve import solutions, solve_tasks
 from pinstress.cli.commands import run_command_line
-from pinstress.model.pins import pin as pin_of
-from pinstress.remedies.dimensions import dimensions_of
-from pinstress.remedies.sensitivities import by_key
+from pinstress.remedies.sensitivities import by_length
 from reports.data.results import PinSensitivities
 from tests.support.clevis import CLEVIS
 from tests.support.command_line import QUICK
@@ -122,18 +121,6 @@ def test_corners_and_segments_agree() -> None:
         assert M[f"meridian[{corner}][1]"] == pytest.approx(given, rel=1e-5, abs=1e-4)
 
 
-def test_by_key_is_what_a_run_reports() -> None:
-    study = pinstress.study_from(QUICK)
-    (found,) = pinstress.run(study).sensitivities
-    ours = by_key(study, "B", "landing")
-    keys = {d.key for d in dimensions_of(study, pin_of(study, "B"))}
-    assert set(ours) == keys
-    psi_per_inch = study.system.factor("stress") / study.system.factor("length")
-    for row in found.rows:
-        if row.kind == "length":
-            assert row.stress * psi_per_inch == pytest.approx(ours[row.key], rel=1e-9)
-
-
 def test_of_a_beam_they_are_relative_to_its_maximum() -> None:
     study = pinstress.study_from(QUICK)
 
@@ -156,7 +143,7 @@ def test_of_a_beam_they_are_relative_to_its_maximum() -> None:
 def test_in_contact_by_all_of_the_joint() -> None:
     """Where asked; else how to get them. Eyes without an outer diameter grow with the pin, and the
     stiffness against tilt with that of their material: so all lengths together and all moduli obey
-    the rules of sums, and differences of other studies agree. `by_key` gives the lengths.
+    the rules of sums, and differences of other studies agree. `by_length` gives those asked for.
     """
     study = pinstress.study_from(CLEVIS)
     plan = replace(prepare(study), sensitive=True)
@@ -174,11 +161,17 @@ def test_in_contact_by_all_of_the_joint() -> None:
     forces = total("force")
     assert total("length") + 2.0 * forces == pytest.approx(0.0, abs=1e-6)
     assert total("stress") + forces == pytest.approx(1.0, abs=1e-6)
-    ours = by_key(study, "P", "pull")
-    stress, length = study.system.factor("stress"), study.system.factor("length")
+    (task,) = plan.tasks
+    (joined,) = solutions(study, task, plan.asked, lambda _: None)
+    assert isinstance(joined, LugSolution)
     lengths = {row.key: row.stress for row in found.rows if row.kind == "length"}
-    for key, value in lengths.items():
-        assert ours[key] == pytest.approx(value * stress / length, rel=1e-6), key
+    some = [key for key in lengths if key.endswith("diameter")]
+    ours = by_length(study, task, joined, some)
+    assert ours is not None
+    assert set(ours) == set(some)
+    stress, length = study.system.factor("stress"), study.system.factor("length")
+    for key in some:
+        assert ours[key] == pytest.approx(lengths[key] * stress / length, rel=1e-6), key
     other = [
         pinstress.run(pinstress.changed_study(study, {"pin.P.profile[4].length": 20.0 + x}))
         for x in (0.4, -0.4)

@@ -21,7 +21,7 @@ from pinstress.sizing.scaled_study import moved, resized, resized_study
 from pinstress.study.file import load_study, parse_study
 from pinstress.study.in_python import changed_study
 from tests.conftest import ROOT
-from tests.support.command_line import ONE_PIN, QUICK
+from tests.support.command_line import ONE_PIN, QUICK, sizes_nothing
 
 
 @given(
@@ -261,18 +261,9 @@ def test_a_singular_pin_is_sized_but_nothing_is_claimed(
 )
 def test_what_cannot_be_sized_is_told(
     tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
     arguments: list[str],
     change: tuple[str, str],
     status: int,
     message: str,
 ) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("study.toml").write_text(QUICK.replace(*change) if change[0] else QUICK)
-    assert run_command_line(["size", "study.toml", *arguments]) == status
-    said = capsys.readouterr()
-    assert message in " ".join(said.err.split())
-    assert "Traceback" not in said.err
-    assert not Path("study_sized.toml").exists()
-    assert "Written" not in said.err
+    assert message in sizes_nothing(tmp_path, arguments, change, status)

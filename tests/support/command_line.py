@@ -28,3 +28,14 @@ def run_here(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
     with chdir(cwd), redirect_stdout(StringIO()) as out, redirect_stderr(StringIO()) as err:
         status = run_command_line(list(arguments))
     return subprocess.CompletedProcess(arguments, status, out.getvalue(), err.getvalue())
+
+
+def sizes_nothing(folder: Path, arguments: list[str], change: tuple[str, str], status: int) -> str:
+    """What `size` says, in one line, of the quick study with other text; no study is written."""
+    (folder / "study.toml").write_text(QUICK.replace(*change) if change[0] else QUICK)
+    made = run_here("size", "study.toml", *arguments, cwd=folder)
+    assert made.returncode == status
+    assert "Traceback" not in made.stderr
+    assert "Written" not in made.stderr
+    assert not (folder / "study_sized.toml").exists()
+    return " ".join(made.stderr.split())

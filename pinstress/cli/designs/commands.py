@@ -16,7 +16,8 @@ from pinstress.cli.shared import choices, example, read_study
     "hypercube or a random sample of any of its numbers. Writes designs.parquet, a row for each "
     "design, pin and case, and a page to explore them; a design that fails is a row with its "
     "reason.\n\n"
-    "A sweep that was interrupted or killed goes on with --resume.\n\n"
+    "A sweep that was interrupted or killed goes on with --resume; one of a Sobol sequence or a "
+    "random sample also to a larger count.\n\n"
     "Exit status: 0 done; 1 done, but every design failed; 2 bad input; 130 interrupted.",
 )
 @click.argument("study", type=click.Path(path_type=Path))
@@ -27,7 +28,9 @@ from pinstress.cli.shared import choices, example, read_study
     metavar="ADDRESS",
     help="Solve on your own cluster of dask, tcp://host:8786, instead of this machine.",
 )
-@click.option("--resume", is_flag=True, help="Go on with a sweep that did not end.")
+@click.option(
+    "--resume", is_flag=True, help="Go on with a sweep that did not end, or with a larger count."
+)
 @click.option("--open", "opens", is_flag=True, help="Open the page in the browser when done.")
 def sweep(
     study: Path,

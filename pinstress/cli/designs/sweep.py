@@ -17,10 +17,10 @@ from pinstress.cli.output_folder import require_replaceable
 from pinstress.cli.run import console
 from pinstress.cli.shared import open_page
 from pinstress.cli.streams import unneeded
-from pinstress.designs.parts import FOLDER, STATED, Parts, identity, is_ours
+from pinstress.designs.parts import FOLDER, STATED, TABLE, Parts, identity, is_ours
 from pinstress.designs.summary import summary
 from pinstress.designs.sweep import Report, planned, solved
-from pinstress.designs.table import read_table, write_table
+from pinstress.designs.table import read_table, table_of, write_table
 from pinstress.processes import interrupts
 from pinstress.processes.folder_lock import Release, lock
 from pinstress.processes.interrupts import Unfinished
@@ -31,7 +31,7 @@ from reports.designs.page import write_designs_page
 if TYPE_CHECKING:
     import pyarrow as pa
 
-TABLE, PAGE = "designs.parquet", "designs.html"
+PAGE = "designs.html"
 FILES = TABLE, PAGE, STATED, f"{TABLE}.partial", f"{PAGE}.partial"
 
 
@@ -64,6 +64,12 @@ def sweep_and_write(
             click.echo(f"The sweep in {directory} is complete: nothing to do.", err=True)
         return _told(directory, read_table(directory / TABLE), way)
     with _claimed(directory, parts, way.resume):
+        before = parts.count_before if way.resume else None
+        if before is not None:
+            parts.continue_with(table_of(study, sweep.parameters, []).schema)
+            if not way.quiet:
+                count = len(sweep.values)
+                click.echo(f"Continued from {before:,} designs to {count:,}.", err=True)
         try:
             with progress(way.quiet) as report:
                 table = solved(sweep, parts, way.jobs, way.scheduler, report)

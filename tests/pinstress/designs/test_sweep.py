@@ -35,7 +35,7 @@ from pinstress.designs.batches import (
 )
 from pinstress.designs.number import number_at
 from pinstress.designs.parameters import parameters_of
-from pinstress.designs.parts import Parts, identity, is_ours
+from pinstress.designs.parts import Identity, Parts, identity, is_ours
 from pinstress.designs.summary import summary
 from pinstress.designs.sweep import Kept, planned, solved
 from pinstress.designs.table import assembled, facts, write_table
@@ -212,7 +212,7 @@ def test_many_processes_get_larger_batches() -> None:
 def test_parts_are_of_one_sweep_and_damaged_ones_are_solved_again(
     table: pa.Table, tmp_path: Path
 ) -> None:
-    parts = Parts(tmp_path, "one")
+    parts = Parts(tmp_path, Identity("one", "any", 6, "random"))
     assert not parts.there()
     with pytest.raises(InputError) as raised:
         parts.require_same()
@@ -226,7 +226,7 @@ def test_parts_are_of_one_sweep_and_damaged_ones_are_solved_again(
     assert [t.num_rows for t in found] == [3, 4]
     assert parts.count == 2
     with pytest.raises(InputError) as raised:
-        Parts(tmp_path, "two").require_same()
+        Parts(tmp_path, Identity("two", "other", 6, "random")).require_same()
     assert raised.value.code == "other-sweep"
     names = {f"parts/{p.name}" for p in parts.folder.iterdir()} | {"parts/"}
     assert all(map(is_ours, names))
@@ -243,8 +243,12 @@ def test_a_sweep_is_known_by_its_study_vary_pins_and_cases() -> None:
         identity(study, None, None), identity(study, ["B"], None), identity(study, None, ["x"]),
         identity(other, None, None),
     ]  # fmt: skip
-    assert len(set(known)) == 4
+    assert len({x.sweep for x in known}) == len({x.but_count for x in known}) == 4
     assert identity(study, None, None) == known[0]
+    few, more = (identity(swept(VARIED, f"count = {n}", QUICK), None, None) for n in (200, 300))
+    assert few.sweep != more.sweep
+    assert few.but_count == more.but_count
+    assert (few.count, more.count) == (200, 300)
 
 
 def test_designs_whose_process_died_are_rows() -> None:

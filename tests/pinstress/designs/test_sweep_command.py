@@ -107,7 +107,7 @@ def test_an_unfinished_sweep_is_kept_and_goes_on(
     assert again.returncode == 2
     assert "has a sweep that did not end: go on with --resume" in again.stderr
     text = (tmp_path / "study.toml").read_text()
-    (tmp_path / "study.toml").write_text(text.replace("count = 6", "count = 7"))
+    (tmp_path / "study.toml").write_text(text.replace("count = 6", "count = 6\nseed = 7"))
     other = run_here(*arguments, "--resume", cwd=tmp_path)
     assert other.returncode == 2
     assert "is of another study, other [vary]" in other.stderr
@@ -130,7 +130,7 @@ def assert_complete(folder: Path, *arguments: str) -> None:
     assert "6 designs, 3 failed" in done.stdout
     assert table.stat().st_mtime_ns == at
     text = (folder / "study.toml").read_text()
-    (folder / "study.toml").write_text(text.replace("count = 6", "count = 7"))
+    (folder / "study.toml").write_text(text.replace("count = 6", "count = 6\nseed = 7"))
     other = run_here(*arguments, "--resume", cwd=folder)
     assert other.returncode == 2
     assert "is of another study, other [vary]" in other.stderr
@@ -139,6 +139,52 @@ def assert_complete(folder: Path, *arguments: str) -> None:
     damaged = run_here(*arguments, "--resume", cwd=folder)
     assert damaged.returncode == 2
     assert "designs.parquet cannot be read" in damaged.stderr
+
+
+@pytest.mark.parametrize("ended", [True, False], ids=["ended", "interrupted"])
+def test_a_sequence_is_continued_to_more_designs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ended: bool
+) -> None:
+    """With the bytes of one that was as long from the start; not to fewer, nor of other kinds."""
+    import pinstress.designs.workers as module
+    from pinstress.designs.batches import Batch, DesignProblem, Done, solve_batch
+
+    solved: list[int] = []
+
+    def counted(problem: DesignProblem, batch: Batch) -> Done:
+        if not ended and len(solved) >= 2:
+            raise KeyboardInterrupt
+        solved.extend(batch.designs)
+        return solve_batch(problem, batch)
+
+    monkeypatch.setattr(module, "solve_batch", counted)
+    _study(tmp_path, count=4)
+    arguments = "sweep", "study.toml", "--jobs", "1", "--out", "out"
+    assert run_here(*arguments, cwd=tmp_path).returncode == (0 if ended else 130)
+    monkeypatch.setattr(module, "solve_batch", solve_batch)
+    before = len(solved)
+    _study(tmp_path, count=3)
+    fewer = run_here(*arguments, "--resume", cwd=tmp_path)
+    assert fewer.returncode == 2
+    assert "has count = 4, more than the study's 3" in fewer.stderr
+    ended, solved = True, []
+    monkeypatch.setattr(module, "solve_batch", counted)
+    path = _study(tmp_path, count=9)
+    more = run_here(*arguments, "--resume", cwd=tmp_path)
+    assert more.returncode == 0, more.stderr
+    assert "Continued from 4 designs to 9." in more.stderr
+    assert len(solved) == 9 - before
+    assert run_here(*arguments[:-1], "whole", cwd=tmp_path).returncode == 0
+    for name in ("designs.parquet", "designs.html", "sweep.json"):
+        assert (tmp_path / "out" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+    path.write_text(path.read_text().replace('"sobol"', '"latin-hypercube"'))
+    other = run_here(*arguments, "--resume", cwd=tmp_path)
+    assert "is of another study, other [vary]" in other.stderr
+    assert run_here(*arguments[:-1], "cube", cwd=tmp_path).returncode == 0
+    path.write_text(path.read_text().replace("count = 9", "count = 10"))
+    refused = run_here(*arguments[:-1], "cube", "--resume", cwd=tmp_path)
+    assert refused.returncode == 2
+    assert "a latin-hypercube sample of another count has other designs" in refused.stderr
 
 
 def test_run_ignores_vary_and_check_reads_it(tmp_path: Path) -> None:
