@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from geometry.arrays import Floats
+from geometry.arrays import Floats, Mask
 from geometry.coded import Place
 from geometry.shape.drill import (
     SQUARE,
@@ -93,6 +93,15 @@ class Hole(Drilled):
             outline = closed_outline(edges, far)
         c, s = math.cos(self.angle), math.sin(self.angle)
         return Placed(outline, (0.0, 0.0, self.z), (c, s, 0.0))
+
+    def takes(self, x: Floats, radius: float) -> Mask:
+        """Its mouths, with what is countersunk; of rounded ones all that is rounded."""
+        c, s = math.cos(self.angle), math.sin(self.angle)
+        u, aside = c * x[:, 0] + s * x[:, 1], c * x[:, 1] - s * x[:, 0]
+        far = np.hypot(aside, x[:, 2] - self.z)
+        wide = self.diameter / 2.0 + self.mouth_radius
+        wide = np.maximum(wide, self.diameter / 2.0 + self.chamfer - (radius - np.abs(u)))
+        return np.asarray((far < wide) & ((u > 0.0) | (self.depth is None)))
 
     def surfaces(self, pin: Pin) -> tuple[SmoothPart, ...]:
         """Wall, bottom, mouths."""
