@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from geometry import Cut, Pin
 
-MARGIN = 0.1  # of a cut's size, or the pin's diameter, at least to the end of a loaded band about it
+MARGIN = 0.1  # of a cut's size, at most the pin's: least distance to the ends of a band about it
 
 
 def is_inside(cut: Cut, pin: Pin, z0: float, z1: float) -> bool:

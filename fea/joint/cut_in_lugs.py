@@ -59,8 +59,8 @@ class Neglected:
         it, its = ("it", "its") if len(self.bands) == 1 else ("them", "their")
         lost = f" ({self.lost:.1%} of the force of a lug presses there)" * (self.lost >= TELL)
         return Note(
-            f"; {where}: contact is that of the pin without {it}{lost}, and pressure at {its} edges "
-            "is not resolved",
+            f"; {where}: contact is that of the pin without {it}{lost}, and pressure at {its} "
+            "edges is not resolved",
             ("cut-in-lug",),
         )
 

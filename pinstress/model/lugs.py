@@ -9,7 +9,7 @@ from fea.core.material import Material
 from fea.cut.inside import crosses_end
 from fea.joint.lugs.fit import beyond_foundations, fitted, on_structure
 from fea.joint.lugs.lug import Bushing, Lug, LugRange
-from geometry import ArgumentError, Cut, CutPin, Hole, Pin, PinLike
+from geometry import ArgumentError, Band, Cut, CutPin, Hole, Pin, PinLike
 from pinstress.model.pins import material
 from pinstress.schema.pins import LugRangeTable, LugTable, PinTable
 from pinstress.study.file import Study
@@ -103,18 +103,23 @@ def _in_contact(study: Study, pin: PinLike, instead: str) -> Pin:
             if crosses_end(feature, profile, band.z0, band.z1):
                 raise study.error(
                     f"pin {pin.name}: {cut} lies at the edge of the lug of {name}, where stress "
-                    f"has no bound: {_clear_of(feature)}, {instead}",
+                    f"has no bound: {_clear_of(feature, band)}, {instead}",
                     at,
                     f"{feature.what}-at-end",
                 )
     return profile
 
 
-def _clear_of(cut: Cut) -> str:
-    """What keeps a cut clear of the edges of lugs."""
+def _clear_of(cut: Cut, band: Band) -> str:
+    """What keeps a cut clear of the edges of a lug."""
+    low, high = cut.opens
     if isinstance(cut, Hole):
         return "move it"
-    return "end it a tenth of its width inside of the lug or outside of it"
+    if low <= band.z0 and band.z1 <= high:
+        return "it goes through the whole lug; end it inside of the lug or leave the lug out of it"
+    if high <= band.z1 or band.z0 <= low:
+        return "end it inside of the lug, by a tenth of its width, or outside of it"
+    return "shorten it"
 
 
 def _ends_of_clearance(lugs: list[Lug]) -> list[list[Lug]]:
