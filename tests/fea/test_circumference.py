@@ -213,3 +213,10 @@ def test_no_load_has_no_harmonic_and_no_stress() -> None:
     order, largest = around.last(np.arange(3))
     assert order == 0
     assert largest.tolist() == [[0.0, 0.0]] * 3
+
+
+def test_bounds_of_no_points_are_none() -> None:
+    """As of a pin whose cuts leave nothing of its section to read."""
+    loads = PinLoads("pull", ("A",), np.array([[[1.0, 0.0, 2.0]]]))
+    around = Circumference(unit_fields(loads, 3, 0), loads)
+    assert around.bound(np.zeros(0, dtype=np.int64)).shape == (0, 1)

@@ -9,6 +9,7 @@ import pytest
 
 from geometry import Bottom, Cut, CutPin, Flat, GeometryError, Hole, Passage, Pin, Segment, Slot
 from geometry.arrays import Floats
+from geometry.mesh.solid_mesh import MeshError, MeshSize, solid_mesh
 from geometry.shape.cut_edges import DrawnCut, drawn
 from tests.support.errors import raises
 
@@ -117,3 +118,9 @@ def test_a_bottom_at_the_bore_is_refused() -> None:
         assert CutPin(TUBE, (Hole(0.05, 0.004, depth=depth),)).holes
     with raises(GeometryError, "hole-too-large"):
         CutPin(SHAFT, (Hole(0.05, 0.004, mouth_radius=0.009),))
+
+
+def test_a_wall_too_thin_for_any_mesh_is_named() -> None:
+    pin = CutPin(SHAFT, (Hole(0.05, 0.0199),))
+    with raises(MeshError, "no-elements"):
+        solid_mesh(pin, MeshSize(2.0, 2.0, 2.0))
