@@ -35,7 +35,7 @@ from geometry.arrays import Floats
 ALONG, AROUND = 24, 720  # points of a band between the ends of a cut
 STIFFNESS = "stiffness of the lugs"
 TWICE = math.log(2.0)
-TELL = 5e-4  # of a lug's force: what is lost of it is said
+TELL = 5e-4  # of a lug's force: what is lost of it is reported
 
 
 @dataclass(frozen=True)
