@@ -101,9 +101,8 @@ class Hole(Drilled):
         c, s = math.cos(self.angle), math.sin(self.angle)
         u, aside = c * x[:, 0] + s * x[:, 1], c * x[:, 1] - s * x[:, 0]
         far = np.hypot(aside, x[:, 2] - self.z)
-        wide = self.diameter / 2.0 + self.mouth_radius
-        wide = np.maximum(wide, self.diameter / 2.0 + self.chamfer - (radius - np.abs(u)))
-        return np.asarray((far < wide) & ((u > 0.0) | (self.depth is None)))
+        sunk = np.maximum(self.chamfer - (radius - np.abs(u)), self.mouth_radius)
+        return np.asarray((far < self.diameter / 2.0 + sunk) & ((u > 0.0) | (self.depth is None)))
 
     def surfaces(self, pin: Pin) -> tuple[SmoothPart, ...]:
         """Wall, bottom, mouths."""
