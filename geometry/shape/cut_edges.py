@@ -21,7 +21,7 @@ from geometry.shape.passage import Passage
 from geometry.shape.pin import Pin
 
 ROUND = np.linspace(0.0, 2.0 * np.pi, 73)
-UPRIGHT = 1e-3  # rad: how far off x a slot may be milled from that is drawn as a notch
+UPRIGHT = 1e-3  # rad: how far off x a cut may be milled from that is seen from aside
 LITTLE = 1e-9  # of the pin's radius
 
 
@@ -160,6 +160,8 @@ def _flat(flat: Flat, pin: Pin, z0: float, z1: float) -> DrawnCut:
         aside = np.linspace(-half, half, 49)
         lines += _seen(_placed(flat.angle, np.sqrt(r**2 - aside**2), aside, np.full(49, z)))
         lines += _seen(_placed(flat.angle, np.full(49, flat.distance), aside, np.full(49, z)))
+    if abs(math.sin(flat.angle)) < UPRIGHT:  # edges behind are those in front
+        lines = [(x, hidden) for x, hidden in lines if not hidden]
     return DrawnCut(tuple(lines), tuple(notches))
 
 
