@@ -186,7 +186,7 @@ def _with_local_solids(
     if job.asked.model == "harmonic":
         reason = why.text.removeprefix("solid: the pin is not a body of revolution, and ")
         raise ArgumentError(
-            f"pin {pin.name}: no local solid about the holes will do, since {reason}", why.codes[-1]
+            f"pin {pin.name}: no local solid about the cuts will do, since {reason}", why.codes[-1]
         )
     return {}, replace(job, asked=replace(job.asked, because=why))
 

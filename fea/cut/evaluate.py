@@ -62,7 +62,7 @@ def cut_solution(
     distance: float = 0.1,
 ) -> CutSolution:
     """As fea.harmonic.evaluate.harmonic_solution, on mesh number `level` of section and pieces.
-    bands: loaded ones with holes in them (fea.cut.region.loaded_bands); distance: as
+    bands: loaded ones with cuts in them (fea.cut.region.loaded_bands); distance: as
     fea.cut.inner_corners.
 
     Raises: MeshError, SolveError.

@@ -1,19 +1,19 @@
-"""Where holes lie along a pin, for whoever must know before anything is computed."""
+"""Where cuts lie along a pin, for whoever must know before anything is computed."""
 
 from __future__ import annotations
 
-from geometry import Hole
+from geometry import Cut, Pin
 
-MARGIN = 0.1  # of a hole's diameter, at least to the end of a loaded band about it
-
-
-def is_inside(hole: Hole, z0: float, z1: float) -> bool:
-    """Whether it lies well inside a band between two z, m."""
-    (low, high), margin = hole.opens, MARGIN * hole.diameter
-    return low > z0 + margin and high < z1 - margin
+MARGIN = 0.1  # of a cut's size, at most the pin's: least distance to the ends of a band about it
 
 
-def crosses_end(hole: Hole, z0: float, z1: float) -> bool:
-    """Whether it touches a band between two z, m, and does not lie well inside of it."""
-    low, high = hole.opens
-    return low < z1 and z0 < high and not is_inside(hole, z0, z1)
+def is_inside(cut: Cut, pin: Pin, z0: float, z1: float) -> bool:
+    """Whether what it takes from the surface lies well inside a band between two z, m."""
+    (low, high), margin = cut.opens, MARGIN * min(cut.size, pin.smallest_diameter)
+    return z0 + margin < low < high < z1 - margin
+
+
+def crosses_end(cut: Cut, pin: Pin, z0: float, z1: float) -> bool:
+    """Whether it takes from a band between two z, m, and does not lie well inside of it."""
+    low, high = cut.opens
+    return low < z1 and z0 < high and not is_inside(cut, pin, z0, z1)

@@ -184,7 +184,7 @@ def mesh_of(
     bands: Sequence[tuple[float, float]] = (),
 ) -> LocalModel:
     """Mesh number `level` of a piece, finer about points (m, in the pin's frame) where stress was
-    high on the meshes before. bands: loaded ones of the pin, with holes in them.
+    high on the meshes before. bands: loaded ones of the pin, with cuts in them.
 
     Raises: MeshError.
     """

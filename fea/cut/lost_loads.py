@@ -10,7 +10,7 @@ changes stress about the cut alone, by the order of the part of the force that i
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -42,7 +42,9 @@ class Bearing:
 
 
 def bearings(piece: Piece, bands: Sequence[tuple[float, float]]) -> tuple[Bearing, ...]:
-    """Of the loaded bands (z0, z1) of the pin, m, those in which a piece has cuts."""
+    """Of the loaded bands (z0, z1) of the pin, m, those in which a piece has cuts. All that is lost
+    in a piece is lost on its band where it has one only, also where its cuts meet.
+    """
     out = []
     for low, high in bands:
         z0, z1 = low - piece.origin, high - piece.origin
@@ -53,7 +55,7 @@ def bearings(piece: Piece, bands: Sequence[tuple[float, float]]) -> tuple[Bearin
         names = tuple(name for name, (start, end) in opens.items() if z0 < start and end < z1)
         if names:
             out.append(Bearing(z0, z1, names))
-    return tuple(out)
+    return tuple(out) if len(out) != 1 else (replace(out[0], cuts=tuple(piece.cuts)),)
 
 
 def trials(x: Floats, normal: Floats, shears: bool) -> Floats:

@@ -9,7 +9,7 @@ from itertools import combinations
 from fea.core.peak import Note
 from fea.cut.inside import crosses_end, is_inside
 from fea.singular.singularities import Singularity
-from geometry import Cut, CutPin, Hole, Pin
+from geometry import Cut, CutPin, Pin
 from geometry.mesh.cut_piece import Piece, clipped
 
 BEYOND = 1.4  # of the diameter, past a cut: in a shaft, ends there change stress by 0.1 %
@@ -50,18 +50,34 @@ def refused(pin: CutPin, clamps: tuple[str, ...], loaded: Sequence[str]) -> Note
             if name in clamps:
                 text = f"{cut} lies in the clamped surface {name}"
                 return _solid(text, f"{feature.what}-in-clamped")
-            if not isinstance(feature, Hole):
+            if name not in pin.connections:
                 text = f"{cut} lies in the loaded surface {name}"
                 return _solid(text, f"{feature.what}-in-loaded")
-            if crosses_end(feature, z0, z1):
-                return _solid(f"{cut} lies at an end of the band {name}", "hole-at-end")
+            if crosses_end(feature, pin.profile, z0, z1):
+                text = f"{cut} lies at an end of the band {name}"
+                return _solid(text, f"{feature.what}-at-end")
+    return _joined(pin, loaded)
+
+
+def _joined(pin: CutPin, loaded: Sequence[str]) -> Note | None:
+    """The same, where a passage may join cuts in several loaded bands, so that what each loses is
+    not known.
+    """
+    bands = loaded_bands(pin, loaded)
+    for name, cut in pin.cuts.items():
+        low, high = cut.extent
+        if cut.opens != cut.extent and sum(low < b and a < high for a, b in bands) > 1:
+            return _solid(f"{name} lies under cuts in several loaded bands", "passage-under-bands")
     return None
 
 
 def loaded_bands(pin: CutPin, loaded: Sequence[str]) -> tuple[tuple[float, float], ...]:
-    """The z of both ends, m, of loaded bands (by name) with holes in them."""
+    """The z of both ends, m, of loaded bands (by name) with cuts in them."""
     found = (surface_ends(pin, name) for name in dict.fromkeys(loaded) if name in pin.connections)
-    return tuple((z0, z1) for z0, z1 in found if any(is_inside(h, z0, z1) for h in pin.holes))
+    cuts = pin.cuts.values()
+    return tuple(
+        (z0, z1) for z0, z1 in found if any(is_inside(c, pin.profile, z0, z1) for c in cuts)
+    )
 
 
 def at_corner(pin: CutPin, singularities: Sequence[Singularity]) -> Note | None:
@@ -110,7 +126,7 @@ def pieces(
     bands: Sequence[tuple[float, float]] = (),
 ) -> tuple[Piece, ...]:
     """One about each cut, or about cuts that are close to each other, along the pin; beyond: how
-    far past these, of the diameter. bands: loaded ones with holes in them (loaded_bands).
+    far past these, of the diameter. bands: loaded ones with cuts in them (loaded_bands).
     """
     cuts = sorted(pin.cuts.items(), key=lambda named: named[1].extent)
     groups = [dict(cuts[:1])]

@@ -388,4 +388,5 @@ def _sampled(n: Ints, back: Floats, forth: Floats, degree: int) -> Floats:
 
 def _forms(form: Floats, products: Floats) -> Floats:
     """Quadratic forms (J, K, K) of T pairs of vectors, whose products are (T, K, K); (J, T)."""
-    return np.asarray(form.reshape(len(form), -1) @ products.reshape(len(products), -1).T)
+    size = form.shape[1] * form.shape[2]  # there may be no points
+    return np.asarray(form.reshape(-1, size) @ products.reshape(-1, size).T)

@@ -29,35 +29,39 @@ from fea.joint.cell_pressure import CellPressure
 from fea.joint.error_parts import with_parts
 from fea.joint.records import Variation
 from fea.joint.solve_joint import JointContact
-from geometry import CutPin, Pin
+from geometry import Cut, CutPin, Pin
+from geometry.arrays import Floats
 
-SAMPLES = 7  # points over a mouth, each way
+ALONG, AROUND = 24, 720  # points of a band between the ends of a cut
 STIFFNESS = "stiffness of the lugs"
 TWICE = math.log(2.0)
+TELL = 5e-4  # of a lug's force: what is lost of it is reported
 
 
 @dataclass(frozen=True)
 class Neglected:
     """softer: by how much, relative, cuts raise the pin's bending compliance; pressed: the largest
     pressure on a mouth, Pa; lost: the largest part of a lug's force that acts on mouths; bands:
-    those on which they are, by the numbers of the cuts.
+    those on which they are, by the names of the cuts.
     """
 
     softer: float
     pressed: float
     lost: float
-    bands: dict[int, str]
+    bands: dict[str, str]
 
     @property
     def note(self) -> Note:
         """Of the cuts in lugs."""
         if not self.bands:
             return Note()
-        where = ", ".join(f"hole {i} in lug {name}" for i, name in self.bands.items())
+        where = ", ".join(f"{cut} in lug {name}" for cut, name in self.bands.items())
+        it, its = ("it", "its") if len(self.bands) == 1 else ("them", "their")
+        lost = f" ({self.lost:.1%} of the force of a lug presses there)" * (self.lost >= TELL)
         return Note(
-            f"; {where}: contact is that of the pin without it, and pressure at the edge of its "
-            "mouth is not resolved",
-            ("hole-in-lug",),
+            f"; {where}: contact is that of the pin without {it}{lost}, and pressure at {its} "
+            "edges is not resolved",
+            ("cut-in-lug",),
         )
 
     def error(self, largest: float, at_cut: bool, over: tuple[Variation, ...]) -> float:
@@ -72,47 +76,59 @@ def neglected(
     cut: CutPin, material: Material, contact: JointContact, pressure: CellPressure, of: CutAnswer
 ) -> Neglected:
     """At the single instant of a contact."""
-    pressed, lost, bands = 0.0, dict[int, float](), dict[int, str]()
-    for i, hole in enumerate(cut.holes, 1):
-        radius = cut.profile.radii(hole.z)[1]
-        x = np.linspace(-0.5, 0.5, SAMPLES) * hole.diameter
-        y, z = (a.ravel() for a in np.meshgrid(x, x))
-        inside = np.hypot(y, z) <= 0.5 * hole.diameter
-        y, z = y[inside], z[inside]
-        for side in (0.0, math.pi) if hole.depth is None else (0.0,):
-            angle = hole.angle + side + np.arcsin(y / radius)
-            points = np.stack([radius * np.cos(angle), radius * np.sin(angle), hole.z + z], axis=1)
-            number = pressure.rings(points)
-            on = number[number >= 0]
-            if not len(on):
+    pressed, lost, bands = 0.0, dict[int, float](), dict[str, str]()
+    for name, one in cut.cuts.items():
+        for band, lug in enumerate(contact.lugs):
+            points, area = _mouth(cut, one, lug.connection)
+            if not len(points):
                 continue
             found = pressure.at(points)
-            band = int(contact.bands.band[on[0]])
-            bands[i] = contact.lugs[band].connection
+            bands[name] = lug.connection
             pressed = max(pressed, float(found.max()))
-            part = float(found.mean()) * math.pi * hole.diameter**2 / 4.0
-            lost[band] = lost.get(band, 0.0) + part
+            lost[band] = lost.get(band, 0.0) + float(found.sum()) * area
     own, forces = contact.bands.band, contact.loads.forces[0, :, :2]
     force = {b: float(np.linalg.norm(forces[own == b].sum(axis=0))) for b in lost}
     share = max((part / force[b] for b, part in lost.items() if force[b] > 0.0), default=0.0)
-    return Neglected(_softer(material, contact, of), pressed, share, bands)
+    return Neglected(_softer(cut, material, contact, of), pressed, share, bands)
 
 
-def _softer(material: Material, contact: JointContact, of: CutAnswer) -> float:
-    """The work of the bending moment at the cuts on the turns that these add, over that of the
-    whole pin.
+def _mouth(cut: CutPin, one: Cut, band: str) -> tuple[Floats, float]:
+    """Points (P, 3), m, of a band that a cut takes away, and the area that each stands for, m^2."""
+    on = cut.profile.band(band)
+    low, high = max(one.opens[0], on.z0), min(one.opens[1], on.z1)
+    if low >= high:
+        return np.zeros((0, 3)), 0.0
+    z = low + (np.arange(ALONG) + 0.5) * (high - low) / ALONG
+    angle = (np.arange(AROUND) + 0.5) * 2.0 * math.pi / AROUND
+    angle, z = (x.ravel() for x in np.meshgrid(angle, z))
+    points = np.stack([on.radius * np.cos(angle), on.radius * np.sin(angle), z], axis=1)
+    each = (high - low) / ALONG * on.radius * 2.0 * math.pi / AROUND
+    return points[one.takes(points, on.radius)], each
+
+
+def _softer(cut: CutPin, material: Material, contact: JointContact, of: CutAnswer) -> float:
+    """The work of the bending moment at the cuts, where it is largest, on the turns that these add,
+    over that of the whole pin; of passages at least that on the net section.
     """
     z = stations(contact.pin)
-    moment = contact.bending_moment(z)[0]
+    moment = np.linalg.norm(contact.bending_moment(z)[0], axis=1)
     stiffness = np.array([_inertia(contact.pin, x) for x in z.tolist()]) * material.youngs_modulus
-    whole = float(np.trapezoid(np.sum(moment**2, axis=1) / stiffness, z))
-    added = 0.0
+    whole = float(np.trapezoid(moment**2 / stiffness, z))
+    turned = 0.0
     for piece in of.solution.pieces:
         turn = (piece.moved[1] - piece.moved[0])[3:5] @ piece.coefficients(contact.loads)[0]
         low, high = zone(piece.piece)
-        here = contact.bending_moment(np.array([0.5 * (low + high)]))[0, 0]
-        added += float(np.linalg.norm(here) * np.linalg.norm(turn))
-    return added / whole if whole else 0.0
+        middle = contact.bending_moment(np.array([0.5 * (low + high)]))[0, 0]
+        here = moment[(z >= low) & (z <= high)].max(initial=float(np.linalg.norm(middle)))
+        turned += float(here * np.linalg.norm(turn))
+    along = 0.0
+    for passage in cut.passages:
+        area, d = math.pi * passage.diameter**2 / 4.0, passage.diameter
+        gone = material.youngs_modulus * area * (passage.offset**2 + d**2 / 16.0)
+        on = (z >= passage.extent[0]) & (z <= passage.extent[1])
+        more = 1.0 / np.maximum(stiffness - gone, 0.1 * stiffness) - 1.0 / stiffness
+        along += float(np.trapezoid(moment**2 * more * on, z))
+    return max(turned, along) / whole if whole else 0.0
 
 
 def _inertia(pin: Pin, z: float) -> float:

@@ -52,7 +52,7 @@ FEWEST = 16  # intervals to begin with
 MOST_CELLS = 6000  # a dense matrix of them takes 300 MB
 CONTACT = Note("contact, harmonic: the pin is held by its lugs", ("contact",))
 CUT_CONTACT = Note(
-    "contact, harmonic with local solids about the holes: the pin is held by its lugs", ("contact",)
+    "contact, harmonic with local solids about the cuts: the pin is held by its lugs", ("contact",)
 )
 
 
@@ -296,7 +296,11 @@ class _Contact:
         model, cut = self.model, self.given.cut
         if cut is None:
             return model.pin
-        return RingedCutPin(model.pin, cut.holes, whole=replace(cut, profile=model.whole))
+        whole = replace(cut, profile=model.whole)
+        made = CutPin.of(model.pin, cut.cuts.values())
+        return RingedCutPin(
+            made.profile, made.holes, made.flats, made.slots, made.passages, whole=whole
+        )
 
     def _solution(
         self, case: PinLoads, solution: Solution, known: Comparison, asked: Asked

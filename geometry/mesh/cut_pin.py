@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import combinations
 from typing import ClassVar
 
 from geometry.mesh.cut_solid import cut_solid, name_faces
@@ -40,6 +41,9 @@ class CutPin:
         for name, cut in _named((*self.holes, *flats, *slots, *self.passages)).items():
             what, i = name.split()
             cut.check(self.profile, f"{what} {i}", (what, int(i)))
+        for (k, a), (n, b) in combinations(enumerate(self.holes, 1), 2):
+            if (a.z, a.angle) != (b.z, b.angle):
+                b.check_beside(a, (f"hole {n}", f"hole {k}"), self.profile, ("hole", n))
         length = self.length
         object.__setattr__(self, "flats", tuple(cut.past(length, near) for cut in flats))
         object.__setattr__(self, "slots", tuple(cut.past(length, near) for cut in slots))

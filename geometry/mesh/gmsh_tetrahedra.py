@@ -9,6 +9,7 @@ from skfem import MeshTet1
 
 from geometry.arrays import Floats
 from geometry.mesh.elements import with_element
+from geometry.mesh.gmsh_session import MeshError
 from geometry.mesh.tet10 import find_facets, quadratic
 
 SMALLEST_JACOBIAN = 0.1  # min / max of det J that every element must exceed
@@ -33,9 +34,17 @@ def repair(gmsh: Any) -> tuple[float, int]:
 
     Returns the smallest min/max Jacobian and how many elements were touched. gmsh's own optimiser
     for curved elements is not used: it can abort the whole process.
+
+    Raises: MeshError where there are none, by walls that are too thin for the mesh.
     """
     touched: set[int] = set()
     ratios = _jacobians(gmsh)
+    if not len(ratios):
+        raise MeshError(
+            f"pin {gmsh.model.getCurrent()}: gmsh made no elements; look for walls that are far "
+            "thinner than the pin",
+            "no-elements",
+        )
     for _ in range(MOST_REPAIRS):
         bad = np.flatnonzero(ratios <= SMALLEST_JACOBIAN)
         if not len(bad):

@@ -9,7 +9,7 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
-from geometry.arrays import Floats
+from geometry.arrays import Floats, Mask
 from geometry.coded import Place
 from geometry.shape.pin import GeometryError, Pin
 
@@ -77,6 +77,10 @@ class Cut(ABC):
     def opens(self) -> tuple[float, float]:
         """Between which z, m, it takes from the outer surface."""
         return self.extent
+
+    @abstractmethod
+    def takes(self, x: Floats, radius: float) -> Mask:
+        """Which points (P, 3), m, of an outer cylinder of a radius (m) are cut away."""
 
     @property
     def faces(self) -> tuple[str, ...]:

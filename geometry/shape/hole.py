@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from geometry.arrays import Floats
+from geometry.arrays import Floats, Mask
 from geometry.coded import Place
 from geometry.shape.drill import (
     SQUARE,
@@ -25,6 +25,8 @@ from geometry.shape.features import Off, SmoothPart, outer_radius, positive, rad
 from geometry.shape.pin import Pin
 from geometry.shape.profile import Edge
 
+SAME_SIDE = 0.9  # cosine of the angle between holes drilled from the same side
+THIN = 0.02  # of a diameter: walls that nobody makes, and of which meshes have no end
 WIDER = 1.5  # of its radius: how far a rounded mouth reaches at most
 
 
@@ -94,6 +96,14 @@ class Hole(Drilled):
         c, s = math.cos(self.angle), math.sin(self.angle)
         return Placed(outline, (0.0, 0.0, self.z), (c, s, 0.0))
 
+    def takes(self, x: Floats, radius: float) -> Mask:
+        """Its mouths, with what is countersunk; of rounded ones all that is rounded."""
+        c, s = math.cos(self.angle), math.sin(self.angle)
+        u, aside = c * x[:, 0] + s * x[:, 1], c * x[:, 1] - s * x[:, 0]
+        far = np.hypot(aside, x[:, 2] - self.z)
+        sunk = np.maximum(self.chamfer - (radius - np.abs(u)), self.mouth_radius)
+        return np.asarray((far < self.diameter / 2.0 + sunk) & ((u > 0.0) | (self.depth is None)))
+
     def surfaces(self, pin: Pin) -> tuple[SmoothPart, ...]:
         """Wall, bottom, mouths."""
         top = 4.0 * pin.largest_diameter
@@ -129,9 +139,16 @@ class Hole(Drilled):
         )
         least = radii(pin, low, high)[0]
         require(
-            high - self.z < least - pin.tolerance,
+            r < least - pin.tolerance,
             f"{what}: its diameter is {r / least:.4g} times the pin's there and would cut the pin "
             "in two; reduce it",
+            "hole-too-large",
+            at,
+        )
+        require(
+            high - self.z < least - pin.tolerance,
+            f"{what}: its mouth is {(high - self.z) / least:.4g} times as wide as the pin; reduce "
+            "its chamfer or mouth_radius",
             "hole-too-large",
             at,
         )
@@ -140,6 +157,14 @@ class Hole(Drilled):
             return
         outer = outer_radius(pin, self.z)
         require(positive(self.depth), f"{what}: the depth must be positive", "not-positive", at)
+        left = abs(outer - self.depth - self.bottom.height(self.diameter) - pin.radii(self.z)[0])
+        require(
+            left >= THIN * self.diameter or not pin.radii(self.z)[0],
+            f"{what}: its bottom is less than {THIN:g} times its diameter from the surface of the "
+            "bore; deepen it into the bore, or reduce its depth",
+            "thin-wall",
+            at,
+        )
         self.bottom.check(self.diameter, what, at)
         sagitta = outer - math.sqrt(outer**2 - r**2)
         wall = self.depth - sagitta - self.chamfer - self.mouth_radius
@@ -158,6 +183,25 @@ class Hole(Drilled):
             f"{what}: with its tip it is {deep / outer / 2:.4g} times the pin's diameter deep and "
             "comes out on the other side; reduce the depth, or leave it out for a hole through",
             "too-deep",
+            at,
+        )
+
+    def check_beside(self, other: Hole, names: tuple[str, str], pin: Pin, at: Place) -> None:
+        """Raises: GeometryError where two holes just touch, or leave a wall that is far too thin
+        between them; of blind ones that are drilled from the same side.
+        """
+        both_through = self.depth is None and other.depth is None
+        if not both_through and math.cos(self.angle - other.angle) < SAME_SIDE:
+            return
+        apart = abs(self.z - other.z)
+        wall = apart - 0.5 * (self.diameter + other.diameter)
+        least = min(self.diameter, other.diameter)
+        require(
+            abs(wall) >= THIN * least,
+            f"pin {pin.name}: {names[0]} and {names[1]} all but touch: between them a wall of at "
+            f"least {THIN:g} times the smaller diameter must be left; move them apart, or well "
+            "into each other",
+            "thin-wall",
             at,
         )
 

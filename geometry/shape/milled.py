@@ -9,7 +9,7 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from geometry.arrays import Floats
+from geometry.arrays import Floats, Mask
 from geometry.coded import Place
 from geometry.shape.features import Cut, Off, SmoothPart, positive, radii, require
 from geometry.shape.pin import Pin
@@ -77,6 +77,12 @@ class Flat(Milled):
     def lengths(self) -> tuple[str, ...]:
         """All but the angle."""
         return "z0", "z1", "distance", "radius"
+
+    def takes(self, x: Floats, radius: float) -> Mask:
+        """What lies beyond the distance, between its ends."""
+        del radius
+        u = math.cos(self.angle) * x[:, 0] + math.sin(self.angle) * x[:, 1]
+        return np.asarray((u > self.distance) & (x[:, 2] > self.z0) & (x[:, 2] < self.z1))
 
     def surfaces(self, pin: Pin) -> tuple[SmoothPart, ...]:
         """Floor, ends, and what rounds their corner."""
@@ -153,18 +159,26 @@ class Slot(Milled):
             return -math.inf
         return radii(pin, self.z0, self.z1)[1] - self.depth
 
-    def surfaces(self, pin: Pin) -> tuple[SmoothPart, ...]:
-        """Bottom, walls, and what rounds their corner."""
+    def takes(self, x: Floats, radius: float) -> Mask:
+        """What lies inside its outline in plan, on the side from which it is milled."""
+        del radius
+        u = math.cos(self.angle) * x[:, 0] + math.sin(self.angle) * x[:, 1]
+        between = (x[:, 2] > self.z0) & (x[:, 2] < self.z1)
+        return np.asarray(between & (self._aside(x) < 0.0) & ((u > 0.0) | (self.depth is None)))
+
+    def _aside(self, x: Floats) -> Floats:
+        """How far points (P, 3) are outside of its walls in plan, m."""
         half, radius = self.width / 2.0, self.width / 2.0 if self.round_ends else 0.0
         long = 0.5 * (self.z1 - self.z0) - radius
-        c, s = math.cos(self.angle), math.sin(self.angle)
+        y = np.abs(math.cos(self.angle) * x[:, 1] - math.sin(self.angle) * x[:, 0])
+        if not self.round_ends:
+            return np.asarray(y - half)
+        past = np.maximum(np.abs(x[:, 2] - self.middle) - long, 0.0)
+        return np.asarray(np.hypot(y, past) - half)
 
-        def aside(x: Floats) -> Floats:
-            y = np.abs(c * x[:, 1] - s * x[:, 0])
-            if not self.round_ends:
-                return np.asarray(y - half)
-            return np.hypot(y, np.maximum(np.abs(x[:, 2] - self.middle) - long, 0.0)) - half
-
+    def surfaces(self, pin: Pin) -> tuple[SmoothPart, ...]:
+        """Bottom, walls, and what rounds their corner."""
+        aside = self._aside
         floor = self.floor(pin)
         below, beyond, both = _rounded(self, aside, floor)
         parts = _parts(below, beyond, both, self.radius, "wall", floor > -math.inf)

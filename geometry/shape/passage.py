@@ -7,6 +7,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import ClassVar, Literal
 
+import numpy as np
+
+from geometry.arrays import Floats, Mask
 from geometry.coded import Place
 from geometry.shape.drill import (
     SQUARE,
@@ -67,6 +70,11 @@ class Passage(Drilled):
     def faces(self) -> tuple[str, ...]:
         """With its mouths."""
         return FACES if self.mouth == "both" else (self.mouth,)
+
+    def takes(self, x: Floats, radius: float) -> Mask:
+        """None."""
+        del radius
+        return np.zeros(len(x), dtype=bool)
 
     def lengths(self) -> tuple[str, ...]:
         """All but angles."""

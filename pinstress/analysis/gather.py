@@ -21,6 +21,7 @@ from pinstress.analysis.plan import Plan, all_loads
 from pinstress.analysis.stored import Solved
 from pinstress.cache.store import PACKAGES
 from pinstress.model.cases import CaseLoads, at_time
+from pinstress.model.drawn_cuts import cut_shapes
 from pinstress.model.pins import far_ends, outline, weight
 from pinstress.model.sequence import chosen_cases
 from pinstress.model.tasks import Task
@@ -244,10 +245,10 @@ def _shape(task: Task, peaks: list[Peak]) -> plain.PinShape:
         for length, diameter, bore, label, kind in outline(pin)
     )
     heavy = weight(pin, density) if density else None
-    holes = tuple((h.z, h.diameter) for h in pin.holes) if isinstance(pin, CutPin) else ()
+    cuts = tuple(cut_shapes(pin)) if isinstance(pin, CutPin) else ()
     solids = tuple(dict.fromkeys(ends for peak in peaks for ends in peak.solids))
     made_of = task.material.name
-    return plain.PinShape(pin.name, segments, made_of, heavy, far_ends(pin), holes, solids)
+    return plain.PinShape(pin.name, segments, made_of, heavy, far_ends(pin), cuts, solids)
 
 
 def landing_range(

@@ -114,8 +114,8 @@ def _plan_in_lugs(study: Study, task: Task, asked: Asked) -> ChartPlan:
     """Of a pin in its lugs: solved as a run would."""
     if not isinstance(task.pin, Pin):
         raise study.error(
-            f"pin {task.pin.name} has holes and is held by lugs; charts of contact are of pins "
-            'without holes: set analysis.joints = "prescribed"',
+            f"pin {task.pin.name} has cuts and is held by lugs; charts of contact are of pins "
+            'without cuts: remove them, or set analysis.joints = "prescribed"',
             at=f"pin.{task.pin.name}",
             code="not-axisymmetric",
         )

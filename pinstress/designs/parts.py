@@ -172,9 +172,7 @@ def is_ours(name: str) -> bool:
 
 
 def identity(study: Study, *chosen: object) -> Identity:
-    """Of a study; the hashes are of all on which a sweep's numbers depend. chosen:
-    pins, cases.
-    """
+    """Of a study; the hashes are of all on which a sweep's numbers depend. chosen: pins, cases."""
     import tomlkit
 
     from pinstress.cache.store import program
@@ -186,8 +184,8 @@ def identity(study: Study, *chosen: object) -> Identity:
     others = {key: value for key, value in values.items() if key != "vary.count"}
     asked = study.text, values, chosen, version
     but_count = tomlkit.dumps(document), others, chosen, version
-    hashes = (hashlib.sha256(repr(x).encode()).hexdigest() for x in (asked, but_count))
-    return Identity(*hashes, *((vary.count, vary.sample) if vary else (0, "")))
+    whole, but = (hashlib.sha256(repr(x).encode()).hexdigest() for x in (asked, but_count))
+    return Identity(whole, but, *((vary.count, vary.sample) if vary else (0, "")))
 
 
 def stated(folder: Path) -> str | None:

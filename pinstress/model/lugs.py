@@ -9,7 +9,7 @@ from fea.core.material import Material
 from fea.cut.inside import crosses_end
 from fea.joint.lugs.fit import beyond_foundations, fitted, on_structure
 from fea.joint.lugs.lug import Bushing, Lug, LugRange
-from geometry import ArgumentError, CutPin, Pin, PinLike
+from geometry import ArgumentError, Band, Cut, CutPin, Hole, Pin, PinLike
 from pinstress.model.pins import material
 from pinstress.schema.pins import LugRangeTable, LugTable, PinTable
 from pinstress.study.file import Study
@@ -88,27 +88,38 @@ def _in_contact(study: Study, pin: PinLike, instead: str) -> Pin:
             at,
             "not-axisymmetric",
         )
-    drilled = isinstance(pin, CutPin) and len(pin.cuts) == len(pin.holes)
-    profile = pin.profile if isinstance(pin, CutPin) and drilled else pin
+    profile = pin.profile if isinstance(pin, CutPin) else pin
     if not isinstance(profile, Pin):
         raise study.error(
-            f"pin {pin.name} has other cuts than cross holes or is from a file; lugs require a "
-            f"profile, which may have cross holes: {instead}",
+            f"pin {pin.name} is from a file that is no profile; lugs require a profile, which may "
+            f"have holes, flats, slots and passages: {instead}",
             at,
             "not-axisymmetric",
         )
-    holes = pin.holes if isinstance(pin, CutPin) else ()
-    for i, hole in enumerate(holes, 1):
-        for name in (*profile.connections, *table.lug):
+    cuts = pin.cuts if isinstance(pin, CutPin) else {}
+    for cut, feature in cuts.items():
+        for name in dict.fromkeys((*profile.connections, *table.lug)):
             band = profile.band(name)
-            if crosses_end(hole, band.z0, band.z1):
+            if crosses_end(feature, profile, band.z0, band.z1):
                 raise study.error(
-                    f"pin {pin.name}: hole {i} lies at the edge of the lug of {name}, where stress "
-                    f"has no bound: move it, {instead}",
+                    f"pin {pin.name}: {cut} lies at the edge of the lug of {name}, where stress "
+                    f"has no bound: {_clear_of(feature, band)}, {instead}",
                     at,
-                    "hole-at-end",
+                    f"{feature.what}-at-end",
                 )
     return profile
+
+
+def _clear_of(cut: Cut, band: Band) -> str:
+    """What keeps a cut clear of the edges of a lug."""
+    low, high = cut.opens
+    if isinstance(cut, Hole):
+        return "move it"
+    if low <= band.z0 and band.z1 <= high:
+        return "it goes through the whole lug; end it inside of the lug or leave the lug out of it"
+    if high <= band.z1 or band.z0 <= low:
+        return "end it inside of the lug, by a tenth of its width, or outside of it"
+    return "shorten it"
 
 
 def _ends_of_clearance(lugs: list[Lug]) -> list[list[Lug]]:
@@ -136,7 +147,7 @@ def surroundings(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> Surroun
     defaults for what the study does not say.
     """
     if not isinstance(pin, Pin):
-        return Surroundings(why="the pin has holes or flats or is from a file")
+        return Surroundings(why="the pin has cuts or is from a file")
     clamped = [pin.surface(name) for name in clamps]
     bare = [name for name in clamped if name not in pin.labels]
     if bare:

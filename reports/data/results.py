@@ -163,11 +163,30 @@ class LandingRange:
 
 
 @dataclass(frozen=True)
+class CutShape:
+    """A cut by its name, "hole 1", for drawing. z: its ends, of a hole its middle twice; size:
+    diameter or width, of a flat its distance from the axis; offset: of a passage from the axis;
+    depth: None through the pin and of flats; angle: from x, degrees; lines: points (z, x) of edges
+    in the view from y, and whether they are hidden; notches: (z, x) of two opposite corners of what
+    is cut from the silhouette.
+    """
+
+    name: str
+    z: tuple[Length, Length]
+    size: Length
+    offset: Length
+    depth: Length | None
+    angle: float
+    lines: tuple[tuple[tuple[tuple[Length, Length], ...], bool], ...]
+    notches: tuple[tuple[Length, Length, Length, Length], ...]
+
+
+@dataclass(frozen=True)
 class PinShape:
     """A pin's profile for drawing: segments (length, diameter, bore, label, kind) in order, where
     kind is "band", "held" or "plain"; its weight (None without a density). far_ends: diameter and
-    bore at the segments' far ends, where any is a cone. holes: z and diameter of cross holes;
-    solids: between which z local solids are about cuts.
+    bore at the segments' far ends, where any is a cone. solids: between which z local solids are
+    about cuts.
     """
 
     pin: str
@@ -175,7 +194,7 @@ class PinShape:
     material: str
     weight: Force | None
     far_ends: tuple[tuple[Length, Length], ...] = ()
-    holes: tuple[tuple[Length, Length], ...] = ()
+    cuts: tuple[CutShape, ...] = ()
     solids: tuple[tuple[Length, Length], ...] = ()
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from html import escape
 
 from reports.data.results import PinShape, Units
+from reports.format.drawing.cuts import draw_cut, words
 from reports.format.drawing.spread import rows
 from reports.format.drawing.svg import INK, line, text, wide
 from reports.format.numbers import short
@@ -60,7 +61,7 @@ def draw_pin(
     marks = ZoneMarks(zones or [], left, scale, width)
     chain = axis + radius + marks.height + 24.0
     overall = chain + LINE * (max(feet) + 1) + 22.0
-    height = overall + 12.0
+    height = overall + 12.0 + LINE * len(shape.cuts)
     parts = [
         f'<svg class="pin" viewBox="0 0 {width:.0f} {height:.0f}" role="img" '
         f'xmlns="http://www.w3.org/2000/svg" font-size="11" font-family="sans-serif">'
@@ -73,7 +74,7 @@ def draw_pin(
     parts += [
         part for p in pieces for wall in _walls(p, axis) for part in marks.stripes(axis, wall)
     ]
-    parts += [_hole(left + scale * z, scale * d, axis, pieces) for z, d in shape.holes]
+    parts += [draw_cut(cut, left, axis, scale) for cut in shape.cuts]
     parts += [_solid(left + scale * z0, left + scale * z1, axis, pieces) for z0, z1 in shape.solids]
     parts.append(line(left - 14, axis, right + 14, axis, 'stroke-dasharray="12 3 2 3"'))
     parts += [_leader(p, axis, tops[i]) for i, p in enumerate(pieces)]
@@ -86,6 +87,10 @@ def draw_pin(
     total = f"{short(sum(s[0] for s in shape.segments))} {units.length}"
     parts.append(text(0.5 * (left + right), overall + 3.0, total))
     parts += marks.draw(axis, axis + radius)
+    parts += [
+        text(0.5 * width, overall + 8.0 + LINE * i, words(cut))
+        for i, cut in enumerate(shape.cuts, 1)
+    ]
     return "".join(parts) + "</svg>"
 
 
@@ -142,14 +147,6 @@ def _walls(piece: _Piece, axis: float) -> list[tuple[float, float, float, float]
     bore = min(piece.bores)
     wall = piece.radius - bore
     return [(piece.x, y, piece.width, wall) for y in (axis - piece.radius, axis + bore)]
-
-
-def _hole(x: float, diameter: float, axis: float, pieces: list[_Piece]) -> str:
-    """A hole through the section: its walls as hidden edges, whatever its angle."""
-    radius = max(p.radius for p in pieces if p.x <= x <= p.x + p.width)
-    ends = (x - 0.5 * diameter, x + 0.5 * diameter)
-    dashed = 'stroke-dasharray="4 2"'
-    return "".join(line(e, axis - radius, e, axis + radius, dashed) for e in ends)
 
 
 def _solid(left: float, right: float, axis: float, pieces: list[_Piece]) -> str:

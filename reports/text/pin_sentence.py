@@ -34,9 +34,10 @@ def drawing_caption(shape: PinShape, units: Units, zoned: bool = True) -> str:
         " Numbered red rings: stress singularities, filled where one governs; red stripes: the "
         "excluded zones about them."
     )
-    solids = " Dashed green boxes: local solids about cuts; dashed lines: cross holes."
+    solids = " Dashed green boxes: local solids about cuts."
+    cuts = " Cuts in the view with x upwards, from which their angles count; dashed: hidden edges."
     weight = "" if shape.weight is None else f", weight {engineering(shape.weight)} {units.force}"
-    more = zones * zoned + solids * bool(shape.solids)
+    more = zones * zoned + cuts * bool(shape.cuts) + solids * bool(shape.solids)
     return (
         f"Profile, lengths and diameters (⌀ outer / bore) in {units.length}. Blue: bearing bands; "
         f"hatched: clamped; grey: free.{more} Material {shape.material}{weight}."

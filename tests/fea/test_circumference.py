@@ -228,3 +228,10 @@ def test_whether_a_value_is_exceeded_is_what_the_maximum_says(seed: int, angle: 
     assert around.top(some, 0.5 * top).value == top
     assert around.top(some, 2.0 * top).value == 2.0 * top
     assert not around.exceeds(np.zeros(200, dtype=bool), 0.0)
+
+
+def test_bounds_of_no_points_are_none() -> None:
+    """As of a pin whose cuts leave nothing of its section to read."""
+    loads = PinLoads("pull", ("A",), np.array([[[1.0, 0.0, 2.0]]]))
+    around = Circumference(unit_fields(loads, 3, 0), loads)
+    assert around.bound(np.zeros(0, dtype=np.int64)).shape == (0, 1)

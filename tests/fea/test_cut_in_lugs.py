@@ -12,7 +12,7 @@ from fea.joint.cut_in_lugs import Neglected
 from fea.joint.lugs.lug import Lug
 from fea.joint.records import Variation
 from fea.joint.solve_in_lugs import InLugs, solve_in_lugs
-from geometry import CutPin, Hole, Pin, Segment
+from geometry import CutPin, Hole, Pin, Segment, Slot
 
 D, F = 0.02, 50e3
 STEEL = Material("steel", 2.1e11, 0.3, yield_strength=9e8)
@@ -31,7 +31,7 @@ def test_what_is_neglected() -> None:
     """A pin softer by 1 % is one in lugs stiffer by 1 %: with stress that falls to 0.8 in lugs of
     half the stiffness, 0.32 % of it; the pressure on a mouth counts at the hole alone.
     """
-    left = Neglected(0.01, 5e6, 0.02, {1: "B"})
+    left = Neglected(0.01, 5e6, 0.02, {"hole 1": "B"})
     over = (
         Variation("stiffness of the lugs", "half", 0.8e8),
         Variation("clearance", "none", 0.5e8),
@@ -39,7 +39,8 @@ def test_what_is_neglected() -> None:
     share = 0.01 * np.log(1.25) / np.log(2.0) + 0.02
     assert left.error(1e8, False, over) == pytest.approx(share * 1e8)
     assert left.error(1e8, True, over) == pytest.approx(share * 1e8 + 5e6)
-    assert left.note.codes == ("hole-in-lug",)
+    assert left.note.codes == ("cut-in-lug",)
+    assert "2.0% of the force of a lug" in left.note.text
     assert not Neglected(0.01, 0.0, 0.0, {}).note.text
 
 
@@ -64,4 +65,31 @@ def test_a_grease_hole_at_the_extreme_fibre() -> None:
     assert peak.max_von_mises == pytest.approx(3.1 * nominal, rel=0.04)
     assert peak.parts is not None
     assert 0.0 < peak.parts.model < 0.2 * peak.max_von_mises
-    assert "hole-in-lug" in peak.reasons
+    assert "cut-in-lug" in peak.reasons
+
+
+@pytest.mark.slow
+def test_a_keyway_that_faces_the_load_loses_its_pressure() -> None:
+    """What presses on it, by the contact of the round pin: the cosine about it, to some per cent.
+    Turned away from the load it loses none, and contact is the same.
+    """
+    forces = F * np.array([[[-0.5, 0.0, 0.0], [1.0, 0.0, 0.0], [-0.5, 0.0, 0.0]]])
+    loads = PinLoads("pull", ("A", "B", "C"), forces)
+    long, wide, models, moments = 0.01, 0.004, [], []
+    for angle in (0.0, np.pi):
+        key = Slot(0.023 - long / 2, 0.023 + long / 2, wide, 0.0025, angle, 0.0008, False)
+        pin = CutPin(CLEVIS, slots=(key,))
+        (found,) = solve_in_lugs(InLugs(CLEVIS, STEEL, LUGS, (loads,), cut=pin), Asked(0.1))
+        peak = found.solution.peak
+        assert found.joint is not None
+        assert peak.model == "harmonic+local"
+        assert peak.parts is not None
+        assert "slot 1 in lug B" in peak.note
+        models.append(peak.parts.model / (peak.max_von_mises or 1.0))
+        moments.append(found.joint.bending_moment)
+        (band,) = (b for b in found.joint.bands if b.name == "B")
+        assert band.force == pytest.approx(F, rel=1e-9)
+    assert moments[0] == moments[1]
+    cosine = 2.0 / np.pi * wide / D * long / 0.02 * 2.0  # 4 p0 / pi on the crest, even along it
+    assert models[0] < 0.02
+    assert 0.5 * cosine < models[1]

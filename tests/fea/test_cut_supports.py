@@ -15,7 +15,7 @@ from fea.cut.region import loaded_bands, pieces
 from fea.harmonic.model import HarmonicModel
 from fea.solid.boundary import resultants
 from fea.solve_pin import Asked, solve_pin
-from geometry import CutPin, Hole, Pin, Segment
+from geometry import Cut, CutPin, Flat, Hole, Pin, Segment, Slot
 from geometry.mesh.cut_piece import piece_mesh
 from tests.support.errors import raises
 from tests.support.section_grid import rectangle
@@ -120,19 +120,71 @@ def test_a_cut_between_clamps_beside_the_whole_solid() -> None:
     assert rigid > 1.1 * local.peak.max_von_mises  # without what the hole's softness changes
 
 
-@pytest.mark.slow
-def test_a_hole_in_a_loaded_band_beside_the_whole_solid() -> None:
-    three = Pin(
+def three(band: float) -> Pin:
+    """With a band of a length between two others; its middle is 30 mm and half of that on."""
+    return Pin(
         "three",
         (
             *(Segment(0.02, D, connection="A"), Segment(0.01, D)),
-            *(Segment(0.02, D, connection="B"), Segment(0.01, D)),
+            *(Segment(band, D, connection="B"), Segment(0.01, D)),
             Segment(0.02, D, connection="C"),
         ),
     )
+
+
+IN_BAND: dict[str, Cut] = {
+    "flat under the load": Flat(0.039, 0.051, 0.0085, 0.0, 0.002),
+    "flat in tension": Flat(0.039, 0.051, 0.0085, np.pi, 0.002),
+    "keyway under the load": Slot(0.037, 0.053, 0.004, 0.003, 0.0, 0.001),
+    "keyway in tension": Slot(0.037, 0.053, 0.004, 0.003, np.pi, 0.001),
+}
+
+
+@pytest.mark.parametrize("name", ["flat under the load", "keyway under the load"])
+@pytest.mark.parametrize("shears", [True, False])
+def test_what_cuts_lose_comes_back_to_round_off(name: str, shears: bool) -> None:
+    """Forces and couples on the cut, of a pressure on the side that is cut away, and on the band:
+    none is left over.
+    """
+    pin = CutPin.of(three(0.03), [IN_BAND[name]])
+    bands = loaded_bands(pin, ("A", "B", "C"))
+    assert np.array(bands) == pytest.approx(np.array([[0.03, 0.06]]))
+    (piece,) = pieces(pin, (), bands=bands)
+    bearing = bearings(piece, bands)
+    model = LocalModel(piece, piece_mesh(piece, 1.0), STEEL, (), bearing)
+    stress = np.zeros((*model.images.shape[:2], 6, 1))
+    stress[:, :, 0, 0] = np.maximum(model.images[..., 0], 0.0) / (D / 2.0)
+    (even, *_) = model.parities.split(stress)
+    parity = model.parities.classes[0]
+    spread, _ = model._spread(even, parity, np.array([shears]))
+    lost = model._forces(even)
+    own = model.parities.rigid(parity)
+    assert own.any()
+    both = [resultants(model.space.nodes, x.reshape(-1, 3, 1))[own, 0] for x in (lost, spread)]
+    assert np.abs(both[0]).max() > 0.0
+    assert np.abs(both[0] + both[1]).max() < 1e-10 * np.abs(both[0]).max()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", IN_BAND)
+def test_a_flat_or_keyway_in_a_loaded_band_beside_the_whole_solid(name: str) -> None:
+    """Whose pressure acts on what is left of the band, with the force of the link."""
+    forces = 10e3 * np.array([[[1.0, 0.0, 0.0], [-2.0, 0.0, 0.0], [1.0, 0.0, 0.0]]])
+    loads = PinLoads("pressed", ("A", "B", "C"), forces, distribution="cosine")
+    pin = CutPin.of(three(0.03), [IN_BAND[name]])
+    local, solid = (
+        solve_pin(pin, STEEL, (), (loads,), asked)[0].peak
+        for asked in (Asked(0.02), Asked(0.1, "solid", meshes=2))
+    )
+    assert (local.model, solid.model) == ("harmonic+local", "solid")
+    assert local.max_von_mises == pytest.approx(solid.max_von_mises, rel=0.04)
+
+
+@pytest.mark.slow
+def test_a_hole_in_a_loaded_band_beside_the_whole_solid() -> None:
     forces = 10e3 * np.array([[[-1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [-1.0, 0.0, 0.0]]])
     loads = PinLoads("pressed", ("A", "B", "C"), forces, distribution="cosine")
-    pin = CutPin(three, (Hole(0.04, d),))
+    pin = CutPin(three(0.02), (Hole(0.04, d),))
     local, solid = (
         solve_pin(pin, STEEL, (), (loads,), asked)[0].peak
         for asked in (Asked(0.01), Asked(0.1, "solid", meshes=2))

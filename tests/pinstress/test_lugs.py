@@ -118,6 +118,19 @@ def test_a_lug_of_the_structure_by_the_name_of_a_segment(tmp_path: Path) -> None
 
 
 @pytest.mark.parametrize(
+    "cut",
+    [
+        "flat = [{ z = [14, 26], distance = 9 }]",
+        "slot = [{ z = [13, 29], width = 4, depth = 2 }]",
+        "passage = [{ diameter = 4, offset = 4 }]\nhole = [{ z = 21, diameter = 3, depth = 5 }]",
+        "hole = [{ z = 21, diameter = 3, chamfer = 0.5 }]",
+    ],
+)
+def test_cuts_of_all_kinds_may_be_in_lugs(tmp_path: Path, cut: str) -> None:
+    assert len(lugs(tmp_path, f"lug.M = {{}}\n{cut}")) == 3
+
+
+@pytest.mark.parametrize(
     ("pin", "code", "said"),
     [
         ("lug.X = {}", "unknown-segment", "pin.P.lug.X"),
@@ -140,9 +153,19 @@ def test_a_lug_of_the_structure_by_the_name_of_a_segment(tmp_path: Path) -> None
         ('clamp = ["start"]\nlug.M = {}', "clamped-in-lugs", "clamped at start"),
         ("lug.M = {}\nhole = [{ z = 11, diameter = 4 }]", "hole-at-end", "hole 1 lies at the edge"),
         (
-            "lug.M = {}\nflat = [{ z = [18, 22], distance = 8 }]",
-            "not-axisymmetric",
-            "lugs require a profile",
+            "lug.M = {}\nflat = [{ z = [28, 33], distance = 8 }]",
+            "flat-at-end",
+            "flat 1 lies at the edge of the lug of M, where stress has no bound: end it inside",
+        ),
+        (
+            "lug.M = {}\nflat = [{ z = [10.2, 31.8], distance = 8 }]",
+            "flat-at-end",
+            "it goes through the whole lug",
+        ),
+        (
+            "lug.M = {}\nslot = [{ z = [12, 29], width = 40, depth = 2 }]",
+            "slot-too-wide",
+            "cut the pin in two",
         ),
     ],
 )
