@@ -1,33 +1,25 @@
-"""Cuts by local solids: known ones, beside the whole solid, and many at random."""
+"""Cuts by local solids: known ones, beside the whole solid and CalculiX."""
 
 from __future__ import annotations
 
 import math
 import resource
-import sys
 import time
-from dataclasses import replace
 
 import numpy as np
 
 from benchmarks.cut_calculix import Other, in_calculix_locally
 from benchmarks.cut_cost import FURTHER, SHAFT, D, cut_cost, four_point
-from benchmarks.random_cuts import CutTrial, cut_trials, kind_trials
 from benchmarks.random_pins import STEEL
 from benchmarks.timing import table
 from fea.checks.calculix import installed
 from fea.core.peak import Peak
 from fea.core.pin_loads import PinLoads
-from fea.cut.evaluate import cut_result, cut_solution
-from fea.cut.region import BEYOND, loaded_bands, pieces
-from fea.harmonic.evaluate import SectionProblem
-from fea.solve_pin import Asked, Model, Solution, singularities_of, solve_pin
+from fea.solve_pin import Asked, Model, Solution, solve_pin
 from geometry import CutPin, Hole
 
-HOLE, COUNT, KINDS, SEED = 0.004, 30, 6, 7
+HOLE = 0.004
 NOMINAL = 32.0 * 1500.0 * 0.02 / (np.pi * D**3)
-TIMES, ENOUGH = 10.0, 60_000  # the unknowns of a reference: times those of a run, or so many
-LEVELS = 3  # its meshes beyond those of the run: elements at the maximum are 5 times smaller
 # Meshes of CalculiX, graded as local solids are, and finer where stress is largest in these: on
 # both mouths, on both sides.
 OTHERS = (0, 1, 2)
@@ -118,58 +110,3 @@ def _stress(peak: Peak) -> tuple[float, float]:
     assert peak.max_von_mises is not None
     assert peak.error_estimate is not None
     return peak.max_von_mises, peak.error_estimate
-
-
-def cut_pins() -> str:
-    """Whether the error contains the truth, on random pins with holes."""
-    return _contained(cut_trials(COUNT, SEED))
-
-
-def cut_kinds() -> str:
-    """The same on random pins with cuts of other kinds."""
-    return _contained(kind_trials(KINDS, SEED))
-
-
-def _contained(trials: list[CutTrial]) -> str:
-    rows = []
-    for trial in trials:
-        row = _trial(trial)
-        print(*(row or (trial.pin.name, "no local solid")), file=sys.stderr, flush=True)
-        rows += [row] if row else []
-    inside = sum(row[-1] == "yes" for row in rows)
-    head = ("pin", "unknowns", "of the reference", "true error, %", "estimated, %", "inside")
-    worst = max(float(row[3]) for row in rows)
-    text = f"{inside} of {len(rows)} inside; the largest true error is {worst:.2g} %."
-    return f"{text}\n\n{table(head, rows)}"
-
-
-def _trial(trial: CutTrial) -> tuple[str, int, int, float, float, str] | None:
-    """None where the whole pin is solid, or the maximum at a singularity."""
-    found = solve_pin(trial.pin, STEEL, trial.clamps, (trial.loads,), Asked(0.02))[0].peak
-    if found.model != "harmonic+local" or found.verdict == "singular":
-        return None
-    value, error = _stress(found)
-    true, unknowns = _reference(trial, found)
-    off, estimate = abs(value / true - 1.0), error / value
-    inside = "yes" if abs(value - true) <= error else "no"
-    return found.pin, found.dofs, unknowns, 100.0 * off, 100.0 * estimate, inside
-
-
-def _reference(trial: CutTrial, found: Peak) -> tuple[float, int]:
-    """The maximum (Pa) on a much finer mesh, above all about the maximum, with local solids twice
-    as long; and its unknowns.
-    """
-    pin, clamps, loads = trial.pin, trial.clamps, trial.loads
-    assert found.location is not None
-    x, y, z = found.location
-    zones = singularities_of(pin.profile, STEEL, clamps, (loads,))
-    problem = SectionProblem(pin.profile, STEEL, clamps, (loads,), zones)
-    bands = loaded_bands(pin, loads.surfaces if clamps else pin.connections)
-    about = pieces(pin, clamps, 2.0 * BEYOND, bands)
-    first = cut_result(cut_solution(problem, about, 0, (), bands), zones, loads)
-    before = replace(first, local_high=(found.location,), high=((math.hypot(x, y), z),))
-    level, best = len(found.history) - 1 + LEVELS, first
-    while best.unknowns < min(TIMES * found.dofs, ENOUGH):
-        best = cut_result(cut_solution(problem, about, level, [before], bands), zones, loads)
-        level += 1
-    return best.maximum, best.unknowns

@@ -12,7 +12,14 @@ from fea.core.mesh_result import MeshResult
 from fea.core.pin_loads import AnyLoads, PinLoads
 from fea.core.solution import Picture
 from fea.core.voigt import ENTRIES, TENSOR
-from fea.cut.local_fields import RATIO, LocalFields, local_fields, mesh_of, section_points
+from fea.cut.local_fields import (
+    RATIO,
+    Fineness,
+    LocalFields,
+    local_fields,
+    mesh_of,
+    section_points,
+)
 from fea.cut.region import surface_ends, zone
 from fea.cut.supports import ClampMotions, Support, motions, reactions
 from fea.harmonic.evaluate import (
@@ -60,16 +67,18 @@ def cut_solution(
     before: Collection[MeshResult] = (),
     bands: Sequence[tuple[float, float]] = (),
     distance: float = 0.1,
+    finer: Fineness | None = None,
 ) -> CutSolution:
     """As fea.harmonic.evaluate.harmonic_solution, on mesh number `level` of section and pieces.
     bands: loaded ones with holes in them (fea.cut.region.loaded_bands); distance: as
-    fea.cut.inner_corners.
+    fea.cut.inner_corners; finer: of the pieces, in place of the level's.
 
     Raises: MeshError, SolveError.
     """
     material, clamps, cases = problem.material, problem.clamps, problem.cases
     high = [p for result in before for p in result.local_high]
-    models = [mesh_of(piece, material, clamps, level, high, bands) for piece in pieces]
+    finer = finer or Fineness.of(level)
+    models = [mesh_of(piece, material, clamps, finer, high, bands) for piece in pieces]
     points = [section_points(model) for model in models]
     supports = _supports(problem)
     moved = motions(supports)

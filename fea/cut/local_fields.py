@@ -36,6 +36,21 @@ NEAR = 3  # points of the section between which displacements are interpolated
 
 
 @dataclass(frozen=True)
+class Fineness:
+    """How many times finer than the first mesh elements are: along the edges of cuts, and at spots
+    where stress is high.
+    """
+
+    edges: float
+    spots: float
+
+    @staticmethod
+    def of(level: int) -> Fineness:
+        """Of mesh number `level`."""
+        return Fineness(RATIO ** (level * ELSEWHERE), RATIO**level)
+
+
+@dataclass(frozen=True)
 class LocalFields:
     """On one mesh of a piece, in the pin's frame: points (P, 3) m of the surface, triangles (M, 3)
     of them, stress (P, 6, L) Pa of L unit loads, each in one phase; displacement (P, 3, L) m of the
@@ -179,11 +194,11 @@ def mesh_of(
     piece: Piece,
     material: Material,
     clamps: tuple[str, ...],
-    level: int,
+    finer: Fineness,
     high: Sequence[Point],
     bands: Sequence[tuple[float, float]] = (),
 ) -> LocalModel:
-    """Mesh number `level` of a piece, finer about points (m, in the pin's frame) where stress was
+    """The mesh of a piece, finest about points (m, in the pin's frame) where stress was
     high on the meshes before. bands: loaded ones of the pin, with holes in them.
 
     Raises: MeshError.
@@ -192,9 +207,9 @@ def mesh_of(
     spots: Spots = ()
     if here:
         spots = [_point(x) for x in _unmirrored(piece, np.array(here))]
-    mesh = piece_mesh(piece, RATIO ** (level * ELSEWHERE), spots, RATIO**level)
+    mesh = piece_mesh(piece, finer.edges, spots, finer.spots)
     held, loaded = _within(piece, clamps), bearings(piece, bands)
-    return LocalModel(piece, mesh, material, held, loaded, RATIO**level)
+    return LocalModel(piece, mesh, material, held, loaded, finer.spots)
 
 
 def _within(piece: Piece, clamps: tuple[str, ...]) -> tuple[str, ...]:
