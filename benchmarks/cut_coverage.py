@@ -81,20 +81,22 @@ def cut_kinds() -> str:
 def _contained(name: str, trials: list[CutTrial]) -> str:
     kept = KEPT / f"{name}-{_code()}.jsonl"
     kept.parent.mkdir(parents=True, exist_ok=True)
-    lines = kept.read_text(encoding="utf-8").splitlines() if kept.exists() else []
-    known: dict[str, Inside | None] = {}
-    for line in lines:
-        pin, values = json.loads(line)
-        known[pin] = Inside(**values) if values else None
     for trial in trials:
         pin = trial.pin.name
-        if pin in known:
+        if pin in _known(kept):  # by now: several processes may share the work
             continue
-        known[pin] = found = _trial(trial)
+        found = _trial(trial)
         print(*(found.row if found else (pin, "no local solid")), file=sys.stderr, flush=True)
         with kept.open("a", encoding="utf-8") as file:
             file.write(json.dumps([pin, found and vars(found)]) + "\n")
+    known = _known(kept)
     return _told([known[trial.pin.name] for trial in trials])
+
+
+def _known(kept: Path) -> dict[str, Inside | None]:
+    """By pin."""
+    lines = kept.read_text(encoding="utf-8").splitlines() if kept.exists() else []
+    return {pin: Inside(**found) if found else None for pin, found in map(json.loads, lines)}
 
 
 def _told(found: list[Inside | None]) -> str:

