@@ -343,7 +343,7 @@ def cut_result(
         piece, instant, at = highest
         x, y, z = piece.points[at].tolist()
         beside = (p for p in solution.pieces if p is not piece)
-        others = [p.felt_by(piece.piece, loads, instant) for p in beside]
+        others = [p.felt_at(z, loads, instant) for p in beside]
         result = replace(
             result,
             maximum=whole,

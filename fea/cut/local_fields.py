@@ -33,6 +33,7 @@ ENDED = (
     1.5  # stress at the maximum that an end changes, over what is left there, at most (1.2 seen)
 )
 BESIDE = 3.5  # stress at a cut over that of the uncut pin there, at most
+ABOUT = 0.25  # of the diameter: how far along the pin from there that is looked at
 RISE = 0.3  # of a piece's maximum, by meshes finer than the first one, at most (0.1 seen)
 NEAR = 3  # points of the section between which displacements are interpolated
 
@@ -140,10 +141,12 @@ class LocalFields:
         """Of the error at an instant, Pa: what the ends of the piece do."""
         return ENDED * self._changed(loads, instant, self.ended)
 
-    def felt_by(self, other: Piece, loads: AnyLoads, instant: int) -> float:
-        """Of the error of another piece at an instant, Pa: that it does not know these cuts."""
-        (low, high), z = zone(other), self.points[self.outer, 2]
-        return BESIDE * self._changed(loads, instant, (z >= low) & (z <= high))
+    def felt_at(self, z: float, loads: AnyLoads, instant: int) -> float:
+        """Of the error of another piece about z (m) at an instant, Pa: it does not know these
+        cuts.
+        """
+        about = np.abs(self.points[self.outer, 2] - z) < ABOUT * self.piece.profile.largest_diameter
+        return BESIDE * self._changed(loads, instant, about)
 
     def _changed(self, loads: AnyLoads, instant: int, where: Mask) -> float:
         square = squares(self.changed[where])(self.coefficients(loads)[instant][None])
