@@ -43,7 +43,7 @@ STEP = 2.0**0.5  # from one mesh to the next
 HALF = 2.0  # the same where the mesh is given
 LOCAL: Literal["harmonic+local"] = "harmonic+local"
 MESHES = {"harmonic": 7, LOCAL: 5, "solid": 4}
-MOST_UNKNOWNS = {"harmonic": 400_000, LOCAL: 300_000, "solid": 300_000}
+MOST_UNKNOWNS = {"harmonic": 400_000, LOCAL: 600_000, "solid": 300_000}
 GROWTH = {"harmonic": 2.0, LOCAL: 1.4, "solid": 3.0}  # power of the ratio with which unknowns grow
 NO_MOTION: Mapping[str, Between] = MappingProxyType({})
 TRUNCATED = 0.2  # of the tolerance: more of it makes local solids longer
@@ -150,8 +150,9 @@ def refined(
         finer = unknowns_after(pin, model, largest)
         if level and finer > MOST_UNKNOWNS[model]:
             break
-        unit_loads = count_loads(cases) if model == "harmonic" else 0
-        if level and (excess := too_much(finer, asked.memory, unit_loads)):
+        unit_loads = count_loads(cases)
+        section, local = (unit_loads if model == m else 0 for m in ("harmonic", LOCAL))
+        if level and (excess := too_much(finer, asked.memory, section, local)):
             text = f"; on the next mesh {excess}: allow more, or increase --tolerance"
             limit = Note(text, ("memory-limit",))
             notes = {case: notes.get(case, NOTHING) + limit for case in own}
