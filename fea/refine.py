@@ -46,6 +46,7 @@ MESHES = {"harmonic": 7, LOCAL: 5, "solid": 4}
 MOST_UNKNOWNS = {"harmonic": 400_000, LOCAL: 600_000, "solid": 300_000}
 GROWTH = {"harmonic": 2.0, LOCAL: 1.4, "solid": 3.0}  # power of the ratio with which unknowns grow
 NO_MOTION: Mapping[str, Between] = MappingProxyType({})
+TOGETHER = 2.0  # times as far from each other cuts are in one local solid, if they disturb others
 TRUNCATED = 0.2  # of the tolerance: more of it makes local solids longer
 
 
@@ -66,7 +67,8 @@ class Solution:
 class PinJob:
     """A pin to be solved, constrained at surfaces (by its own names). cut: the pin with its cuts,
     where `pin` is the one without; beyond: how far local solids reach past these
-    (fea.cut.region.pieces); bands: loaded ones with cuts in them.
+    and how far from each other cuts are in one (fea.cut.region.pieces); bands: loaded ones with
+    cuts in them.
     """
 
     pin: PinLike
@@ -79,13 +81,14 @@ class PinJob:
     cut: CutPin | None = None
     beyond: float = BEYOND
     bands: tuple[tuple[float, float], ...] = ()
+    apart: float = 1.0
 
     @property
     def pieces(self) -> tuple[Piece, ...]:
         """What is solid of it."""
         if self.cut is None:
             return ()
-        return pieces(self.cut, self.constrained, self.beyond, self.bands)
+        return pieces(self.cut, self.constrained, self.beyond, self.bands, self.apart)
 
 
 def ratio_of(pin: PinLike, model: str) -> float:
@@ -170,7 +173,9 @@ def refined(
             break
         if mesh.cut is not None:
             kept = mesh.cut.idle([(case, seen[case.case].results[-1]) for case in cases])
-        if level and any(_too_short(s.results[-1], asked.tolerance) for s in seen.values()):
+        if any(_too_near(s.results[-1], asked.tolerance) for s in seen.values()):
+            job = replace(job, apart=TOGETHER * job.apart)
+        elif level and any(_too_short(s.results[-1], asked.tolerance) for s in seen.values()):
             job = replace(job, beyond=LONGER * job.beyond)
     why, out = reasons(asked, job.material, model), {}
     for case in cases:
@@ -185,6 +190,11 @@ def refined(
             peak = replace(peak, solids=solids)
         out[case.case] = Solution(because(peak, why(s)), answer, case, instant)
     return out
+
+
+def _too_near(result: MeshResult, tolerance: float) -> bool:
+    """Whether cuts in other local solids take much of it."""
+    return result.beside > TRUNCATED * tolerance * result.maximum
 
 
 def _too_short(result: MeshResult, tolerance: float) -> bool:

@@ -25,8 +25,8 @@ WITH_ONE, WITH_NEITHER, FILLS = 1.5, 1.6, 25_000.0
 # Of a section, in MB: 54,000 unknowns and 10 unit loads took 0.22 GB, 216,000 and 10 0.93, 25,000
 # and 294 1.14.
 SECTION, SECTION_LOAD = 2.8e-3, 1.5e-4  # per unknown; and per unit load
-# Of a local solid (fea.cut.two_level), in MB: under 6 unit loads 18,000 unknowns took 0.27 GB,
-# 52,000 0.43, 256,000 1.4, with 0.13 of them for the program.
+# Of a local solid (fea.cut.two_level), in MB: under 6 unit loads 52,000 unknowns took 0.43 GB
+# and 256,000 1.4, with 0.13 of them for the program.
 LOCAL, LOCAL_LOAD = 5e-3, 1.5e-4  # per unknown; and per unit load
 SHARE = 0.8  # of the free memory
 MB = 2.0**20

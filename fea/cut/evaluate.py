@@ -343,14 +343,15 @@ def cut_result(
         piece, instant, at = highest
         x, y, z = piece.points[at].tolist()
         beside = (p for p in solution.pieces if p is not piece)
-        others = [p.felt_at(z, loads, instant) for p in beside]
+        others = sum(p.felt_at((x, y, z), loads, instant) for p in beside)
         result = replace(
             result,
             maximum=whole,
             instant=instant,
             location=(x, y, z),
             scatter=whole * float(piece.scatter[at]),
-            truncated=piece.left_at_ends(loads, instant) + sum(others),
+            truncated=piece.left_at_ends(loads, instant) + others,
+            beside=others,
         )
     if not result.governed:
         return replace(result, interval=None)

@@ -32,8 +32,8 @@ ON_END = 1e-6  # of a piece's length: nodes on its end
 ENDED = (
     1.5  # stress at the maximum that an end changes, over what is left there, at most (1.2 seen)
 )
-BESIDE = 3.5  # stress at a cut over that of the uncut pin there, at most
-ABOUT = 0.25  # of the diameter: how far along the pin from there that is looked at
+BESIDE = 5.0  # stress at a cut over what another one changes beside it, at most (4.4 seen)
+ABOUT = 16  # of its nodes on the outline, the nearest ones to there
 RISE = 0.3  # of a piece's maximum, by meshes finer than the first one, at most (0.1 seen)
 NEAR = 3  # points of the section between which displacements are interpolated
 
@@ -141,11 +141,14 @@ class LocalFields:
         """Of the error at an instant, Pa: what the ends of the piece do."""
         return ENDED * self._changed(loads, instant, self.ended)
 
-    def felt_at(self, z: float, loads: AnyLoads, instant: int) -> float:
-        """Of the error of another piece about z (m) at an instant, Pa: it does not know these
+    def felt_at(self, point: Point, loads: AnyLoads, instant: int) -> float:
+        """Of the error of another piece at a point (m) at an instant, Pa: it does not know these
         cuts.
         """
-        about = np.abs(self.points[self.outer, 2] - z) < ABOUT * self.piece.profile.largest_diameter
+        if not self.piece.z0 < point[2] < self.piece.z1:
+            return 0.0
+        distance = np.linalg.norm(self.points[self.outer] - point, axis=1)
+        about = distance <= np.sort(distance)[min(ABOUT, len(distance)) - 1]
         return BESIDE * self._changed(loads, instant, about)
 
     def _changed(self, loads: AnyLoads, instant: int, where: Mask) -> float:

@@ -108,15 +108,17 @@ def pieces(
     clamps: tuple[str, ...],
     beyond: float = BEYOND,
     bands: Sequence[tuple[float, float]] = (),
+    apart: float = 1.0,
 ) -> tuple[Piece, ...]:
     """One about each cut, or about cuts that are close to each other, along the pin; beyond: how
-    far past these, of the diameter. bands: loaded ones with holes in them (loaded_bands).
+    far past these, of the diameter. bands: loaded ones with holes in them (loaded_bands). apart:
+    how much farther from each other than usual cuts are in one piece.
     """
     cuts = sorted(pin.cuts.items(), key=lambda named: named[1].extent)
     groups = [dict(cuts[:1])]
     for name, cut in cuts[1:]:
         (low, high), end = cut.extent, _ends(groups[-1].values())[1]
-        near = NEXT * beyond / BEYOND * _diameter(pin.profile, min(end, low), high)
+        near = NEXT * apart * beyond / BEYOND * _diameter(pin.profile, min(end, low), high)
         if low - end < near:
             groups[-1][name] = cut
         else:
