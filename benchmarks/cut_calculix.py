@@ -71,8 +71,8 @@ def in_calculix_locally(
     pressing = np.array([not load.shears for load, _ in units])
     found = closed(pin, model.space, boundary, found, pressing)
     forces = found.forces @ np.array([c[load][0, phase] for load, phase in units])
-    found = _solved(model.space, model.fixed, forces, boundary.nodes, steps)
-    return replace(found, meshing=spent)
+    solved = _solved(model.space, model.fixed, forces, boundary.nodes, steps)
+    return replace(solved, meshing=spent)
 
 
 def _solved(

@@ -50,7 +50,7 @@ def test_two_pieces_answer_as_one(monkeypatch: pytest.MonkeyPatch) -> None:
     assert two.at_once < 0.5 * one.at_once
     scatter = 0.02 * one.maximum  # of first meshes
     assert abs(two.maximum - one.maximum) < two.truncated + scatter
-    assert one.truncated < two.truncated < 0.05 * two.maximum
+    assert one.truncated < two.truncated < 0.1 * two.maximum
 
 
 def test_a_piece_that_cannot_govern_stays_coarse() -> None:
@@ -73,3 +73,11 @@ def test_a_piece_whose_stress_swings_does_not() -> None:
     assert all(part.finer > 2.0 for part in parts(swinging))
     constant = solve_pin(pin, STEEL, (), (pulled([3e4], [1.5e4]),), Asked(0.02))[0]
     assert [part.finer > 2.0 for part in parts(constant)] == [True, False]
+
+
+@pytest.mark.slow
+def test_a_run_joins_holes_that_disturb_each_other() -> None:
+    pin = shaft(Hole(0.08, 0.004), Hole(0.096, 0.003, 0.5 * np.pi))
+    found = solve_pin(pin, STEEL, (), (pulled([3e4], [0.0]),), Asked(0.02))[0]
+    assert len(parts(found)) == 1
+    assert found.peak.verdict == "converged"
