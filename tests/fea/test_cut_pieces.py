@@ -39,7 +39,7 @@ def parts(found: Solution) -> tuple[LocalFields, ...]:
 
 
 def test_two_pieces_answer_as_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Holes 0.6 diameters apart, each with its own symmetry; the error knows what that leaves out."""
+    """Holes 0.6 diameters apart, each with its own symmetry; the error knows the rest."""
     pin = shaft(Hole(0.08, 0.004), Hole(0.096, 0.003, 0.5 * np.pi))
     problem, rung = Problem(pin, STEEL, (), pulled([3e4], [0.0])), Rung("harmonic+local")
     assert len(region.pieces(pin, ())) == 2
