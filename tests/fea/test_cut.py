@@ -84,7 +84,7 @@ def test_tension_of_a_shaft_with_a_hole() -> None:
     about = piece()
     model = LocalModel(about, piece_mesh(about, 1.5), STEEL)
     read = model.solve(uniform(model, 2))
-    assert largest(read) == pytest.approx(3.395, rel=0.008)
+    assert largest(read) == pytest.approx(3.395, rel=0.012)
     normal = read.points[read.cut] * [0.0, 1.0, 1.0]
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     s = read.stress[read.cut][:, :, 0]
@@ -172,7 +172,7 @@ def test_what_is_meshed_of_the_pin() -> None:
     (skew,) = pieces(CutPin(SHAFT, (Hole(0.07, d), Hole(0.08, d, 0.8))), ())
     assert skew.mirrors == ()
     assert len(skew.cuts) == 2
-    (pair,) = pieces(CutPin(SHAFT, (Hole(0.07, d), Hole(0.09, d))), ())
+    (pair,) = pieces(CutPin(SHAFT, (Hole(0.07, d), Hole(0.082, d))), ())
     assert pair.mirrors == ("x", "y", "z")
     assert len(pair.cuts) == 1
     assert len(pieces(CutPin(SHAFT, (Hole(0.05, d), Hole(0.11, d))), ())) == 2
