@@ -52,9 +52,12 @@ def in_calculix(pin: CutPin, clamps: tuple[str, ...], loads: PinLoads, finer: fl
     return _solved(space, fields.fixed, forces, nodes[solution.outside[: len(nodes)]])
 
 
-def in_calculix_locally(pin: CutPin, loads: PinLoads, level: int, spots: Spots) -> Other:
+def in_calculix_locally(
+    pin: CutPin, loads: PinLoads, level: int, spots: Spots, steps: int = 1
+) -> Other:
     """Of a pin that nothing clamps, on a mesh graded as those of local solids are: fine at the
-    edges of cuts, finer at spots (x, y, z), m, and coarse elsewhere.
+    edges of cuts, finer at spots (x, y, z), m, and coarse elsewhere. steps: of the same loads, one
+    after the other, for their time.
 
     Raises: CalculixError.
     """
@@ -68,17 +71,27 @@ def in_calculix_locally(pin: CutPin, loads: PinLoads, level: int, spots: Spots) 
     pressing = np.array([not load.shears for load, _ in units])
     found = closed(pin, model.space, boundary, found, pressing)
     forces = found.forces @ np.array([c[load][0, phase] for load, phase in units])
-    return replace(_solved(model.space, model.fixed, forces, boundary.nodes), meshing=spent)
+    solved = _solved(model.space, model.fixed, forces, boundary.nodes, steps)
+    return replace(solved, meshing=spent)
 
 
-def _solved(space: Discretisation, fixed: Ints, forces: Floats, read: Ints) -> Other:
+def _solved(
+    space: Discretisation, fixed: Ints, forces: Floats, read: Ints, steps: int = 1
+) -> Other:
     with tempfile.TemporaryDirectory(prefix="pinstress-ccx-") as name:
         folder = Path(name)
         deck = folder / f"{calculix.JOB}.inp"
         write_deck(deck, space.nodes, space.elements, STEEL, fixed, forces)
+        if steps > 1:
+            text = deck.read_text(encoding="ascii")
+            again = text[text.index("*STEP") :].replace("*CLOAD", "*CLOAD, OP=NEW")
+            deck.write_text(text + (steps - 1) * again, encoding="ascii")
         before = _children()
-        found = calculix.solved(folder, calculix.run(folder))
+        printed = calculix.run(folder)
         spent = _children() - before
+        if steps > 1:
+            return Other(space.unknowns, 0.0, spent)
+        found = calculix.solved(folder, printed)
     return Other(space.unknowns, float(von_mises(found.stress[read]).max()), spent)
 
 

@@ -19,8 +19,8 @@ from fea.core.over_time import Between, rise_between, through_time, with_crest
 from fea.core.peak import NOTHING, Note, Peak
 from fea.core.pin_loads import PinLoads
 from fea.core.solution import Answer
-from fea.cut.evaluate import CutAnswer, cut_result, cut_solution
-from fea.cut.local_fields import RATIO
+from fea.cut.evaluate import CutAnswer, CutSolution, cut_result, cut_solution
+from fea.cut.local_fields import RATIO, LocalFields
 from fea.cut.region import BEYOND, LONGER, pieces
 from fea.harmonic.evaluate import (
     FirstMesh,
@@ -43,9 +43,10 @@ STEP = 2.0**0.5  # from one mesh to the next
 HALF = 2.0  # the same where the mesh is given
 LOCAL: Literal["harmonic+local"] = "harmonic+local"
 MESHES = {"harmonic": 7, LOCAL: 5, "solid": 4}
-MOST_UNKNOWNS = {"harmonic": 400_000, LOCAL: 300_000, "solid": 300_000}
+MOST_UNKNOWNS = {"harmonic": 400_000, LOCAL: 600_000, "solid": 300_000}
 GROWTH = {"harmonic": 2.0, LOCAL: 1.4, "solid": 3.0}  # power of the ratio with which unknowns grow
 NO_MOTION: Mapping[str, Between] = MappingProxyType({})
+TOGETHER = 2.0  # times as far from each other cuts are in one local solid, if they disturb others
 TRUNCATED = 0.2  # of the tolerance: more of it makes local solids longer
 
 
@@ -66,7 +67,8 @@ class Solution:
 class PinJob:
     """A pin to be solved, constrained at surfaces (by its own names). cut: the pin with its cuts,
     where `pin` is the one without; beyond: how far local solids reach past these
-    (fea.cut.region.pieces); bands: loaded ones with cuts in them.
+    and how far from each other cuts are in one (fea.cut.region.pieces); bands: loaded ones with
+    cuts in them.
     """
 
     pin: PinLike
@@ -79,13 +81,14 @@ class PinJob:
     cut: CutPin | None = None
     beyond: float = BEYOND
     bands: tuple[tuple[float, float], ...] = ()
+    apart: float = 1.0
 
     @property
     def pieces(self) -> tuple[Piece, ...]:
         """What is solid of it."""
         if self.cut is None:
             return ()
-        return pieces(self.cut, self.constrained, self.beyond, self.bands)
+        return pieces(self.cut, self.constrained, self.beyond, self.bands, self.apart)
 
 
 def ratio_of(pin: PinLike, model: str) -> float:
@@ -143,21 +146,23 @@ def refined(
     singularities = job_singularities(job, cases)
     own = {case.case: job_singularities(job, (case,)) for case in cases}
     seen = {case.case: Seen(pin.name, case.case, model, (), (), ratio) for case in cases}
+    kept: tuple[LocalFields, ...] = ()
     for level in range(asked.meshes or MESHES[model]):
         before = {case: s.results[-1] for case, s in seen.items() if s.results}
-        largest = max((result.unknowns for result in before.values()), default=0)
+        largest = max((r.at_once or r.unknowns for r in before.values()), default=0)
         finer = unknowns_after(pin, model, largest)
         if level and finer > MOST_UNKNOWNS[model]:
             break
-        unit_loads = count_loads(cases) if model == "harmonic" else 0
-        if level and (excess := too_much(finer, asked.memory, unit_loads)):
+        unit_loads = count_loads(cases)
+        section, local = (unit_loads if model == m else 0 for m in ("harmonic", LOCAL))
+        if level and (excess := too_much(finer, asked.memory, section, local)):
             text = f"; on the next mesh {excess}: allow more, or increase --tolerance"
             limit = Note(text, ("memory-limit",))
             notes = {case: notes.get(case, NOTHING) + limit for case in own}
             break
         job.progress(f"pin {pin.name}, {model} model, mesh {level + 1}")
         start = time.perf_counter()
-        mesh = _mesh(job, model, cases, singularities, own, level, before)
+        mesh = _mesh(job, model, cases, singularities, own, level, before, kept)
         if not level:
             cases = tuple(_through_time(job, mesh, case) for case in cases)
         for case in cases:
@@ -166,7 +171,11 @@ def refined(
             start = end
         if all(enough(asked, job.material, s) for s in seen.values()):
             break
-        if level and any(_too_short(s.results[-1], asked.tolerance) for s in seen.values()):
+        if mesh.cut is not None:
+            kept = mesh.cut.idle([(case, seen[case.case].results[-1]) for case in cases])
+        if any(_too_near(s.results[-1], asked.tolerance) for s in seen.values()):
+            job = replace(job, apart=TOGETHER * job.apart)
+        elif level and any(_too_short(s.results[-1], asked.tolerance) for s in seen.values()):
             job = replace(job, beyond=LONGER * job.beyond)
     why, out = reasons(asked, job.material, model), {}
     for case in cases:
@@ -183,6 +192,11 @@ def refined(
     return out
 
 
+def _too_near(result: MeshResult, tolerance: float) -> bool:
+    """Whether cuts in other local solids take much of it."""
+    return result.beside > TRUNCATED * tolerance * result.maximum
+
+
 def _too_short(result: MeshResult, tolerance: float) -> bool:
     """Whether the ends of local solids take much of the error that is allowed."""
     return result.truncated > TRUNCATED * tolerance * result.maximum
@@ -190,11 +204,14 @@ def _too_short(result: MeshResult, tolerance: float) -> bool:
 
 @dataclass(frozen=True)
 class _Mesh:
-    """One solved mesh: its singular zones, its result for a case, and its answers."""
+    """One solved mesh: its singular zones, its result for a case, and its answers; cut: of a model
+    with local solids.
+    """
 
     singularities: tuple[Singularity, ...]
     result: Callable[[PinLoads], MeshResult]
     answers: dict[str, Answer]
+    cut: CutSolution | None = None
 
 
 def _mesh(
@@ -205,6 +222,7 @@ def _mesh(
     own: dict[str, tuple[Singularity, ...]],
     level: int,
     before: dict[str, MeshResult],
+    kept: tuple[LocalFields, ...],
 ) -> _Mesh:
     ratio = ratio_of(job.pin, model)
     if model != "solid":
@@ -216,13 +234,15 @@ def _mesh(
         answers: dict[str, Answer]
         if model == LOCAL:
             cut = cut_solution(
-                problem, job.pieces, level, before.values(), job.bands, job.asked.distance
-            )
+                problem, job.pieces, level, before.values(), job.bands, job.asked.distance,
+                kept=kept,
+            )  # fmt: skip
             answers = {c: CutAnswer(cut, mine) for c, mine in own.items()}
             return _Mesh(
                 (*singularities, *cut.corners),
                 lambda c: cut_result(cut, singularities, c, own[c.case]),
                 answers,
+                cut,
             )
         section = harmonic_solution(problem, level, ratio, before.values())
         answers = {c: HarmonicAnswer(section, mine) for c, mine in own.items()}

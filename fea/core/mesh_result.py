@@ -57,10 +57,11 @@ class MeshResult:
     harmonics of a bearing pressure that are not taken may change the maximum, Pa. between: by how
     much it may be higher between two instants, Pa. high: points (r, z) of a section, m, where a
     finer mesh may find the maximum; local_high: the same about cuts, (x, y, z). truncated: by how
-    much the ends of a local solid may change the maximum, Pa. quiet: fillets, as numbers of
+    much the ends of a local solid may change the maximum, Pa, with what other local solids do
+    (beside). quiet: fillets, as numbers of
     corners, where none will (fea.harmonic.quiet_corners). interval: the maximum if half and twice
     the distance is left out of what governs, Pa; None where nothing in them does. energy: under any
-    of the case's loads.
+    of the case's loads. at_once: the most unknowns that are solved together, 0 for all.
     """
 
     unknowns: int
@@ -73,9 +74,11 @@ class MeshResult:
     high: tuple[tuple[float, float], ...] = ()
     local_high: tuple[Point, ...] = ()
     truncated: float = 0.0
+    beside: float = 0.0
     quiet: tuple[int, ...] = ()
     between: float = 0.0
     interval: tuple[float, float] | None = None
+    at_once: int = 0
     energy: StrainEnergy | None = field(default=None, compare=False)
 
     @property

@@ -12,7 +12,15 @@ from fea.core.mesh_result import MeshResult
 from fea.core.pin_loads import AnyLoads, PinLoads
 from fea.core.solution import Picture
 from fea.core.voigt import ENTRIES, TENSOR
-from fea.cut.local_fields import RATIO, LocalFields, local_fields, mesh_of, section_points
+from fea.cut.local_fields import (
+    RATIO,
+    RISE,
+    Fineness,
+    LocalFields,
+    local_fields,
+    mesh_of,
+    section_points,
+)
 from fea.cut.region import surface_ends, zone
 from fea.cut.supports import ClampMotions, Support, motions, reactions
 from fea.harmonic.evaluate import (
@@ -52,6 +60,20 @@ class CutSolution:
         """Sharp inner corners of the cuts."""
         return tuple(c.singularity for piece in self.pieces for c in piece.corners)
 
+    def idle(self, results: Sequence[tuple[PinLoads, MeshResult]]) -> tuple[LocalFields, ...]:
+        """Pieces that need no finer mesh: in no case may their stress reach the largest one, nor
+        swing as much as in another piece.
+        """
+        out = set(range(len(self.pieces)))
+        for loads, result in results:
+            held = self.reactions.held(loads)
+            swings = [piece.swing(held) * (1.0 + RISE / piece.finer**2) for piece in self.pieces]
+            for k, piece in enumerate(self.pieces):
+                most = piece.may_reach(held, result.maximum)
+                if most or (len(loads) > 1 and swings[k] >= max(swings) / (1.0 + RISE)):
+                    out.discard(k)
+        return tuple(self.pieces[k] for k in sorted(out))
+
 
 def cut_solution(
     problem: SectionProblem,
@@ -60,16 +82,25 @@ def cut_solution(
     before: Collection[MeshResult] = (),
     bands: Sequence[tuple[float, float]] = (),
     distance: float = 0.1,
+    finer: Fineness | None = None,
+    kept: Sequence[LocalFields] = (),
 ) -> CutSolution:
     """As fea.harmonic.evaluate.harmonic_solution, on mesh number `level` of section and pieces.
     bands: loaded ones with cuts in them (fea.cut.region.loaded_bands); distance: as
-    fea.cut.inner_corners.
+    fea.cut.inner_corners; finer: of the pieces, in place of the level's; kept: what is
+    known of pieces that this mesh need not know better.
 
     Raises: MeshError, SolveError.
     """
     material, clamps, cases = problem.material, problem.clamps, problem.cases
     high = [p for result in before for p in result.local_high]
-    models = [mesh_of(piece, material, clamps, level, high, bands) for piece in pieces]
+    finer = finer or Fineness.of(level)
+    known = [next((k for k in kept if k.piece == piece), None) for piece in pieces]
+    models = [
+        mesh_of(piece, material, clamps, finer, high, bands)
+        for piece, there in zip(pieces, known, strict=True)
+        if there is None
+    ]
     points = [section_points(model) for model in models]
     supports = _supports(problem)
     moved = motions(supports)
@@ -78,13 +109,14 @@ def cut_solution(
         level, RATIO, before,
         np.concatenate([NOWHERE, *points]), [_fine(piece, level) for piece in pieces],
     )  # fmt: skip
-    at = np.split(section.elsewhere, np.cumsum([len(p) for p in points])[:-1])
+    at = np.split(section.elsewhere, np.cumsum([len(p) for p in points]))
     units = _units(cases) or tuple((load, load.phases[0]) for load in section.fields.loads[:1])
     units += moved
-    found = tuple(
+    new = iter(
         local_fields(model, section.fields, stress, units, problem.singularities, distance)
-        for model, stress in zip(models, at, strict=True)
+        for model, stress in zip(models, at[:-1], strict=True)
     )
+    found = tuple(there or next(new) for there in known)
     fields = _without(section.fields, [zone(piece) for piece in pieces])
     section = replace(section, fields=fields, elsewhere=NOWHERE)
     return CutSolution(section, found, reactions(supports, found))
@@ -296,11 +328,12 @@ def cut_result(
         high += piece.high(loads, instant)
         if value[instant] > whole:
             whole, highest = float(value[instant]), (piece, instant, int(point[instant]))
-    unknowns = result.unknowns + sum(piece.unknowns for piece in solution.pieces)
+    parts = [result.unknowns, *(piece.unknowns for piece in solution.pieces)]
     inside = tuple(at for piece in solution.pieces for at in piece.inside(loads))
     result = replace(
         result,
-        unknowns=unknowns,
+        unknowns=sum(parts),
+        at_once=max(parts),
         local_high=tuple(high),
         energy=None,
         singularities=(*result.singularities, *inside),
@@ -309,13 +342,16 @@ def cut_result(
     if highest is not None:
         piece, instant, at = highest
         x, y, z = piece.points[at].tolist()
+        beside = (p for p in solution.pieces if p is not piece)
+        others = sum(p.felt_at((x, y, z), loads, instant) for p in beside)
         result = replace(
             result,
             maximum=whole,
             instant=instant,
             location=(x, y, z),
             scatter=whole * float(piece.scatter[at]),
-            truncated=piece.left_at_ends(loads, instant),
+            truncated=piece.left_at_ends(loads, instant) + others,
+            beside=others,
         )
     if not result.governed:
         return replace(result, interval=None)

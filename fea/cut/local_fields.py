@@ -32,17 +32,36 @@ ON_END = 1e-6  # of a piece's length: nodes on its end
 ENDED = (
     1.5  # stress at the maximum that an end changes, over what is left there, at most (1.2 seen)
 )
+BESIDE = 5.0  # stress at a cut over what another one changes beside it, at most (4.4 seen)
+ABOUT = 16  # of its nodes on the outline, the nearest ones to there
+RISE = 0.3  # of a piece's maximum, by meshes finer than the first one, at most (0.1 seen)
 NEAR = 3  # points of the section between which displacements are interpolated
+
+
+@dataclass(frozen=True)
+class Fineness:
+    """How many times finer than the first mesh elements are: along the edges of cuts, and at spots
+    where stress is high.
+    """
+
+    edges: float
+    spots: float
+
+    @staticmethod
+    def of(level: int) -> Fineness:
+        """Of mesh number `level`."""
+        return Fineness(RATIO ** (level * ELSEWHERE), RATIO**level)
 
 
 @dataclass(frozen=True)
 class LocalFields:
     """On one mesh of a piece, in the pin's frame: points (P, 3) m of the surface, triangles (M, 3)
     of them, stress (P, 6, L) Pa of L unit loads, each in one phase; displacement (P, 3, L) m of the
-    uncut pin. read: (P,) where the maximum is looked for but for inner corners of cuts. ended: (E,
-    6, L) what the cuts change of the stress where the piece ends; moved: (2, 6, L) by how much they
+    uncut pin. read: (P,) where the maximum is looked for but for inner corners of cuts. outer, and
+    changed: rows on the outline of the uncut pin, and what the cuts change of their stress (O, 6,
+    L); ended: (O,) which of these are where the piece ends. moved: (2, 6, L) by how much the cuts
     move its ends, as a shift (m) and a turn (rad) about the pin's origin. scatter: (P,) of the
-    stress with the positions of nodes, relative.
+    stress with the positions of nodes, relative. finer: its spots than those of the first mesh.
     """
 
     piece: Piece
@@ -52,11 +71,14 @@ class LocalFields:
     stress: Floats
     displacement: Floats
     read: Mask
-    ended: Floats
+    outer: Ints
+    changed: Floats
+    ended: Mask
     moved: Floats
     unknowns: int
     corners: tuple[InnerCorner, ...]
     scatter: Floats
+    finer: float
 
     def coefficients(self, loads: AnyLoads) -> Floats:
         """How much of each unit load acts at each instant, (T, L).
@@ -117,9 +139,34 @@ class LocalFields:
 
     def left_at_ends(self, loads: AnyLoads, instant: int) -> float:
         """Of the error at an instant, Pa: what the ends of the piece do."""
-        c = self.coefficients(loads)[instant]
-        square = squares(self.ended)(c[None])
-        return ENDED * float(np.sqrt(max(square.max(initial=0.0), 0.0)))
+        return ENDED * self._changed(loads, instant, self.ended)
+
+    def felt_at(self, point: Point, loads: AnyLoads, instant: int) -> float:
+        """Of the error of another piece at a point (m) at an instant, Pa: it does not know these
+        cuts.
+        """
+        if not self.piece.z0 < point[2] < self.piece.z1:
+            return 0.0
+        distance = np.linalg.norm(self.points[self.outer] - point, axis=1)
+        about = distance <= np.sort(distance)[min(ABOUT, len(distance)) - 1]
+        return BESIDE * self._changed(loads, instant, about)
+
+    def _changed(self, loads: AnyLoads, instant: int, where: Mask) -> float:
+        square = squares(self.changed[where])(self.coefficients(loads)[instant][None])
+        return float(np.sqrt(max(square.max(initial=0.0), 0.0)))
+
+    def may_reach(self, loads: AnyLoads, stress: float) -> bool:
+        """Whether finer meshes may find so much, Pa, here."""
+        top = max(float(self.largest(loads)[0].max()), *(s.felt for s in self.inside(loads)), 0.0)
+        return top * (1.0 + RISE / self.finer**2) >= stress
+
+    def swing(self, loads: AnyLoads) -> float:
+        """The largest von Mises stress of what is not the mean of all instants, Pa."""
+        _, found = self._squares
+        c = self.coefficients(loads)
+        c = c - c.mean(axis=0)
+        parts = [found(c[k : k + 64]).max(initial=0.0) for k in range(0, len(c), 64)]
+        return float(np.sqrt(max(0.0, *parts)))
 
     def high(self, loads: AnyLoads, instant: int) -> tuple[Point, ...]:
         """Points near the cuts where stress is nearly the maximum at an instant, well apart; none
@@ -179,11 +226,11 @@ def mesh_of(
     piece: Piece,
     material: Material,
     clamps: tuple[str, ...],
-    level: int,
+    finer: Fineness,
     high: Sequence[Point],
     bands: Sequence[tuple[float, float]] = (),
 ) -> LocalModel:
-    """Mesh number `level` of a piece, finer about points (m, in the pin's frame) where stress was
+    """The mesh of a piece, finest about points (m, in the pin's frame) where stress was
     high on the meshes before. bands: loaded ones of the pin, with cuts in them.
 
     Raises: MeshError.
@@ -192,9 +239,9 @@ def mesh_of(
     spots: Spots = ()
     if here:
         spots = [_point(x) for x in _unmirrored(piece, np.array(here))]
-    mesh = piece_mesh(piece, RATIO ** (level * ELSEWHERE), spots, RATIO**level)
+    mesh = piece_mesh(piece, finer.edges, spots, finer.spots)
     held, loaded = _within(piece, clamps), bearings(piece, bands)
-    return LocalModel(piece, mesh, material, held, loaded, RATIO**level)
+    return LocalModel(piece, mesh, material, held, loaded, finer.spots)
 
 
 def _within(piece: Piece, clamps: tuple[str, ...]) -> tuple[str, ...]:
@@ -249,6 +296,7 @@ def local_fields(
     at_end = np.zeros(len(points), dtype=bool)
     for end in ends:
         at_end |= np.abs(points[:, 2] - end) < ON_END * length
+    outer = np.flatnonzero(~read.cut)
     moved = _displacement(fields, flat_r, flat_z, np.arctan2(points[:, 1], points[:, 0]), units)
     return LocalFields(
         model.piece,
@@ -258,7 +306,9 @@ def local_fields(
         turned(read.stress, np.broadcast_to(_turn(model.piece.angle), (len(points), 3, 3))),
         moved,
         outside(singularities, flat_r, flat_z),
-        read.difference[at_end & ~read.cut],
+        outer,
+        read.difference[outer],
+        at_end[outer],
         _in_pin(read.moved, model.piece),
         model.unknowns,
         tuple(
@@ -266,6 +316,7 @@ def local_fields(
             for corner in inner_corners(model, model.points, distance)
         ),
         np.tile(model.scatter, len(x)),
+        model.finer,
     )
 
 

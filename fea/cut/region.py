@@ -14,7 +14,7 @@ from geometry.mesh.cut_piece import Piece, clipped
 
 BEYOND = 1.4  # of the diameter, past a cut: in a shaft, ends there change stress by 0.1 %
 LONGER = 1.6  # times that, where it is seen not to be enough, as in tubes
-NEXT = 1.0  # of the diameter: cuts closer to each other are in one piece
+NEXT = 0.5  # of the diameter: cuts closer to each other are in one piece
 LEFT = 0.25  # of the diameter: less than that beyond a piece is part of it
 CLEAR = 0.1  # of the diameter, at least between the end of a piece and a step
 SAME = 1e-9  # of the diameter: two lengths
@@ -124,15 +124,17 @@ def pieces(
     clamps: tuple[str, ...],
     beyond: float = BEYOND,
     bands: Sequence[tuple[float, float]] = (),
+    apart: float = 1.0,
 ) -> tuple[Piece, ...]:
     """One about each cut, or about cuts that are close to each other, along the pin; beyond: how
-    far past these, of the diameter. bands: loaded ones with cuts in them (loaded_bands).
+    far past these, of the diameter. bands: loaded ones with cuts in them (loaded_bands). apart:
+    how much farther from each other than usual cuts are in one piece.
     """
     cuts = sorted(pin.cuts.items(), key=lambda named: named[1].extent)
     groups = [dict(cuts[:1])]
     for name, cut in cuts[1:]:
         (low, high), end = cut.extent, _ends(groups[-1].values())[1]
-        near = NEXT * beyond / BEYOND * _diameter(pin.profile, min(end, low), high)
+        near = NEXT * apart * beyond / BEYOND * _diameter(pin.profile, min(end, low), high)
         if low - end < near:
             groups[-1][name] = cut
         else:

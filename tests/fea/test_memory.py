@@ -13,6 +13,7 @@ from fea.core.linear_solver import SolveError
 from fea.core.memory import (
     allowed_memory,
     free_memory,
+    local_memory,
     require_memory,
     section_memory,
     solid_memory,
@@ -64,6 +65,13 @@ def test_so_it_is_of_a_section(unknowns: int, loads: int, measured: float) -> No
     assert 0.95 * measured < section_memory(unknowns, loads) < 1.4 * measured
     assert f"{unknowns:,} unknowns" in too_much(unknowns, 0.9 * measured, loads)
     assert not too_much(unknowns, 1.5 * measured, loads)
+
+
+@pytest.mark.parametrize(("unknowns", "measured"), [(52_371, 303), (256_089, 1266)])
+def test_and_of_a_local_solid(unknowns: int, measured: float) -> None:
+    assert 0.95 * measured < local_memory(unknowns, 6) < 1.4 * measured
+    assert not too_much(unknowns, 1.4 * measured, local_loads=6)
+    assert too_much(unknowns, 0.9 * measured, local_loads=6)
 
 
 @pytest.mark.linux
