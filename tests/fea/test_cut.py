@@ -82,9 +82,9 @@ def test_tension_of_a_shaft_with_a_hole() -> None:
     surfaces are free of traction.
     """
     about = piece()
-    model = LocalModel(about, piece_mesh(about, 1.5), STEEL)
+    model = LocalModel(about, piece_mesh(about, 2.0), STEEL)
     read = model.solve(uniform(model, 2))
-    assert largest(read) == pytest.approx(3.395, rel=0.012)
+    assert largest(read) == pytest.approx(3.395, rel=0.008)
     normal = read.points[read.cut] * [0.0, 1.0, 1.0]
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     s = read.stress[read.cut][:, :, 0]
@@ -93,20 +93,20 @@ def test_tension_of_a_shaft_with_a_hole() -> None:
 
 
 def test_a_small_hole_in_tension_is_one_in_a_plate_at_depth() -> None:
-    """Kirsch: 3 along the wall, with the stress along it that keeps what the hole adds plane. The
-    bar's curvature and 48 to 72 elements round the hole leave 0.6 to 1.3 % more, on ten meshes.
-    Von Mises stress at the mouth: 2.94 to 3.08 on these.
+    """Kirsch: 3 along the wall, with the stress along it that keeps what the hole adds plane; the
+    bar's curvature and the mesh leave 1.1 % more (0.8 % on finer ones). At the mouth, where nothing
+    acts along the wall, von Mises stress is as large: 2.96 to 2.98 on meshes up to 3.5 times finer.
     """
     about = piece(0.05 * D)
-    model = LocalModel(about, piece_mesh(about, 1.5), STEEL)
+    model = LocalModel(about, piece_mesh(about, 2.0), STEEL)
     read = model.solve(uniform(model, 2))
     x, y, z = read.points.T
     deep = read.cut & (np.abs(x) < 0.2 * D) & (y > 0.0) & (np.abs(z) < 1e-9)
     assert deep.sum() > 20
     mean = read.stress[deep, :, 0].mean(axis=0)
-    assert mean[2] == pytest.approx(3.0, rel=0.015)
+    assert mean[2] == pytest.approx(3.0, rel=0.012)
     assert mean[0] == pytest.approx(STEEL.poisson_ratio * (3.0 - 1.0), abs=0.06)
-    assert 2.9 < largest(read) < 3.15
+    assert 2.93 < largest(read) < 3.02
 
 
 def mirrored(solid: SolidMesh, axis: int, plane: str) -> SolidMesh:
