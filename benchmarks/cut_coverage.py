@@ -23,7 +23,7 @@ from benchmarks.timing import table
 from fea.core.mesh_result import MeshResult
 from fea.core.peak import Peak
 from fea.cut.evaluate import cut_result, cut_solution
-from fea.cut.local_fields import Fineness
+from fea.cut.local_fields import LocalFineness
 from fea.cut.region import BEYOND, loaded_bands, pieces
 from fea.harmonic.evaluate import SectionProblem
 from fea.solve_pin import Asked, singularities_of, solve_pin
@@ -163,8 +163,8 @@ def _references(trial: CutTrial, found: Peak) -> list[MeshResult]:
     for edges, spots in FINER:
         high = tuple(dict.fromkeys((found.location, *before.local_high)))
         near = replace(before, local_high=high, high=((math.hypot(x, y), z), *before.high))
-        run = Fineness.of(last)
-        finer = Fineness(run.edges * edges, run.spots * spots)
+        run = LocalFineness.of(last)
+        finer = LocalFineness(run.edges * edges, run.spots * spots)
         solution = cut_solution(problem, about, last + SECTION, [near], bands, finer=finer)
         before = cut_result(solution, zones, loads)
         out.append(before)

@@ -15,8 +15,8 @@ from fea.core.voigt import ENTRIES, TENSOR
 from fea.cut.local_fields import (
     RATIO,
     RISE,
-    Fineness,
     LocalFields,
+    LocalFineness,
     local_fields,
     mesh_of,
     section_points,
@@ -82,7 +82,7 @@ def cut_solution(
     before: Collection[MeshResult] = (),
     bands: Sequence[tuple[float, float]] = (),
     distance: float = 0.1,
-    finer: Fineness | None = None,
+    finer: LocalFineness | None = None,
     kept: Sequence[LocalFields] = (),
 ) -> CutSolution:
     """As fea.harmonic.evaluate.harmonic_solution, on mesh number `level` of section and pieces.
@@ -94,7 +94,7 @@ def cut_solution(
     """
     material, clamps, cases = problem.material, problem.clamps, problem.cases
     high = [p for result in before for p in result.local_high]
-    finer = finer or Fineness.of(level)
+    finer = finer or LocalFineness.of(level)
     known = [next((k for k in kept if k.piece == piece), None) for piece in pieces]
     models = [
         mesh_of(piece, material, clamps, finer, high, bands)

@@ -39,7 +39,7 @@ NEAR = 3  # points of the section between which displacements are interpolated
 
 
 @dataclass(frozen=True)
-class Fineness:
+class LocalFineness:
     """How many times finer than the first mesh elements are: along the edges of cuts, and at spots
     where stress is high.
     """
@@ -48,9 +48,9 @@ class Fineness:
     spots: float
 
     @staticmethod
-    def of(level: int) -> Fineness:
+    def of(level: int) -> LocalFineness:
         """Of mesh number `level`."""
-        return Fineness(RATIO ** (level * ELSEWHERE), RATIO**level)
+        return LocalFineness(RATIO ** (level * ELSEWHERE), RATIO**level)
 
 
 @dataclass(frozen=True)
@@ -226,7 +226,7 @@ def mesh_of(
     piece: Piece,
     material: Material,
     clamps: tuple[str, ...],
-    finer: Fineness,
+    finer: LocalFineness,
     high: Sequence[Point],
     bands: Sequence[tuple[float, float]] = (),
 ) -> LocalModel:

@@ -301,7 +301,7 @@ def test_a_point_that_passes_a_limit_or_cannot_be_fails(
 def test_a_pin_that_is_no_body_of_revolution(tmp_path: Path) -> None:
     """Its reference is the solid model itself, on finer meshes than are charted."""
     text = ONE_PIN.replace(
-        "fillet = 0.4", "flat = [{ z = [2.3, 2.7], distance = 0.45 }]\nfillet = 0.4"
+        "fillet = 0.4", "flat = [{ z = [3.2, 3.5], distance = 0.45 }]\nfillet = 0.4"
     )
     (tmp_path / "study.toml").write_text(text)
     found = chart(plan_chart(load_study(tmp_path / "study.toml"), "B", "landing"), MadeUp({}))

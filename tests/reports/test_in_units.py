@@ -65,6 +65,7 @@ def test_every_array_has_a_dimension_or_is_known_to_need_none() -> None:
         "PinResult.published_safety_factor",
         "ReactionTable.turn",  # rad
         "PowerLedger.violation",  # a ratio
+        "CutShape.angle",  # degrees
         "LinkageMotion.angle",  # degrees, and rad
         "LinkageMotion.angular_velocity",
         "LinkageMotion.angular_acceleration",
