@@ -107,7 +107,7 @@ def solved_in_lugs(
 
 
 def parameters(pin: Pin, material: Material, lugs: Sequence[Lug]) -> Iterator[JointParameter]:
-    """All lengths and moduli of a joint, each by itself; materials are told apart by names."""
+    """All lengths and moduli of a joint, each by itself; names distinguish materials."""
     joint = pin, material, tuple(lugs)
     for d in dimensions(pin):
         yield JointParameter(d.key, d.value, d.value, partial(_of_pin, joint, d))
