@@ -9,6 +9,7 @@ from typing import Literal
 from fea.beam.error_model import PLAIN
 from fea.core.material import Material
 from fea.core.peak import Note
+from fea.singular.singularities import Edges
 from fea.verdict import FEWEST, Seen
 
 Model = Literal["auto", "beam", "harmonic", "solid"]
@@ -22,7 +23,8 @@ DECIDED = "its error does not affect whether the required factor is reached"
 class Asked:
     """Requirements on a solution: the maximum to a `tolerance`, or (goal "decide") only whether the
     `required` safety factor is met. distance: excluded distance around singularities, as a fraction
-    of the local diameter. meshes: maximum number of meshes, by default that of the model. memory:
+    of the local diameter; lug_edges: whether it is varied at rounded edges of lugs, or stress within
+    it excluded there. meshes: maximum number of meshes, by default that of the model. memory:
     limit for a mesh in MB, by default most of the free memory. because: reason for the model, where
     this package does not choose it. near: whether sections have the meshes of near shapes with
     their nodes moved. cells: of contact with lugs, these alone; None: until they are fine enough.
@@ -33,6 +35,7 @@ class Asked:
     goal: Goal = "value"
     required: float | None = None
     distance: float = 0.1
+    lug_edges: Edges = "varied"
     meshes: int | None = None
     memory: float | None = None
     because: Note | None = None
