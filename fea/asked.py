@@ -23,11 +23,12 @@ DECIDED = "its error does not affect whether the required factor is reached"
 class Asked:
     """Requirements on a solution: the maximum to a `tolerance`, or (goal "decide") only whether the
     `required` safety factor is met. distance: excluded distance around singularities, as a fraction
-    of the local diameter; lug_edges: whether it is varied at rounded edges of lugs, or stress within
-    it excluded there. meshes: maximum number of meshes, by default that of the model. memory:
-    limit for a mesh in MB, by default most of the free memory. because: reason for the model, where
-    this package does not choose it. near: whether sections have the meshes of near shapes with
-    their nodes moved. cells: of contact with lugs, these alone; None: until they are fine enough.
+    of the local diameter; lug_edges: whether it is varied at rounded edges of lugs, or stress
+    within it excluded there. meshes: maximum number of meshes, by default that of the model.
+    memory: limit for a mesh in MB, by default most of the free memory. because: reason for the
+    model, where this package does not choose it. near: whether sections have the meshes of near
+    shapes with their nodes moved. cells: of contact with lugs, these alone; None: until they are
+    fine enough.
     """
 
     tolerance: float = 0.02

@@ -58,7 +58,7 @@ def felt_beyond(
     singularities: Iterable[Singularity],
     maximum: float,
 ) -> bool:
-    """Whether in one of them that is not excluded stress is felt to be larger than a maximum, Pa."""
+    """Whether stress in one of them that is not excluded is felt to exceed a maximum, Pa."""
     return any(
         around.exceeds(_places(fields, p)[2], maximum) for p in singularities if not p.excluded
     )
