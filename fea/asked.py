@@ -67,8 +67,9 @@ def _limit(asked: Asked, material: Material) -> float | None:
 def enough(asked: Asked, material: Material, seen: Seen) -> bool:
     """Whether these meshes are accurate enough, or decide the required factor.
 
-    Two meshes never tell how large a maximum is, for they can agree by chance. Where what is
-    excluded about rounded edges of lugs makes it uncertain anyway, they may decide, by a margin.
+    Two meshes never tell how large a maximum is, for they can agree by chance. Where stress is
+    larger at rounded edges of lugs, they may decide, by a margin: what is excluded there, or the
+    cells of contact, make it more uncertain anyway.
     """
     if len(seen.results) < FEWEST - 1:
         return False
@@ -77,7 +78,7 @@ def enough(asked: Asked, material: Material, seen: Seen) -> bool:
         apart = MARGIN * seen.relative
         clear = decided(asked, material, low * (1.0 - apart), high * (1.0 + apart))
         last = seen.results[-1]
-        return clear and bool(last.governed) and not last.singular
+        return clear and bool(last.larger) and not last.singular
     return seen.known(asked.tolerance) or decided(asked, material, *seen.range)
 
 

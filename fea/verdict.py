@@ -160,7 +160,7 @@ def judge(
     if len(seen.results) < FEWEST and not known:
         meshes = "one mesh was" if len(seen.results) == 1 else f"{len(seen.results)} meshes were"
         text = f"only {meshes} solved, too few to estimate the error"
-        if len(seen.results) == FEWEST - 1 and last.governed:
+        if len(seen.results) == FEWEST - 1 and last.larger:
             text = f"estimated error {seen.relative:.1%}, from two meshes only"
         own = Note(text, ("too-few-meshes",))
     error, interval = seen.error, None
