@@ -15,7 +15,7 @@ setup: .venv/.ready ## make .venv with everything pinstress needs (run by the ta
 	@sh scripts/setup.sh
 
 PORTABLE = $(addprefix tests/pinstress/test_,portable.py workers.py output.py read_body.py import.py) \
-	$(addprefix tests/fea/test_,linear.py memory.py) tests/loads/test_regular_file.py
+	$(addprefix tests/fea/core/test_,linear.py memory.py) tests/loads/test_regular_file.py
 
 # Status 1 means: done, but a requested accuracy was not reached (printed last).
 demo: setup ## run studies/landing_gear.toml and print the path of its report

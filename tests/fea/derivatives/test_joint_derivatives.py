@@ -25,7 +25,7 @@ from fea.joint.lugs.lug import Bushing, Lug
 from fea.joint.solve_in_lugs import InLugs, solve_in_lugs
 from fea.joint.solve_joint import Cells
 from geometry import Pin, Segment
-from tests.fea.test_solve_in_lugs import LUGS, PIN, STEADY, STEEL
+from tests.fea.joint.test_solve_in_lugs import LUGS, PIN, STEADY, STEEL
 
 ROUGH = Cells(4, 24, 8)
 BRONZE, ALUMINIUM = Material("bronze", 110e9, 0.34), Material("aluminium", 70e9, 0.33)

@@ -26,7 +26,7 @@ from fea.joint.lugs.lug import Bushing, Lug
 from fea.joint.solve_in_lugs import InLugs, LugSolution
 from fea.joint.solve_joint import JointModel
 from geometry import Pin, Segment
-from tests.fea.test_contact import PERSSON
+from tests.fea.joint.test_contact import PERSSON
 
 D, FORCE = 0.02, 50e3
 STEEL = Material("steel", 210e9, 0.3, density=7850.0)
