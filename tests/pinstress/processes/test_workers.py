@@ -136,7 +136,7 @@ import os
 from functools import partial
 from pinstress.processes import interrupts
 from pinstress.processes.pool import Job, side_by_side
-from tests.pinstress.test_workers import sleep, wrong
+from tests.pinstress.processes.test_workers import sleep, wrong
 from pinstress import InputError
 
 own = os.getpid()

@@ -35,11 +35,11 @@ from reports.plots.chart import chart_plot
 from reports.plots.draw import draw
 from reports.tables.chart import write_chart_csv
 from reports.text.chart_summary import cost, failures, reference_line, staying, summary
+from tests.conftest import ROOT
 from tests.support.command_line import ONE_PIN, pinstress
 from tests.support.plastic import STEEL, D
 from tests.support.process_group import started
 
-ROOT = Path(__file__).parent.parent.parent
 STUDY = ROOT / "studies" / "one_pin.toml"
 CONTRACT = [
     "model", "element", "dofs", "seconds", "peak_memory_mb", "max_von_mises", "relative_error",

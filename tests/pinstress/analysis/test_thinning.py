@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -16,8 +14,9 @@ from geometry.chords import needed
 from pinstress import load_study, run
 from pinstress.analysis.thinning import STRESS, meridian_points
 from reports.data.surface import SurfaceCase
+from tests.conftest import ROOT
 
-STUDY = Path(__file__).parents[2] / "studies" / "one_pin.toml"
+STUDY = ROOT / "studies" / "one_pin.toml"
 
 
 def missed(at: Floats, values: Floats, allowed: float, kept: list[int]) -> tuple[float, int]:

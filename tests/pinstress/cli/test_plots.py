@@ -9,9 +9,10 @@ import pytest
 from pinstress.cli import manifest
 from pinstress.cli.commands import run_command_line
 from pinstress.cli.output_folder import require_replaceable
+from tests.conftest import ROOT
 from tests.support.command_line import ONE_PIN
 
-STUDY = Path(__file__).parents[2] / "studies" / "bowman2019.toml"
+STUDY = ROOT / "studies" / "bowman2019.toml"
 
 
 @pytest.fixture

@@ -17,9 +17,10 @@ from pinstress.model.mechanism.linkage import linkage
 from reports.tables.json_results import to_json
 from reports.text.loads import remarks
 from reports.text.loads_summary import write_loads_summary
+from tests.conftest import ROOT
 from tests.support.errors import raises
 
-STUDIES = Path(__file__).parents[2] / "studies"
+STUDIES = ROOT / "studies"
 BOWMAN = (STUDIES / "bowman2019.toml").read_text(encoding="utf-8").replace("bowman2019/", "")
 CRANK = (STUDIES / "slider_crank.toml").read_text(encoding="utf-8")
 

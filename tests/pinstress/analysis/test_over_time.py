@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -11,8 +9,9 @@ from pinstress import run
 from pinstress.analysis.plan import prepare
 from pinstress.study.file import Study, load_study, parse_study
 from reports.data.results import PinResult
+from tests.conftest import ROOT
 
-STUDY = Path(__file__).parents[2] / "studies" / "slider_crank.toml"
+STUDY = ROOT / "studies" / "slider_crank.toml"
 SAMPLES = "samples = 241"
 
 

@@ -16,7 +16,7 @@ from pinstress.study.errors import InputError
 from pinstress.study.file import parse_study
 from tests.conftest import ROOT
 
-EXACT = 0.0291981946  # of tests/pinstress/test_reliability_mathematics.py
+EXACT = 0.0291981946  # of tests/pinstress/reliability/test_reliability_mathematics.py
 
 PAGE = (ROOT / "docs" / "reliability.md").read_text(encoding="utf-8")
 SMALL = """

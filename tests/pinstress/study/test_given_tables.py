@@ -13,9 +13,10 @@ from pinstress import load_study
 from pinstress.model.cases import case_loads
 from pinstress.model.mechanism.linkage import linkage
 from pinstress.schema.cases import GivenCase
+from tests.conftest import ROOT
 from tests.support.command_line import QUICK, run_here
 
-STUDIES = Path(__file__).parents[2] / "studies"
+STUDIES = ROOT / "studies"
 WIDE = "# rig 3\ncase;B.fx [kN];B.fy [kN]\nother;9;9\nlanding;0,0;-4,398670429\n"
 
 
