@@ -9,7 +9,7 @@ from urllib.parse import quote
 
 import pytest
 
-from benchmarks.page import many_pins
+from benchmarks.runs.page import many_pins
 from reports.page.page import AT_ONCE
 from tests.browser.conftest import run
 from tests.support.browser_page import errors, opened, view, wait

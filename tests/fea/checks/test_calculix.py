@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks.calculix_ours import FORCE, PIN, Loaded
+from benchmarks.solids.calculix_ours import FORCE, PIN, Loaded
 from fea.checks.calculix import (
     JOB,
     CalculixError,

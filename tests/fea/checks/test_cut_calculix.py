@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.cut_calculix import in_calculix
+from benchmarks.cuts.cut_calculix import in_calculix
 from benchmarks.random_pins import STEEL
 from fea.core.pin_loads import PinLoads
 from fea.solve_pin import Asked, solve_pin

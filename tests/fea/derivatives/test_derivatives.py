@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.derivatives import by_differences, moved_maximum, richardson
+from benchmarks.pins.derivatives import by_differences, moved_maximum, richardson
 from benchmarks.random_pins import trials
 from fea.beam.stress_concentration import BENDING, shoulder_factor
 from fea.core.material import Material

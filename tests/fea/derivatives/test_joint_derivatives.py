@@ -11,7 +11,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from benchmarks.joint_derivatives import (
+from benchmarks.joints.joint_derivatives import (
     WholeJoint,
     parameters,
     solved_in_lugs,

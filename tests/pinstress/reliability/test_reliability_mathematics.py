@@ -13,7 +13,7 @@ from scipy.optimize import minimize
 from scipy.special import ndtr, ndtri
 from scipy.stats import binom, norm
 
-from benchmarks.reliability import assessed, cases
+from benchmarks.runs.reliability import assessed, cases
 from pinstress.reliability.form import NOISY, design_point, distinct, form_quantile
 from pinstress.reliability.sampling import (
     Draws,

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.foundation import clevis, largest_moment
-from benchmarks.random_joints import JointTrial, joint_trials
+from benchmarks.joints.foundation import clevis, largest_moment
+from benchmarks.joints.random_joints import JointTrial, joint_trials
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads

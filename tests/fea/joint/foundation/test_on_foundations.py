@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.foundation import bounds_of, clevis, contact_maximum, played
-from benchmarks.joint import TRUTH
-from benchmarks.random_joints import joint_trials
+from benchmarks.joints.foundation import bounds_of, clevis, contact_maximum, played
+from benchmarks.joints.joint import TRUTH
+from benchmarks.joints.random_joints import joint_trials
 from fea.asked import Asked
 from fea.beam.model import BeamAnswer
 from fea.core.linear_solver import SolveError

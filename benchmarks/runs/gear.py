@@ -6,8 +6,8 @@ import resource
 from collections.abc import Iterable, Sequence
 from dataclasses import astuple, dataclass, replace
 from functools import partial
-from pathlib import Path
 
+from benchmarks import ROOT
 from benchmarks.timing import seconds, table
 from fea.core.material import Material
 from fea.core.peak import Peak
@@ -24,7 +24,7 @@ from pinstress.model.tasks import Task
 from pinstress.processes.pool import Job, Tell, side_by_side
 from pinstress.study.file import Study
 
-STUDIES = Path(__file__).parent.parent / "studies"
+STUDIES = ROOT / "studies"
 FLOATING = ("C", "E", "F", "G", "J")
 CORES = 2
 ONE = "E"

@@ -12,10 +12,11 @@ import sys
 
 import numpy as np
 
-from benchmarks.calculix_ours import STEEL, Loaded, Ours
-from benchmarks.ngsolve_side import Found, Given
+from benchmarks import ROOT
 from benchmarks.processes import THREADS, Process, process
-from benchmarks.solid_peers import FINER, ROOT, bare_mesh, cost, ratios, solved_by_us
+from benchmarks.solids.calculix_ours import STEEL, Loaded, Ours
+from benchmarks.solids.ngsolve_side import Found, Given
+from benchmarks.solids.solid_peers import FINER, bare_mesh, cost, ratios, solved_by_us
 from benchmarks.timing import table
 
 MISSING = (
@@ -23,7 +24,7 @@ MISSING = (
 )
 SOLVE = """
 from pathlib import Path
-from benchmarks.ngsolve_side import main
+from benchmarks.solids.ngsolve_side import main
 main(Path({!r}), Path({!r}), {})
 """
 MESHES = (*FINER[:2], 1.75)  # on CalculiX's third NGSolve takes a minute

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.derivatives import moved_maximum, richardson, timed
-from benchmarks.derivatives import price as of_free_pins
-from benchmarks.random_joints import JointTrial, joint_trials
+from benchmarks.joints.random_joints import JointTrial, joint_trials
+from benchmarks.pins.derivatives import moved_maximum, richardson, timed
+from benchmarks.pins.derivatives import price as of_free_pins
 from benchmarks.timing import table
 from fea.asked import Asked
 from fea.core.material import Material

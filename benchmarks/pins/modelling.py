@@ -6,10 +6,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 
+from benchmarks import ROOT
 from benchmarks.timing import table
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
@@ -24,7 +24,7 @@ from pinstress.model.cases import CaseLoads
 from pinstress.model.pins import material
 from pinstress.model.tasks import Task
 
-STUDY = Path(__file__).parent.parent / "studies" / "landing_gear.toml"
+STUDY = ROOT / "studies" / "landing_gear.toml"
 CASE = "retract"
 PUBLISHED = {"C": "C2", "E": "E1", "F": "F1", "G": "G3", "J": "J3"}  # bands clamped there
 TERMS = (1, 2, 4, 6, 8, 10, 12)

@@ -17,7 +17,8 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.random_cuts import CutTrial, cut_trials, kind_trials
+from benchmarks import ROOT
+from benchmarks.cuts.random_cuts import CutTrial, cut_trials, kind_trials
 from benchmarks.random_pins import STEEL
 from benchmarks.timing import table
 from fea.core.mesh_result import MeshResult
@@ -35,7 +36,6 @@ TOLERANCE = 0.02
 FINER = ((1.5, 2.2), (2.0, 3.0))
 SECTION = 3  # levels by which their sections are finer
 LONGER = 2.0  # their local solids, beyond the cuts
-ROOT = Path(__file__).parent.parent
 KEPT = ROOT / "build" / "benchmarks"
 
 
@@ -122,7 +122,7 @@ def _told(found: list[Inside | None]) -> str:
 
 def _code() -> str:
     """A name for the present state of what is measured: what another one found does not count."""
-    own = (Path(__file__), ROOT / "benchmarks" / "random_cuts.py")
+    own = (Path(__file__), Path(__file__).with_name("random_cuts.py"))
     every = sorted(p for part in ("fea", "geometry") for p in (ROOT / part).rglob("*.py"))
     digest = hashlib.sha256(b"".join(path.read_bytes() for path in (*own, *every)))
     return digest.hexdigest()[:12]

@@ -9,8 +9,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from benchmarks.cut_calculix import Other, in_calculix_locally
-from benchmarks.cut_cost import FURTHER, SHAFT, D, cut_cost, four_point
+from benchmarks.cuts.cut_calculix import Other, in_calculix_locally
+from benchmarks.cuts.cut_cost import FURTHER, SHAFT, D, cut_cost, four_point
 from benchmarks.random_pins import STEEL
 from benchmarks.timing import table
 from fea.checks.calculix import installed

@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from benchmarks.accuracy import LOAD, PIN, STEEL
+from benchmarks.pins.accuracy import LOAD, PIN, STEEL
 from benchmarks.timing import power, table
 from fea.harmonic.model import HarmonicModel
 from fea.harmonic.superposition import Circumference

@@ -12,17 +12,17 @@ from pathlib import Path
 
 from skfem import MeshTet2
 
-from benchmarks.calculix_ours import PIN, Ours
+from benchmarks import ROOT
 from benchmarks.processes import THREADS, Process, process
+from benchmarks.solids.calculix_ours import PIN, Ours
 from benchmarks.timing import table
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 
-ROOT = Path(__file__).parent.parent
 COARSE = MeshSize(across=3.8, arc=1.9)
 FINER = (0.83, 1.4, 2.05)  # about 2e4, 6e4 and 1.5e5 unknowns
 SOLVE = """
 from pathlib import Path
-from benchmarks.calculix_ours import main
+from benchmarks.solids.calculix_ours import main
 main(Path({!r}), Path({!r}))
 """
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
+from benchmarks import ROOT
 from benchmarks.timing import seconds, table
 from loads import Course, Lever, Linkage, Slider, motion_reactions, move, peak_forces
 from loads.loop_equations import Loops
@@ -19,7 +19,6 @@ from pinstress.model.mechanism.linkage import linkage
 
 Floats = NDArray[np.float64]
 
-ROOT = Path(__file__).parent.parent
 STUDY = ROOT / "studies" / "grenier2008.toml"
 CHART = ROOT / "docs" / "images" / "motion_accuracy"
 SAMPLES = (6, 11, 21, 51, 101, 201, 501, 1001, 2001)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from benchmarks.page import chromium
+from benchmarks.runs.page import chromium
 from benchmarks.timing import table
 from reports.designs.columns import designs_of
 from reports.designs.page import write_designs_page

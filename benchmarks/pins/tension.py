@@ -14,9 +14,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.calculix import MISSING
+from benchmarks.pins.shoulders import CHARTS, FINEST, KINDS, D, Run, run, shoulder
 from benchmarks.random_pins import STEEL
-from benchmarks.shoulders import CHARTS, FINEST, KINDS, D, Run, run, shoulder
+from benchmarks.solids.calculix import MISSING
 from benchmarks.timing import table
 from fea.beam.stress_concentration import shoulder_factor
 from fea.checks.calculix import JOB, installed, seconds_of, stresses

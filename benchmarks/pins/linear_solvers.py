@@ -114,7 +114,7 @@ def _point(name: str, file: Path) -> Point:
 
 
 def _child(*arguments: str) -> dict[str, float]:
-    command = [sys.executable, "-m", "benchmarks.linear_solvers", *arguments]
+    command = [sys.executable, "-m", "benchmarks.pins.linear_solvers", *arguments]
     done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=PATIENCE)
     found: dict[str, float] = json.loads(done.stdout.splitlines()[-1])
     return found
@@ -122,7 +122,7 @@ def _child(*arguments: str) -> dict[str, float]:
 
 def _matrix(across: float, file: Path) -> dict[str, float]:
     """Write the matrix of a cantilever with a fillet, and the nodes of its unknowns."""
-    from benchmarks.speed import PIN, STEEL
+    from benchmarks.runs.speed import PIN, STEEL
     from fea.solid.assembly import Discretisation
     from fea.solid.boundary import clamped_nodes
     from geometry.mesh.solid_mesh import MeshSize, solid_mesh

@@ -13,8 +13,8 @@ from functools import partial
 
 import numpy as np
 
-from benchmarks.peers import Case, Code, Found, four_bar, landing_gear, ours
-from benchmarks.scissor import HIGH, LOW, SPAN, lift
+from benchmarks.motion.peers import Case, Code, Found, four_bar, landing_gear, ours
+from benchmarks.motion.scissor import HIGH, LOW, SPAN, lift
 from benchmarks.timing import seconds, table
 from loads import CycloidalDrive, mobility
 from loads.arrays import Floats
@@ -32,8 +32,8 @@ Quantities = dict[str, Floats]  # (T, 2) of each connection, sums where they sha
 def peers_motion() -> str:
     """All reactions and drives of the landing gear and of a four-bar, by three codes."""
     try:
-        from benchmarks.peers_exudyn import EXUDYN
-        from benchmarks.peers_mujoco import MUJOCO
+        from benchmarks.motion.peers_exudyn import EXUDYN
+        from benchmarks.motion.peers_mujoco import MUJOCO
     except ModuleNotFoundError:
         return MISSING
     codes = (EXUDYN, MUJOCO)

@@ -6,13 +6,13 @@ import subprocess
 import sys
 import tempfile
 import time
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from skfem import Basis, ElementTetP2, ElementVector, MeshTet2
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
+from benchmarks import ROOT
 from benchmarks.timing import seconds, table
 from fea.core.material import Material
 from fea.solid.assembly import Discretisation
@@ -23,7 +23,7 @@ from pinstress import load_study
 from pinstress.model.mechanism.drives import laws, span
 from pinstress.model.mechanism.linkage import linkage
 
-STUDY = Path(__file__).parent.parent / "studies" / "grenier2008.toml"
+STUDY = ROOT / "studies" / "grenier2008.toml"
 STEEL = Material("steel", 2.0e11, 0.3)
 PIN = Pin("P", (Segment(0.02, 0.03), Segment(0.04, 0.02, connection="B")), fillet=0.003)
 

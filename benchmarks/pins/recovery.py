@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from skfem import ElementTriP2
 
-from benchmarks.accuracy import FILLET, LOAD, PIN, STEEL, peak, truth
+from benchmarks.pins.accuracy import FILLET, LOAD, PIN, STEEL, peak, truth
 from benchmarks.timing import table
 from fea.core.local_fit import continuation, extension
 from fea.core.voigt import von_mises

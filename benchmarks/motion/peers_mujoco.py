@@ -15,7 +15,7 @@ import mujoco
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from benchmarks.peers import Case, Code, Found
+from benchmarks.motion.peers import Case, Code, Found
 from loads import GROUND, Body, Linkage, Turn
 from loads.arrays import Floats
 from loads.linkage import Point

@@ -10,7 +10,7 @@ import exudyn as exu
 import exudyn.itemInterface as item
 import numpy as np
 
-from benchmarks.peers import Case, Code, Found
+from benchmarks.motion.peers import Case, Code, Found
 from loads import GROUND, Body, Slider, Turn
 from loads.arrays import Floats
 from loads.linkage import Point

@@ -51,7 +51,7 @@ def cut_cost() -> str:
     """Each in a process of its own, in four-point bending with the cut at the extreme fibre."""
     rows = []
     for kind in KINDS:
-        command = [sys.executable, "-m", "benchmarks.cut_cost", kind]
+        command = [sys.executable, "-m", "benchmarks.cuts.cut_cost", kind]
         done = subprocess.run(command, check=True, capture_output=True, text=True)
         rows.append(tuple(json.loads(done.stdout.splitlines()[-1])))
     head = (

@@ -11,8 +11,8 @@ from statistics import median
 
 import numpy as np
 
-from benchmarks.joint import EYE, FORCE, NAMES, SHARE, STEEL, TRUTH, D, E
-from benchmarks.random_joints import JointTrial, joint_trials
+from benchmarks.joints.joint import EYE, FORCE, NAMES, SHARE, STEEL, TRUTH, D, E
+from benchmarks.joints.random_joints import JointTrial, joint_trials
 from benchmarks.timing import seconds, table
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material

@@ -9,7 +9,7 @@ from itertools import product
 
 import numpy as np
 
-from benchmarks.joint import COARSE, EYE, STEEL, USUAL, D, _model, _pull
+from benchmarks.joints.joint import COARSE, EYE, STEEL, USUAL, D, _model, _pull
 from benchmarks.timing import table
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 
+from benchmarks import ROOT
 from benchmarks.timing import table
 from fea.single_mesh import Rung
 from pinstress import load_study
@@ -18,7 +18,6 @@ from reports.plots.chart import chart_plot
 from reports.plots.draw import draw
 from reports.text.chart_summary import cost, error, percent, seconds
 
-ROOT = Path(__file__).parent.parent
 PINS = (
     ("one_pin.toml", "B", "landing"),
     ("charted/hollow.toml", "P", "pulled"),

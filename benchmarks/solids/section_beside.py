@@ -6,7 +6,7 @@ import time
 
 import numpy as np
 
-from benchmarks.calculix_ours import ALONG_Y, BAND, CLAMP, FORCE, PIN, STEEL
+from benchmarks.solids.calculix_ours import ALONG_Y, BAND, CLAMP, FORCE, PIN, STEEL
 from benchmarks.timing import table
 from fea.core.pin_loads import PinLoads
 from fea.harmonic.model import HarmonicModel

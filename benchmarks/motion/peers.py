@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import pi, radians, sqrt
-from pathlib import Path
 
 import numpy as np
 
+from benchmarks import ROOT
 from loads import (
     GROUND,
     Body,
@@ -27,7 +27,7 @@ from pinstress import load_study
 from pinstress.model.mechanism.drives import laws, span
 from pinstress.model.mechanism.linkage import linkage
 
-STUDY = Path(__file__).parent.parent / "studies" / "grenier2008.toml"
+STUDY = ROOT / "studies" / "grenier2008.toml"
 INCH, POUND = 0.0254, 0.45359237
 
 
