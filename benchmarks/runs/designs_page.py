@@ -17,7 +17,7 @@ from benchmarks.timing import table
 from reports.designs.columns import designs_of
 from reports.designs.page import write_designs_page
 from reports.format.template import VENDOR
-from tests.support.made_up_designs import made_up_designs
+from tests.support.results.made_up_designs import made_up_designs
 
 if TYPE_CHECKING:
     from selenium.webdriver import Chrome

@@ -12,7 +12,7 @@ import pytest
 from benchmarks.runs.page import many_pins
 from reports.page.page import AT_ONCE
 from tests.browser.conftest import run
-from tests.support.browser_page import errors, opened, view, wait
+from tests.support.results.browser_page import errors, opened, view, wait
 
 pytestmark = pytest.mark.browser
 

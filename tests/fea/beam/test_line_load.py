@@ -13,7 +13,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import BODY, PinLoads, UnitLoad
 from geometry import ArgumentError, Pin, Segment
 from tests.support.errors import raises
-from tests.support.plain_pins import COUPLE, PLAIN, PULL, SPIN, A, B, L, d, double_shear
+from tests.support.pins.plain_pins import COUPLE, PLAIN, PULL, SPIN, A, B, L, d, double_shear
 
 
 def test_three_bands_in_balance_by_statics(steel: Material) -> None:

@@ -12,9 +12,9 @@ from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, st
 from fea.core.material import Material
 from fea.core.pin_loads import BODY, UnitLoad
 from geometry import GeometryError, Pin, Segment
-from tests.support.beam_deflection import deflections
 from tests.support.errors import raises
-from tests.support.plain_pins import COUPLE, PLAIN, PULL, SPIN, A, B, I, L, d
+from tests.support.exact.beam_deflection import deflections
+from tests.support.pins.plain_pins import COUPLE, PLAIN, PULL, SPIN, A, B, I, L, d
 
 
 def kappa_g_a(steel: Material) -> float:

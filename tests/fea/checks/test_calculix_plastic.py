@@ -12,7 +12,7 @@ from fea.core.pin_loads import PinLoads
 from fea.plastic.pin_body import acting_at, pin_body
 from geometry import Pin, Segment
 from geometry.mesh.hexahedra import HexSize, twenty
-from tests.support.plastic import RULE, STEEL, D, limit
+from tests.support.exact.plastic import RULE, STEEL, D, limit
 
 COARSE = HexSize(2, 0.5)
 

@@ -20,8 +20,8 @@ from fea.core.material import Material
 from fea.solid.model import SolidModel, UnitFields
 from geometry import Pin, Segment
 from geometry.mesh.solid_mesh import MeshSize, SolidMesh, solid_mesh
-from tests.support.solid_line import axial_stress
-from tests.support.unit_loads import forces
+from tests.support.pins.solid_line import axial_stress
+from tests.support.pins.unit_loads import forces
 
 Floats = NDArray[np.float64]
 Field = Callable[[Floats, float], Floats]

@@ -13,7 +13,7 @@ from fea.checks.hand_checks import hand_checks
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from geometry import Pin, Segment
-from tests.support.plain_pins import double_shear
+from tests.support.pins.plain_pins import double_shear
 
 d, F = 0.02, 12_000.0
 A, W = math.pi / 4 * d**2, math.pi / 32 * d**3  # area and section modulus

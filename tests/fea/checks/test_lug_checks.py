@@ -21,7 +21,7 @@ from fea.core.pin_loads import PinLoads
 from fea.joint.lugs.lug import Lug
 from geometry import ArgumentError
 from tests.support.errors import raises
-from tests.support.plain_pins import double_shear
+from tests.support.pins.plain_pins import double_shear
 
 D, W, T, F = 0.02, 0.05, 0.01, 30e3
 PIN = double_shear(T, 0.001, 2.0 * T, D)

@@ -18,7 +18,7 @@ from fea.solve_pin import Asked, solve_pin
 from geometry import Cut, CutPin, Flat, Hole, Pin, Segment, Slot
 from geometry.mesh.cut_piece import piece_mesh
 from tests.support.errors import raises
-from tests.support.section_grid import rectangle
+from tests.support.pins.section_grid import rectangle
 
 A, L = 0.01, 0.2
 BAR = Pin("bar", (Segment(L, 2.0 * A, name="side"),))

@@ -16,7 +16,7 @@ from fea.harmonic.superposition import Circumference
 from geometry import Pin, Segment
 from geometry.mesh.section_mesh import MeridianMesh, SectionSize, meridian_mesh
 from tests.support.errors import raises
-from tests.support.exact_fields import displacements_of
+from tests.support.exact.exact_fields import displacements_of
 
 PIN = Pin(
     "P",

@@ -17,7 +17,7 @@ from fea.harmonic.superposition import Circumference
 from geometry import Pin, Segment
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
 from tests.support.errors import raises
-from tests.support.section_grid import rectangle
+from tests.support.pins.section_grid import rectangle
 
 A, L = 0.01, 0.2
 BAR = Pin("bar", (Segment(L, 2.0 * A, connection="B"),))

@@ -15,7 +15,7 @@ from fea.harmonic.stress_recovery import reading
 from fea.harmonic.surface_stress import skin
 from geometry import Pin, Segment
 from geometry.mesh.section_mesh import MeridianMesh, SectionSize, meridian_mesh
-from tests.support.exact_fields import (
+from tests.support.exact.exact_fields import (
     Exact,
     boundary_forces,
     edge_tractions,
@@ -23,8 +23,8 @@ from tests.support.exact_fields import (
     unknowns_of,
     with_edges_moved,
 )
-from tests.support.polynomial_fields import manufactured, polynomial
-from tests.support.section_grid import rectangle
+from tests.support.exact.polynomial_fields import manufactured, polynomial
+from tests.support.pins.section_grid import rectangle
 
 SHOULDER = Pin("P", (Segment(0.02, 0.03, bore=0.008), Segment(0.03, 0.02)), fillet=0.004)
 Terms = dict[tuple[int, int], float]

@@ -19,7 +19,7 @@ from fea.solve_pin import Asked, count_loads, singularities_of, solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.section_mesh import meridian_mesh
 from geometry.mesh.sizing import SectionSize, largest, stretches, triangles
-from tests.support.section_pins import nodes
+from tests.support.pins.section_pins import nodes
 
 D = 0.02
 

@@ -16,10 +16,10 @@ from fea.harmonic.boundary import Outline
 from fea.harmonic.surface_stress import Skin, skin
 from geometry import Pin, Segment
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
-from tests.support.exact_fields import Exact, edge_tractions
-from tests.support.polynomial_fields import manufactured, polynomial
-from tests.support.saint_venant import bending, tension, torsion
-from tests.support.section_grid import rectangle
+from tests.support.exact.exact_fields import Exact, edge_tractions
+from tests.support.exact.polynomial_fields import manufactured, polynomial
+from tests.support.exact.saint_venant import bending, tension, torsion
+from tests.support.pins.section_grid import rectangle
 
 TUBE = rectangle(0.5, 1.0, 2.0, 3, 7)
 

@@ -14,7 +14,7 @@ from fea.joint.lugs.lug import Bushing, Lug
 from fea.joint.lugs.rings import annulus, graded
 from fea.joint.solve_joint import JointModel
 from geometry import Pin, Segment
-from tests.support.layered_annulus import widening
+from tests.support.exact.layered_annulus import widening
 
 STEEL, BRONZE = Material("steel", 210e9, 0.3), Material("bronze", 100e9, 0.34)
 RIGID_BUSH = Material("hard", 600e9, 0.2)

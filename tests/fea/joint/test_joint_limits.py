@@ -14,7 +14,7 @@ from fea.core.pin_loads import Floats, PinLoads
 from fea.joint.lugs.lug import Bushing, Lug
 from fea.joint.solve_joint import Cells, JointContact, JointModel
 from geometry import Pin, Segment
-from tests.support.layered_annulus import widening
+from tests.support.exact.layered_annulus import widening
 
 E, NU, D, EYE, FORCE = 210e9, 0.3, 0.02, 0.05, 50e3
 STEEL = Material("steel", E, NU)

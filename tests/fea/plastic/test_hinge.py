@@ -11,7 +11,7 @@ from fea.plastic.hinge import ROOM, beam_bounds
 from fea.plastic.solve import limit_load
 from geometry import Pin, Segment
 from geometry.mesh.hexahedra import HexSize
-from tests.support.plastic import STEEL, YIELD, D, bar, couples, elastic_moment, limit
+from tests.support.exact.plastic import STEEL, YIELD, D, bar, couples, elastic_moment, limit
 
 MP = YIELD * D**3 / 6.0
 VP = YIELD / math.sqrt(3.0) * math.pi / 4.0 * D**2

@@ -19,7 +19,7 @@ from fea.plastic.solve import TETRAHEDRA, body_on, limit_load
 from geometry import CutPin, Hole, Pin, Segment
 from geometry.arrays import Floats
 from geometry.mesh.hexahedra import HexSize, hexahedra
-from tests.support.plastic import (
+from tests.support.exact.plastic import (
     RULE,
     STEEL,
     YIELD,

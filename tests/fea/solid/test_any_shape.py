@@ -22,8 +22,8 @@ from geometry.imported.body_file import BodyFile, Place
 from geometry.imported.imported_pin import SolidBody
 from geometry.mesh.solid_mesh import MeshSize
 from geometry.meshing import solid_mesh
-from tests.support.pin_files import MM, write_mesh, write_step
-from tests.support.unit_loads import forces
+from tests.support.pins.pin_files import MM, write_mesh, write_step
+from tests.support.pins.unit_loads import forces
 
 IN_MM = Pin("P", (Segment(20.0, 30.0), Segment(40.0, 20.0)), fillet=5.0)
 PROFILE = Pin(

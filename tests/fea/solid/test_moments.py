@@ -23,9 +23,9 @@ from fea.solve_pin import Asked, solve_pin
 from geometry import ArgumentError, Pin, Segment
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 from tests.support.errors import raises
-from tests.support.plain_pins import double_shear
-from tests.support.solid_line import axial_stress
-from tests.support.unit_loads import at, forces, moments
+from tests.support.pins.plain_pins import double_shear
+from tests.support.pins.solid_line import axial_stress
+from tests.support.pins.unit_loads import at, forces, moments
 
 Floats = NDArray[np.float64]
 

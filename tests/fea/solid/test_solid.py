@@ -17,8 +17,8 @@ from fea.solid.model import SolidModel
 from fea.solve_pin import Asked, solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
-from tests.support.solid_line import axial_stress
-from tests.support.unit_loads import forces
+from tests.support.pins.solid_line import axial_stress
+from tests.support.pins.unit_loads import forces
 
 LONG = Pin("long", (Segment(0.10, 0.02), Segment(0.02, 0.02, connection="B")))
 

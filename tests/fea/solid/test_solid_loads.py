@@ -23,8 +23,8 @@ from fea.solve_pin import Asked, solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 from tests.support.errors import raises
-from tests.support.solid_line import axial_stress
-from tests.support.unit_loads import at, forces, moments
+from tests.support.pins.solid_line import axial_stress
+from tests.support.pins.unit_loads import at, forces, moments
 
 FREE = Pin(
     "P",

@@ -14,7 +14,7 @@ from fea.solid.model import SolidModel, UnitFields
 from fea.solid.superposition import envelope
 from geometry import Pin, Segment
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
-from tests.support.unit_loads import forces as forces_on
+from tests.support.pins.unit_loads import forces as forces_on
 
 
 @pytest.mark.parametrize(

@@ -38,7 +38,7 @@ from fea.strength.plastic_bending import plastic_shear
 from fea.strength.section_forces import of_joint, section_forces
 from fea.strength.situation import LoadFactors, Situation, with_supports
 from geometry import Pin, Segment
-from tests.support.plain_pins import double_shear
+from tests.support.pins.plain_pins import double_shear
 
 S235 = Material("S235", 210e9, 0.3, None, 235e6, 360e6)
 INCH, LBF = 0.0254, 4.4482216152605

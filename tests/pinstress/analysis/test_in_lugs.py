@@ -17,7 +17,7 @@ from pinstress.cli.commands import run_command_line
 from pinstress.study.file import load_study
 from pinstress.study.in_python import changed_study
 from tests.conftest import ROOT
-from tests.support.clevis import CLEVIS
+from tests.support.pins.clevis import CLEVIS
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command_line import ONE_PIN, QUICK, pinstress, run_here
+from tests.support.programs.command_line import ONE_PIN, QUICK, pinstress, run_here
 
 
 @pytest.fixture(scope="module")

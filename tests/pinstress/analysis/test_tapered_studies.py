@@ -19,7 +19,7 @@ from pinstress.schema.units import SYSTEMS
 from pinstress.sizing.scaled_study import resized
 from reports.data.results import PinShape
 from reports.page.pin_drawing import draw_pin
-from tests.support.made_up_run import make_results
+from tests.support.results.made_up_run import make_results
 
 CONE = Pin(
     "P",

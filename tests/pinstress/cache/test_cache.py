@@ -17,7 +17,7 @@ from pinstress.cache import serialise as packing
 from pinstress.cache import store as cache_module
 from pinstress.cache.store import Cache, user_cache
 from reports.data.results import Field
-from tests.support.folder_contents import contents, flipped
+from tests.support.programs.folder_contents import contents, flipped
 
 
 def large(size: int) -> Solved:

@@ -27,8 +27,8 @@ from pinstress.cache import store as cache_module
 from pinstress.cache.store import Cache, user_cache
 from pinstress.cli.commands import run_command_line
 from tests.conftest import ROOT
-from tests.support.folder_contents import contents, flipped
-from tests.support.pin_files import write_mesh
+from tests.support.pins.pin_files import write_mesh
+from tests.support.programs.folder_contents import contents, flipped
 
 STUDY = """
 title = "Two pins"

@@ -36,9 +36,9 @@ from reports.plots.draw import draw
 from reports.tables.chart import write_chart_csv
 from reports.text.chart_summary import cost, failures, reference_line, staying, summary
 from tests.conftest import ROOT
-from tests.support.command_line import ONE_PIN, pinstress
-from tests.support.plastic import STEEL, D
-from tests.support.process_group import started
+from tests.support.exact.plastic import STEEL, D
+from tests.support.programs.command_line import ONE_PIN, pinstress
+from tests.support.programs.process_group import started
 
 STUDY = ROOT / "studies" / "one_pin.toml"
 CONTRACT = [

@@ -25,8 +25,8 @@ from reports.plots.chart import chart_plot
 from reports.plots.draw import draw
 from reports.text.chart_summary import curve_name, reference_line, summary
 from tests.conftest import ROOT
-from tests.support.command_line import ONE_PIN
 from tests.support.errors import raises
+from tests.support.programs.command_line import ONE_PIN
 
 EXACT = 3e8
 CLEVIS = (ROOT / "studies" / "clevis.toml").read_text().replace("edge_radius = 0.5", "")

@@ -17,8 +17,8 @@ from pinstress.cli.commands import commands, run_command_line
 from pinstress.cli.output_folder import replacing
 from pinstress.study.errors import InputError
 from tests.conftest import ROOT
-from tests.support.command_line import ONE_PIN, QUICK, pinstress
-from tests.support.process_group import started
+from tests.support.programs.command_line import ONE_PIN, QUICK, pinstress
+from tests.support.programs.process_group import started
 
 
 def two_pins(text: str) -> str:

@@ -21,7 +21,7 @@ from pinstress.cli.output_folder import replacing
 from pinstress.processes import exchange
 from pinstress.study.errors import InputError
 from tests.conftest import ROOT
-from tests.support.process_group import alive, started
+from tests.support.programs.process_group import alive, started
 
 WRITER = """
 import sys, time

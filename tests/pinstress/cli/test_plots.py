@@ -10,7 +10,7 @@ from pinstress.cli import manifest
 from pinstress.cli.commands import run_command_line
 from pinstress.cli.output_folder import require_replaceable
 from tests.conftest import ROOT
-from tests.support.command_line import ONE_PIN
+from tests.support.programs.command_line import ONE_PIN
 
 STUDY = ROOT / "studies" / "bowman2019.toml"
 

@@ -21,7 +21,7 @@ from pinstress import InputError
 from pinstress.cli.commands import run_command_line
 from pinstress.processes import interrupts
 from tests.conftest import ROOT
-from tests.support.command_line import QUICK
+from tests.support.programs.command_line import QUICK
 
 GUARD = 300.0  # s
 SHARP = QUICK.replace("fillet = 0.4 ", "fillet = 0.0 ")  # whose maximum does not exist: status 1

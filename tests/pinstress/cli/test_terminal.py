@@ -23,8 +23,8 @@ from pinstress.analysis.gather_fields import STILLS, instants
 from pinstress.cli.commands import run_command_line
 from pinstress.model.pins import pin
 from tests.conftest import INCH
-from tests.support.command_line import QUICK
-from tests.support.process_group import started
+from tests.support.programs.command_line import QUICK
+from tests.support.programs.process_group import started
 
 SWEEP = QUICK.replace("forces = { B = [0.0, -988.86] }", 'table = "sweep.csv"')
 # largest in the middle, at 2 s

@@ -11,7 +11,7 @@ from reports.data.in_units import in_units
 from reports.data.results import PinShape
 from reports.format.drawing.cuts import words
 from reports.page.pin_drawing import draw_pin
-from tests.support.made_up_run import make_results
+from tests.support.results.made_up_run import make_results
 
 MM = 1e-3
 PIN = CutPin(

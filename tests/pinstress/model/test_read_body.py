@@ -18,8 +18,8 @@ from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 from pinstress.model.imported_pin import apart, read_body, turned_apart
 from pinstress.processes.system import portable
 from tests.conftest import ROOT
-from tests.support.limited_process import limited, start_server
-from tests.support.pin_files import MM, write_mesh, write_step
+from tests.support.pins.pin_files import MM, write_mesh, write_step
+from tests.support.programs.limited_process import limited, start_server
 
 PIN = Pin("P", (Segment(20.0, 30.0), Segment(40.0, 20.0)), fillet=4.0)  # in mm
 ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()

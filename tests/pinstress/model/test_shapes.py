@@ -19,7 +19,7 @@ from pinstress.cli.commands import run_command_line
 from pinstress.model.pins import pin as pin_of
 from tests.conftest import ROOT
 from tests.support.errors import raises
-from tests.support.pin_files import write_mesh, write_step
+from tests.support.pins.pin_files import write_mesh, write_step
 
 STUDY = """
 title = "A pin of any shape"

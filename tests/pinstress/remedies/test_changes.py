@@ -12,7 +12,7 @@ from pinstress.cli.commands import run_command_line
 from reports.data.changes import Change
 from reports.data.results import Results
 from tests.conftest import ROOT
-from tests.support.command_line import QUICK
+from tests.support.programs.command_line import QUICK
 
 GEAR = ROOT / "studies" / "grenier2008.toml"
 STRONG = "material.AISI 4340.yield_strength"

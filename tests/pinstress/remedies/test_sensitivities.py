@@ -18,8 +18,8 @@ from pinstress.analysis.solve import solutions, solve_tasks
 from pinstress.cli.commands import run_command_line
 from pinstress.remedies.sensitivities import by_length
 from reports.data.results import PinSensitivities
-from tests.support.clevis import CLEVIS
-from tests.support.command_line import QUICK
+from tests.support.pins.clevis import CLEVIS
+from tests.support.programs.command_line import QUICK
 
 TWICE = """
 title = "The same pin by segments and by corners"

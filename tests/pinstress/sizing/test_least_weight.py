@@ -19,7 +19,7 @@ from pinstress.sizing.pin_shape import KINDS, Proportions, VariedShape
 from pinstress.sizing.pin_stress import PinStress
 from pinstress.study.file import load_study
 from tests.conftest import ROOT
-from tests.support.clevis import CLEVIS
+from tests.support.pins.clevis import CLEVIS
 
 HEAD = """
 title = "closed form"

@@ -10,7 +10,7 @@ import pytest
 import pinstress
 from pinstress.cli.commands import run_command_line
 from pinstress.study.file import load_study
-from tests.support.command_line import QUICK, sizes_nothing
+from tests.support.programs.command_line import QUICK, sizes_nothing
 
 WITH_LAWS = (
     QUICK

@@ -21,7 +21,7 @@ from pinstress.sizing.scaled_study import moved, resized, resized_study
 from pinstress.study.file import load_study, parse_study
 from pinstress.study.in_python import changed_study
 from tests.conftest import ROOT
-from tests.support.command_line import ONE_PIN, QUICK, sizes_nothing
+from tests.support.programs.command_line import ONE_PIN, QUICK, sizes_nothing
 
 
 @given(

@@ -11,8 +11,8 @@ import pinstress
 from pinstress.schema.shown import LONGEST, cut, shown
 from pinstress.study.errors import MOST_LISTED
 from tests.conftest import ROOT
-from tests.support.limited_process import limited as check
-from tests.support.limited_process import start_server
+from tests.support.programs.limited_process import limited as check
+from tests.support.programs.limited_process import start_server
 
 ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()
 MECHANISM = (ROOT / "studies" / "slider_crank.toml").read_text()

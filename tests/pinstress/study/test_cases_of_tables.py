@@ -9,7 +9,7 @@ import pytest
 from pinstress.model.cases import case_loads
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study, load_study
-from tests.support.command_line import QUICK, run_here
+from tests.support.programs.command_line import QUICK, run_here
 
 FORCES = "forces = { B = [0.0, -988.86] }"
 TABLE = "case,connection,fx,fy\ngust,B,1,2\ntaxi,B,3,-4\ngust,C,9,9\n"

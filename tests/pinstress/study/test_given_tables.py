@@ -14,7 +14,7 @@ from pinstress.model.cases import case_loads
 from pinstress.model.mechanism.linkage import linkage
 from pinstress.schema.cases import GivenCase
 from tests.conftest import ROOT
-from tests.support.command_line import QUICK, run_here
+from tests.support.programs.command_line import QUICK, run_here
 
 STUDIES = ROOT / "studies"
 WIDE = "# rig 3\ncase;B.fx [kN];B.fy [kN]\nother;9;9\nlanding;0,0;-4,398670429\n"

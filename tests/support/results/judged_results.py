@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from reports.data.results import Field, HandCheck, PinResult, Results, SingularZone
-from tests.support.made_up_run import make_results, shape
+from tests.support.results.made_up_run import make_results, shape
 
 SHIGLEY = "Budynas & Nisbett, Shigley's Mechanical Engineering Design, 8-12"
 

@@ -10,7 +10,7 @@ from numpy.polynomial import polynomial as P
 from fea.core.material import Material
 from fea.core.pin_loads import Floats
 from fea.harmonic.assembly import elasticity
-from tests.support.exact_fields import Exact, Field
+from tests.support.exact.exact_fields import Exact, Field
 
 SIZE = 10  # one more than the highest power
 

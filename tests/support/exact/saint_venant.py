@@ -20,7 +20,7 @@ import numpy as np
 
 from fea.core.material import Material
 from fea.core.pin_loads import Floats
-from tests.support.exact_fields import Exact
+from tests.support.exact.exact_fields import Exact
 
 
 def vector(*components: Floats | float) -> Floats:
