@@ -18,7 +18,7 @@ from fea.solid.evaluate import solid_solution
 from fea.solve_pin import Asked, solve_pin
 from geometry import CutPin, Flat, Pin, Segment
 from geometry.mesh.solid_mesh import MeshSize
-from tests.support import calculix_stand_in
+from tests.support.pins import calculix_stand_in
 
 AGREED = Opinion("P", "up", 100.0, 5.0, 900, 1e-7, 1e-5, 95.0, 95.0)
 FORCES = np.array([[[0.0, 1e3, 0.0]], [[0.0, -2e3, 500.0]]])

@@ -123,7 +123,7 @@ from pinstress.processes.threads import hold_threads
 hold_threads()
 from geometry.imported.body_file import BodyFile, Place
 from pinstress.model import imported_pin as module
-from tests.support import failing_readers
+from tests.support.programs import failing_readers
 
 one = module.Limits(seconds=1, clock=600, memory=2**28)
 module.CAD, module.LARGE = one, module.Limits(seconds=600, clock=3, memory=2**28)
