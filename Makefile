@@ -14,8 +14,9 @@ setup: .venv/.ready ## make .venv with everything pinstress needs (run by the ta
 .venv/.ready: requirements.lock pyproject.toml scripts/setup.sh
 	@sh scripts/setup.sh
 
-PORTABLE = $(addprefix tests/pinstress/test_,portable.py workers.py output.py read_body.py import.py) \
-	$(addprefix tests/fea/test_,linear.py memory.py) tests/loads/test_regular_file.py
+PORTABLE = tests/pinstress/test_portable.py tests/pinstress/processes/test_workers.py \
+	$(addprefix tests/pinstress/,cli/test_output.py model/test_read_body.py test_import.py) \
+	$(addprefix tests/fea/core/test_,linear.py memory.py) tests/loads/test_regular_file.py
 
 # Status 1 means: done, but a requested accuracy was not reached (printed last).
 demo: setup ## run studies/landing_gear.toml and print the path of its report

@@ -11,43 +11,26 @@ import sys
 import time
 from collections.abc import Iterator
 
-from benchmarks import (
+from benchmarks import failures, publications
+from benchmarks.cuts import cut, cut_charts, cut_coverage
+from benchmarks.joints import edge_peak, foundation, joint, joint_ccx, joint_derivatives
+from benchmarks.motion import motion_accuracy, peers_drop, peers_motion, scissor
+from benchmarks.pins import (
     accuracy,
-    calculix,
     coverage,
-    cut,
-    cut_charts,
-    cut_coverage,
-    designs_page,
-    edge_peak,
-    failures,
-    foundation,
-    gear,
     growth,
-    joint,
-    joint_ccx,
-    joint_derivatives,
-    least_weight,
     limit_load,
     linear_solvers,
     modelling,
     models,
-    motion_accuracy,
-    ngsolve_peer,
-    page,
-    peers_drop,
-    peers_motion,
-    publications,
     recovery,
-    reliability,
-    scissor,
     shapes,
     shoulders,
-    speed,
-    sweep,
     tension,
 )
 from benchmarks.record import record
+from benchmarks.runs import designs_page, gear, least_weight, page, reliability, speed, sweep
+from benchmarks.solids import calculix, ngsolve_peer
 from pinstress.processes.pool import Died, Job, Tell, cores, side_by_side
 
 ACCURACY = {

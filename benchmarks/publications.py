@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import csv
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from benchmarks import ROOT
 from loads import LegDynamics, leg_dynamics
 from loads.spatial_leg import t1, t2
 from pinstress import load_study, run
@@ -20,7 +20,6 @@ from reports.format.files import markdown
 from reports.format.numbers import engineering, ratio
 from reports.tables.published import published_reactions, published_table
 
-ROOT = Path(__file__).parent.parent
 STUDIES = ROOT / "studies"
 PAGE = ROOT / "docs" / "publications.md"
 HEAD = """# Comparison with the publications

@@ -7,7 +7,9 @@ import os
 import platform
 from pathlib import Path
 
-FOLDER = Path(__file__).parent.parent / "docs" / "measured"
+from benchmarks import ROOT
+
+FOLDER = ROOT / "docs" / "measured"
 
 
 def record(name: str, text: str, command: str = "") -> Path:

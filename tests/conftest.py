@@ -25,7 +25,7 @@ from pinstress import load_study
 from pinstress.model.mechanism.linkage import linkage
 from pinstress.processes.system import portable
 from pinstress.study.file import Study
-from tests.support.process_group import children
+from tests.support.programs.process_group import children
 
 os.environ["PINSTRESS_CACHE"] = ""  # what is tested is solved, in other processes too
 

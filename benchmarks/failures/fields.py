@@ -7,8 +7,8 @@ from functools import cache
 
 import numpy as np
 
-from benchmarks.coverage import BEYOND, truth
 from benchmarks.failures.asked import material_of, row, task
+from benchmarks.pins.coverage import BEYOND, truth
 from benchmarks.random_pins import Trial
 from fea.core.pin_loads import Floats, PinLoads
 from fea.harmonic.fields import MeridianFields

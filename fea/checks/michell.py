@@ -26,7 +26,7 @@ instead of the axis, k is larger: for n = 0.3 by 1.7 % at b = a / 20 and 6.8 % a
 
 Sources: J. H. Michell, Quart. J. Math. 32 (1901) 28; A. E. H. Love, A Treatise on the Mathematical
 Theory of Elasticity, ch. XVI, for the method; f for these two loads is worked out here and checked
-in tests/fea/test_distributed_load.py.
+in tests/fea/checks/test_distributed_load.py.
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ from pathlib import Path, PurePosixPath
 from fea.core.linear_solver import SolveError, has_cholmod, has_metis
 from geometry.system import bare
 
-# Measured, including all unit loads of a pin (docs/benchmarks.md, benchmarks.linear_solvers):
+# Measured, including all unit loads of a pin (docs/benchmarks.md, benchmarks.pins.linear_solvers):
 # 61,000 unknowns 0.37 GB, 115,000 0.79, 128,000 0.96, 415,000 5.05.
 PER_UNKNOWN = 8e-3  # MB, while factors are sparse
 DENSE = 130_000.0  # unknowns; from here on it grows with their number to the 4/3

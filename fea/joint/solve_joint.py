@@ -44,9 +44,10 @@ class Cells:
     diameter where flexibilities are found; beside: of an edge's radius, the length of the rings
     where rounding begins, if the peak of pressure there is to be resolved.
 
-    The usual ones give the moment and the stress at mid-span to 0.3 % (benchmarks/joint.py). They
-    do not give the peak of pressure at rounded edges: contact reaches only a few hundredths of the
-    radius into the rounding, and the peak to 3 % takes rings of a tenth of that: `beside` 0.004.
+    The usual ones give the moment and the stress at mid-span to 0.3 %
+    (benchmarks/joints/joint.py). They do not give the peak of pressure at rounded edges: contact
+    reaches only a few hundredths of the radius into the rounding, and the peak to 3 % takes rings
+    of a tenth of that: `beside` 0.004.
     """
 
     rings: int = 8

@@ -1,7 +1,7 @@
 """A pin as a flowing body of hexahedra: how much of it is modelled, its supports, its loads.
 
 Elements have 20 nodes and 2 x 2 x 2 quadrature points, which leaves no volumetric locking when the
-material flows (benchmarks/limit_load.py measures that, and that of tetrahedra).
+material flows (benchmarks/pins/limit_load.py measures that, and that of tetrahedra).
 
 What part of a turn is modelled depends on the loads. Reflected at their plane nothing changes, so
 half is enough. Turned about the axis by half a turn, odd harmonics change sign, and with them all

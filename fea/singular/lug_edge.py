@@ -14,7 +14,7 @@ where k = (1 - nu^2) / E, and c = 1 / L is that of all wedges. For the half plan
 
 D > 0 for 0 < L < 1 and 0 < w < pi, so h > 0 at L = 1/2. Towards L = 1 h goes to zero, from below
 where there is a singularity: always for w >= pi/2. Then the least root is real and between. No
-other has 0 < Re L < 1: counted in tests/fea/test_lug_edge.py by the argument principle.
+other has 0 < Re L < 1: counted in tests/fea/singular/test_lug_edge.py by the argument principle.
 
 Contact without friction transmits no shear out of the plane: in torsion there is no singularity.
 

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks import calculix
+from benchmarks.pins.tension import SHAPES, TENSION, factors
 from benchmarks.processes import RunError, process
-from benchmarks.solid_peers import Cost, ratios
-from benchmarks.tension import SHAPES, TENSION, factors
+from benchmarks.solids import calculix
+from benchmarks.solids.solid_peers import Cost, ratios
 from geometry.mesh.section_mesh import SectionSize
 
 

@@ -7,8 +7,8 @@ import shutil
 import numpy as np
 import pytest
 
-from benchmarks import joint_ccx
-from benchmarks.joint_ccx import COUNT, SEED, drawn, ours
+from benchmarks.joints import joint_ccx
+from benchmarks.joints.joint_ccx import COUNT, SEED, drawn, ours
 from fea.checks.calculix import CalculixError
 from fea.joint.solve_joint import Cells
 

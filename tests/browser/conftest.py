@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from tests.support.clevis import CLEVIS
+from tests.support.pins.clevis import CLEVIS
 
 ROOT = Path(__file__).parents[2]
 STUDIES = ROOT / "studies"

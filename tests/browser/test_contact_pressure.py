@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from reports.format.numbers import engineering
-from tests.support.browser_page import errors, opened, part, pixels, slide, view, wait
+from tests.support.results.browser_page import errors, opened, part, pixels, slide, view, wait
 
 pytestmark = pytest.mark.browser
 

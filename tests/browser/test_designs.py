@@ -14,9 +14,9 @@ import pytest
 from reports.designs.page import write_designs_page
 from reports.format.numbers import short
 from tests.browser.test_page import AXE, FAULTS
-from tests.support.browser_page import PIXELS, errors, wait
-from tests.support.html_page import EVIL
-from tests.support.made_up_designs import FAILING, REQUIRED, made_up_designs, table_of
+from tests.support.results.browser_page import PIXELS, errors, wait
+from tests.support.results.html_page import EVIL
+from tests.support.results.made_up_designs import FAILING, REQUIRED, made_up_designs, table_of
 
 pytestmark = pytest.mark.browser
 

@@ -9,10 +9,10 @@ from urllib.parse import quote
 
 import pytest
 
-from benchmarks.page import many_pins
+from benchmarks.runs.page import many_pins
 from reports.page.page import AT_ONCE
 from tests.browser.conftest import run
-from tests.support.browser_page import errors, opened, view, wait
+from tests.support.results.browser_page import errors, opened, view, wait
 
 pytestmark = pytest.mark.browser
 

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from tests.browser.conftest import ODD, PIN
-from tests.support.browser_page import canvas, colours, errors, opened, view
+from tests.support.results.browser_page import canvas, colours, errors, opened, view
 
 pytestmark = pytest.mark.browser
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from tests.support.browser_page import errors, opened, unfold, wait
+from tests.support.results.browser_page import errors, opened, unfold, wait
 
 pytestmark = pytest.mark.browser
 

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from reports.format.numbers import engineering, short
-from tests.support.browser_page import (
+from tests.support.results.browser_page import (
     canvas,
     colours,
     errors,

@@ -14,7 +14,7 @@ import pytest
 from scipy.optimize import brentq
 
 from tests.conftest import ROOT
-from tests.support import pump_jack
+from tests.support.mechanism import pump_jack
 
 SCRIPTS = sorted((ROOT / "examples").glob("*.py"))
 MOST_LINES = 40

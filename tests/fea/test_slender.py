@@ -14,7 +14,7 @@ from fea.solve_pin import Asked, solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.gmsh_session import MeshError
 from tests.support.errors import raises
-from tests.support.plain_pins import double_shear
+from tests.support.pins.plain_pins import double_shear
 
 D = 0.02
 BAND = D  # long, at which loads act

@@ -9,7 +9,7 @@ import meshio
 from geometry import Pin, Segment
 from geometry.mesh.gmsh_session import gmsh_model
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
-from tests.support.pin_files import write_mesh, write_step
+from tests.support.pins.pin_files import write_mesh, write_step
 
 TABLE = "connection,fx,fy,fz,time\n" + "".join(
     f"B,{100.0 * i},{1000.0 - 10.0 * i * i},0.0,{0.1 * i}\n" for i in range(12)

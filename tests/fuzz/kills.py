@@ -15,7 +15,7 @@ from pathlib import Path
 
 from pinstress.cli import manifest
 from tests.conftest import ROOT
-from tests.support.process_group import alive, heard
+from tests.support.programs.process_group import alive, heard
 
 SIGNALS = (signal.SIGKILL, signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
 PATIENCE = 30.0  # s for the last process to be gone, on a machine with other work

@@ -8,7 +8,7 @@ import pytest
 from geometry import Pin, Segment, vertices
 from geometry.mesh.section_mesh import MeridianMesh, SectionSize, Spot, meridian_mesh
 from geometry.mesh.sizing import size_at
-from tests.support.section_pins import PINS, Floats, nodes
+from tests.support.pins.section_pins import PINS, Floats, nodes
 
 
 def sizes(found: MeridianMesh) -> tuple[Floats, Floats]:

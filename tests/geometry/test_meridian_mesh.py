@@ -21,7 +21,7 @@ from geometry.mesh.section_mesh import (
 )
 from geometry.mesh.solid_mesh import MeshError
 from tests.support.errors import raises
-from tests.support.section_pins import PINS, Floats, nodes
+from tests.support.pins.section_pins import PINS, Floats, nodes
 
 ALL = pytest.mark.parametrize("name", PINS)
 

@@ -21,7 +21,7 @@ from geometry.mesh.section_mesh import (
 )
 from geometry.mesh.sizing import Grade
 from geometry.shape.profile import off_edge
-from tests.support.section_pins import PINS
+from tests.support.pins.section_pins import PINS
 
 PIN = Pin("P", (Segment(0.02, 0.03), Segment(0.03, 0.02, connection="A")), fillet=0.002)
 

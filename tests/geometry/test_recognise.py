@@ -18,7 +18,7 @@ from geometry.mesh.cut_solid import cut_solid
 from geometry.mesh.gmsh_session import gmsh_model
 from geometry.mesh.revolve import revolve
 from tests.support.errors import raises
-from tests.support.pin_files import MM
+from tests.support.pins.pin_files import MM
 
 PROFILES = {
     "stepped": Pin("P", (Segment(20.0, 30.0), Segment(40.0, 20.0)), fillet=4.0),

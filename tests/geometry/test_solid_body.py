@@ -22,7 +22,7 @@ from geometry.mesh.solid_mesh import MeshError, MeshSize, SolidMesh, solid_mesh
 from geometry.mesh.tet10 import refined
 from geometry.meshing import solid_mesh as any_mesh
 from tests.support.errors import raises
-from tests.support.pin_files import MM, write_mesh, write_step
+from tests.support.pins.pin_files import MM, write_mesh, write_step
 
 SHAFT = (Segment(20.0, 30.0), Segment(40.0, 20.0))
 STEPPED = Pin("P", SHAFT, fillet=4.0)  # in mm

@@ -22,7 +22,7 @@ from loads import (
 )
 from loads.mobility.mobility import mobility, require_determined
 from tests.support.errors import raises
-from tests.support.mechanisms import coupled_wheels, four_bar
+from tests.support.mechanism.mechanisms import coupled_wheels, four_bar
 
 
 def flat(ground: float, crank: float, coupler: float, rocker: float, angle: float) -> Linkage:

@@ -7,7 +7,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from benchmarks.scissor import HIGH, LOW, SPAN, lift
+from benchmarks.motion.scissor import HIGH, LOW, SPAN, lift
 from loads import Course, CycloidalDrive, ledger, loop_equations, motion_reactions
 from loads.arrays import Floats
 

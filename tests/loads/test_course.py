@@ -20,7 +20,7 @@ from loads import (
 )
 from loads.motion import Course
 from tests.support.errors import raises
-from tests.support.mechanisms import four_bar, slider_crank
+from tests.support.mechanism.mechanisms import four_bar, slider_crank
 
 TURNS = 10
 MANY = 0.9 + 2.0 * np.pi * TURNS

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from loads import Applied, ConstantDrive, Dynamics, energy, ledger, motion_reactions, move
-from tests.support.mechanisms import four_bar
+from tests.support.mechanism.mechanisms import four_bar
 
 BAR = four_bar()
 TIMES = np.linspace(0.0, 1.0, 201)

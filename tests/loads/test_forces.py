@@ -32,7 +32,7 @@ from loads import (
 )
 from loads.arrays import Floats
 from tests.support.errors import raises
-from tests.support.mechanisms import four_bar, slider_crank
+from tests.support.mechanism.mechanisms import four_bar, slider_crank
 
 BAR = four_bar()
 ROWS = (0.0, 1.0, 1.5, 3.0, 4.0), (2.0, 5.0, 5.0, -1.0, 2.0)

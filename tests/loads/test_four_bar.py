@@ -28,7 +28,7 @@ from loads import (
 from loads.closed_form.four_bar import four_bar as recognised
 from loads.transmission_angles import transmission_angles
 from tests.support.errors import raises
-from tests.support.mechanisms import circles, coupled_wheels, four_bar
+from tests.support.mechanism.mechanisms import circles, coupled_wheels, four_bar
 
 LINK = st.floats(0.2, 1.5)
 

@@ -26,7 +26,7 @@ from loads import (
     move,
 )
 from tests.support.errors import raises
-from tests.support.mechanisms import four_bar
+from tests.support.mechanism.mechanisms import four_bar
 
 LOAD, TIP = 900.0, (2.0, 0.4)
 FEET, EYES = ((0.6, -1.0), (-0.5, -0.8)), ((0.9, 0.1), (0.7, 0.0))

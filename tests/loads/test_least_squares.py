@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.scissor import lift
+from benchmarks.motion.scissor import lift
 from loads import Course, CycloidalDrive
 from loads.arrays import Floats
 from loads.least_squares import Factors, elimination

@@ -31,7 +31,7 @@ from loads.reactions import Reactions, given_reactions
 from pinstress.model.mechanism.drives import laws, span
 from pinstress.study.file import Study
 from tests.support.errors import raises
-from tests.support.mechanisms import four_bar, slider_crank
+from tests.support.mechanism.mechanisms import four_bar, slider_crank
 
 TURN = 2.0 * np.pi
 Drive = ConstantDrive | CosineDrive | CycloidalDrive

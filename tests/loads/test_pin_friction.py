@@ -28,7 +28,7 @@ from loads import (
 )
 from loads.arrays import Floats
 from tests.support.errors import raises
-from tests.support.mechanisms import four_bar, slider_crank
+from tests.support.mechanism.mechanisms import four_bar, slider_crank
 
 MU, RADIUS = 0.3, 0.02
 CIRCLE = RADIUS * MU / np.hypot(1.0, MU)

@@ -10,7 +10,7 @@ import pytest
 from loads import GROUND, Body, Connection, Joint, Linkage, LinkageError, Sharing, Slider, Turn
 from loads.motion import at_rest
 from tests.support.errors import raises
-from tests.support.mechanisms import four_bar, slider_crank
+from tests.support.mechanism.mechanisms import four_bar, slider_crank
 
 BAR, CRANK = four_bar(), slider_crank()
 O2, A, B, O4 = BAR.joints

@@ -23,7 +23,7 @@ from loads import (
 )
 from loads.friction import contact_forces
 from tests.support.errors import raises
-from tests.support.mechanisms import slider_crank
+from tests.support.mechanism.mechanisms import slider_crank
 
 
 def test_the_closed_form() -> None:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from loads import Contact, LegDynamics, LegMotion, LoadsArgumentError, SpatialLeg, leg_dynamics
 from loads.spatial_leg import t1, t2
 from tests.support.errors import raises
-from tests.support.leg_of_particles import (
+from tests.support.mechanism.leg_of_particles import (
     Complex,
     Floats,
     Function,

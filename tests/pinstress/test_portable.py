@@ -16,8 +16,8 @@ import pytest
 from geometry.system import bare, offered
 from pinstress.processes.system import portable
 from tests.conftest import ROOT
-from tests.pinstress.test_output import ROOM, SLOW, names
-from tests.support.process_group import alive, started
+from tests.pinstress.cli.test_output import ROOM, SLOW, names
+from tests.support.programs.process_group import alive, started
 
 # Of sums that are added in another order, times the condition of the equations (5e3 to 1e5 here).
 ROUNDING = 1e-9

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from reports.data.results import Field, Results
-from tests.support.made_up_run import make_field, make_results
+from tests.support.results.made_up_run import make_field, make_results
 
 
 @pytest.fixture(scope="session")

@@ -20,7 +20,7 @@ from reports.animation.strip_chart import ticks
 from reports.data.results import Results, Units
 from reports.format.drawing.svg_labels import label_offsets
 from reports.format.fixed_decimals import Fixed
-from tests.support.four_bar_results import COUPLER, CRANK, ROCKER, chain, four_bar, linkage
+from tests.support.results.four_bar_results import COUPLER, CRANK, ROCKER, chain, four_bar, linkage
 
 EVIL = "</script><i onload='x'>&quot;\"\\u003c{{ 1 }}<!--"
 

@@ -23,7 +23,7 @@ from reports.plots.comparison import comparison_plot
 from reports.tables.comparison import inputs_grid, rows_grid
 from reports.tables.json_results import to_json
 from reports.text.comparison import headline, write_markdown
-from tests.support.made_up_run import make_results
+from tests.support.results.made_up_run import make_results
 
 
 @pytest.fixture(scope="module")

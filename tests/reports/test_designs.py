@@ -14,9 +14,9 @@ import pytest
 from reports.designs.columns import designs_of
 from reports.designs.page import column_grid, page_data, reason_grid, summary, write_designs_page
 from reports.format.packed import packed
-from tests.support.html_page import EVIL, parse
-from tests.support.made_up_designs import FAILING, made_up_designs, table_of
-from tests.support.packed import unpacked
+from tests.support.programs.packed import unpacked
+from tests.support.results.html_page import EVIL, parse
+from tests.support.results.made_up_designs import FAILING, made_up_designs, table_of
 
 TWO = (("B", "landing"), ("E", "retract"))
 SOLVED = {

@@ -30,9 +30,9 @@ from reports.tables.stress.joint import joint_json, joint_tables
 from reports.text.safety_factors import print_safety_factors
 from reports.text.summary import summary
 from reports.vtk.fields import point_data, surface
-from tests.support.html_page import EVIL, parse
-from tests.support.made_up_joint import in_lugs, make_joint
-from tests.support.packed import unpacked
+from tests.support.programs.packed import unpacked
+from tests.support.results.html_page import EVIL, parse
+from tests.support.results.made_up_joint import in_lugs, make_joint
 
 CONTACT = make_joint()
 

@@ -13,7 +13,7 @@ from reports.page.page import write_page
 from reports.plots.strength.landing import landing_plot
 from reports.tables.published import published_values_table, write_published_values
 from reports.tables.strength.landing import landing_table, landing_tables, write_landing
-from tests.support.made_up_run import ranged
+from tests.support.results.made_up_run import ranged
 
 
 def test_every_pair_is_a_row(results: Results, tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ import pytest
 from reports.data.results import Results
 from reports.files import write_loads
 from reports.text.loads_summary import write_loads_summary
-from tests.support.four_bar_results import four_bar
+from tests.support.results.four_bar_results import four_bar
 
 
 @pytest.fixture(scope="module")

@@ -15,8 +15,8 @@ from reports.page.page import AT_ONCE, render, write_page
 from reports.page.pin_drawing import draw_pin
 from reports.page.scripts import plots_of
 from reports.plots.all import all_plots
-from tests.support.html_page import EVIL, parse
-from tests.support.made_up_run import leg
+from tests.support.results.html_page import EVIL, parse
+from tests.support.results.made_up_run import leg
 
 LIBRARY = re.compile(r'<script type="text/plain" id="libraries">.*?</script>', re.S)
 ANIMATION = '<!DOCTYPE html><p title="&lt;">moves & "turns"</p>'

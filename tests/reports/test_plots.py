@@ -21,7 +21,7 @@ from reports.plots.loads.reactions import along, bars, reaction_plot
 from reports.plots.spec import Abscissa, Panel, Plot, Spec, clipped, curves, still
 from reports.plots.stress.refinement import pin_refinement_plot
 from reports.plots.theme import COLOURS, DASHES, SERIES, dashes, on_page, on_paper
-from tests.support.made_up_run import leg, ranged
+from tests.support.results.made_up_run import leg, ranged
 
 DIGITS = 1e-5  # relative: six are written
 

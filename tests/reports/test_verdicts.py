@@ -22,8 +22,8 @@ from reports.tables.strength.safety_factors import safety_factors_table, write_s
 from reports.text.fitted_table import Column, fitted_table, fitting
 from reports.text.safety_factors import print_safety_factors
 from reports.text.summary import summary
-from tests.support.judged_results import judged, row
-from tests.support.made_up_run import ranged
+from tests.support.results.judged_results import judged, row
+from tests.support.results.made_up_run import ranged
 
 
 @pytest.fixture(scope="module")

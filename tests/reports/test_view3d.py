@@ -16,7 +16,7 @@ from reports.format.packed import packed
 from reports.format.ranges import error_words
 from reports.page.page import write_page
 from reports.page.viewer import COARSE, FINE, PARTS, pin_views
-from tests.support.packed import unpacked
+from tests.support.programs.packed import unpacked
 
 EVIL = "</script><script>alert(1)</script>"
 

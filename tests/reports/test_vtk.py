@@ -15,7 +15,7 @@ import pyvista
 from reports.data.results import BandLoad, Field, Still, Units
 from reports.vtk import renderer
 from reports.vtk.fields import render_pin, renderer_problem, surface, write_pin, write_vtu
-from tests.support.judged_results import tube
+from tests.support.results.judged_results import tube
 
 UNITS = Units("in", "lbf", "psi", "s")
 SEVEN = 1e-7  # digits of a float32

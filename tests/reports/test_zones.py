@@ -19,8 +19,8 @@ from reports.page.pin_drawing import draw_pin
 from reports.plots.all import all_plots
 from reports.tables.json_results import to_json
 from reports.tables.stress.singular_zones import Zone, circles, pin_zones
-from tests.support.html_page import EVIL, parse
-from tests.support.judged_results import judged, row, zones
+from tests.support.results.html_page import EVIL, parse
+from tests.support.results.judged_results import judged, row, zones
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from loads import LegDynamics, leg_dynamics
-from tests.support.leg_of_particles import (
+from tests.support.mechanism.leg_of_particles import (
     Complex,
     Floats,
     Particles,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from benchmarks.cut_charts import PETERSON, chart, factors
+from benchmarks.cuts.cut_charts import PETERSON, chart, factors
 
 
 @pytest.mark.parametrize(("load", "limit"), [("tension", 3.0), ("bending", 3.0), ("torsion", 4.0)])

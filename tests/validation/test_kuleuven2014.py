@@ -3,8 +3,8 @@
 Their formulas for a spatial retracting leg (kuleuven2014_formulas.py), against the motion of
 particles (kuleuven2014_truth.py). studies/kuleuven2014/errors.csv names the term in which each
 formula is wrong. Tolerances are for rounding: 1e-9 of the quantity beside numerical derivatives
-(Cauchy's integral, tests/support/leg_of_particles.py), 1e-12 between closed forms; a term counts
-as wrong from 1e-4 of the quantity on.
+(Cauchy's integral, tests/support/mechanism/leg_of_particles.py), 1e-12 between closed forms; a term
+counts as wrong from 1e-4 of the quantity on.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import pytest
 
 from loads import leg_dynamics
 from tests.conftest import ROOT
-from tests.support.leg_of_particles import Floats
+from tests.support.mechanism.leg_of_particles import Floats
 from tests.validation.kuleuven2014_formulas import HOLD, PRINTED, RIGHT
 from tests.validation.kuleuven2014_truth import (
     NOW,

@@ -22,9 +22,14 @@ from fea.harmonic.stress_recovery import reading
 from fea.harmonic.surface_stress import AT
 from geometry import Pin, Segment
 from geometry.mesh.gmsh_session import gmsh_model
-from tests.support.exact_fields import Exact, boundary_forces, displacements_of, edge_tractions
-from tests.support.section_grid import rectangle
-from tests.support.solid_under_pressure import Solved, meshed, solve
+from tests.support.exact.exact_fields import (
+    Exact,
+    boundary_forces,
+    displacements_of,
+    edge_tractions,
+)
+from tests.support.pins.section_grid import rectangle
+from tests.support.pins.solid_under_pressure import Solved, meshed, solve
 
 A, B, LENGTH, P = 0.01, 0.02, 0.01, 1e8
 K = P * A**2 / (B**2 - A**2)

@@ -14,7 +14,7 @@ import pytest
 
 from fea.core.material import Material
 from geometry.mesh.gmsh_session import gmsh_model
-from tests.support.solid_under_pressure import Solved, meshed, solve
+from tests.support.pins.solid_under_pressure import Solved, meshed, solve
 
 PLATE = Material("plate", 210e9, 0.3)
 PRESSURE, HALF = 1e6, 0.3

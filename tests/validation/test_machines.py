@@ -17,7 +17,7 @@ from pinstress.model.mechanism.linkage import linkage
 from pinstress.study.file import Study, load_study
 from pinstress.study.in_python import changed_study
 from tests.conftest import ROOT
-from tests.support.mechanisms import circles
+from tests.support.mechanism.mechanisms import circles
 
 G = 9.80665
 Place = complex

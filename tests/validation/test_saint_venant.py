@@ -1,7 +1,7 @@
 """Saint-Venant's problems for round bars and tubes, to 1e-6.
 
 Reference: Timoshenko & Goodier, Theory of Elasticity, 3rd ed., McGraw-Hill 1970, secs. 99 to
-102 and 119 to 121, as written out in `tests.support.saint_venant`.
+102 and 119 to 121, as written out in `tests.support.exact.saint_venant`.
 
 The ends carry the exact tractions and nothing is clamped, so the solution is exact everywhere but
 for a rigid motion. Quadratic elements hold tension, torsion and bending: one coarse mesh, 1e-10 (of
@@ -23,7 +23,7 @@ from fea.core.pin_loads import Floats
 from fea.harmonic.model import HarmonicModel, rigid_motions
 from fea.harmonic.stress_recovery import reading
 from geometry import Pin, Segment
-from tests.support.exact_fields import (
+from tests.support.exact.exact_fields import (
     Exact,
     boundary_forces,
     displacements_of,
@@ -31,8 +31,8 @@ from tests.support.exact_fields import (
     errors,
     unknowns_of,
 )
-from tests.support.saint_venant import bending, end_force, flexure, tension, torsion
-from tests.support.section_grid import rectangle
+from tests.support.exact.saint_venant import bending, end_force, flexure, tension, torsion
+from tests.support.pins.section_grid import rectangle
 
 A, L = 0.01, 0.04
 INNER = pytest.mark.parametrize("b", [0.0, 0.004], ids=["bar", "tube"])

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import pytest
 
-from benchmarks.shoulders import KINDS, run, shoulder
+from benchmarks.pins.shoulders import KINDS, run, shoulder
 from geometry.mesh.section_mesh import SectionSize
 
 # CalculiX 2.20, CAX6, 71,000 and 82,000 unknowns: `python -m benchmarks tension`.

@@ -18,7 +18,7 @@ from pinstress.analysis.solve import solutions
 from pinstress.designs.evaluate import Evaluator, Recent
 from pinstress.designs.number import number_at
 from pinstress.model.cases import case_loads
-from tests.support.swept import DIAMETER, FORCE, ONE_PIN, STRENGTH, varied
+from tests.support.programs.swept import DIAMETER, FORCE, ONE_PIN, STRENGTH, varied
 
 VARIED = varied(f'"{DIAMETER}" = {{ from = 1.5, to = 3.0 }}')
 MODULUS = "material.AISI 4340.youngs_modulus"

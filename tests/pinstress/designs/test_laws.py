@@ -17,7 +17,7 @@ from pinstress.designs.parameters import parameters_of
 from pinstress.designs.sample import designs_of
 from pinstress.schema.units import SYSTEMS
 from pinstress.schema.vary import VaryTable
-from tests.support.swept import DIAMETER, FORCE, STRENGTH, swept
+from tests.support.programs.swept import DIAMETER, FORCE, STRENGTH, swept
 
 SIGMA = float(np.sqrt(np.log1p(0.2**2)))
 KNOWN: dict[str, tuple[Law, Any]] = {

@@ -14,7 +14,7 @@ from pinstress.designs.laws import Uniform
 from pinstress.designs.number import number_at, unit_of
 from pinstress.designs.parameters import parameters_of
 from pinstress.schema.units import DIMENSIONS, SYSTEMS, to_si
-from tests.support.swept import DIAMETER, FORCE, ONE_PIN, STRENGTH, swept, varied
+from tests.support.programs.swept import DIAMETER, FORCE, ONE_PIN, STRENGTH, swept, varied
 
 LANDING_GEAR = shipped_studies()["landing_gear"]
 

@@ -40,9 +40,9 @@ from pinstress.designs.summary import summary
 from pinstress.designs.sweep import Kept, planned, solved
 from pinstress.designs.table import assembled, facts, write_table
 from pinstress.designs.workers import failed_rows, local, remote, solve_on
-from tests.support.command_line import QUICK
-from tests.support.made_up_designs import made_up_designs
-from tests.support.swept import DEADLY, DIAMETER, FORCE, STRENGTH, swept
+from tests.support.programs.command_line import QUICK
+from tests.support.programs.swept import DEADLY, DIAMETER, FORCE, STRENGTH, swept
+from tests.support.results.made_up_designs import made_up_designs
 
 resource_tracker.ensure_running()  # multiprocessing's, which stays to the end
 

@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 from pyarrow import parquet
 
-from tests.support.command_line import QUICK, pinstress, run_here
-from tests.support.process_group import started
-from tests.support.swept import DIAMETER, FORCE, ONE_PIN, varied
+from tests.support.programs.command_line import QUICK, pinstress, run_here
+from tests.support.programs.process_group import started
+from tests.support.programs.swept import DIAMETER, FORCE, ONE_PIN, varied
 
 LOADS = f'"{FORCE}" = {{ from = -1000, to = -500 }}'
 SHAPES = f'"{DIAMETER}" = {{ from = "1.5 in", to = "4.5 in" }}\n{LOADS}'
@@ -266,7 +266,7 @@ def test_a_sweep_that_is_killed_goes_on_to_the_same_bytes(tmp_path: Path, sign: 
 
 
 def _others(group: int) -> bool:
-    from tests.support.process_group import alive
+    from tests.support.programs.process_group import alive
 
     return alive(group)
 

@@ -1,0 +1,171 @@
+"""Whether the error of local solids contains the truth: random pins beside much finer meshes.
+
+A reference is made on meshes of another family than those of a run: finer along all edges of the
+cuts, and about every place where stress is nearly the largest. There are two, and what they differ
+by says how far they can be trusted. What each pin gave is kept, so that a stopped run goes on.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import sys
+import time
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks import ROOT
+from benchmarks.cuts.random_cuts import CutTrial, cut_trials, kind_trials
+from benchmarks.random_pins import STEEL
+from benchmarks.timing import table
+from fea.core.mesh_result import MeshResult
+from fea.core.peak import Peak
+from fea.cut.evaluate import cut_result, cut_solution
+from fea.cut.local_fields import LocalFineness
+from fea.cut.region import BEYOND, loaded_bands, pieces
+from fea.harmonic.evaluate import SectionProblem
+from fea.solve_pin import Asked, singularities_of, solve_pin
+
+COUNT, KINDS, SEED = 30, 6, 7
+TOLERANCE = 0.02
+# Of both references: how much smaller than on the last mesh of the run elements are along the edges
+# of cuts, and where stress is largest.
+FINER = ((1.5, 2.2), (2.0, 3.0))
+SECTION = 3  # levels by which their sections are finer
+LONGER = 2.0  # their local solids, beyond the cuts
+KEPT = ROOT / "build" / "benchmarks"
+
+
+@dataclass(frozen=True)
+class Inside:
+    """Of a pin: its unknowns and its reference's; how far off the maximum is, what the error said,
+    and what the references differ by, relative; and processor time of both, s.
+    """
+
+    pin: str
+    unknowns: int
+    of_reference: int
+    off: float
+    error: float
+    differ: float
+    spent: float
+    on_reference: float
+
+    @property
+    def inside(self) -> bool:
+        """Whether the error contains the reference."""
+        return self.off <= self.error
+
+    @property
+    def row(self) -> tuple[object, ...]:
+        """As in the table."""
+        off, error, differ = (100.0 * x for x in (self.off, self.error, self.differ))
+        yes = "yes" if self.inside else "no"
+        times = self.of_reference / self.unknowns
+        return self.pin, self.unknowns, round(times, 1), differ, off, error, yes
+
+
+def cut_pins() -> str:
+    """Whether the error contains the truth, on random pins with holes."""
+    return _contained("cut-pins", cut_trials(COUNT, SEED))
+
+
+def cut_kinds() -> str:
+    """The same on random pins with cuts of other kinds."""
+    return _contained("cut-kinds", kind_trials(KINDS, SEED))
+
+
+def _contained(name: str, trials: list[CutTrial]) -> str:
+    kept = KEPT / f"{name}-{_code()}.jsonl"
+    kept.parent.mkdir(parents=True, exist_ok=True)
+    for trial in trials:
+        pin = trial.pin.name
+        if pin in _known(kept):  # by now: several processes may share the work
+            continue
+        found = _trial(trial)
+        print(*(found.row if found else (pin, "no local solid")), file=sys.stderr, flush=True)
+        with kept.open("a", encoding="utf-8") as file:
+            file.write(json.dumps([pin, found and vars(found)]) + "\n")
+    known = _known(kept)
+    return _told([known[trial.pin.name] for trial in trials])
+
+
+def _known(kept: Path) -> dict[str, Inside | None]:
+    """By pin."""
+    lines = kept.read_text(encoding="utf-8").splitlines() if kept.exists() else []
+    return {pin: Inside(**found) if found else None for pin, found in map(json.loads, lines)}
+
+
+def _told(found: list[Inside | None]) -> str:
+    rows = [one for one in found if one]
+    inside = sum(one.inside for one in rows)
+    away = [abs(one.off - one.error) > one.differ for one in rows]
+    ratio = [one.off / one.error for one in rows]
+    text = (
+        f"{inside} of {len(rows)} inside; {len(found) - len(rows)} of {len(found)} have no maximum "
+        f"or no local solid. The largest true error is {100.0 * max(o.off for o in rows):.2g} %, "
+        f"the true error {np.median(ratio):.2g} of the estimated one (median; {max(ratio):.2g} at "
+        f"most). Both references differ by {100.0 * float(np.median([o.differ for o in rows])):.2g}"
+        f" % (median), and in {sum(away)} pins by less than would change what is inside. The runs "
+        f"took {sum(o.spent for o in rows) / 60.0:.1f} minutes of processor time, the references "
+        f"{sum(o.on_reference for o in rows) / 60.0:.1f}."
+    )
+    head = (
+        "pin", "unknowns", "times as many of the reference", "references differ, %",
+        "true error, %", "estimated, %", "inside",
+    )  # fmt: skip
+    return f"{text}\n\n{table(head, [one.row for one in rows])}"
+
+
+def _code() -> str:
+    """A name for the present state of what is measured: what another one found does not count."""
+    own = (Path(__file__), Path(__file__).with_name("random_cuts.py"))
+    every = sorted(p for part in ("fea", "geometry") for p in (ROOT / part).rglob("*.py"))
+    digest = hashlib.sha256(b"".join(path.read_bytes() for path in (*own, *every)))
+    return digest.hexdigest()[:12]
+
+
+def _trial(trial: CutTrial) -> Inside | None:
+    """None where the whole pin is solid, or the maximum at a singularity."""
+    start = time.process_time()
+    asked = Asked(TOLERANCE)
+    found = solve_pin(trial.pin, STEEL, trial.clamps, (trial.loads,), asked)[0].peak
+    spent = time.process_time() - start
+    if found.model != "harmonic+local" or found.verdict == "singular":
+        return None
+    value, error = found.max_von_mises, found.error_estimate
+    assert value is not None
+    assert error is not None
+    start = time.process_time()
+    first, second = _references(trial, found)
+    true = second.maximum
+    return Inside(
+        found.pin, found.dofs, second.unknowns, abs(value / true - 1.0), error / true,
+        abs(first.maximum / true - 1.0), spent, time.process_time() - start,
+    )  # fmt: skip
+
+
+def _references(trial: CutTrial, found: Peak) -> list[MeshResult]:
+    """Of both meshes, the second of which is about the places that the first found."""
+    pin, clamps, loads = trial.pin, trial.clamps, trial.loads
+    assert found.location is not None
+    x, y, z = found.location
+    zones = singularities_of(pin.profile, STEEL, clamps, (loads,))
+    problem = SectionProblem(pin.profile, STEEL, clamps, (loads,), zones)
+    bands = loaded_bands(pin, loads.surfaces if clamps else pin.connections)
+    about = pieces(pin, clamps, LONGER * BEYOND, bands)
+    last = len(found.history) - 1
+    before = cut_result(cut_solution(problem, about, 0, (), bands), zones, loads)
+    out = []
+    for edges, spots in FINER:
+        high = tuple(dict.fromkeys((found.location, *before.local_high)))
+        near = replace(before, local_high=high, high=((math.hypot(x, y), z), *before.high))
+        run = LocalFineness.of(last)
+        finer = LocalFineness(run.edges * edges, run.spots * spots)
+        solution = cut_solution(problem, about, last + SECTION, [near], bands, finer=finer)
+        before = cut_result(solution, zones, loads)
+        out.append(before)
+    return out

@@ -1,0 +1,249 @@
+"""Derivatives of pins in contact: all that may change, and differences of whole solutions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from benchmarks.joints.random_joints import JointTrial, joint_trials
+from benchmarks.pins.derivatives import moved_maximum, richardson, timed
+from benchmarks.pins.derivatives import price as of_free_pins
+from benchmarks.timing import table
+from fea.asked import Asked
+from fea.core.material import Material
+from fea.core.pin_loads import PinLoads
+from fea.derivatives.in_lugs import Joint, JointParameter, joint_derivatives
+from fea.derivatives.records import SolvedCase
+from fea.derivatives.virtual_work import Interior
+from fea.harmonic.assembly import Section
+from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
+from fea.harmonic.model import HarmonicBody
+from fea.joint.contact import Pressed, rotation
+from fea.joint.flexibility import RingBody, lug_rings
+from fea.joint.lugs.lug import Bushing, Lug
+from fea.joint.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
+from fea.joint.solve_joint import Cells, JointModel
+from fea.refine import singularities_of
+from geometry import Pin
+from geometry.arrays import Floats
+from geometry.mesh.outline_motion import OutlineNodes, Reach
+from geometry.mesh.section_mesh import MeridianMesh
+from geometry.shape.dimensions import Dimension, dimensions
+
+JOINTS = 4
+CHECKED = 2  # parameters of each, those that matter most, that are compared with differences
+ROUGH = Cells(4, 24, 8)  # of whole solutions for differences
+ALL = 1e-15  # what a pattern of pressures must add
+STEP = 1e-4  # of a parameter
+
+
+def price() -> str:
+    """Of pins without contact, and of random ones in contact with their lugs."""
+    rows = [_row(trial) for trial in joint_trials(JOINTS, seed=22)]
+    head = (
+        "joint",
+        "rings",
+        "unknowns",
+        "parameters",
+        "solution, s",
+        "derivatives, s",
+        "price",
+        "off Richardson's",
+    )
+    ratio = float(np.median([row[-2] for row in rows]))
+    return (
+        f"{of_free_pins()}\n\nRandom pins in contact with their lugs, on the cells of their "
+        "solution: all derivatives (dimensions of pin and lugs, clearances, moduli, loads) take "
+        f"{ratio:.2g} of the solution (median). Differences are of whole solutions on "
+        f"{ROUGH.rings} rings by {ROUGH.sectors} sectors, contact included, all meshes moved with "
+        f"the parameter; the error is the largest over the {CHECKED} parameters p that matter "
+        "most, of p dσ/dp relative to its largest:\n\n" + table(head, rows)
+    )
+
+
+def _row(trial: JointTrial) -> tuple[Any, ...]:
+    pin, material = trial.pin, trial.material
+    lugs = [
+        replace(x, material=replace(x.material, name=f"lug {x.connection}")) for x in trial.lugs
+    ]
+    given = InLugs(pin, material, tuple(lugs), (trial.loads,))
+    (made,), solving = timed(lambda: solve_in_lugs(given, Asked()))
+    every = list(parameters(pin, material, lugs))
+    found, deriving = timed(lambda: joint_derivatives(*solved_in_lugs(made, material), every))
+    whole = whole_joint(pin, material, lugs, trial.loads, ROUGH)
+    ours = joint_derivatives(whole.solved, whole.model, whole.links, every).by_parameter
+    most = sorted((p for p in every if p.key in ours), key=lambda p: -abs(p.scale * ours[p.key]))[
+        :CHECKED
+    ]
+    off = max(abs(p.scale * (ours[p.key] - whole.derivative(p))) for p in most)
+    return (
+        pin.name,
+        len(made.model.rings) if made.model else 0,
+        f"{made.solution.peak.dofs:,}",
+        len(found.by_parameter),
+        solving,
+        deriving,
+        deriving / solving,
+        f"{off / abs(most[0].scale * ours[most[0].key]):.0e}",
+    )
+
+
+def solved_in_lugs(
+    made: LugSolution, material: Material
+) -> tuple[SolvedCase, JointModel, PinLoads]:
+    """What is differentiated of a solution."""
+    solution, answer = made.solution, made.solution.answer
+    assert isinstance(answer, HarmonicAnswer)
+    assert made.rings is not None
+    assert made.model is not None
+    assert solution.peak.governing is not None
+    loads = solution.loads.at(np.array([solution.instant]))
+    solved = SolvedCase(made.rings, material, (), loads, answer.solution, answer.singularities)
+    return solved, made.model, solution.peak.governing
+
+
+def parameters(pin: Pin, material: Material, lugs: Sequence[Lug]) -> Iterator[JointParameter]:
+    """All lengths and moduli of a joint, each by itself; names distinguish materials."""
+    joint = pin, material, tuple(lugs)
+    for d in dimensions(pin):
+        yield JointParameter(d.key, d.value, d.value, partial(_of_pin, joint, d))
+    for k, lug in enumerate(lugs):
+        loose = 1e-3 * pin.band(lug.connection).radius
+        thickness = 0.0 if lug.bushing is None else lug.bushing.thickness
+        for key, value, scale in (
+            ("clearance", lug.clearance, loose),
+            ("outer_diameter", lug.outer_diameter, lug.outer_diameter),
+            ("edge_radius", lug.edge_radius, lug.edge_radius),
+            ("bushing.thickness", thickness, thickness),
+        ):
+            if scale:
+                changed = partial(_of_lug, joint, k, key)
+                yield JointParameter(f"lug.{lug.connection}.{key}", value, scale, changed)
+    every = {x.name: x for lug in lugs for x in (lug.material, lug.bearing)}
+    for one in (every | {material.name: material}).values():
+        for key in ("youngs_modulus", "poisson_ratio", "density"):
+            if value := getattr(one, key):
+                changed = partial(_made_of, joint, one, key)
+                yield JointParameter(f"material.{one.name}.{key}", value, value, changed)
+
+
+def _of_pin(joint: Joint, dimension: Dimension, value: float) -> Joint:
+    return dimension.changed(value), *joint[1:]
+
+
+def _of_lug(joint: Joint, k: int, key: str, value: float) -> Joint:
+    pin, material, lugs = joint
+    if key == "bushing.thickness" and (ring := lugs[k].bushing) is not None:
+        one = replace(lugs[k], bushing=replace(ring, thickness=value))
+    else:
+        changed: dict[str, Any] = {key: value}
+        one = replace(lugs[k], **changed)
+    return pin, material, (*lugs[:k], one, *lugs[k + 1 :])
+
+
+def _made_of(joint: Joint, old: Material, key: str, value: float) -> Joint:
+    pin, material, lugs = joint
+    changed: dict[str, Any] = {key: value}
+
+    def made(one: Material) -> Material:
+        return replace(one, **changed) if one == old else one
+
+    def of(ring: Bushing | None) -> Bushing | None:
+        return ring and replace(ring, material=made(ring.material))
+
+    found = (replace(x, material=made(x.material), bushing=of(x.bushing)) for x in lugs)
+    return pin, made(material), tuple(found)
+
+
+@dataclass(frozen=True)
+class WholeJoint:
+    """A joint, its maximum on the meshes of a solution as they are moved."""
+
+    solved: SolvedCase
+    model: JointModel
+    links: PinLoads
+
+    def maximum(self, parameter: JointParameter, value: float) -> float:
+        """With another value of a parameter, all of it found anew."""
+        model, links = self.model, self.links
+        pin, material, lugs = parameter.changed(value)
+        other = model.reshaped(pin, material, lugs)
+        rings = model.on_pin
+        moved = _moved(rings.body.space.section, model.pin, other.pin)
+        on = HarmonicBody(other.pin, Section(moved), material, pivot=0.5)
+        highest = model.cells.highest
+        other.of_pin = RingBody(on, rings.rings, rings.pushed).flexibility(highest)
+        other.of_lugs, other.wavy = np.zeros_like(model.of_lugs), np.zeros_like(model.wavy)
+        for (own, lug, ends), (_, old, before) in zip(other.by_lug(), model.by_lug(), strict=True):
+            was = lug_rings(model.eye(old, before), old, model.cells.across)
+            eye = other.eye(lug, ends)
+            space = was.body.space
+            mesh = space.section
+            nodes = np.stack(
+                [
+                    np.interp(space.nodes[:, k], one, two)
+                    for k, (one, two) in enumerate(
+                        zip(_knots(model.eye(old, before), old), _knots(eye, lug), strict=True)
+                    )
+                ],
+                axis=1,
+            )
+            mesh = replace(mesh, nodes=nodes)
+            both = lug.material if lug.bushing is None else (lug.bushing.material, lug.material)
+            body = HarmonicBody(eye, Section(mesh, space.parts), both, pivot=0.5)
+            found = RingBody(body, was.rings, was.pushed, guided=True).flexibility(highest)
+            other.of_lugs[:, own, own], other.wavy[:, :, own, own] = found, other.wavy_of(lug, ends)
+        waves = other.waves([self._pressed(other)])
+        loads = other.patterns([(waves, ALL)]).loads(waves, links)
+        mesh = self.solved.solution.mesh
+        reaches = [Reach((p.r, p.z), p.radius) for p in self.solved.zones]
+        shift = _moved(mesh, model.pin, other.pin, reaches).nodes - mesh.nodes
+        return moved_maximum(self.solved, other.pin, shift, material, loads)
+
+    def _pressed(self, model: JointModel) -> Pressed:
+        """With the cells where they are."""
+        (before,) = self.model.pressed(self.links)
+        turn = rotation(before.angle)
+        x, y = (model.couples(self.links)[0] @ turn).tolist()
+        forces = model.forces(self.links)[0] @ turn
+        return model.contact.solve(forces, (x, y), before.active).turned(before.angle)
+
+    def derivative(self, parameter: JointParameter) -> float:
+        """By differences."""
+        return richardson(
+            lambda x: self.maximum(parameter, parameter.value + x), STEP * parameter.scale
+        )
+
+
+def whole_joint(
+    pin: Pin, material: Material, lugs: Sequence[Lug], links: PinLoads, cells: Cells
+) -> WholeJoint:
+    """Solved on its first mesh, with all harmonics of contact."""
+    model = JointModel(pin, material, lugs, cells)
+    waves = model.waves(model.pressed(links))
+    loads = model.patterns([(waves, ALL)]).loads(waves, links)
+    zones = singularities_of(model.pin, material, (), (loads,))
+    problem = SectionProblem(model.pin, material, (), (loads,), zones, model.first)
+    section = harmonic_solution(problem, 0, 1.0)
+    return WholeJoint(SolvedCase(model.pin, material, (), loads, section, zones), model, links)
+
+
+def _knots(eye: Pin, lug: Lug) -> tuple[Floats, Floats]:
+    bore, outer = eye.segments[0].bore / 2.0, eye.segments[0].diameter / 2.0
+    between = [] if lug.bushing is None else [bore + lug.bushing.thickness]
+    return np.array([bore, *between, outer]), np.array(eye.stations)
+
+
+def _moved(
+    mesh: MeridianMesh, before: Pin, after: Pin, reaches: Sequence[Reach] = ()
+) -> MeridianMesh:
+    """A mesh with its outline where that of another pin is."""
+    nodes = OutlineNodes(mesh, before, reaches)
+    space = Section(mesh)
+    shift = nodes.at(after) - space.nodes[nodes.rows]
+    every = Interior(space, nodes.rows).velocity(shift[:, :, None])[:, :, 0]
+    return replace(mesh, nodes=mesh.nodes + every)

@@ -1,0 +1,95 @@
+"""Points of a curve and of sections that are left out, and what is missed by that."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fea.core.material import Material
+from fea.core.pin_loads import Floats, PinLoads
+from fea.solve_pin import Asked, solve_pin
+from fea.surface_fields import amounts, excluded, largest_there, unit_surface
+from geometry import Pin
+from geometry.chords import needed
+from pinstress import load_study, run
+from pinstress.analysis.thinning import STRESS, meridian_points
+from reports.data.surface import SurfaceCase
+from tests.conftest import ROOT
+
+STUDY = ROOT / "studies" / "one_pin.toml"
+
+
+def missed(at: Floats, values: Floats, allowed: float, kept: list[int]) -> tuple[float, int]:
+    must = np.isin(np.arange(len(at)), kept)
+    keep = needed(at, values, np.full(values.shape, allowed), must)
+    assert keep[[0, -1, *kept]].all()
+    lines = [np.interp(at, at[keep], column[keep]) for column in values.T]
+    return float(np.abs(np.stack(lines, axis=1) - values).max()), int(keep.sum())
+
+
+def test_what_is_left_out_is_on_the_lines_between_the_others() -> None:
+    at = np.linspace(0.0, 1.0, 400) ** 2
+    values = np.stack([np.sin(9.0 * at), np.exp(-((at - 0.3) ** 2) / 1e-3)], axis=1)
+    worst, count = missed(at, values, 1e-2, [17])
+    assert worst <= 1e-2
+    assert count < 60
+    finer, more = missed(at, values, 1e-3, [17])
+    assert finer <= 1e-3
+    assert more > 2 * count
+
+
+def test_straight_lines_need_their_ends_and_jumps_both_sides() -> None:
+    at = np.array([0.0, 1.0, 2.0, 2.0, 3.0, 4.0])
+    assert missed(at[:3], 3.0 * at[:3, None], 1e-9, [])[1] == 2
+    jump = np.array([0.0, 1.0, 2.0, 7.0, 7.0, 7.0])[:, None]
+    must = np.zeros(6, dtype=bool)
+    keep = needed(at, jump, np.full(jump.shape, 1e-9), must)
+    assert keep.tolist() == [True, False, True, True, False, True]
+
+
+def test_a_thinned_meridian_has_the_same_stresses(cantilever_pin: Pin, steel: Material) -> None:
+    forces = np.array([[[30.0, -70.0, 20.0]], [[500.0, 200.0, -900.0]]])
+    acting = PinLoads("c", ("P1",), forces, distribution="cosine")
+    asked = Asked(model="harmonic", meshes=1)
+    (found,) = solve_pin(cantilever_pin, steel, ("start",), (acting,), asked)
+    assert found.answer is not None
+    surface, left_out = unit_surface(found.answer), excluded(found.answer)
+    assert surface is not None
+    largest = largest_there(found.answer, acting, 1)
+    case = SurfaceCase(
+        "c", None, 1, amounts(found.answer, acting), np.array([0.0, 1.0]), left_out, largest
+    )
+    keep = meridian_points(surface, [case], np.arange(len(left_out)) == 7)
+    assert keep[7]
+    assert keep.sum() < 0.5 * len(keep)
+    x = surface.points
+    along = np.cumsum(np.linalg.norm(np.diff(x, axis=0, prepend=x[:1]), axis=1))
+    lines = np.interp(along, along[keep], largest[keep])
+    error = np.abs(lines - largest)[~left_out] / np.maximum(largest, 0.1 * largest.max())[~left_out]
+    assert np.quantile(error, 0.98) < 2.0 * STRESS  # where it jumps there are two values
+    r = np.interp(along, along[keep], x[keep, 0])
+    assert np.abs(r - x[:, 0]).max() < 1e-3 * x[:, 0].max()
+
+
+def test_a_run_has_sections_through_its_maxima_and_its_loads() -> None:
+    results = run(load_study(STUDY))
+    shown = {(s.pin, c.case): c for s in results.surfaces for c in s.cases}
+    assert set(shown) == {(p.pin, p.case) for p in results.pins}
+    for pin in results.pins:
+        case = shown[pin.pin, pin.case]
+        section = case.section
+        assert section is not None
+        assert pin.location is not None
+        x, y, z = pin.location
+        assert section.angle == pytest.approx(np.arctan2(y, x))
+        k = int(np.abs(section.z - z).argmin())
+        radii = section.inner[k] + section.part * (section.outer[k] - section.inner[k])
+        j = int(np.abs(radii - np.hypot(x, y)).argmin())
+        assert (section.z[k], radii[j]) == pytest.approx((z, np.hypot(x, y)))
+        assert section.von_mises[0, k, j] == section.von_mises.max()
+        assert section.von_mises.max() == pytest.approx(pin.max_von_mises, rel=1e-9)
+        (load,) = [given for given in case.loads if not given.held]
+        (link,) = [given for given in pin.loads if given.connection == load.connection]
+        assert np.linalg.norm(load.forces[case.instant]) == pytest.approx(
+            np.linalg.norm(link.force)
+        )

@@ -1,0 +1,262 @@
+"""Whatever becomes of what is printed, the status is that of the work."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+import click
+import pytest
+
+from fea.core.linear_solver import SolveError
+from fea.solve_pin import solve_pin
+from pinstress import InputError
+from pinstress.cli.commands import run_command_line
+from pinstress.processes import interrupts
+from tests.conftest import ROOT
+from tests.support.programs.command_line import QUICK
+
+GUARD = 300.0  # s
+SHARP = QUICK.replace("fillet = 0.4 ", "fillet = 0.0 ")  # whose maximum does not exist: status 1
+RUN = ["run", "study.toml", "--no-pictures"]
+LOADS = ["loads", "study.toml", "--no-pictures"]
+TABLES = {  # with what they leave behind, which says the same
+    "run": (RUN, SHARP, 1, "out/study/results.json"),
+    "loads": (LOADS, QUICK, 0, "out/study-loads/results.json"),
+    "size": (["size", "study.toml"], QUICK, 0, "study_sized.toml"),
+    "init": (["init", "new"], QUICK, 0, "new/one_pin.toml"),
+}
+DATA = {
+    "run --json": ([*RUN, "--json"], SHARP, 1),
+    "check": (["check", "study.toml"], QUICK, 0),
+    "schema": (["schema"], QUICK, 0),
+    "completion": (["completion", "bash"], QUICK, 0),
+    "--help": (["--help"], QUICK, 0),
+    "run --help": (["run", "--help"], QUICK, 0),
+    "--version": (["--version"], QUICK, 0),
+}
+
+
+def shell(
+    folder: Path, arguments: list[str], to: str = "", text: str = QUICK, **environment: str
+) -> tuple[int, str, str]:
+    """Status, output and messages of a command whose output a shell redirects."""
+    (folder / "study.toml").write_text(text, encoding="utf-8")
+    quoted = " ".join(f"'{each}'" for each in arguments)
+    done = subprocess.run(
+        ["bash", "-c", f"'{sys.executable}' -m pinstress {quoted} {to}"],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
+        capture_output=True,
+        timeout=GUARD,
+    )
+    return done.returncode, done.stdout.decode(), done.stderr.decode()
+
+
+FULL = "cannot write to standard output (No space left on device)"
+CLOSED = "cannot write to standard output (Bad file descriptor)"
+# A reader that takes nothing and is gone before anything is written, with the command's status.
+GONE = "| true; exit ${PIPESTATUS[0]}"
+
+
+ENDS = {"full": (">/dev/full", FULL), "closed": (">&-", CLOSED), "gone": (GONE, "")}
+# Every command meets every end; of those that calculate, one of them in a quick test.
+QUICK_END = {"run": "full", "loads": "closed", "size": "gone", "run --json": "full"}
+
+
+def ended(commands: Iterable[str], *ends: str) -> list[Any]:
+    """command, to, told."""
+    return [
+        pytest.param(
+            command,
+            *ENDS[end],
+            marks=[pytest.mark.slow] * (QUICK_END.get(command, end) != end),
+            id=f"{command}, {end}",
+        )
+        for command in commands
+        for end in ends
+    ]
+
+
+@pytest.mark.parametrize(("command", "to", "told"), ended(TABLES, *ENDS))
+def test_a_table_that_cannot_be_printed_changes_no_status(
+    tmp_path: Path, command: str, to: str, told: str
+) -> None:
+    arguments, text, wanted, left = TABLES[command]
+    status, _, said = shell(tmp_path, arguments, to, text)
+    assert status == wanted, said
+    assert (tmp_path / left).is_file()
+    assert said.count("cannot write") == bool(told)
+    assert told in said
+    assert "Traceback" not in said
+    assert "Exception ignored" not in said
+
+
+@pytest.mark.parametrize(("command", "to", "told"), ended(DATA, "full", "closed"))
+def test_data_that_cannot_be_printed_are_lost(
+    tmp_path: Path, command: str, to: str, told: str
+) -> None:
+    arguments, text, _ = DATA[command]
+    status, _, said = shell(tmp_path, arguments, to, text)
+    assert status == 2
+    assert said.endswith(f"Error: {told}\n")
+    assert "Traceback" not in said
+
+
+@pytest.mark.parametrize(("command", "to", "told"), ended(DATA, "gone"))
+def test_a_reader_that_has_enough_is_no_error(
+    tmp_path: Path, command: str, to: str, told: str
+) -> None:
+    arguments, text, wanted = DATA[command]
+    status, _, said = shell(tmp_path, arguments, to, text)
+    assert (status, "Error" in said, "ignored" in said) == (wanted, False, False)
+
+
+@pytest.mark.parametrize("to", ["2>/dev/full", "2>&-", f"2>&1 {GONE}"])
+@pytest.mark.parametrize(
+    ("arguments", "wanted"),
+    [
+        pytest.param(RUN, 1, marks=pytest.mark.slow),
+        (["check", "study.toml"], 0),
+        (["check", "no.toml"], 2),
+    ],
+)
+def test_messages_that_cannot_be_printed_change_no_status(
+    tmp_path: Path, arguments: list[str], wanted: int, to: str
+) -> None:
+    assert shell(tmp_path, arguments, to, SHARP)[0] == wanted
+
+
+def test_files_are_not_written_into_by_what_is_printed(tmp_path: Path) -> None:
+    """A file that is opened while standard output is closed would get its number."""
+    status, _, said = shell(tmp_path, RUN, ">&- 2>&- <&-", SHARP)
+    assert status == 1, said
+    assert json.loads((tmp_path / "out" / "study" / "results.json").read_text())["pins"]
+    page = (tmp_path / "out" / "study" / "report.html").read_bytes()
+    assert page.lower().startswith(b"<!doctype html>")
+    assert page.rstrip().endswith(b"</html>")
+
+
+ASCII: list[Any] = [
+    {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
+    pytest.param({"LC_ALL": "C", "PYTHONIOENCODING": "ascii"}, marks=pytest.mark.slow),
+    pytest.param(
+        {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONIOENCODING": "ascii:strict"},
+        marks=pytest.mark.slow,
+    ),
+]
+
+
+@pytest.mark.parametrize("environment", ASCII)
+def test_a_terminal_that_knows_ascii_alone(tmp_path: Path, environment: dict[str, str]) -> None:
+    text = SHARP.replace("[pin.B]", '[pin."Bügel ±"]').replace('"One pin', '"Bügel–β')
+    status, out, said = shell(tmp_path, RUN, text=text, **environment)
+    assert status == 1, said
+    assert out.isascii()
+    assert "B?gel" in out
+    status, out, said = shell(tmp_path, [*RUN, "--json"], text=text, **environment)
+    assert status == 1, said
+    assert json.loads(out)["pins"][0]["pin"] == "Bügel ±"
+    for arguments in (LOADS, ["check", "study.toml"], ["run", "--help"]):
+        assert shell(tmp_path, arguments, text=text, **environment)[0] == 0
+
+
+@pytest.mark.parametrize(
+    "environment",
+    [
+        {"MPLBACKEND": "module://nowhere", "SOURCE_DATE_EPOCH": "9" * 20},
+        *(
+            pytest.param(each, marks=pytest.mark.slow)
+            for each in (
+                {"MPLBACKEND": "foo"},
+                {"SOURCE_DATE_EPOCH": "abc"},
+                {"SOURCE_DATE_EPOCH": "-5"},
+                {"SOURCE_DATE_EPOCH": "9" * 5000},
+                {"SOURCE_DATE_EPOCH": ""},
+                {"SOURCE_DATE_EPOCH": "1700000000"},
+            )
+        ),
+    ],
+)
+def test_what_libraries_read_from_the_environment_decides_nothing(
+    tmp_path: Path, environment: dict[str, str]
+) -> None:
+    status, _, said = shell(tmp_path, ["loads", "study.toml"], **environment)
+    assert status == 0, said
+    epoch = environment.get("SOURCE_DATE_EPOCH", "1700000000")
+    assert said.count("Warning: SOURCE_DATE_EPOCH") == (epoch != "1700000000")
+    assert (tmp_path / "out" / "study-loads" / "results.json").is_file()
+
+
+@contextmanager
+def signals_heard() -> Iterator[None]:
+    """In this process, which may be a job in the background that ignores them; as before after."""
+    before = {each: signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        for each in before:
+            signal.signal(each, signal.SIG_DFL)
+        yield
+    finally:
+        for each, handler in before.items():
+            signal.signal(each, handler)
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        RuntimeError("CPU dispatcher tracer already initialized"),
+        ImportError("numpy.core.multiarray failed to import"),
+        SystemError("returned NULL without setting an exception"),
+        InputError("cannot be read"),
+        SolveError("the matrix is singular"),
+        MemoryError(),
+        click.ClickException("no"),
+        SystemExit(1),
+    ],
+)
+@pytest.mark.parametrize("interrupt", [signal.SIGINT, signal.SIGTERM])
+def test_whatever_an_interrupt_becomes_the_status_is_130(
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    error: BaseException,
+    interrupt: signal.Signals,
+) -> None:
+    """C code that is being imported makes its own error of a KeyboardInterrupt."""
+
+    def interrupted(_: Any) -> None:
+        try:
+            signal.raise_signal(interrupt)
+        except KeyboardInterrupt:
+            raise error from None
+
+    monkeypatch.setattr("pinstress.study.file.load_study", interrupted)
+    with signals_heard():
+        assert run_command_line(["check", "study.toml"]) == 130
+    assert capsys.readouterr().err == "Interrupted; nothing was written.\n"
+    interrupts.require_none()  # nor does anything that this process does later end for it
+
+
+def test_an_interrupt_that_is_dropped_comes_back(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A callback that cannot raise drops it; the next step of the work ends it all the same."""
+
+    def dropping(*arguments: Any) -> Any:
+        with suppress(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+        return solve_pin(*arguments)
+
+    (tmp_path / "study.toml").write_text(QUICK)
+    monkeypatch.setattr("pinstress.analysis.solve.solve_pin", dropping)
+    monkeypatch.chdir(tmp_path)
+    with signals_heard():
+        assert run_command_line([*RUN, "--jobs", "1"]) == 130
+    assert "Interrupted; nothing was written." in capsys.readouterr().err
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["study.toml"]
