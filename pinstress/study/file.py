@@ -133,7 +133,11 @@ def load_study(path: str | os.PathLike[str]) -> Study:
         raise InputError(f"{path}: no such file", code="no-such-file") from None
     except FileError as error:
         raise InputError(f"{path}: {error}", code=error.code) from None
-    except (OSError, ValueError) as error:  # ValueError: no text, or no file's name
+    except UnicodeDecodeError as error:
+        raise InputError(
+            f"{path}: is not UTF-8 text ({error}); save it with this encoding", code="unreadable"
+        ) from None
+    except (OSError, ValueError) as error:  # ValueError: no file's name
         raise InputError(f"{path}: cannot be read ({error})", code="unreadable") from None
     return parse_study(path, text)
 

@@ -42,6 +42,12 @@ def test_a_byte_order_mark_is_no_mistake(tmp_path: Path) -> None:
     assert run_command_line(["check", str(tmp_path / "study.toml")]) == 0
 
 
+def test_another_encoding_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "study.toml").write_text(ONE_PIN.replace("One", "é"), encoding="latin-1")
+    assert run_command_line(["check", str(tmp_path / "study.toml")]) == 2
+    assert "save it with this encoding" in capsys.readouterr().err
+
+
 def test_a_crank_that_turns_without_end_is_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
