@@ -20,7 +20,7 @@ from pinstress.schema.units import SYSTEMS, UnitSystem
 from pinstress.study.cases_of_tables import with_cases_of_tables
 from pinstress.study.errors import InputError, Wrong, study_error
 from pinstress.study.file_names import same_files
-from pinstress.study.limits import too_many
+from pinstress.study.limits import control_characters, texts, too_many
 from pinstress.study.plausible import questions
 from pinstress.study.references import cross_references
 from pinstress.study.toml_text import read_toml
@@ -161,6 +161,7 @@ def parse_study(path: Path, text: str, located: bool = True) -> Study:
         if s.kind not in KINDS
     ]
     table = _table(path, lines, raw, wrong)
+    wrong += control_characters([*texts(raw), *((s.key, s.note) for s in provenance)])
     doubtful = questions(table, raw, _system(raw))
     if beyond := list(too_many(table)):
         wrong += [Wrong(text, code="too-large") for text in beyond]

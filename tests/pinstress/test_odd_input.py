@@ -24,9 +24,15 @@ ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()
             "brackets or dots more than 50 deep",
         ),
         ("length = 1.5", f"{'.'.join('a' * 3000)} = 1.5", "brackets or dots more than 50 deep"),
+        ('"One pin"', '"a\\u0007b"', "title: has the control character U+0007; remove it"),
+        (
+            "fillet = 0.4",
+            'fillet = { value = 0.4, provenance = "given", note = "\\u001b[2J" }',
+            "pin.B.fillet: has the control character U+001B",
+        ),
         ("length = 1.5", 'length = "1 m^(9^9^9^9)"', "cannot read the unit"),
         ("length = 1.5", 'length = "1 9**99999999 m"', "cannot read the unit"),
-        ("forces = { B = [0.0, -988.86] }", 'table = "a\\u0000b"', "is not a file name"),
+        ("forces = { B = [0.0, -988.86] }", 'table = "a\\u0000b"', "control character U+0000"),
     ],
 )
 def test_it_is_one_message(
