@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 from pydantic import ValidationError
 
-from loads import MB, FileError, read_regular
+from loads import MB, FileError, TableError, read_regular
 from pinstress.schema.shown import LISTED, cut, in_toml, shown
 from pinstress.schema.tables import StudyTable
 from pinstress.schema.types import KINDS
@@ -101,6 +101,12 @@ class Study:
     def errors(self, wrong: Sequence[Wrong]) -> InputError:
         """The same for several."""
         return study_error(self.path, self._lines, wrong)
+
+    def table_error(self, key: str, error: TableError) -> InputError:
+        """The error of a table that is named at `key`: of one that is missing, with this key."""
+        if error.code == "no-such-file":
+            return self.error(f"{key}: {error}", code=error.code)
+        return InputError(str(error), code=error.code)
 
     @property
     def _lines(self) -> str:

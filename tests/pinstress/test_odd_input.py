@@ -30,6 +30,11 @@ ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()
             'fillet = { value = 0.4, provenance = "given", note = "\\u001b[2J" }',
             "pin.B.fillet: has the control character U+001B",
         ),
+        (
+            "forces = { B = [0.0, -988.86] }",
+            'table = "gone.csv"',
+            "study.toml:25: case.landing.table: ",
+        ),
         ("length = 1.5", 'length = "1 m^(9^9^9^9)"', "cannot read the unit"),
         ("length = 1.5", 'length = "1 9**99999999 m"', "cannot read the unit"),
         ("forces = { B = [0.0, -988.86] }", 'table = "a\\u0000b"', "control character U+0000"),
