@@ -21,6 +21,9 @@ MOST_COLUMNS = 1_000
 LONGEST_LINE = 1_000_000  # characters
 SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars"}  # that other programs write
 DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+(?:[eE][-+]?\d+)?")
+THOUSANDS = re.compile(r"[-+]?\d{1,3},\d{3}")
+WITH_UNIT = re.compile(r"[-+]?\d+\.?\d*(?:[eE][-+]?\d+)?\s*(?:[^\W\d_]|[/^*·. ])+\d?")
+MINUS = "\N{MINUS SIGN}"  # which reports print
 LARGEST = 1e18  # the fourth power is still a number; as for quantities of a study
 
 
@@ -46,15 +49,25 @@ class Row:
             value = float(text)
         except ValueError:
             what = f"{self.where}: {column} = {text[:40]!r} is not a number"
-            if DECIMAL_COMMA.fullmatch(text):
-                right = text.replace(",", ".")
-                raise TableError(f"{what}; write {right}, with a point", "decimal-comma") from None
-            raise TableError(what, "not-a-number") from None
+            code = "decimal-comma" if DECIMAL_COMMA.fullmatch(text) else "not-a-number"
+            raise TableError(f"{what}{_remedy(text)}", code) from None
         if not math.isfinite(value):
             raise TableError(f"{what} is not finite", "not-finite")
         if abs(value) > LARGEST:
             raise TableError(f"{what} exceeds the limit of {LARGEST:g}", "too-large")
         return value
+
+
+def _remedy(text: str) -> str:
+    """What would be right instead of a cell that is not a number, if that can be told."""
+    point = text.replace(",", ".")
+    if THOUSANDS.fullmatch(text):
+        return f"; write {text.replace(',', '')}, or {point} with a point"
+    if DECIMAL_COMMA.fullmatch(text):
+        return f"; write {point}, with a point"
+    if text.startswith(MINUS):
+        return f"; write its minus as a hyphen: {text.replace(MINUS, '-')[:40]}"
+    return "; cells have no units" if WITH_UNIT.fullmatch(text) else ""
 
 
 def read_table(

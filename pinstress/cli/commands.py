@@ -60,6 +60,9 @@ def run_command_line(arguments: list[str]) -> int:
 def _status(error: BaseException) -> int | None:
     """Report the error that ended a command; its exit status, or None for a bug."""
     match error:
+        case click.exceptions.NoArgsIsHelpError():
+            error.show()  # the help itself, whole
+            return BAD_INPUT
         case click.ClickException():
             short = clipped(message := error.format_message())
             (error if message == short else click.ClickException(short)).show()

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from loads.coded import LoadsArgumentError
-from pinstress.schema.shown import shown
+from pinstress.schema.shown import nearest, shown
 from pinstress.schema.types import Probe
 from pinstress.schema.units import DIMENSIONS, UNIT_NEEDED, USUAL, UnitSystem, split, to_si
 from pinstress.study.errors import InputError
@@ -183,7 +183,9 @@ def _path(study: Study, raw: Any, key: str) -> Path:
             if part == -1:
                 raise _no_number(study, key, "has the index 0; elements are counted from 1")
             said = f"[{part + 1}]" if isinstance(part, int) else shown(part)
-            raise _no_number(study, key, f"the study has no {said} there; write it in the study")
+            meant = nearest(part, here) if isinstance(here, Mapping) else None
+            hint = f"did you mean {meant!r}?" if meant else "write it in the study"
+            raise _no_number(study, key, f"the study has no {said} there; {hint}")
         found.append(part)
         here = there
     return tuple(found)

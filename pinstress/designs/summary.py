@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 REASONS = 3  # that are printed, the commonest
+UNSOLVED = ("failed", "rigid")  # verdicts without numbers
 LONGEST = 100  # characters of a reason
 
 
@@ -46,7 +47,9 @@ def summary(table: pa.Table, console: Console) -> None:
         grid.add_row(pin, *_range(mine))
         if required is not None:
             below = {r["design"] for r in mine if (r["safety_factor"] or required) < required}
-            short.append(f"{pin} {len(below):,}")
+            solved = len({r["design"] for r in mine if r["verdict"] not in UNSOLVED})
+            of = f" of {solved:,} solved" if solved < len(designs) else ""
+            short.append(f"{pin} {len(below):,}{of}")
     console.print(grid)
     if short:
         console.print(

@@ -46,7 +46,6 @@ from pinstress.model.mechanism.spatial_leg import AXES, dynamics, hinge_reaction
 from pinstress.model.moving_loads import Acting, MovingLoads, acting
 from pinstress.schema.cases import GivenCase, InstantCase, LegCase, MotionCase, StaticCase
 from pinstress.schema.landing import DropCase, GroundCase
-from pinstress.study.errors import InputError
 from pinstress.study.file import Study
 
 
@@ -125,7 +124,7 @@ def case_loads(
             return _on_ground(study, name, case, mechanism, extremes)
         return _at_instant(study, name, case, mechanism)
     except TableError as error:
-        raise InputError(str(error), code=error.code) from None
+        raise study.table_error(f"case.{name}.table", error) from None
     except Impasse as error:
         message = f"case.{name}: {error.message(_shown(study))}"
         raise study.error(message, code=error.code) from None

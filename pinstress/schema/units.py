@@ -40,6 +40,7 @@ DIMENSIONS: dict[str, tuple[tuple[int, int, int], str]] = {
 UNIT_NEEDED = ("angle", "angular velocity", "angular acceleration")  # degrees or radians?
 
 
+MINUS = "\N{MINUS SIGN}"  # which reports print
 COMMA = re.compile(r"\s*[-+]?\d*,\d")
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 LONGEST = 200  # characters of a quantity with its unit
@@ -226,6 +227,11 @@ def _parse(text: str, dimension: str, system: UnitSystem) -> float:
             "decimal-comma",
         )
     found = split(text)
+    if found is None and MINUS in text:
+        hyphen = text.replace(MINUS, "-")
+        raise LoadsArgumentError(
+            f"{shown(text)} has a minus that is no hyphen; write {hyphen!r}", "not-a-number"
+        )
     if found is None:
         raise LoadsArgumentError(
             f"{shown(text)} does not begin with a number; write for instance {example!r}",

@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 from pydantic import ValidationError
 
-from loads import MB, FileError, read_regular
+from loads import MB, FileError, TableError, read_regular
 from pinstress.schema.shown import LISTED, cut, in_toml, shown
 from pinstress.schema.tables import StudyTable
 from pinstress.schema.types import KINDS
@@ -20,7 +20,7 @@ from pinstress.schema.units import SYSTEMS, UnitSystem
 from pinstress.study.cases_of_tables import with_cases_of_tables
 from pinstress.study.errors import InputError, Wrong, study_error
 from pinstress.study.file_names import same_files
-from pinstress.study.limits import too_many
+from pinstress.study.limits import control_characters, texts, too_many
 from pinstress.study.plausible import questions
 from pinstress.study.references import cross_references
 from pinstress.study.toml_text import read_toml
@@ -102,6 +102,12 @@ class Study:
         """The same for several."""
         return study_error(self.path, self._lines, wrong)
 
+    def table_error(self, key: str, error: TableError) -> InputError:
+        """The error of a table that is named at `key`: of one that is missing, with this key."""
+        if error.code == "no-such-file":
+            return self.error(f"{key}: {error}", code=error.code)
+        return InputError(str(error), code=error.code)
+
     @property
     def _lines(self) -> str:
         return self.text if self.located else ""
@@ -133,7 +139,11 @@ def load_study(path: str | os.PathLike[str]) -> Study:
         raise InputError(f"{path}: no such file", code="no-such-file") from None
     except FileError as error:
         raise InputError(f"{path}: {error}", code=error.code) from None
-    except (OSError, ValueError) as error:  # ValueError: no text, or no file's name
+    except UnicodeDecodeError as error:
+        raise InputError(
+            f"{path}: is not UTF-8 text ({error}); save it with this encoding", code="unreadable"
+        ) from None
+    except (OSError, ValueError) as error:  # ValueError: no file's name
         raise InputError(f"{path}: cannot be read ({error})", code="unreadable") from None
     return parse_study(path, text)
 
@@ -157,6 +167,7 @@ def parse_study(path: Path, text: str, located: bool = True) -> Study:
         if s.kind not in KINDS
     ]
     table = _table(path, lines, raw, wrong)
+    wrong += control_characters([*texts(raw), *((s.key, s.note) for s in provenance)])
     doubtful = questions(table, raw, _system(raw))
     if beyond := list(too_many(table)):
         wrong += [Wrong(text, code="too-large") for text in beyond]

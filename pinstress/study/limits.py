@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sized
+import re
+from collections.abc import Iterable, Iterator, Sized
+from typing import Any
 
 from pinstress.schema.tables import StudyTable
+from pinstress.study.errors import Wrong
+
+CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]")  # all but tab and line ends
 
 MOST_PINS = MOST_CASES = 1000
 MOST_PARTS = 1000  # of a pin: a profile of so many segments takes half a minute
@@ -12,6 +17,26 @@ MOST_LOADS = 1000  # of a case
 MOST_SLENDER = 1000.0  # length over diameter: beyond it the numerics fail, after many minutes
 MOST_STEPPED = 3000.0  # largest diameter over smallest
 MOST_BODIES = 500  # and joints: three unknowns each, in dense equations
+
+
+def texts(node: Any, key: str = "") -> Iterator[tuple[str, str]]:
+    """The texts of a study, each with its key."""
+    if isinstance(node, str):
+        yield key, node
+    elif isinstance(node, list):
+        for i, each in enumerate(node, 1):
+            yield from texts(each, f"{key}[{i}]")
+    elif isinstance(node, dict):
+        for name, each in node.items():
+            yield from texts(each, f"{key}.{name}" if key else name)
+
+
+def control_characters(found: Iterable[tuple[str, str]]) -> Iterator[Wrong]:
+    """Errors for texts with characters that command terminals and that PDF and XML cannot show."""
+    for key, text in found:
+        if bad := CONTROL.search(text):
+            what = f"has the control character U+{ord(bad[0]):04X}"
+            yield Wrong(f"{key}: {what}; remove it", code="control-character")
 
 
 def too_many(table: StudyTable) -> Iterator[str]:

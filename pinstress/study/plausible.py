@@ -127,6 +127,12 @@ def _question(stated: Stated, system: UnitSystem) -> str:
         return ""
     unit, ends = usual.metric[0], (usual.low, min(usual.high, stated.most))
     one = to_si(f"1 {unit}", usual.dimension, system)
+    if usual.low <= stated.value <= usual.high:  # then the modulus may as well be wrong
+        return (
+            f"{stated.key}: {shown(stated.written)} is {stated.value / one:,.4g} {unit}, more than "
+            f"{MOST_STRAIN:.0%} of youngs_modulus ({stated.most / MOST_STRAIN / one:,.4g} {unit}); "
+            "check the units of both"
+        )
     is_, low, most = (f"{value / one:,.4g}" for value in (stated.value, *ends))
     hint = f"; did you mean {likely}?" if (likely := _likely(stated, system)) else ""
     return (

@@ -81,5 +81,5 @@ def _rows(
             cells = [row.cells[c] for c in names]
             found.append((row.where, cells, [row.number(c) for c in numbers]))
     except TableError as error:
-        raise InputError(str(error), code=error.code) from None
+        raise study.table_error("published", error) from None
     return found

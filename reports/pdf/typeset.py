@@ -6,6 +6,7 @@ import json
 import re
 from collections.abc import Mapping
 from datetime import UTC, datetime
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -39,11 +40,43 @@ def typeset(content: Content, plots: Mapping[str, Plot]) -> bytes:
     files["data.json"] = json.dumps(data, ensure_ascii=False).encode()
     day = content["block"]["date"]
     made = datetime.fromisoformat(day).replace(tzinfo=UTC) if day else UNDATED
-    fonts = typst.Fonts(include_system_fonts=False)
+    try:
+        return _compiled(files, made)
+    except typst.TypstError:
+        missing = _without_glyph("".join(text.decode() for text in files.values()))
+        if not missing:
+            raise
+    numbers = {ord(c): f"U+{ord(c):04X}" for c in missing}
+    shown = {name: text.decode().translate(numbers).encode() for name, text in files.items()}
+    return _compiled(shown, made)
+
+
+def _compiled(files: dict[str, bytes], made: datetime) -> bytes:
+    """Raises: TypstError, for instance of a character that no font has, which UA-1 forbids."""
+    import typst
+
+    fonts = typst.Fonts(include_system_fonts=False)  # those of a machine would change the bytes
     compiler = typst.Compiler(files, font_paths=fonts)  # type: ignore[type-var]  # says its stub
     found = compiler.compile(format="pdf", pdf_standards="ua-1", timestamp=made)
     assert isinstance(found, bytes)
     return found
+
+
+def _without_glyph(text: str) -> list[str]:
+    """The characters of a text that cannot be typeset; each is tried by itself."""
+    return [c for c in sorted(set(text)) if not c.isascii() and not _has_glyph(c)]
+
+
+@cache
+def _has_glyph(character: str) -> bool:
+    import typst
+
+    page = f'#set document(title: "x")\n#set text(font: "{FONT}", lang: "en")\n'
+    try:
+        _compiled({"main": f"{page}{character} *{character}*".encode()}, UNDATED)
+    except typst.TypstError:
+        return False
+    return True
 
 
 def shown_plots(content: Content) -> list[str]:

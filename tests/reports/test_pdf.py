@@ -60,6 +60,19 @@ def test_names_are_not_typesetting(results: Results) -> None:
     assert once.startswith(b"%PDF-")
 
 
+def test_characters_that_no_font_has_are_shown_by_number(results: Results) -> None:
+    """UA-1 forbids them, and the whole run was lost."""
+    svg = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><text y="9">{}</text></svg>'
+
+    def made(title: str) -> bytes:
+        named = replace(results, title=title)
+        content = document(named, {shape.pin: svg.format(title) for shape in named.shapes})
+        plots = {k: v for k, v in all_plots(named).items() if k in shown_plots(content)}
+        return typeset(content, plots)
+
+    assert made("Bolzen 销 é ש 😀") == made("Bolzen U+9500 é ש U+1F600")
+
+
 def test_sensitivities_are_few_and_of_worst_cases(results: Results) -> None:
     row = worst_first(results)[0]
     lengths = [

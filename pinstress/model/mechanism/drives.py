@@ -85,7 +85,7 @@ def drive_table(study: Study, drive: AnyDriveTable) -> TableDrive:
             )
         return TableDrive(*(tuple(row.number(c) * units[c] for row in rows) for c in columns))
     except TableError as error:
-        raise InputError(str(error), code=error.code) from None
+        raise study.table_error("mechanism.drive.table", error) from None
     except LinkageError as error:
         raise InputError(f"{path}: {error}", code=error.code) from None
 

@@ -33,7 +33,6 @@ from pinstress.schema.forces import (
 )
 from pinstress.schema.types import JointOrPoint
 from pinstress.schema.units import to_si
-from pinstress.study.errors import InputError
 from pinstress.study.file import Study
 
 DEGREE = math.pi / 180.0
@@ -76,7 +75,7 @@ def curve(
         unit = (x.unit, x.factor)
         return ForceTable(at, values, given.interpolation, given.outside, where, unit)
     except TableError as error:
-        raise InputError(str(error), code=error.code) from None
+        raise study.table_error(f"{where}.table", error) from None
     except LinkageError as error:
         raise study.error(str(error), code=error.code) from None
     except LoadsArgumentError as error:

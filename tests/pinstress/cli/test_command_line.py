@@ -146,6 +146,14 @@ def test_every_command_is_listed_once_in_a_section(capsys: pytest.CaptureFixture
     assert said.index("Analysis:") < said.index("  run ") < said.index("Earlier runs:")
 
 
+def test_without_a_command_the_help_is_whole(capsys: pytest.CaptureFixture[str]) -> None:
+    """It was cut in its middle, like a message that is too long."""
+    assert run_command_line(["--help"]) == 0
+    whole = capsys.readouterr().out
+    assert run_command_line([]) == 2
+    assert capsys.readouterr().err.strip() == whole.strip()
+
+
 @pytest.mark.parametrize(
     "command",
     ["run", "loads", "chart", "check", "import", "init", "schema", "size", "view", "completion"],

@@ -334,4 +334,6 @@ def test_rows_that_are_not_converged_are_counted(capsys: pytest.CaptureFixture[s
     found = Counter(table["verdict"].to_pylist())
     summary(table, Console(width=200))
     rough = found["unconverged"] + found["singular"]
-    assert f"maximum (verdict, error_estimate): B {rough}\n" in capsys.readouterr().out
+    told = capsys.readouterr().out
+    assert f"maximum (verdict, error_estimate): B {rough}\n" in told
+    assert f" of {40 - found['failed']} solved\n" in told

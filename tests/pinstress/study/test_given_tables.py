@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pinstress import load_study
+from pinstress import InputError, load_study, prepare
 from pinstress.model.cases import case_loads
 from pinstress.model.mechanism.linkage import linkage
 from pinstress.schema.cases import GivenCase
@@ -50,6 +50,23 @@ def test_a_wide_table_with_units_gives_the_same_stress(tmp_path: Path) -> None:
         )
     )
     assert after == pytest.approx(before, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("cell", "remedy"),
+    [
+        ('"1,988"', "write 1988, or 1.988 with a point"),
+        ('"1,98"', "write 1.98, with a point"),
+        ("988 lb/in", "cells have no units"),
+        ("\N{MINUS SIGN}988", "write its minus as a hyphen: -988"),
+    ],
+)
+def test_a_cell_that_is_not_a_number_has_a_remedy(tmp_path: Path, cell: str, remedy: str) -> None:
+    (tmp_path / "t.csv").write_text(f"connection,fx,fy\nB,0,{cell}\n", encoding="utf-8")
+    study = given((STUDIES / "one_pin.toml").read_text(), "t.csv")
+    (tmp_path / "study.toml").write_text(study)
+    with pytest.raises(InputError, match=f"line 2: fy = .* is not a number; {remedy}"):
+        prepare(load_study(tmp_path / "study.toml"))
 
 
 def test_every_case_of_a_mechanism_comes_back(tmp_path: Path) -> None:

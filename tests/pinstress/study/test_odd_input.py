@@ -24,9 +24,20 @@ ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()
             "brackets or dots more than 50 deep",
         ),
         ("length = 1.5", f"{'.'.join('a' * 3000)} = 1.5", "brackets or dots more than 50 deep"),
+        ('"One pin"', '"a\\u0007b"', "title: has the control character U+0007; remove it"),
+        (
+            "fillet = 0.4",
+            'fillet = { value = 0.4, provenance = "given", note = "\\u001b[2J" }',
+            "pin.B.fillet: has the control character U+001B",
+        ),
+        (
+            "forces = { B = [0.0, -988.86] }",
+            'table = "gone.csv"',
+            "study.toml:25: case.landing.table: ",
+        ),
         ("length = 1.5", 'length = "1 m^(9^9^9^9)"', "cannot read the unit"),
         ("length = 1.5", 'length = "1 9**99999999 m"', "cannot read the unit"),
-        ("forces = { B = [0.0, -988.86] }", 'table = "a\\u0000b"', "is not a file name"),
+        ("forces = { B = [0.0, -988.86] }", 'table = "a\\u0000b"', "control character U+0000"),
     ],
 )
 def test_it_is_one_message(
@@ -40,6 +51,12 @@ def test_it_is_one_message(
 def test_a_byte_order_mark_is_no_mistake(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(ONE_PIN, encoding="utf-8-sig")
     assert run_command_line(["check", str(tmp_path / "study.toml")]) == 0
+
+
+def test_another_encoding_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "study.toml").write_text(ONE_PIN.replace("One", "é"), encoding="latin-1")
+    assert run_command_line(["check", str(tmp_path / "study.toml")]) == 2
+    assert "save it with this encoding" in capsys.readouterr().err
 
 
 def test_a_crank_that_turns_without_end_is_refused(

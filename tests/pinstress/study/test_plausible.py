@@ -48,6 +48,13 @@ def test_what_is_right_is_not_questioned(text: str) -> None:
     assert parse_study(Path("s.toml"), text).warnings == ()
 
 
+def test_a_strength_near_the_modulus_questions_both() -> None:
+    """Young's modulus in MPa in a study in psi: its strength is not what is wrong."""
+    warned = parse_study(Path("s.toml"), IN_INCHES.replace("30e6", "210000")).warnings
+    assert len(warned) == 1
+    assert warned[0].endswith("more than 5% of youngs_modulus (1,448 MPa); check the units of both")
+
+
 @pytest.mark.parametrize(
     ("text", "old", "new", "key", "likely"),
     [
