@@ -10,7 +10,7 @@ import numpy as np
 from fea.core.pin_loads import PinLoads, UnitLoad
 from fea.harmonic.superposition import BACK, Top
 from geometry.arrays import Floats
-from geometry.mesh.outline_motion import rate
+from geometry.mesh.moved.outline_motion import rate
 
 FORCE = 1e-3  # step of a force, of the largest
 AXES = "xyz"
