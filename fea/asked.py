@@ -9,6 +9,7 @@ from typing import Literal
 from fea.beam.error_model import PLAIN
 from fea.core.material import Material
 from fea.core.peak import Note
+from fea.singular.singularities import Edges
 from fea.verdict import FEWEST, Seen
 
 Model = Literal["auto", "beam", "harmonic", "solid"]
@@ -22,10 +23,12 @@ DECIDED = "its error does not affect whether the required factor is reached"
 class Asked:
     """Requirements on a solution: the maximum to a `tolerance`, or (goal "decide") only whether the
     `required` safety factor is met. distance: excluded distance around singularities, as a fraction
-    of the local diameter. meshes: maximum number of meshes, by default that of the model. memory:
-    limit for a mesh in MB, by default most of the free memory. because: reason for the model, where
-    this package does not choose it. near: whether sections have the meshes of near shapes with
-    their nodes moved. cells: of contact with lugs, these alone; None: until they are fine enough.
+    of the local diameter; lug_edges: whether it is varied at rounded edges of lugs, or stress
+    within it excluded there. meshes: maximum number of meshes, by default that of the model.
+    memory: limit for a mesh in MB, by default most of the free memory. because: reason for the
+    model, where this package does not choose it. near: whether sections have the meshes of near
+    shapes with their nodes moved. cells: of contact with lugs, these alone; None: until they are
+    fine enough.
     """
 
     tolerance: float = 0.02
@@ -33,6 +36,7 @@ class Asked:
     goal: Goal = "value"
     required: float | None = None
     distance: float = 0.1
+    lug_edges: Edges = "varied"
     meshes: int | None = None
     memory: float | None = None
     because: Note | None = None
@@ -63,8 +67,9 @@ def _limit(asked: Asked, material: Material) -> float | None:
 def enough(asked: Asked, material: Material, seen: Seen) -> bool:
     """Whether these meshes are accurate enough, or decide the required factor.
 
-    Two meshes never tell how large a maximum is, for they can agree by chance. Where what is
-    excluded about rounded edges of lugs makes it uncertain anyway, they may decide, by a margin.
+    Two meshes never tell how large a maximum is, for they can agree by chance. Where stress is
+    larger at rounded edges of lugs, they may decide, by a margin: what is excluded there, or the
+    cells of contact, make it more uncertain anyway.
     """
     if len(seen.results) < FEWEST - 1:
         return False
@@ -73,7 +78,7 @@ def enough(asked: Asked, material: Material, seen: Seen) -> bool:
         apart = MARGIN * seen.relative
         clear = decided(asked, material, low * (1.0 - apart), high * (1.0 + apart))
         last = seen.results[-1]
-        return clear and bool(last.governed) and not last.singular
+        return clear and bool(last.larger) and not last.singular
     return seen.known(asked.tolerance) or decided(asked, material, *seen.range)
 
 

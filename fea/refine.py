@@ -29,7 +29,7 @@ from fea.harmonic.evaluate import (
     harmonic_result,
     harmonic_solution,
 )
-from fea.singular.singularities import Singularity, find_singularities, lug_edges
+from fea.singular.singularities import Edges, Singularity, find_singularities, lug_edges
 from fea.solid.evaluate import SolidAnswer, solid_result, solid_solution
 from fea.verdict import Seen, judge
 from geometry import CutPin, Pin, PinLike
@@ -115,8 +115,11 @@ def singularities_of(
     clamps: tuple[str, ...],
     cases: tuple[PinLoads, ...],
     distance: float = 0.1,
+    rounded: Edges = "varied",
 ) -> tuple[Singularity, ...]:
-    """Zones of unbounded stress in any of the cases; for bodies of revolution only."""
+    """Zones of unbounded stress in any of the cases; for bodies of revolution only. rounded: of
+    rounded edges of lugs (fea.singular.singularities.lug_edges).
+    """
     if not isinstance(pin, Pin):
         return ()
     acting = {load for case in cases for load in case.coefficients() if load.shears}
@@ -126,12 +129,15 @@ def singularities_of(
     nu = material.poisson_ratio
     found = find_singularities(pin, clamps, tuple(sorted(loaded)), nu, distance)
     edges = dict.fromkeys(edge for case in cases for edge in case.lug_edges)
-    return (*found, *lug_edges(pin, edges, distance))
+    return (*found, *lug_edges(pin, edges, distance, rounded))
 
 
 def job_singularities(job: PinJob, cases: tuple[PinLoads, ...]) -> tuple[Singularity, ...]:
     """Zones of unbounded stress in any of the cases of a job."""
-    return singularities_of(job.pin, job.material, job.constrained, cases, job.asked.distance)
+    asked = job.asked
+    return singularities_of(
+        job.pin, job.material, job.constrained, cases, asked.distance, asked.lug_edges
+    )
 
 
 def refined(

@@ -160,7 +160,7 @@ def judge(
     if len(seen.results) < FEWEST and not known:
         meshes = "one mesh was" if len(seen.results) == 1 else f"{len(seen.results)} meshes were"
         text = f"only {meshes} solved, too few to estimate the error"
-        if len(seen.results) == FEWEST - 1 and last.governed:
+        if len(seen.results) == FEWEST - 1 and last.larger:
             text = f"estimated error {seen.relative:.1%}, from two meshes only"
         own = Note(text, ("too-few-meshes",))
     error, interval = seen.error, None
@@ -178,7 +178,10 @@ def judge(
         error = max(last.maximum - interval[0], interval[1] - last.maximum)
         if error > tolerance * last.maximum:
             verdict = "unconverged"
-        own = _local(last, interval) + own
+        ends = " to ".join(f"{end / last.maximum - 1.0:+.0%}" for end in interval)
+        own = _local(last, f"half and twice the excluded distance give {ends}") + own
+    elif last.larger:
+        own = _local(last, "left to bearing checks") + own
     own = own + note
     return Peak(
         pin=seen.pin,
@@ -197,14 +200,12 @@ def judge(
     )
 
 
-def _local(last: MeshResult, interval: tuple[float, float]) -> Note:
-    """Of stress at rounded edges that is larger than outside."""
-    worst = max(inside.felt for inside in last.governed)
-    ends = " to ".join(f"{end / last.maximum - 1.0:+.0%}" for end in interval)
+def _local(last: MeshResult, what: str) -> Note:
+    """Of stress at rounded edges that is larger than outside, and what it means for the maximum."""
+    worst = max(inside.felt for inside in last.larger)
     return Note(
         "away from the rounded edges of lugs, where contact stress is local "
-        f"({_LARGER.format(worst / last.maximum)}); half and twice the excluded distance give "
-        f"{ends}; ",
+        f"({_LARGER.format(worst / last.maximum)}); {what}; ",
         ("local-contact",),
     )
 

@@ -34,7 +34,8 @@ def inside(
     top = near if near.value > far.value else far
     c, s = math.cos(top.angle), math.sin(top.angle)
     at = (singularity.r * c, singularity.r * s, singularity.z)
-    found = AtSingularity(top.value, far.value, at, bounded=singularity.bounded)
+    bounded, excluded = singularity.bounded, singularity.excluded
+    found = AtSingularity(top.value, far.value, at, bounded=bounded, excluded=excluded)
     if not singularity.measured or close != CLOSE[-1]:
         return found
     exponent, how_strong = _growth(fields, around, singularity, distance, top.instant, nu)
@@ -57,8 +58,10 @@ def felt_beyond(
     singularities: Iterable[Singularity],
     maximum: float,
 ) -> bool:
-    """Whether in one of them stress is felt to be larger than a maximum, Pa."""
-    return any(around.exceeds(_places(fields, p)[2], maximum) for p in singularities)
+    """Whether stress in one of them that is not excluded is felt to exceed a maximum, Pa."""
+    return any(
+        around.exceeds(_places(fields, p)[2], maximum) for p in singularities if not p.excluded
+    )
 
 
 def _growth(
@@ -100,8 +103,6 @@ def interval(
     """
     found = []
     for times in VARIED:
-        varied = [
-            replace(singularity, radius=times * singularity.radius) for singularity in singularities
-        ]
+        varied = [p if p.excluded else replace(p, radius=times * p.radius) for p in singularities]
         found.append(around.top(fields.outside(varied)).value)
     return min(found), max(found)

@@ -269,8 +269,12 @@ class Circumference:
 
     def reach(self, points: Ints, instants: Instants = EVERY) -> Floats:
         """A bound that is sooner found: the sum over unit loads of what each can do by itself."""
-        most = np.hypot(self._first[instants], self._second[instants]).T
-        return np.asarray((self._each[points] @ most) * (1.0 + 1e-12))
+        return np.asarray((self._each[points] @ self._most[:, instants]) * (1.0 + 1e-12))
+
+    @cached_property
+    def _most(self) -> Floats:
+        """Amounts of the unit loads whatever their phases, (K, T)."""
+        return np.ascontiguousarray(np.hypot(self._first, self._second).T)
 
     def _worth(self, bound: Floats, best: Floats, together: bool) -> Iterator[tuple[Ints, Ints]]:
         """Pairs of points and instants whose bound (J, T) exceeds the best so far, both of which

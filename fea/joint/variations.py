@@ -95,7 +95,9 @@ def compare(
         for contact, both, others in zip(at, exact, varied, strict=True)
     ]
     loads = stacked(list(itertools.chain(*each)))
-    singular = singularities_of(model.pin, model.material, (), (loads,), asked.distance)
+    singular = singularities_of(
+        model.pin, model.material, (), (loads,), asked.distance, asked.lug_edges
+    )
     problem = SectionProblem(model.pin, model.material, (), (loads,), singular, model.first)
     section = harmonic_solution(problem, 0, 1.0)
     maxima, out = HarmonicAnswer(section, singular).maxima(loads), []

@@ -21,6 +21,8 @@ Kind = Literal[
     "sharp corner", "edge of a clamp", "edge of a load", "edge of a lug", "rounded edge of a lug"
 ]
 
+Edges = Literal["varied", "excluded"]
+
 VARIED = (0.5, 2.0)  # times the excluded distance, which is a convention
 FILLET = 0.1  # of the smaller diameter: the radius to try
 LOGARITHM = 0.1  # of the distance of a power: a logarithm is felt that much closer only
@@ -35,7 +37,8 @@ class Singularity:
     not known. torsion_theory: the exponent in torsion; bending has this part too. radius: how far
     (m) stress is not to be read. feature: how far (m) the singular field reaches at most, the
     height of a small step, say; at most the radius. angle: of the material, rad. advice: what would
-    make it finite, for people.
+    make it finite, for people. excluded: whether stress nearer than `radius`, though larger, makes
+    the maximum outside no less certain, because it is judged otherwise.
     """
 
     r: float
@@ -48,6 +51,7 @@ class Singularity:
     advice: str
     feature: float = math.inf
     angle: float = math.nan
+    excluded: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "feature", min(self.feature, self.radius))
@@ -110,17 +114,24 @@ def find_singularities(
     )
 
 
-def lug_edges(pin: Pin, edges: Iterable[LugEdge], distance: float = 0.1) -> tuple[Singularity, ...]:
+def lug_edges(
+    pin: Pin, edges: Iterable[LugEdge], distance: float = 0.1, rounded: Edges = "varied"
+) -> tuple[Singularity, ...]:
     """The edges of lugs that are singular, or would be if they were not rounded, in their order:
     those with an exponent, where the pin's surface is smooth (a lug flush with an end face presses
     on no half plane).
 
     distance: of the local diameter, that is not to be read. Stress nearer than the first ring of
-    the contact pressure is not resolved.
+    the contact pressure is not resolved. rounded: whether that distance is varied at rounded edges,
+    or stress within it excluded for good.
     """
     every = vertices(pin)
     found = (_lug_edge(every, edge, distance, SAME * pin.smallest_diameter) for edge in edges)
-    return tuple(singularity for singularity in found if singularity is not None)
+    return tuple(
+        replace(singularity, excluded=singularity.bounded and rounded == "excluded")
+        for singularity in found
+        if singularity is not None
+    )
 
 
 def _lug_edge(

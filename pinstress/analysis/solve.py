@@ -94,9 +94,12 @@ def _together(plan: Plan, jobs: int) -> int:
 
 
 def _effort(plan: Plan, task: Task) -> tuple[bool, int, int, int]:
-    """What takes longer has more of: tetrahedra, then lugs, cases, instants."""
+    """What takes longer has more of: tetrahedra, then lugs, those that move more than those of the
+    structure, cases, instants.
+    """
     solid = plan.asked.model == "solid" or not task.pin.revolved
-    return solid, len(task.lugs), len(task.loads), sum(map(len, task.loads))
+    lugs = len(task.lugs) + sum(lug.connection in task.pin.connections for lug in task.lugs)
+    return solid, lugs, len(task.loads), sum(map(len, task.loads))
 
 
 def _attempt(

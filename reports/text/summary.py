@@ -125,13 +125,18 @@ def _of_cases(cases: list[str]) -> str:
 def _unknown(results: Results) -> str:
     total = len(results.pins)
     verdicts = [p.verdict for p in results.pins]
-    singular, loose = verdicts.count("singular"), verdicts.count("unconverged")
+    singular = verdicts.count("singular")
+    wide = [outcome(p) for p in results.pins if p.verdict == "unconverged"]
+    loose = wide.count(NOT_DECIDED)
     unsolved = verdicts.count("rigid") + verdicts.count("failed")
     text = ""
     if singular:
         text = f"{_of(singular, total)} {_is(singular)} singular: no maximum exists."
     if loose:
         text += f" {_of(loose, total)} did not converge."
+    if decided := len(wide) - loose:
+        tolerance = f"{short(100.0 * results.tolerance)} %"
+        text += f" {_of(decided, total)} {_is(decided)} decided with an error above {tolerance}."
     if unsolved:
         text += f" {_of(unsolved, total)} could not be solved."
     return text.strip() or f"All maxima have converged to {short(100.0 * results.tolerance)} %."

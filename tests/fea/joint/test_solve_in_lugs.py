@@ -132,6 +132,28 @@ def test_rounded_edges_have_a_bound_that_is_not_resolved() -> None:
     assert not any(zone.governs for zone in peak.singular_at)
 
 
+def test_excluded_edges_leave_the_maximum_and_its_own_error() -> None:
+    """Half and twice the distance say nothing then; sharp edges stay singular."""
+    lugs = tuple(replace(lug, edge_radius=0.0005) for lug in LUGS)
+    excluded = replace(QUICK, lug_edges="excluded")
+    (varied,), (found,) = (
+        solve_in_lugs(InLugs(PIN, STEEL, lugs, (STEADY,)), asked) for asked in (QUICK, excluded)
+    )
+    peak, other = found.solution.peak, varied.solution.peak
+    assert peak.interval is None
+    assert other.interval is not None
+    assert peak.max_von_mises == pytest.approx(other.max_von_mises, rel=1e-9)
+    assert peak.parts is not None
+    assert peak.error_estimate == pytest.approx(peak.parts.total)
+    assert peak.error_estimate < other.error_estimate
+    assert "local-contact" in peak.reasons
+    assert "left to bearing checks" in peak.note
+    assert {zone.kind for zone in peak.singular_at} == {"the rounded edge of a lug"}
+    (sharp,) = solve_in_lugs(InLugs(PIN, STEEL, LUGS, (STEADY,)), excluded)
+    assert sharp.solution.peak.verdict == "singular"
+    assert sharp.solution.peak.interval is not None
+
+
 def test_the_crest_of_a_motion_is_found_between_samples() -> None:
     """A force that turns and is largest at 0.37 s, where there is no sample."""
     crest = 0.37
