@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -92,7 +93,7 @@ def by_loads(
 
 def _of_change(
     at: dict[UnitLoad, Floats],
-    given: tuple[PinLoads, dict[UnitLoad, Floats]],
+    given: tuple[PinLoads, Mapping[UnitLoad, Floats]],
     where: tuple[Floats, float],
     change: tuple[int, Floats],
     times: float,
