@@ -16,7 +16,7 @@ setup: .venv/.ready ## make .venv with everything pinstress needs (run by the ta
 
 PORTABLE = tests/pinstress/test_portable.py tests/pinstress/processes/test_workers.py \
 	$(addprefix tests/pinstress/,cli/test_output.py model/test_read_body.py test_import.py) \
-	$(addprefix tests/fea/core/test_,linear.py memory.py) tests/loads/test_regular_file.py
+	$(addprefix tests/fea/core/test_,linear.py memory.py) tests/loads/tables/test_regular_file.py
 
 # Status 1 means: done, but a requested accuracy was not reached (printed last).
 demo: setup ## run studies/landing_gear.toml and print the path of its report

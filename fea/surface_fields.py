@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea.core.pin_loads import PinLoads, UnitLoad
+from fea.core.pin_loads import PinLoads
 from fea.core.solution import Answer
 from fea.cut.evaluate import CutAnswer
 from fea.harmonic.evaluate import HarmonicAnswer
@@ -91,7 +91,7 @@ def amounts(answer: Answer, loads: PinLoads) -> Floats:
         one = known.coefficients(loads)
         return np.stack([one, np.zeros_like(one)], axis=2)
     assert isinstance(answer, HarmonicAnswer)
-    acting: dict[UnitLoad, Floats] = loads.coefficients()
+    acting = loads.coefficients()
     none = np.zeros((len(loads), 2))
     return np.stack([acting.get(load, none) for load in answer.fields.loads], axis=1)
 

@@ -17,9 +17,10 @@ import numpy as np
 from loads.arrays import Complex, Floats
 from loads.forces.acting import Load, balance
 from loads.forces.holding import holding, require_closed
+from loads.forces.sharing import shares
 from loads.friction import MOST_CONTACTS, JammingError, contact_sizes
 from loads.joint_forces import connection_members, slider_couple, slider_members
-from loads.linkage import GROUND, Linkage, LinkageError, Point, Slider, Turn
+from loads.linkage import GROUND, LinkageError, Point, Slider, Turn
 from loads.loop_equations import cross, number, pairs
 from loads.motion import Motion
 from loads.reactions import Reactions
@@ -216,7 +217,7 @@ class _Balance:
         ways = [self._closing(null[:, :, i]) for i in range(null.shape[2])]
         loose = np.stack([self._everywhere(nothing, way) for way in ways], axis=2)
         found = self._everywhere(needed, self._closing(f, spread))
-        amounts = _shares(self.loops.linkage, found, loose, self.shared)
+        amounts = shares(self.loops.linkage, found, loose, self.shared)
         return f + (null @ amounts[..., None])[..., 0]
 
     def _everywhere(self, needed: Complex, closing: Complex) -> Complex:
@@ -373,32 +374,3 @@ class _Balance:
             moments=np.zeros_like(on_pin),
             turn=turn,
         )
-
-
-def _shares(linkage: Linkage, forces: Complex, loose: Complex, shared: tuple[str, ...]) -> Floats:
-    """Amounts (T, k) of self-equilibrated forces `loose` (T, C, k) that make the sharing
-    connections and teeth behave like springs: the sum of force^2 / stiffness over them is least.
-    """
-    names = [name for name, _ in linkage.forces]
-    open_ = f"rigid-body statics does not determine the forces at {', '.join(shared)}"
-    if not linkage.sharing:
-        raise LinkageError(
-            f"{open_}; state how they share the load: [[mechanism.sharing]] with connections = "
-            "[...] and stiffness = [...], one entry for each degree of redundancy",
-            "statically-indeterminate",
-        )
-    members = [p for s in linkage.sharing for p in zip(s.connections, s.stiffness, strict=True)]
-    which = [names.index(name) for name, _ in members]
-    weight = np.tile([1.0 / stiffness for _, stiffness in members], 2)
-    N = np.concatenate([loose[:, which].real, loose[:, which].imag], axis=1)
-    g = np.concatenate([forces[:, which].real, forces[:, which].imag], axis=1)
-    G = np.swapaxes(N, 1, 2) @ (weight[:, None] * N)
-    if np.linalg.eigvalsh(G).min() < 1e-9 * weight.min():
-        raise LinkageError(
-            f"{open_}, nor does the sharing over {', '.join(name for name, _ in members)}; name "
-            "connections on each redundant path",
-            "sharing-incomplete",
-            ("sharing",),
-        )
-    b = -np.swapaxes(N, 1, 2) @ (weight * g)[..., None]
-    return np.asarray(np.linalg.solve(G, b)[..., 0], dtype=np.float64)

@@ -30,7 +30,7 @@ from fea.joint.solve_joint import Cells, JointModel
 from fea.refine import singularities_of
 from geometry import Pin
 from geometry.arrays import Floats
-from geometry.mesh.outline_motion import OutlineNodes, Reach
+from geometry.mesh.moved.outline_motion import OutlineNodes, Reach
 from geometry.mesh.section_mesh import MeridianMesh
 from geometry.shape.dimensions import Dimension, dimensions
 

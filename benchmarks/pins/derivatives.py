@@ -24,7 +24,7 @@ from fea.harmonic.superposition import Circumference
 from fea.solve_pin import singularities_of, solve_pin
 from geometry import Pin
 from geometry.arrays import Floats
-from geometry.mesh.outline_motion import OutlineNodes, Reach
+from geometry.mesh.moved.outline_motion import OutlineNodes, Reach
 from geometry.shape.dimensions import Dimension, dimensions
 
 T = TypeVar("T")

@@ -14,7 +14,7 @@ these are; from built-in to hinged ends the largest of a uniform load grows by h
 w L^2 / 8.
 
 The five numbers are measured against fine solid models of stubby and slender pins (bands at least
-half a diameter long), with the largest stress further than 0.1 diameters from edges of clamps:
+0.35 diameters long), with the largest stress further than 0.1 diameters from edges of clamps:
 docs/method.md has the table. A cosine pressure also bends a tube's wall; its
 part is that of a free ring of mean radius R and wall t, which is a bound: with pressure harmonics
 p_n, the stress 6 p_n R^2 / ((n^2 - 1) t^2) and the hoop stress p_0 R / t.

@@ -17,9 +17,10 @@ So a unit load of harmonic n serves all directions: phases differ by a turn abou
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from types import MappingProxyType
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -131,9 +132,11 @@ class PinLoads:
         """Harmonics of a bearing pressure that are taken."""
         return (0, 1, *range(2, self.terms + 1, 2))
 
-    def coefficients(self) -> dict[UnitLoad, Floats]:
-        """How much of each unit load acts, (T, 2) by phase; only of those that ever act."""
-        return dict(self._coefficients)
+    def coefficients(self) -> Mapping[UnitLoad, Floats]:
+        """How much of each unit load acts, (T, 2) by phase; only of those that ever act. Neither it
+        nor its arrays can be written to, for they are made once.
+        """
+        return MappingProxyType(self._coefficients)
 
     @cached_property
     def _coefficients(self) -> dict[UnitLoad, Floats]:
@@ -142,6 +145,7 @@ class PinLoads:
         def add(load: UnitLoad, first: Floats, second: Floats) -> None:
             both = np.stack([first, second], axis=1)
             if both.any():
+                both.flags.writeable = False
                 out[load] = both
 
         zero = np.zeros(len(self))
@@ -193,13 +197,13 @@ class Amounts:
     """Amounts (T, 2) of unit loads, by phase, that need not be those of any forces."""
 
     case: str
-    acting: dict[UnitLoad, Floats]
+    acting: Mapping[UnitLoad, Floats]
     count: int
 
     def __len__(self) -> int:
         return self.count
 
-    def coefficients(self) -> dict[UnitLoad, Floats]:
+    def coefficients(self) -> Mapping[UnitLoad, Floats]:
         """How much of each unit load acts, (T, 2) by phase."""
         return self.acting
 

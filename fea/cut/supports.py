@@ -9,7 +9,7 @@ these like any others, and the motions that close all gaps are in proportion to 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -35,9 +35,9 @@ class Support:
 class HeldLoads(PinLoads):
     """Loads with the motions of clamps that go with them, among `acting` (T, 2) by unit load."""
 
-    acting: dict[UnitLoad, Floats] = field(default_factory=dict)
+    acting: Mapping[UnitLoad, Floats] = field(default_factory=dict)
 
-    def coefficients(self) -> dict[UnitLoad, Floats]:
+    def coefficients(self) -> Mapping[UnitLoad, Floats]:
         """How much of each unit load acts, (T, 2) by phase."""
         return self.acting
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -10,7 +11,7 @@ import numpy as np
 from fea.core.pin_loads import PinLoads, UnitLoad
 from fea.harmonic.superposition import BACK, Top
 from geometry.arrays import Floats
-from geometry.mesh.outline_motion import rate
+from geometry.mesh.moved.outline_motion import rate
 
 FORCE = 1e-3  # step of a force, of the largest
 AXES = "xyz"
@@ -92,7 +93,7 @@ def by_loads(
 
 def _of_change(
     at: dict[UnitLoad, Floats],
-    given: tuple[PinLoads, dict[UnitLoad, Floats]],
+    given: tuple[PinLoads, Mapping[UnitLoad, Floats]],
     where: tuple[Floats, float],
     change: tuple[int, Floats],
     times: float,

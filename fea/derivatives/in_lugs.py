@@ -31,7 +31,7 @@ from fea.joint.pressure_loads import others_along
 from fea.joint.solve_joint import JointModel
 from geometry import ArgumentError, GeometryError, Pin
 from geometry.arrays import Floats
-from geometry.mesh.outline_motion import (
+from geometry.mesh.moved.outline_motion import (
     PLACES,
     STEPS,
     NodeMotion,

@@ -15,7 +15,7 @@ from fea.derivatives.derivatives import Adjoint
 from fea.derivatives.records import SolvedCase
 from fea.harmonic.superposition import Circumference, Top
 from geometry.arrays import Floats, Mask
-from geometry.mesh.outline_motion import NodeMotion, OtherShapeError
+from geometry.mesh.moved.outline_motion import NodeMotion, OtherShapeError
 from geometry.shape.dimensions import Dimension
 
 Parts = Sequence[tuple[str, Mask]]

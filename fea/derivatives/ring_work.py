@@ -19,7 +19,7 @@ from fea.derivatives.virtual_work import shape_gradient, work
 from fea.harmonic.assembly import around, elasticity
 from fea.joint.flexibility import RingBody
 from geometry.arrays import Floats
-from geometry.mesh.outline_motion import PLACES, rate_of
+from geometry.mesh.moved.outline_motion import PLACES, rate_of
 
 
 @dataclass(frozen=True)

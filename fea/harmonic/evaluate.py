@@ -25,7 +25,7 @@ from fea.singular.probes import rim
 from fea.singular.singularities import VARIED, Singularity, smooth_edges
 from geometry import Pin
 from geometry.arrays import Floats, Mask
-from geometry.mesh.near_mesh import near_mesh
+from geometry.mesh.moved.near_mesh import near_mesh
 from geometry.mesh.section_mesh import MeridianMesh, meridian_mesh
 from geometry.mesh.sizing import Grade, SectionSize, Spot, size_at
 
@@ -134,7 +134,7 @@ class SectionProblem:
     """A body of revolution of a material, clamped at surfaces (by name), in some cases, with the
     singularities of any of these. first: where the first mesh is kept for other loads. besides:
     unit loads that are solved, too. near: whether meshes are those of a near shape with their nodes
-    moved (geometry.mesh.near_mesh).
+    moved (geometry.mesh.moved.near_mesh).
     """
 
     pin: Pin

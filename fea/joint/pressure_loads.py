@@ -7,7 +7,7 @@ pressures, however many rings there are.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -27,7 +27,7 @@ class PressureLoads(PinLoads):
     of_links: the loads of the links that the pressures carry, at the same instants.
     """
 
-    acting: dict[UnitLoad, Floats] = field(default_factory=dict)
+    acting: Mapping[UnitLoad, Floats] = field(default_factory=dict)
     of_links: PinLoads | None = None
 
     @property
@@ -36,7 +36,7 @@ class PressureLoads(PinLoads):
         assert self.of_links is not None
         return self.of_links
 
-    def coefficients(self) -> dict[UnitLoad, Floats]:
+    def coefficients(self) -> Mapping[UnitLoad, Floats]:
         """How much of each unit load acts, (T, 2) by phase."""
         return self.acting
 

@@ -86,7 +86,8 @@ def compare(
     if not at:
         return ()
     exact = _on_both_cells(model, at)
-    over, varied, missing = _varied(model, at)
+    few = model.cells.rings < USUAL  # twice as large cells are too large to tell changes apart
+    over, varied, missing = _varied(model, at, few)
     parts = [(waves, NEGLIGIBLE) for both in exact for waves in both]
     parts += [(waves, ROUGHLY) for waves in itertools.chain(*varied)]
     patterns = model.patterns(parts, known)
@@ -104,7 +105,7 @@ def compare(
     for contact, names, own, why in zip(at, over, each, missing, strict=True):
         first = float(maxima[0]) or 1.0  # nothing loads the pin
         (_, coarse, *others), maxima = np.split(maxima, [len(own)])
-        like = first if _few(model) else float(coarse) or 1.0  # on the same cells as the others
+        like = first if few else float(coarse) or 1.0  # on the same cells as the others
         ratios = tuple(
             replace(x, max_von_mises=float(y) / like) for x, y in zip(names, others, strict=True)
         )
@@ -131,28 +132,23 @@ def _coarse(model: JointModel, links: PinLoads, problem: ContactProblem, belongs
     return model.waves([replace(x, pressure=belongs @ x.pressure) for x in found])
 
 
-def _few(model: JointModel) -> bool:
-    """Whether twice as large cells are too large to say what a joint's properties change."""
-    return model.cells.rings < USUAL
-
-
 def _own_cells(model: JointModel) -> tuple[ContactProblem, Floats]:
     return model.contact, np.eye(len(model.rings))
 
 
 def _varied(
-    model: JointModel, at: Sequence[JointContact]
+    model: JointModel, at: Sequence[JointContact], own: bool
 ) -> tuple[list[list[Variation]], list[list[Floats]], list[list[str]]]:
     """Of each contact, what is changed of the joint, the harmonics of contact then, and what could
     not be changed: lugs that are free to tilt may leave a couple on the pin, and loads may be lost
-    in a large clearance.
+    in a large clearance. own: on the model's own cells, instead of cells twice as large.
     """
     names: list[list[Variation]] = [[] for _ in at]
     found: list[list[Floats]] = [[] for _ in at]
     missing: list[list[str]] = [[] for _ in at]
     for change in changes(model.whole, model.lugs):
         other = model.varied(change.lugs, change.softness)
-        cells = _own_cells(other) if _few(model) else on_coarser_cells(other)
+        cells = _own_cells(other) if own else on_coarser_cells(other)
         for contact, over, waves, why in zip(at, names, found, missing, strict=True):
             try:
                 waves.append(_coarse(other, contact.loads.links, *cells))

@@ -22,7 +22,7 @@ from pinstress.cli.more_commands import (
     size,
     view,
 )
-from pinstress.cli.shared import Commands, choices, example, names, read_study
+from pinstress.cli.shared import ONLY_CASES, Commands, choices, example, read_study
 from pinstress.processes import interrupts
 from pinstress.processes.environment import settle_surroundings
 from pinstress.processes.interrupts import INTERRUPTED, Unfinished
@@ -220,7 +220,7 @@ def _require_calculix() -> None:
 @click.option(
     "--out", type=click.Path(path_type=Path), help="Output folder [out/<study name>-loads]."
 )
-@click.option("--cases", callback=names, metavar="X,Y", help="Only these cases.")
+@ONLY_CASES
 @click.option("--plots", is_flag=True, help=PLOTS)
 @click.option("--no-pictures", is_flag=True, hidden=True)
 @click.option("--quiet", is_flag=True, help="No notes; errors are still reported.")

@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from pinstress.cli.shared import example, names, read_study
+from pinstress.cli.shared import JOBS, ONLY_PINS, QUIET, example, names, read_study
 from pinstress.cli.streams import unneeded
 from pinstress.study.errors import InputError
 
@@ -206,7 +206,7 @@ def completion(context: click.Context, shell: str) -> None:
     type=click.FloatRange(0.0, min_open=True),
     help="Safety factor to reach; overrides the study's required_safety_factor.",
 )
-@click.option("--pins", callback=names, metavar="A,B", help="Only these pins.")
+@ONLY_PINS
 @click.option(
     "--step",
     metavar="LENGTH",
@@ -218,8 +218,8 @@ def completion(context: click.Context, shell: str) -> None:
     metavar="FILE",
     help="The new study [<study name>_sized.toml, next to the study].",
 )
-@click.option("--quiet", is_flag=True, help="No progress bar, no notes; errors are still reported.")
-@click.option("--jobs", type=click.IntRange(1), metavar="N", help="Pins sized in parallel.")
+@QUIET
+@JOBS
 @click.option("--least-weight", is_flag=True, help="Every dimension for itself: the lightest pins.")
 @click.option(
     "--vary",
@@ -262,8 +262,8 @@ def size(
         raise InputError(f"--step: {error}", code="not-a-length") from None
     if metres is not None and metres <= 0.0:
         raise InputError("--step: must be positive", code="not-positive")
-    from pinstress.cli.least_weight import Wishes, lighten_and_write, require_aim
-    from pinstress.cli.size import require_wish, size_and_write
+    from pinstress.cli.sizing.least_weight import Wishes, lighten_and_write, require_aim
+    from pinstress.cli.sizing.size import require_wish, size_and_write
 
     asked = Wishes(**wishes)
     if asked.given and not least_weight:

@@ -29,23 +29,22 @@ def names(_: click.Context, __: click.Parameter, value: str | None) -> list[str]
     return found
 
 
+ONLY_PINS = click.option("--pins", callback=names, metavar="A,B", help="Only these pins.")
+ONLY_CASES = click.option("--cases", callback=names, metavar="X,Y", help="Only these cases.")
+JOBS = click.option(
+    "--jobs",
+    type=click.IntRange(1),
+    metavar="N",
+    help="Number of parallel processes [number of cores]; does not affect the results.",
+)
+QUIET = click.option(
+    "--quiet", is_flag=True, help="No progress bar, no notes; errors are still reported."
+)
+
+
 def choices(command: Command) -> Command:
     """The options --pins, --cases, --jobs and --quiet of a command that solves pins."""
-    for option in (
-        click.option(
-            "--quiet", is_flag=True, help="No progress bar, no notes; errors are still reported."
-        ),
-        click.option(
-            "--jobs",
-            type=click.IntRange(1),
-            metavar="N",
-            help="Number of parallel processes [number of cores]; does not affect the results.",
-        ),
-        click.option("--cases", callback=names, metavar="X,Y", help="Only these cases."),
-        click.option("--pins", callback=names, metavar="A,B", help="Only these pins."),
-    ):
-        command = option(command)
-    return command
+    return ONLY_PINS(ONLY_CASES(JOBS(QUIET(command))))
 
 
 def read_study(path: Path) -> Study:

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.mesh.near_mesh import step
+from geometry.mesh.moved.near_mesh import step
 from pinstress.designs.evaluate import DesignRow, Evaluator
 from pinstress.designs.laws import Floats
 from pinstress.designs.number import Number

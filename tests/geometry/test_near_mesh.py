@@ -11,7 +11,7 @@ import pytest
 from skfem import Basis, ElementTriP2
 
 from geometry import Pin, Segment, meridian
-from geometry.mesh import near_mesh
+from geometry.mesh.moved import near_mesh
 from geometry.mesh.section_mesh import (
     SMALLEST_JACOBIAN,
     MeridianMesh,

@@ -15,6 +15,7 @@ import pyvista
 from reports.data.results import BandLoad, Field, Still, Units
 from reports.vtk import renderer
 from reports.vtk.fields import render_pin, renderer_problem, surface, write_pin, write_vtu
+from tests.conftest import ROOT
 from tests.support.results.judged_results import tube
 
 UNITS = Units("in", "lbf", "psi", "s")
@@ -154,9 +155,8 @@ def test_importing_reports_loads_nothing_heavy() -> None:
         "print({'matplotlib', 'pyvista', 'vtk', 'vtkmodules', 'meshio', 'jinja2', 'rich', "
         "'pinstress'} & set(sys.modules))"
     )
-    root = Path(__file__).parents[2]
     done = subprocess.run(
-        [sys.executable, "-c", code], cwd=root, capture_output=True, text=True, check=True
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
     )
     assert done.stdout.strip() == "set()"
 

@@ -11,7 +11,7 @@ import pytest
 import pinstress
 from fea.harmonic.evaluate import EveryMesh
 from geometry import Pin
-from geometry.mesh import near_mesh
+from geometry.mesh.moved import near_mesh
 from geometry.mesh.section_mesh import MeridianMesh, meridian_mesh
 from pinstress import InputError, Study, changed_study, load_study, shipped_studies, study_from
 from pinstress.analysis.solve import solutions

@@ -19,7 +19,7 @@ from pyarrow import parquet
 from rich.console import Console
 
 import pinstress
-from geometry.mesh.near_mesh import step
+from geometry.mesh.moved.near_mesh import step
 from pinstress import InputError, load_study, shipped_studies
 from pinstress.designs.batches import (
     AIM,

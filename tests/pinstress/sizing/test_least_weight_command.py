@@ -10,7 +10,7 @@ import pytest
 import pinstress
 from pinstress.cli.commands import run_command_line
 from pinstress.study.file import load_study
-from tests.support.programs.command_line import QUICK, sizes_nothing
+from tests.support.programs.command_line import QUICK, Refused, sizes_nothing
 
 WITH_LAWS = (
     QUICK
@@ -66,31 +66,28 @@ def test_to_a_step_shoulders_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 
 @pytest.mark.parametrize(
-    ("arguments", "change", "status", "message"),
+    "refused",
     [
-        ([], ("required_safety_factor = 10", ""), 2, "--fos 10"),
-        (["--vary", "nuts"], ("", ""), 2, "--vary: 'nuts' is none of diameters, bores, fillets"),
-        (["--vary", "bores", "--step", "0.1"], ("", ""), 2, "--step rounds diameters"),
-        (["--wall", "0.6"], ("", ""), 2, "--wall"),
-        (["--shoulder", "0.9"], ("", ""), 2, "--shoulder"),
-        (["--probability", "1e-3"], ("", ""), 2, "the study has no [vary]"),
-        (["--probability", "2"], ("", ""), 2, "--probability"),
-        (["--vary", "bores"], ("", ""), 1, "it has no bores to vary, only diameters and fillets"),
-        ([], ('yield_strength = "225 ksi"', ""), 1, "has no yield_strength"),
-        ([], ('["start"]', "[]"), 1, "it is unconstrained in case landing"),
-        (["--fos", "1e7"], ("", ""), 1, "times these dimensions"),
+        Refused([], ("required_safety_factor = 10", ""), 2, "--fos 10"),
+        Refused(
+            ["--vary", "nuts"], ("", ""), 2, "--vary: 'nuts' is none of diameters, bores, fillets"
+        ),
+        Refused(["--vary", "bores", "--step", "0.1"], ("", ""), 2, "--step rounds diameters"),
+        Refused(["--wall", "0.6"], ("", ""), 2, "--wall"),
+        Refused(["--shoulder", "0.9"], ("", ""), 2, "--shoulder"),
+        Refused(["--probability", "1e-3"], ("", ""), 2, "the study has no [vary]"),
+        Refused(["--probability", "2"], ("", ""), 2, "--probability"),
+        Refused(
+            ["--vary", "bores"], ("", ""), 1, "it has no bores to vary, only diameters and fillets"
+        ),
+        Refused([], ('yield_strength = "225 ksi"', ""), 1, "has no yield_strength"),
+        Refused([], ('["start"]', "[]"), 1, "it is unconstrained in case landing"),
+        Refused(["--fos", "1e7"], ("", ""), 1, "times these dimensions"),
     ],
+    ids=lambda refused: refused.message,
 )
-def test_what_cannot_be_had_is_told(
-    tmp_path: Path,
-    arguments: list[str],
-    change: tuple[str, str],
-    status: int,
-    message: str,
-) -> None:
-    assert message in sizes_nothing(
-        tmp_path, ["--least-weight", "--jobs", "1", *arguments], change, status
-    )
+def test_what_cannot_be_had_is_told(tmp_path: Path, refused: Refused) -> None:
+    sizes_nothing(tmp_path, refused, "--least-weight", "--jobs", "1")
 
 
 def test_options_of_least_weight_need_it(

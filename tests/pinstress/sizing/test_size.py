@@ -21,7 +21,7 @@ from pinstress.sizing.scaled_study import moved, resized, resized_study
 from pinstress.study.file import load_study, parse_study
 from pinstress.study.in_python import changed_study
 from tests.conftest import ROOT
-from tests.support.programs.command_line import ONE_PIN, QUICK, sizes_nothing
+from tests.support.programs.command_line import ONE_PIN, QUICK, Refused, sizes_nothing
 
 
 @given(
@@ -247,23 +247,18 @@ def test_a_singular_pin_is_sized_but_nothing_is_claimed(
 
 
 @pytest.mark.parametrize(
-    ("arguments", "change", "status", "message"),
+    "refused",
     [
-        ([], ("required_safety_factor = 10", ""), 2, "--fos 10"),
-        (["--step", "2 s"], ("", ""), 2, "--step: '2 s' is not a length"),
-        (["--step", "-1"], ("", ""), 2, "--step: must be positive"),
-        (["--out", "no/where.toml"], ("", ""), 2, "there is no folder no"),
-        (["--pins", "Q"], ("", ""), 2, "no pin 'Q'"),
-        ([], ('yield_strength = "225 ksi"', ""), 1, "has no yield_strength"),
-        ([], ('["start"]', "[]"), 1, "it is unconstrained in case landing"),
-        (["--fos", "1e7"], ("", ""), 1, "times its diameters"),
+        Refused([], ("required_safety_factor = 10", ""), 2, "--fos 10"),
+        Refused(["--step", "2 s"], ("", ""), 2, "--step: '2 s' is not a length"),
+        Refused(["--step", "-1"], ("", ""), 2, "--step: must be positive"),
+        Refused(["--out", "no/where.toml"], ("", ""), 2, "there is no folder no"),
+        Refused(["--pins", "Q"], ("", ""), 2, "no pin 'Q'"),
+        Refused([], ('yield_strength = "225 ksi"', ""), 1, "has no yield_strength"),
+        Refused([], ('["start"]', "[]"), 1, "it is unconstrained in case landing"),
+        Refused(["--fos", "1e7"], ("", ""), 1, "times its diameters"),
     ],
+    ids=lambda refused: refused.message,
 )
-def test_what_cannot_be_sized_is_told(
-    tmp_path: Path,
-    arguments: list[str],
-    change: tuple[str, str],
-    status: int,
-    message: str,
-) -> None:
-    assert message in sizes_nothing(tmp_path, arguments, change, status)
+def test_what_cannot_be_sized_is_told(tmp_path: Path, refused: Refused) -> None:
+    sizes_nothing(tmp_path, refused)

@@ -7,6 +7,7 @@ import sys
 from contextlib import chdir, redirect_stderr, redirect_stdout
 from io import StringIO
 from pathlib import Path
+from typing import NamedTuple
 
 from pinstress.cli.commands import run_command_line
 from tests.conftest import ROOT
@@ -30,12 +31,25 @@ def run_here(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.CompletedProcess(arguments, status, out.getvalue(), err.getvalue())
 
 
-def sizes_nothing(folder: Path, arguments: list[str], change: tuple[str, str], status: int) -> str:
-    """What `size` says, in one line, of the quick study with other text; no study is written."""
-    (folder / "study.toml").write_text(QUICK.replace(*change) if change[0] else QUICK)
-    made = run_here("size", "study.toml", *arguments, cwd=folder)
-    assert made.returncode == status
+class Refused(NamedTuple):
+    """What `size` is asked of the quick study with other text, its status and part of what it
+    says.
+    """
+
+    arguments: list[str]
+    change: tuple[str, str]
+    status: int
+    message: str
+
+
+def sizes_nothing(folder: Path, refused: Refused, *options: str) -> None:
+    """It says so, and no study is written."""
+    (folder / "study.toml").write_text(
+        QUICK.replace(*refused.change) if refused.change[0] else QUICK
+    )
+    made = run_here("size", "study.toml", *options, *refused.arguments, cwd=folder)
+    assert made.returncode == refused.status
     assert "Traceback" not in made.stderr
     assert "Written" not in made.stderr
     assert not (folder / "study_sized.toml").exists()
-    return " ".join(made.stderr.split())
+    assert refused.message in " ".join(made.stderr.split())

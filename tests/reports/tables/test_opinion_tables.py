@@ -15,7 +15,7 @@ from reports.page.page import render
 from reports.page.second_opinion import opinion_part
 from reports.tables.stress.calculix import opinion_json, opinion_tables
 from reports.text.second_opinion import print_second_opinion, sentences
-from tests.reports import test_workbook
+from tests.reports.tables import test_workbook
 from tests.support.results.made_up_joint import make_joint
 
 MADE_UP = "pin", "case"

@@ -2,8 +2,8 @@
 
 Every dimension is rounded to one of STEPS values in each factor of two. That shape is meshed as
 fine as asked for, by amounts that are rounded too, and kept. On the shape itself every node of the
-outline keeps its place on its own edge (geometry.mesh.outline_motion), exactly, and those inside
-move by a harmonic function. Where the rounded shape has other edges, or edges of quite another
+outline keeps its place on its own edge (outline_motion), exactly, and those inside move by a
+harmonic function. Where the rounded shape has other edges, or edges of quite another
 length (what a fillet leaves of a shoulder is a small difference of large dimensions), or moved
 elements are poor, the edges are rounded instead; where that does no better, the shape itself is
 meshed. So the mesh depends on the shape alone, whatever was meshed before it.
@@ -22,7 +22,7 @@ import numpy as np
 
 from geometry.arrays import Floats, Ints
 from geometry.mesh.gmsh_session import ONE_AT_A_TIME
-from geometry.mesh.outline_motion import OutlineNodes, Reach
+from geometry.mesh.moved.outline_motion import OutlineNodes, Reach
 from geometry.mesh.section_mesh import (
     SMALLEST_JACOBIAN,
     MeridianMesh,

@@ -15,6 +15,7 @@ from reports.data.results import Results
 from reports.tables.all import LONGEST, load_tables, sheets, stress_tables
 from reports.tables.table import Table
 from reports.tables.workbook import write_workbook
+from tests.conftest import ROOT
 
 NAMES = {"": "http://schemas.openxmlformats.org/spreadsheetml/2006/main"}
 Sheet = list[dict[str, str | float]]  # by row: cells by their column's letters
@@ -134,7 +135,7 @@ def test_the_same_results_give_the_same_bytes(
 
 def test_every_column_is_documented(tables: list[Table]) -> None:
     """docs/output.md has a row for every table, with all its columns in their order."""
-    text = (Path(__file__).parents[2] / "docs" / "output.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "output.md").read_text(encoding="utf-8")
     rows = {}
     for line in text.splitlines():
         if line.startswith("| `") and line.count("|") == 3:

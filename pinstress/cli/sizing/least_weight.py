@@ -11,7 +11,7 @@ import click
 
 from pinstress.cli.new_file import write_new
 from pinstress.cli.run import console, progress_bar
-from pinstress.cli.size import ANOTHER, close, target_of, why_missed
+from pinstress.cli.sizing.size import ANOTHER, close, target_of, why_missed
 from pinstress.cli.streams import unneeded
 from pinstress.model.pins import pin as pin_of
 from pinstress.model.pins import weight

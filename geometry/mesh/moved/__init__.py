@@ -1,0 +1,1 @@
+"""Meshes of near shapes, with their nodes moved."""

@@ -1,0 +1,39 @@
+"""How connections share what rigid-body statics leaves open: as springs would."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from loads.arrays import Complex, Floats
+from loads.linkage import Linkage, LinkageError
+
+
+def shares(linkage: Linkage, forces: Complex, loose: Complex, shared: tuple[str, ...]) -> Floats:
+    """Amounts (T, k) of self-equilibrated forces `loose` (T, C, k) that make the sharing
+    connections and teeth behave like springs: the sum of force^2 / stiffness over them is least.
+
+    Raises: LinkageError without a rule, or with one that leaves something open.
+    """
+    names = [name for name, _ in linkage.forces]
+    open_ = f"rigid-body statics does not determine the forces at {', '.join(shared)}"
+    if not linkage.sharing:
+        raise LinkageError(
+            f"{open_}; state how they share the load: [[mechanism.sharing]] with connections = "
+            "[...] and stiffness = [...], one entry for each degree of redundancy",
+            "statically-indeterminate",
+        )
+    members = [p for s in linkage.sharing for p in zip(s.connections, s.stiffness, strict=True)]
+    which = [names.index(name) for name, _ in members]
+    weight = np.tile([1.0 / stiffness for _, stiffness in members], 2)
+    N = np.concatenate([loose[:, which].real, loose[:, which].imag], axis=1)
+    g = np.concatenate([forces[:, which].real, forces[:, which].imag], axis=1)
+    G = np.swapaxes(N, 1, 2) @ (weight[:, None] * N)
+    if np.linalg.eigvalsh(G).min() < 1e-9 * weight.min():
+        raise LinkageError(
+            f"{open_}, nor does the sharing over {', '.join(name for name, _ in members)}; name "
+            "connections on each redundant path",
+            "sharing-incomplete",
+            ("sharing",),
+        )
+    b = -np.swapaxes(N, 1, 2) @ (weight * g)[..., None]
+    return np.asarray(np.linalg.solve(G, b)[..., 0], dtype=np.float64)

@@ -1,0 +1,1 @@
+"""The command `size`: by scaling, or to the least weight."""
