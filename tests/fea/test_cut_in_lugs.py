@@ -95,6 +95,7 @@ def test_the_crest_at_a_hole_is_found_between_samples() -> None:
     dense = np.linspace(0.0, 1.0, 401)
     each = found.solution.answer.maxima(found.pressed(at(dense)))
     assert abs(dense[each.argmax()] - peak.time) < 0.003
+    assert case.times is not None
     assert not np.isclose(case.times, peak.time, atol=0.05).any()
     assert peak.max_von_mises == pytest.approx(each.max(), rel=1e-5)
     assert peak.max_von_mises >= each.max() * (1.0 - 1e-9)
