@@ -42,6 +42,7 @@ from geometry.mesh.sizing import Grade
 
 FINE = 0.25  # element of the first section about a cut, of its radius
 GROWTH = 0.5  # of that with the distance
+LEAST = 1e-3  # of the stress: what brings less is solved as if it brought so much
 SECTORS = 48  # of the surface that is shown, away from the pieces
 
 
@@ -112,8 +113,9 @@ def cut_solution(
     at = np.split(section.elsewhere, np.cumsum([len(p) for p in points]))
     units = _units(cases) or tuple((load, load.phases[0]) for load in section.fields.loads[:1])
     units += moved
+    weight = _weight(cases, units, section.fields)
     new = iter(
-        local_fields(model, section.fields, stress, units, problem.singularities, distance)
+        local_fields(model, section.fields, stress, units, problem.singularities, distance, weight)
         for model, stress in zip(models, at[:-1], strict=True)
     )
     found = tuple(there or next(new) for there in known)
@@ -149,6 +151,21 @@ def _units(cases: tuple[PinLoads, ...]) -> tuple[Unit, ...]:
                 if case.times is not None or amounts[:, p].any()
             }
     return tuple(found)
+
+
+def _weight(cases: tuple[PinLoads, ...], units: tuple[Unit, ...], fields: MeridianFields) -> Floats:
+    """How much of the stress in any case a unit load brings, (L,): 1 the most; of one whose amount
+    is not known here, 1, too.
+    """
+    own = [fields.loads.index(load) for load, _ in units]
+    stress, out = np.abs(fields.stress).max(axis=(0, 1))[own], np.zeros(len(units))
+    for case in cases:
+        amounts = case.coefficients()
+        most = np.array([np.abs(amounts[u][:, p]).max() if u in amounts else 0.0 for u, p in units])
+        each = most * stress
+        out = np.maximum(out, each / (each.max() or 1.0))
+    known = {load for case in cases for load in case.coefficients()}
+    return np.where([u in known for u, _ in units], np.maximum(out, LEAST), 1.0)
 
 
 def _without(fields: MeridianFields, zones: Sequence[tuple[float, float]]) -> MeridianFields:

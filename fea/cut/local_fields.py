@@ -268,9 +268,10 @@ def local_fields(
     units: tuple[Unit, ...],
     singularities: Sequence[Singularity],
     distance: float,
+    weight: Floats | float = 1.0,
 ) -> LocalFields:
     """Of the uncut pin's fields, and their stress `at_points` (section_points, 6, K). distance: as
-    inner_corners.
+    inner_corners. weight: as LocalModel.solve.
 
     Raises: SolveError.
     """
@@ -284,7 +285,7 @@ def local_fields(
     own = [fields.loads.index(load) for load, _ in units]
     stress = _cartesian(amplitude[..., own], angle, model.piece.angle, units)
     largest = np.abs(fields.stress[..., own]).max(axis=(0, 1))
-    read = model.solve(stress, largest, [load.shears for load, _ in units])
+    read = model.solve(stress, largest, [load.shears for load, _ in units], weight)
     points = read.points @ _turn(model.piece.angle).T + [0.0, 0.0, model.piece.origin]
     flat_r, flat_z = r.ravel(), z.ravel()
     ends = [

@@ -36,7 +36,7 @@ from geometry.mesh.cut_piece import Piece
 from geometry.mesh.solid_mesh import SolidMesh
 
 NO_CLASS = 2e-4  # of the tractions: less of a class is the noise of the section's mesh
-LEAST = 1e-6  # of the tractions of a class: what less of them does is not solved
+LEAST = 1e-5  # of the tractions of a class: what less of them does is not solved
 UNBALANCED = 0.1  # of the tractions, by the section's mesh
 ROUNDED = 0.06  # scatter of stress on rounded corners on the first mesh, by flats and keyways
 FELT = 0.02  # of the pin's largest stress: less of it is not looked at
@@ -126,10 +126,16 @@ class LocalModel:
         """The points and their images, (G, P, 3)."""
         return np.asarray(self.parities.images[:, None] * self.points)
 
-    def solve(self, uncut: Floats, most: Floats | float = 0.0, shears: Sequence[bool] = ()) -> Read:
+    def solve(
+        self,
+        uncut: Floats,
+        most: Floats | float = 0.0,
+        shears: Sequence[bool] = (),
+        weight: Floats | float = 1.0,
+    ) -> Read:
         """Of the stress of the uncut pin at all images (G, P, 6, L), Pa, along x, y and z. most:
         the largest anywhere in the pin, (L,). shears: which loads shear the bands they act on, all
-        by default.
+        by default. weight: (L,) how accurate each must be.
 
         Raises: SolveError.
         """
@@ -137,7 +143,7 @@ class LocalModel:
         by_kind[: len(shears)] = shears
         by_class = self.parities.split(uncut)
         largest = np.maximum(np.abs(by_class[:, self.cut]).max(axis=(0, 1, 2)), FELT * most)
-        scale = np.where(largest > 0.0, largest, 1.0)
+        scale = np.where(largest > 0.0, largest, 1.0) / weight
         difference = np.zeros_like(by_class)
         moved = np.zeros((2, 6, uncut.shape[3]))
         forces = [self._forces(part / scale) for part in by_class]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations
 
 from fea.core.peak import Note
@@ -27,6 +28,13 @@ class RingedCutPin(CutPin):
     """
 
     whole: CutPin | None = None
+
+    @cached_property
+    def volume(self) -> float:
+        """Of the pin without cuts, m^3: contact balances the weight of that. (Rounded mouths cannot
+        be made where rings meet.)
+        """
+        return self.profile.volume
 
 
 def unringed(pin: CutPin) -> CutPin:

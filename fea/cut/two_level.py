@@ -20,7 +20,7 @@ from fea.solid.assembly import Discretisation
 from geometry.arrays import Floats, Ints
 
 FACTORED = 8_000  # unknowns: as many or fewer are factored in less time
-CONVERGED = 1e-6  # energy of the residual over that of the largest forces, square root
+CONVERGED = 1e-5  # energy of the residual over that of the largest forces, square root
 MOST_STEPS = 60  # 10 to 15 are usual
 DEGREE = 2  # of the polynomial
 SPREAD = 8.0  # largest eigenvalue over the least that it damps

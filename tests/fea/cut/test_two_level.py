@@ -55,3 +55,21 @@ def test_stress_about_a_hole_as_by_a_factorisation(
     assert found.stress == pytest.approx(known.stress, abs=1e-5 * np.abs(known.stress).max())
     apart, known_apart = (np.diff(read.moved, axis=0) for read in (found, known))  # of both ends
     assert apart == pytest.approx(known_apart, abs=1e-5 * np.abs(known_apart).max())
+
+
+def test_what_brings_little_is_solved_less_accurately(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of two loads alike in size, one of which brings a thousandth of the stress of any case: the
+    other one to 1e-5 as ever, and the two in the amounts in which they act.
+    """
+    model = LocalModel(PIECE, MESH, STEEL)
+    stress = np.zeros((*model.images.shape[:2], 6, 2))
+    stress[..., 2, 0], stress[..., 2, 1] = 1.0, model.images[..., 1] / D
+    monkeypatch.setattr(local_model, "FACTORED", model.unknowns)
+    known = model.solve(stress).stress
+    monkeypatch.setattr(local_model, "FACTORED", 0)
+    weight = np.array([1.0, 1e-3])
+    found = model.solve(stress, weight=weight).stress
+    off, most = (np.abs(x).max(axis=(0, 1)) for x in (found - known, known))
+    assert off[0] < 1e-5 * most[0]
+    assert 1e-8 * most[1] < off[1] < 1e-2 * most[1]
+    assert np.abs((found - known) @ weight).max() < 2e-5 * most[0]
