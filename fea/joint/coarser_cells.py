@@ -7,6 +7,7 @@ import numpy as np
 from fea.core.pin_loads import Floats
 from fea.joint.contact import Bands, ContactProblem
 from fea.joint.solve_joint import WAVES, JointModel
+from geometry.arrays import Ints
 
 
 def on_coarser_cells(model: JointModel) -> tuple[ContactProblem, Floats]:
@@ -14,7 +15,7 @@ def on_coarser_cells(model: JointModel) -> tuple[ContactProblem, Floats]:
     which the coarse ones consist, 1 or 0.
     """
     fine = model.contact
-    group = _pairs(fine.bands.band)
+    group = _pairs(model)
     belongs = (group[:, None] == np.arange(group.max() + 1)).astype(float)
     length = fine.bands.length @ belongs
     mean = belongs * fine.bands.length[:, None] / length  # over a coarse ring
@@ -34,14 +35,25 @@ def on_coarser_cells(model: JointModel) -> tuple[ContactProblem, Floats]:
     return problem, belongs
 
 
-def _pairs(
-    band: np.ndarray[tuple[int], np.dtype[np.int64]],
-) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
-    """Numbers (R,) of the coarse rings, two of a band each, three at the end of an odd one."""
-    out, last = np.zeros(len(band), dtype=np.int64), 0
-    for b in range(int(band.max()) + 1):
-        own = np.flatnonzero(band == b)
-        pair = np.minimum(np.arange(len(own)) // 2, max(len(own) // 2 - 1, 0))
-        out[own] = last + pair
-        last = int(out[own].max()) + 1
-    return out
+def _pairs(model: JointModel) -> Ints:
+    """Numbers (R,) of the coarse rings: two of a band each, none both flat and rounded, where a
+    common gap would keep light loads off what is flat. One that is left over is alone where the
+    rounding ends, or the third of the last flat ones.
+    """
+    out: list[int] = []
+    for _, lug, ends in model.by_lug():
+        near = lug.edge_radius * (1.0 + 1e-9)
+        first, last = ends[1:] - ends[0] <= near, ends[-1] - ends[:-1] <= near
+        before, after = (int(part.sum()) for part in (first, last & ~first))
+        flat = len(ends) - 1 - before - after
+        parts = [*_twos(before)[::-1], *_twos(flat), *_twos(after)]
+        if flat > 1 and flat % 2:
+            parts = [*_twos(before)[::-1], *_twos(flat - 3), 3, *_twos(after)]
+        for size in parts:
+            out += [out[-1] + 1 if out else 0] * size
+    return np.array(out, dtype=np.int64)
+
+
+def _twos(count: int) -> list[int]:
+    """So many rings by two, one at the end if their number is odd."""
+    return [2] * (count // 2) + [1] * (count % 2)

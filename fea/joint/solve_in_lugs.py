@@ -45,6 +45,7 @@ from fea.verdict import with_estimate
 from geometry import ArgumentError, CutPin, Pin, PinLike
 
 SETS = Cells(), Cells(12, 48, 16)  # until one is fine enough
+FINEST = Cells(16, 64, 20)  # after these, where cells are most of the error
 ROUGH_CELLS = Cells(4, 24, 8)  # may decide a required factor
 MAY = 0.8  # of the largest on the first mesh: from there on an instant may govern on finer ones
 STRAIGHT = 0.01  # of the largest load: what an instant left out to begin with may be off its chord
@@ -141,7 +142,8 @@ def _sets(asked: Asked) -> tuple[Cells, ...]:
     """Cells, one after the other."""
     if asked.cells is not None:
         return (ROUGH_CELLS if asked.cells == "rough" else SETS[0],)
-    return (ROUGH_CELLS, *SETS) if asked.goal == "decide" else SETS
+    sets = SETS if asked.lug_edges == "varied" else (*SETS, FINEST)
+    return (ROUGH_CELLS, *sets) if asked.goal == "decide" else sets
 
 
 def _enough(peak: Peak, material: Material, asked: Asked) -> bool:
