@@ -1,12 +1,16 @@
 """Pins with cuts in their lugs: what contact that is solved for the pin without cuts leaves out.
 
 Contact pressures are those of the pin without its cuts. What presses on a cut's mouth is taken by
-the rest of the band about it (fea.cut.lost_loads). Two things are neglected and go into the error:
+the rest of the band about it (fea.cut.lost_loads). Three things are neglected, which the error
+includes:
 
 compliance      Cuts make the pin softer, so that pressures move towards the faces of the lugs. By
                 how much its bending compliance grows follows from the turns of the ends of local
                 solids; by how much stress depends on it, from the variation of the lugs' stiffness,
                 since a softer pin is one in stiffer lugs.
+ovalisation     A hole makes the section that it crosses softer across the pin too, so that pressure
+                on it moves to both sides. At most the load on its length does so, in proportion to
+                its diameter over the pin's.
 redistribution  What presses on a mouth comes back as pressure near it, at most about as large as
                 that: stress there changes by so much, elsewhere as the part of the force that is
                 lost.
@@ -41,13 +45,14 @@ TELL = 5e-4  # of a lug's force: what is lost of it is reported
 @dataclass(frozen=True)
 class Neglected:
     """softer: by how much, relative, cuts raise the pin's bending compliance; pressed: the largest
-    pressure on a mouth, Pa; lost: the largest part of a lug's force that acts on mouths; bands:
-    those on which they are, by the names of the cuts.
+    pressure on a mouth, Pa; lost: the largest part of a lug's force that acts on mouths; moved: the
+    largest part that may move away from holes; bands: those on which cuts are, by their names.
     """
 
     softer: float
     pressed: float
     lost: float
+    moved: float
     bands: dict[str, str]
 
     @property
@@ -68,7 +73,7 @@ class Neglected:
         """Of a maximum, Pa, with the maxima of the joint varied."""
         factors = [v.max_von_mises / largest for v in over if v.what == STIFFNESS]
         most = max((abs(math.log(x)) for x in factors if x > 0.0), default=TWICE)
-        relative = self.softer * most / TWICE + self.lost
+        relative = self.softer * most / TWICE + max(self.lost, self.moved)
         return relative * largest + at_cut * self.pressed
 
 
@@ -89,7 +94,26 @@ def neglected(
     own, forces = contact.bands.band, contact.loads.forces[0, :, :2]
     force = {b: float(np.linalg.norm(forces[own == b].sum(axis=0))) for b in lost}
     share = max((part / force[b] for b, part in lost.items() if force[b] > 0.0), default=0.0)
-    return Neglected(_softer(cut, material, contact, of), pressed, share, bands)
+    softer, moved = _softer(cut, material, contact, of), _moved(cut, contact)
+    return Neglected(softer, pressed, share, moved, bands)
+
+
+def _moved(cut: CutPin, contact: JointContact) -> float:
+    """The largest part of a lug's force that acts where a hole is, times the hole's diameter over
+    the pin's.
+    """
+    bands, most = contact.bands, 0.0
+    force = np.linalg.norm(contact.loads.forces[0, :, :2], axis=1)
+    low, high = bands.z - 0.5 * bands.length, bands.z + 0.5 * bands.length
+    for hole in cut.holes:
+        start, end = hole.opens
+        there = np.maximum(np.minimum(high, end) - np.maximum(low, start), 0.0) / bands.length
+        across = np.minimum(0.5 * hole.diameter / bands.radius, 1.0)
+        for b in range(len(contact.lugs)):
+            own = bands.band == b
+            if whole := float(force[own].sum()):
+                most = max(most, float((force * there * across)[own].sum()) / whole)
+    return most
 
 
 def _mouth(cut: CutPin, one: Cut, band: str) -> tuple[Floats, float]:

@@ -130,7 +130,9 @@ def real_contact(problem: ContactProblem, plain: Half, cut: Half) -> tuple[Press
     gone: Mask = cut.left[own] < LEFT
     change[gone], change[:, gone] = 0.0, 0.0
     real = copy.copy(problem)
-    real._fixed = problem._fixed + 0.5 * (change + change.T)
+    # A cut makes nothing stiffer: what is negative is the difference of two meshes.
+    values, modes = np.linalg.eigh(0.5 * (change + change.T))
+    real._fixed = problem._fixed + (modes * np.maximum(values, 0.0)) @ modes.T
     real._fit(problem.bands, [lug.tilt for lug in LUGS])
     real._open = real._open + np.where(gone, 0.01, 0.0)
     found = real.solve(LOADS.forces[0, :, :2])
@@ -153,15 +155,15 @@ def bending(problem: ContactProblem, found: Pressed) -> float:
     ("cut", "moment"),
     [
         (Flat(0.0165, 0.0295, D / 2.0 * math.cos(math.pi / 6.0), math.pi, 0.001), 0.93),
-        (Hole(0.023, 0.4 * D), 0.885),
+        (Hole(0.023, 0.4 * D), 0.86),
         (Hole(0.023, 0.4 * D, math.pi / 2.0), 0.964),
     ],
 )
-def test_real_contact_does_not_exceed_the_error(
+def test_real_contact_is_within_the_error(
     cut: Cut, moment: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A flat and a large hole under the pressure of the eye, and the hole across it, whose moment
-    and stress are smaller in fact than the error says. CalculiX has 0.92 of the moment with such a
+    """A flat and a large hole under the pressure of the eye, and the hole across it, which unloads
+    the middle of the pin: it is soft under pressure. CalculiX has 0.92 of the moment with such a
     flat (its ends slant), and without it agrees to 0.4 %.
     """
     monkeypatch.setattr(cut_piece, "ELSEWHERE", replace(cut_piece.ELSEWHERE, across=8.0))
@@ -169,7 +171,7 @@ def test_real_contact_does_not_exceed_the_error(
     plain, half = half_of(NOTHING, problem), half_of(cut, problem)
     found, stress = real_contact(problem, plain, half)
     uncut = bending(problem, problem.solve(LOADS.forces[0, :, :2]))
-    assert bending(problem, found) / uncut == pytest.approx(moment, abs=0.015)
+    assert bending(problem, found) / uncut == pytest.approx(moment, abs=0.02)
     asked = Asked(0.05, distance=EDGE / D)
     (ours,) = solve_in_lugs(
         InLugs(CLEVIS, STEEL, LUGS, (LOADS,), cut=CutPin.of(CLEVIS, (cut,))), asked
@@ -183,4 +185,4 @@ def test_real_contact_does_not_exceed_the_error(
     on = np.isin(np.arange(len(z)), half.boundary.corners)
     real = float(stress[on & away].max())
     coarse = 0.05 * real  # of the solid, 8 elements over the diameter and 6 on a hole's quarter
-    assert real < peak.max_von_mises + peak.error_estimate + coarse
+    assert abs(real - peak.max_von_mises) < peak.error_estimate + coarse

@@ -32,9 +32,10 @@ LUGS = tuple(Lug(n, 0.05, STEEL, 0.0, 0.0, 2.1e5) for n in "ABC")
 
 def test_what_is_neglected() -> None:
     """A pin softer by 1 % is one in lugs stiffer by 1 %: with stress that falls to 0.8 in lugs of
-    half the stiffness, 0.32 % of it; the pressure on a mouth counts at the hole alone.
+    half the stiffness, 0.32 % of it; the pressure on a mouth counts at the hole alone. What is lost
+    on it and what moves away from it are the same force.
     """
-    left = Neglected(0.01, 5e6, 0.02, {"hole 1": "B"})
+    left = Neglected(0.01, 5e6, 0.02, 0.015, {"hole 1": "B"})
     over = (
         Variation("stiffness of the lugs", "half", 0.8e8),
         Variation("clearance", "none", 0.5e8),
@@ -42,9 +43,11 @@ def test_what_is_neglected() -> None:
     share = 0.01 * np.log(1.25) / np.log(2.0) + 0.02
     assert left.error(1e8, False, over) == pytest.approx(share * 1e8)
     assert left.error(1e8, True, over) == pytest.approx(share * 1e8 + 5e6)
+    moved = replace(left, moved=0.1)
+    assert moved.error(1e8, False, over) == pytest.approx((share + 0.08) * 1e8)
     assert left.note.codes == ("cut-in-lug",)
     assert "2.0% of the force of a lug" in left.note.text
-    assert not Neglected(0.01, 0.0, 0.0, {}).note.text
+    assert not Neglected(0.01, 0.0, 0.0, 0.0, {}).note.text
 
 
 def test_a_ringed_pin_weighs_what_contact_balances() -> None:
