@@ -339,7 +339,7 @@ def _written(search: _Search, optimum: Optimum) -> SolvedPin:
         if not found or search.volume(best) < search.volume(found[0]):
             found += [x for x in [_repaired(search, best.values)] if x is not None]
     if not found:
-        raise ImpossibleError("with its dimensions rounded it does not reach the factor")
+        raise ImpossibleError("the dimensions found, and slightly larger ones, miss the factor")
     return min(found, key=search.volume)
 
 
