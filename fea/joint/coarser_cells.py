@@ -46,10 +46,8 @@ def _pairs(model: JointModel) -> Ints:
         first, last = ends[1:] - ends[0] <= near, ends[-1] - ends[:-1] <= near
         before, after = (int(part.sum()) for part in (first, last & ~first))
         flat = len(ends) - 1 - before - after
-        parts = [*_twos(before)[::-1], *_twos(flat), *_twos(after)]
-        if flat > 1 and flat % 2:
-            parts = [*_twos(before)[::-1], *_twos(flat - 3), 3, *_twos(after)]
-        for size in parts:
+        middle = [*_twos(flat - 3), 3] if flat > 1 and flat % 2 else _twos(flat)
+        for size in (*_twos(before)[::-1], *middle, *_twos(after)):
             out += [out[-1] + 1 if out else 0] * size
     return np.array(out, dtype=np.int64)
 

@@ -24,6 +24,7 @@ DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+(?:[eE][-+]?\d+)?")
 THOUSANDS = re.compile(r"[-+]?\d{1,3},\d{3}")
 WITH_UNIT = re.compile(r"[-+]?\d+\.?\d*(?:[eE][-+]?\d+)?\s*(?:[^\W\d_]|[/^*·. ])+\d?")
 MINUS = "\N{MINUS SIGN}"  # which reports print
+LONGEST_SHOWN = 40  # characters of a cell
 LARGEST = 1e18  # the fourth power is still a number; as for quantities of a study
 
 
@@ -48,7 +49,7 @@ class Row:
         try:
             value = float(text)
         except ValueError:
-            what = f"{self.where}: {column} = {text[:40]!r} is not a number"
+            what = f"{self.where}: {column} = {text[:LONGEST_SHOWN]!r} is not a number"
             code = "decimal-comma" if DECIMAL_COMMA.fullmatch(text) else "not-a-number"
             raise TableError(f"{what}{_remedy(text)}", code) from None
         if not math.isfinite(value):
@@ -66,8 +67,9 @@ def _remedy(text: str) -> str:
     if DECIMAL_COMMA.fullmatch(text):
         return f"; write {point}, with a point"
     if text.startswith(MINUS):
-        return f"; write its minus as a hyphen: {text.replace(MINUS, '-')[:40]}"
-    return "; cells have no units" if WITH_UNIT.fullmatch(text) else ""
+        return f"; write its minus as a hyphen: {text.replace(MINUS, '-')[:LONGEST_SHOWN]}"
+    short = len(text) <= LONGEST_SHOWN  # the pattern takes the square of a hostile cell's length
+    return "; cells have no units" if short and WITH_UNIT.fullmatch(text) else ""
 
 
 def read_table(

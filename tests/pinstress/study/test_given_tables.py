@@ -69,6 +69,15 @@ def test_a_cell_that_is_not_a_number_has_a_remedy(tmp_path: Path, cell: str, rem
         prepare(load_study(tmp_path / "study.toml"))
 
 
+def test_a_long_cell_is_answered_at_once(tmp_path: Path) -> None:
+    """The pattern of a number with a unit, tried on it, would not have ended."""
+    (tmp_path / "t.csv").write_text(f"connection,fx,fy\nB,0,{'1' * 20_000}{' ' * 20_000}!\n")
+    study = given((STUDIES / "one_pin.toml").read_text(), "t.csv")
+    (tmp_path / "study.toml").write_text(study)
+    with pytest.raises(InputError, match=r"line 2: fy = '1{40}' is not a number$"):
+        prepare(load_study(tmp_path / "study.toml"))
+
+
 def test_every_case_of_a_mechanism_comes_back(tmp_path: Path) -> None:
     """Motions and positions alike, on pins that turn: in pin axes."""
     done = run_here("loads", str(STUDIES / "grenier2008.toml"), cwd=tmp_path)
