@@ -129,8 +129,10 @@ else
     rm -rf .venv
     say "making .venv with the packages of requirements.lock (1.4 GB, takes minutes)"
     "$python" -m venv .venv
+    # The lock file is complete. If pip resolved again what it needs, an older one (before 23.3) would
+    # look at the newest release that fits "coverage[toml]>=7.10" and refuse it for want of a hash.
     .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-input \
-        --only-binary :all: --require-hashes --requirement requirements.lock
+        --only-binary :all: --no-deps --require-hashes --requirement requirements.lock
 fi
 say "installing pinstress into .venv"
 .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-input \
