@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, replace
 from importlib.metadata import version
 
@@ -32,6 +32,7 @@ from pinstress.study.inputs import inputs
 from pinstress.study.published_tables import Published, read_published
 from reports.data import results as plain
 from reports.data.changes import Change
+from reports.data.dependence import depends_on
 from reports.data.sensitivities import PinSensitivities
 
 
@@ -59,6 +60,7 @@ def results_of(plan: Plan, found: list[Solved]) -> plain.Results:
     beam = next((made.beam for made in found if made.beam is not None), None)
     results = _results(study, plan.loads, rows, beam, plan.published, plan.asked.tolerance)
     fatigue = fatigue_of(plan, found)
+    landing = {(r.pin, r.case): r for made in found for r in made.landing}
     results = replace(
         results,
         pins=tuple(
@@ -66,10 +68,11 @@ def results_of(plan: Plan, found: list[Solved]) -> plain.Results:
                 p,
                 second_opinion=opinions.get((p.pin, p.case)),
                 limit_load=limits.get((p.pin, p.case)),
+                depends_on=depends_on(p, landing.get((p.pin, p.case))),
             )
             for p in results.pins
         ),
-        landing=tuple(r for made in found for r in made.landing),
+        landing=tuple(landing.values()),
         surfaces=tuple(surface for made in found for surface in made.surfaces),
         changes=_worst_changes(found),
         sensitivities=_in_order(found, pins, cases, plan.sensitive),
@@ -188,7 +191,8 @@ def _pin_result(
         position_unit=position_unit(study, here),
         safety_factor=factor,
         yields=None if factor is None else factor < 1.0,
-        meets_required=_meets(peak, strength, required),
+        decided=_meets(peak, strength, required),
+        required=required,
         dofs=peak.dofs,
         seconds=peak.seconds,
         history=peak.history,
@@ -231,10 +235,8 @@ def _governing_loads(task: Task, here: CaseLoads) -> tuple[plain.GoverningLoad, 
 
 
 def _meets(peak: Peak, strength: float | None, required: float | None) -> bool | None:
-    """Whether the required factor is reached; None where that is open."""
-    if strength is None or required is None:
-        return None
-    return decides(peak, strength / required)
+    """Whether the required factor, or yield, is reached; None where that is open."""
+    return None if strength is None else decides(peak, strength / (required or 1.0))
 
 
 def _shape(task: Task, peaks: list[Peak]) -> plain.PinShape:
@@ -252,7 +254,7 @@ def _shape(task: Task, peaks: list[Peak]) -> plain.PinShape:
 
 
 def landing_range(
-    loads: dict[str, CaseLoads],
+    loads: Mapping[str, CaseLoads],
     task: Task,
     solution: Solution,
     pressed: Callable[[PinLoads], PinLoads],
@@ -272,12 +274,15 @@ def landing_range(
         case=case,
         impulse_time=over.times,
         velocity_change=over.velocities,
+        pulses=over.pulses,
         force=over.forces,
         max_von_mises=maxima,
         safety_factor=None if strength is None else strength / maxima,
         nominal=over.nominal,
+        nominal_pulse=over.nominal_pulse,
         verdict=solution.peak.verdict,
         spread=_spread(solution.peak),
+        error=(solution.peak.error_estimate or 0.0) / (solution.peak.max_von_mises or 1.0),
     )
 
 

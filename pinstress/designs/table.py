@@ -25,6 +25,8 @@ RESULTS = {  # by column: the dimension, or None of a text; SI in a DesignRow
     "max_von_mises": "stress",
     "error_estimate": "stress",
     "safety_factor": "",
+    "outcome": None,
+    "depends_on": None,
     "verdict": None,
     "governing_time": "time",
     "mass": "mass",

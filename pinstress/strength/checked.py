@@ -43,7 +43,8 @@ def checked(
 ) -> Checked:
     """By formula and by the model. A pin that is cut is checked as if it were not."""
     factors = load_factors(study)
-    margins = model_margins(peak, task.material, factors)
+    required = study.table.analysis.required_safety_factor
+    margins = model_margins(peak, task.material, factors, required)
     if limit is not None:
         margins.append(collapse_margin(limit, factors, peak.time))
     loads = next(x for x in task.loads if x.case == peak.case)
