@@ -13,6 +13,7 @@ from fea.checks.records import HandCheck
 from fea.core.peak import Peak
 from fea.core.pin_loads import PinLoads
 from fea.joint.lugs.fit import on_structure
+from fea.joint.lugs.lug import Lug
 from fea.joint.records import JointResult
 from fea.plastic.records import LimitLoad
 from fea.strength.bending_arms import BendingArms, bending_arms
@@ -64,8 +65,11 @@ def checked(
             else:
                 margins += formula_margins(s, checks)
                 arms = _arms(s, task, peak, joint)
-    if why:
-        margins.append(not_made(FORMULAS, "", "limit", factors.at("limit"), why))
+    lacking = {FORMULAS: why} if why else {}
+    if isinstance(profile, Pin):
+        lacking |= _held_lugs(study, task)
+    for method, needs in lacking.items():
+        margins.append(not_made(method, "", "limit", factors.at("limit"), needs))
     return Checked(checks, tuple(PinMargin(peak.pin, peak.case, m) for m in margins), arms)
 
 
@@ -95,27 +99,38 @@ def _situation(
         names = ", ".join(structure)
         return None, f"the forces of the structure's lugs {names}, which equilibrium does not give"
     table = study.table.pin[profile.name]
-    lugs = tuple(x for x in task.lugs if x.connection in table.lug)
     pin = on_structure(profile, task.lugs) if structure else profile
     factors = load_factors(study)
     made_of, clamps = task.material, task.clamps
     even = study.table.analysis.bending_moment == "formula"
     return Situation(
-        pin, made_of, whole, clamps, lugs, factors, table.replaceable,
+        pin, made_of, whole, clamps, task.given, factors, table.replaceable,
         joint.along if joint else None, even,
     ), ""  # fmt: skip
 
 
 def _lugs_checked(study: Study, task: Task, pin: Pin, loads: PinLoads) -> tuple[HandCheck, ...]:
     """Of the lugs whose size is given."""
-    given = study.table.pin[pin.name].lug
-    sized = [x for x in task.lugs if x.connection in given and given[x.connection].outer_diameter]
+    sized = _sized(study, task)
     bores = {
         lug.connection: 2.0 * (pin.band(lug.connection).radius + lug.bushing.thickness)
         for lug in sized
         if lug.bushing is not None
     }
     return lug_checks(pin, sized, loads, bores)
+
+
+def _sized(study: Study, task: Task) -> list[Lug]:
+    given = study.table.pin[task.pin.name].lug
+    return [lug for lug in task.given if given[lug.connection].outer_diameter]
+
+
+def _held_lugs(study: Study, task: Task) -> dict[str, str]:
+    """Checks that lugs at clamps lack, and what."""
+    clamped = {task.pin.surface(name) for name in task.clamps}
+    names = [x.connection for x in _sized(study, task) if x.connection in clamped]
+    why = "the force that a clamp takes, which contact with the lug instead of the clamp gives"
+    return {f"lug of {name}: net section, shear-out, bearing": why for name in names}
 
 
 def _arms(s: Situation, task: Task, peak: Peak, joint: JointResult | None) -> BendingArms:
