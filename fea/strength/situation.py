@@ -73,7 +73,7 @@ class Situation:
 
     @property
     def joint_governs(self) -> bool:
-        """Whether section forces of the joint govern: also beside even loads that are asked for,
+        """Whether section forces of the joint govern: also beside even loads that are requested,
         where these leave out the couples of lugs.
         """
         return self.joint is not None and not (self.even_governs and self.balanced)

@@ -68,9 +68,10 @@ class AnalysisTable(StrictTable):
     CFR 25.625 demands 1.15."""
 
     bending_moment: Literal["joint", "formula"] = "joint"
-    """Which bending moments and shear forces the margins of pins in solved joints take: those of
+    """Which bending moments and shear forces the checks of pins in solved joints take: those of
     the joint model ("joint") or those of even loads on the bands ("formula"); the others are
-    listed for comparison. Pins without a joint model always have the formulas'."""
+    listed for comparison, but the joint model's govern too where even loads leave a couple over.
+    Pins without a joint model always have the formulas'."""
 
     @model_validator(mode="after")
     def _ultimate_is_more(self) -> "AnalysisTable":
