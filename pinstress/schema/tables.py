@@ -57,7 +57,8 @@ class AnalysisTable(StrictTable):
     where that decides whether they carry their loads, otherwise by an elastic-plastic solid
     ("auto"); all rows ("always") or those of some pins, by the solid; none ("never")."""
     required_safety_factor: Annotated[Number, Field(gt=0.0)] | None = None
-    """Safety factor that every pin must reach. Default: no comparison."""
+    """Safety factor that every pin must reach: yield strength over stress under the loads of the
+    study, without the factors below. Default: no comparison."""
     limit_factor: Annotated[Number, Field(gt=0.0)] = 1.0
     """Factor on the loads of the study for checks at limit load, against yield."""
     ultimate_factor: Annotated[Number, Field(gt=0.0)] = 1.5
