@@ -86,6 +86,8 @@ def test_lugs_are_checked_with_their_own_strength(joints: str, pin: dict[str, An
     for case, part in (("pull", 1.0), ("push", 0.5)):
         stress = of_lugs(found, case)
         assert len(stress) == 9
+        names = {check.name for check in found["P", case].hand_checks}
+        assert ("bending, joint model" in names) is (joints != "prescribed")
         assert stress["lug, net section", "M"] == pytest.approx(part * F / ((W - D) * T))
         assert stress["lug, shear-out", "L"] == pytest.approx(part * F / 2.0 / (planes * 10.0))
         assert stress["lug, bearing", "R"] == pytest.approx(part * F / 2.0 / (D * 10.0))
