@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from importlib.util import find_spec
 from math import inf
 
 from fea.core.peak import decides
 from fea.fatigue.assess import FatigueMaterial, Spectrum, assess
 from fea.fatigue.records import PointFatigue
+from fea.joint.lugs.lug import Lug
 from fea.strength.margin import RATIO, Margin, PinMargin
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import Solved
@@ -86,6 +87,11 @@ def _points(plan: Plan, found: list[Solved], asked: Spectrum) -> Iterator[PointF
                 yield point
 
 
+def _pressed(lugs: Iterable[Lug]) -> bool:
+    """Whether any is an interference fit."""
+    return any(lug.clearance < 0.0 for lug in lugs)
+
+
 def _left_out(plan: Plan, found: list[Solved], table: FatigueTable) -> tuple[str, ...]:
     needs_fkm = table.method == "fkm-p-ram"
     pins = dict.fromkeys(task.pin.name for task in plan.tasks)
@@ -101,7 +107,8 @@ def _left_out(plan: Plan, found: list[Solved], table: FatigueTable) -> tuple[str
         if not needs_fkm
         and any(decides(p, task.material.yield_strength or inf) is False for p in made.peaks)
     ]
-    tight = [t.pin.name for t in plan.tasks if any(lug.clearance < 0.0 for lug in t.lugs)]
+    tight = dict.fromkeys(t.pin.name for t in plan.tasks if _pressed(t.lugs))
+    left = dict.fromkeys(t.pin.name for t in plan.tasks if _pressed(t.given) and not t.lugs)
     sentences = [
         ("No fatigue data of the material: pin", without),
         ("Not run, so that damage is too low: case", missing),
@@ -110,7 +117,11 @@ def _left_out(plan: Plan, found: list[Solved], table: FatigueTable) -> tuple[str
         (
             "Assembly stress of interference fits is taken as gone between cases, which "
             "overstates ranges: pin",
-            dict.fromkeys(tight),
+            tight,
+        ),
+        (
+            "Assembly stress of interference fits is left out where loads are prescribed: pin",
+            left,
         ),
         ("Cracks may start in singular zones, where stress is not evaluated: pin", singular),
     ]

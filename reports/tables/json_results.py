@@ -197,6 +197,8 @@ def _check(check: HandCheck) -> dict[str, Any]:
         "factor": finite(check.factor),
         "formula": check.formula,
         "source": check.source,
+        "basis": check.basis,
+        "governs": check.governs,
     }
 
 

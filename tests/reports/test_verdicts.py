@@ -91,7 +91,8 @@ def test_json_of_zones_and_checks(found: Results) -> None:
     }
     assert sharp["singular_at"][1]["exponent"] is None
     assert list(weak["hand_checks"][0]) == [
-        *("name", "at", "time", "stress", "strength", "factor", "formula", "source")
+        *("name", "at", "time", "stress", "strength", "factor", "formula", "source"),
+        *("basis", "governs"),
     ]
     assert weak["hand_checks"][0]["time"] == 2.0
     assert weak["hand_checks"][1]["factor"] is None
