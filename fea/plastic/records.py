@@ -13,9 +13,9 @@ from fea.core.dimensions import Floats, Length, Lengths, Stresses
 
 @dataclass(frozen=True)
 class PlasticMesh:
-    """One mesh of the solid: unknowns, bounds of the load factor on it, change of volume over the
-    equivalent strain of its mechanism and what is charged for it in the upper bound, load steps and
-    iterations.
+    """One mesh of the solid: unknowns, the load factor that equilibrium reached on it (lower, of
+    which the lower bound is made) and the upper bound, change of volume over the equivalent strain
+    of its mechanism and what is charged for it in the upper bound, load steps and iterations.
     """
 
     unknowns: int

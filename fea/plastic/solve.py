@@ -16,7 +16,7 @@ from fea.core.pin_loads import PinLoads
 from fea.plastic.flow import FlowRule
 from fea.plastic.flow_field import flow_field
 from fea.plastic.hinge import BEAM_ERROR, BeamBounds, beam_bounds
-from fea.plastic.limit_load import OnMesh, bracket, limit_on_mesh
+from fea.plastic.limit_load import WEAK_EQUILIBRIUM, OnMesh, bracket, limit_on_mesh
 from fea.plastic.pin_body import PinBody, acting_at, finer, pin_body, plane_of
 from fea.plastic.records import LimitLoad, PlasticMesh
 from geometry import Pin, PinLike
@@ -25,7 +25,7 @@ from geometry.mesh.hexahedra import HexSize
 Rung = Literal["auto", "solid"]
 
 SIZES = HexSize(2, 0.5), HexSize(4, 0.25), HexSize(6, 1.0 / 6.0)
-WIDEST = 0.05  # of a bracket, over its middle
+WIDEST = 0.05 + WEAK_EQUILIBRIUM  # of a bracket, over its middle
 MOST_UNKNOWNS = 60_000  # of the solid: a minute or two
 BEFORE_COLLAPSE = 0.95  # of the limit: at most the load after which the permanent set is reported
 TETRAHEDRA = (
@@ -143,7 +143,7 @@ def _of_solid(
         meshes=tuple(
             PlasticMesh(
                 m.unknowns,
-                m.lower,
+                m.reached,
                 m.above.factor,
                 m.above.volume,
                 m.above.charge,
