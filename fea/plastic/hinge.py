@@ -161,7 +161,7 @@ def _slip(span: Span, strong: Floats, inside: Floats) -> Floats:
 def _one_hinge(away: Mask, twisted: Floats, bent: Floats) -> Floats:
     """Power over work (T,) of a section that twists, or of a hinge that bends and stretches."""
     either = [twisted, bent[:, away]] if away.any() else [twisted]
-    return np.concatenate(either, axis=1).max(axis=1)
+    return np.asarray(np.concatenate(either, axis=1).max(axis=1))
 
 
 def _away(span: Span, sections: list[Circle], z: Floats) -> Mask:
