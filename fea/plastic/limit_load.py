@@ -21,6 +21,7 @@ import numpy as np
 
 from fea.core.linear_solver import SolveError
 from fea.plastic.body import FlowingBody
+from fea.plastic.budget import Budget
 from fea.plastic.mechanism import Finer, UpperBound, upper_bound, work_of_flow
 from fea.plastic.path import EquilibriumPath, State
 from fea.plastic.records import LoadCurve
@@ -56,12 +57,14 @@ class OnMesh:
         return float(np.interp(factor, rising, self.curve.permanent))
 
 
-def limit_on_mesh(body: FlowingBody, forces: Floats, finer: Finer) -> OnMesh:
+def limit_on_mesh(
+    body: FlowingBody, forces: Floats, finer: Finer, budget: Budget | None = None
+) -> OnMesh:
     """The limit load of a body under forces (U,) N; finer: the same elements with more points.
 
-    Raises: SolveError when equilibrium is not found before the factor settles.
+    Raises: SolveError when equilibrium is not found before the factor settles; OutOfTimeError.
     """
-    path = EquilibriumPath(body, forces)
+    path = EquilibriumPath(body, forces, budget)
     first = work_of_flow(body, finer.elements, path.elastic)
     states, flows = [path.start()], np.inf
     try:

@@ -61,7 +61,8 @@ class LimitLoad:
 
     carries: whether the pin carries its loads (factor 1) without collapse; None where that is not
     decided. permanent_set: what is left of the largest displacement after the loads reached the
-    factor permanent_at and were taken off. curve, flow: of the finest mesh.
+    factor permanent_at and were taken off. curve, flow: of the finest mesh. stopped: there is no
+    answer because it would have taken longer than a limit load may that nobody asked for.
     """
 
     method: Literal["beam", "solid", "none"]
@@ -76,3 +77,4 @@ class LimitLoad:
     curve: LoadCurve | None = None
     flow: FlowField | None = None
     note: str = ""
+    stopped: bool = False
