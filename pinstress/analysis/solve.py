@@ -119,8 +119,8 @@ def _attempt(
 
 
 def _solve_once(plan: Plan, task: Task, keep: Keep, cache: Cache, tell: Tell) -> Solved:
-    """From the cache; else solved, and kept there: what lacks a limit load for want of time apart,
-    so that it is no answer where that is asked for.
+    """From the cache; else solved, and kept there. What lacks a limit load for want of time has a
+    key of its own: it is no answer where that limit load is requested.
     """
     key, seconds = cache.key(question(plan, task)), limit_seconds(plan)
     entry = cache.read(key, Entry)
