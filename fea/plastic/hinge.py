@@ -13,12 +13,13 @@ both is nowhere exceeded. It leaves sqrt(1 - (V/Vs + T/Tp)^2) of the yield stres
 pulling.
 
 Kinematic theorem: the least of the work of flow over the power of the loads among mechanisms. Slip
-of a section costs Vp = A s_y / sqrt 3, twist Tp. A hinge bends and stretches as the curve g has it,
-or twists as well, which takes s_y sqrt(A (A e^2 + I k^2 + J t^2 / 3)) per length at most (by
-Schwarz's inequality, for a stretch e, a curvature k and a twist t). One is enough where one side of
-a span is free, three, which bend alone, where both are clamped. Next to a clamp or a shoulder the
-section cannot warp and contract: a hinge is ROOM away from it, where the solid has it too, and what
-is nearer is left to slip and twist.
+of a section costs Vp = A s_y / sqrt 3, twist Tp; to slip apart along a plane of slope t from the
+section Vp (t + 1 / t), which is 2 Vp = 1.155 Np if there is room for a slope of one. A hinge bends
+and stretches as the curve g has it, or twists as well, which takes
+s_y sqrt(A (A e^2 + I k^2 + J t^2 / 3)) per length at most (by Schwarz's inequality, for a stretch
+e, a curvature k and a twist t). One is enough where one side of a span is free, three, which bend
+alone, where both are clamped. Next to a clamp or a shoulder the section cannot warp and contract: a
+hinge is ROOM away from it, where the solid has it too, and what is nearer is left to slip and twist.
 
 Both are theorems of beams. The solid differs by what happens within a diameter of loads and clamps,
 so of a bracket only what is beyond BEAM_ERROR decides.
@@ -83,11 +84,12 @@ def beam_bounds(
         most, least = _bending_and_axial(sections, across)
         lower = np.minimum(lower, first * _static(sections, across, most))
         slip = np.minimum(slip, last * _slip(span, strong, inside))
-        away = _away(span, sections, z)
+        room = _room(span, sections, z)
         if span.left and span.right:
+            away = room >= 2.0 * ROOM
             power = _three_hinges(z, away, strong[:, MOMENT], inside[..., MOMENT])
         else:
-            power = _one_hinge(away, across[..., TORQUE], least)
+            power = _one_mechanism(room, across, least)
         upper = np.minimum(upper, last * _inverse(power))
     return BeamBounds(lower, np.minimum(upper, slip), slip)
 
@@ -158,22 +160,26 @@ def _slip(span: Span, strong: Floats, inside: Floats) -> Floats:
     return _inverse(power.max(axis=(1, 2)))
 
 
-def _one_hinge(away: Mask, twisted: Floats, bent: Floats) -> Floats:
-    """Power over work (T,) of a section that twists, or of a hinge that bends and stretches."""
-    either = [twisted, bent[:, away]] if away.any() else [twisted]
-    return np.asarray(np.concatenate(either, axis=1).max(axis=1))
+def _one_mechanism(room: Floats, across: Floats, bent: Floats) -> Floats:
+    """Power over work (T,) of a section that twists, slips apart or is a hinge. bent: of a hinge,
+    (T, S).
+    """
+    steep = np.minimum(room, 1.0)  # of a plane that ends before clamps and thicker sections
+    apart = math.sqrt(3.0) * steep / (1.0 + steep**2) * across[..., AXIAL]
+    hinge = np.where(room >= 2.0 * ROOM, bent, 0.0)
+    return np.asarray(np.maximum(np.maximum(across[..., TORQUE], apart), hinge).max(axis=1))
 
 
-def _away(span: Span, sections: list[Circle], z: Floats) -> Mask:
-    """Which sections (S,) have room for a hinge between clamps and thicker ones."""
-    radius = np.array([s.outer for s in sections])
-    gap = np.where(radius > (1.0 + 1e-9) * radius[:, None], np.abs(z - z[:, None]), np.inf)
-    room = gap.min(axis=1)
+def _room(span: Span, sections: list[Circle], z: Floats) -> Floats:
+    """Distance (S,) from clamps and thicker sections over the outer radius."""
+    outer, inner = np.array([(s.outer, s.inner) for s in sections]).T
+    more = (outer > (1.0 + 1e-9) * outer[:, None]) | (inner < (1.0 - 1e-9) * inner[:, None])
+    room = np.where(more, np.abs(z - z[:, None]), np.inf).min(axis=1)
     if span.left:
         room = np.minimum(room, z - z[0])
     if span.right:
         room = np.minimum(room, z[-1] - z)
-    return np.asarray(room >= ROOM * 2.0 * radius)
+    return np.asarray(room / outer)
 
 
 def _three_hinges(z: Floats, away: Mask, strong: Floats, moment: Floats) -> Floats:

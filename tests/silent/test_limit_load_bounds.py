@@ -158,6 +158,20 @@ def test_a_tube_of_20_by_14_with_an_axial_force_is_not_said_to_carry_its_loads()
     assert 0.99 * exact < found.lower[0] <= exact * (1.0 + 1e-5) <= found.upper[0]
 
 
+@pytest.mark.parametrize("length", [0.1, 0.6, 4.0])
+def test_a_neck_is_not_said_to_break_where_shoulders_hold_it(length: float) -> None:
+    """A short one carries more than its section times yield, as it cannot contract: by slip along
+    a plane within it, at most. Only a long one has that as a bound, which was that of all.
+    """
+    head = Segment(D, 2.0 * D, connection="a"), Segment(D, 2.0 * D, connection="b")
+    pin = Pin("p", (head[0], Segment(length * D, D), head[1]))
+    upper = beam_bounds(pin, STEEL, (), _ends(0.0, _plastic(0.0)[1], 0.0)).upper[0]
+    slopes = np.linspace(1e-3, min(length, 1.0), 2000)
+    area_over_shear = (1.0 + slopes**2) / slopes / math.sqrt(3.0)
+    slip = min(area_over_shear.min(), 4.0)  # which the heads carry
+    assert upper == pytest.approx(1.0 if length > 2.0 * 0.75 else slip, rel=0.02)
+
+
 @pytest.mark.parametrize("bore", [0.0, 0.5, 0.9])
 @pytest.mark.parametrize("length", [0.8, 3.0])
 def test_a_stress_field_has_the_forces_of_the_lower_bound_and_yields_nowhere(
