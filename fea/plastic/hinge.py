@@ -18,8 +18,8 @@ section Vp (t + 1 / t), which is 2 Vp = 1.155 Np if there is room for a slope of
 and stretches as the curve g has it, or twists as well, which takes
 s_y sqrt(A (A e^2 + I k^2 + J t^2 / 3)) per length at most (by Schwarz's inequality, for a stretch
 e, a curvature k and a twist t). One is enough where one side of a span is free, three, which bend
-alone, where both are clamped. Next to a clamp or a shoulder the section cannot warp and contract: a
-hinge is ROOM away from it, where the solid has it too, and what is nearer is left to slip and twist.
+alone, where both are clamped. Next to a clamp or a shoulder the section cannot warp and contract:
+a hinge is ROOM away from it, where the solid has it too, and what is nearer slips and twists.
 
 Both are theorems of beams. The solid differs by what happens within a diameter of loads and clamps,
 so of a bracket only what is beyond BEAM_ERROR decides.
