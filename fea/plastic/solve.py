@@ -156,10 +156,10 @@ def _of_solid(
     meshes: list[OnMesh], bounds: BeamBounds | None, rule: FlowRule, note: str
 ) -> LimitLoad:
     lower, upper = bracket(meshes)
+    finest = meshes[-1]
     if bounds is not None and bounds.slip[0] < upper:
         upper, note = float(bounds.slip[0]), "slip of a section is the upper bound"
-        lower = min(lower, upper)
-    finest = meshes[-1]
+        lower = min(lower, 2.0 * upper - finest.reached)  # as far below as the mesh is above
     at = min(1.0, BEFORE_COLLAPSE * lower)
     return LimitLoad(
         "solid",

@@ -231,6 +231,27 @@ def test_the_solids_bracket_has_the_exact_factor(bore: float, m: float, n: float
 
 
 @pytest.mark.slow
+def test_a_mesh_that_exceeds_a_strict_upper_bound_gives_no_lower_bound_there() -> None:
+    """A short pin between two clamps: both bounds were 2 A s_y / sqrt 3, at which both its sections
+    slip, while its meshes, the coarser the more, are stiffer. What they tend to, straight in the
+    size of their elements, is between the bounds now.
+    """
+    ends = Segment(0.5 * D, D, name="left"), Segment(0.5 * D, D, name="right")
+    pin = Pin("p", (ends[0], Segment(D, D, connection="a"), ends[1]))
+    loads = PinLoads("c", ("a",), np.array([[[1.0, 0.0, 0.0]]]))
+    slip = 2.0 * math.pi / 4.0 * D**2 * SHEAR_YIELD
+    found = limit_load(pin, STEEL, (pin.surface("left"), pin.surface("right")), loads, "solid")
+    reached = [mesh.lower for mesh in found.meshes]
+    assert found.upper == pytest.approx(slip, rel=1e-9)
+    assert reached[0] > reached[1] > reached[2] > slip
+    sizes = [size.along for size in SIZES]
+    towards = reached[2] - sizes[2] * (reached[1] - reached[2]) / (sizes[1] - sizes[2])
+    assert found.lower is not None
+    assert found.lower < 0.98 * slip
+    assert found.lower < towards < slip
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("bore", [0.0, 0.7])
 def test_the_solids_bracket_of_torsion_has_the_exact_factor(bore: float) -> None:
     exact = _plastic(bore)[2]
