@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from math import inf
 
 from fea.checks.opinions import Opinion
 from fea.core.memory import allowed_memory, solid_memory
@@ -21,7 +22,7 @@ from fea.solve_pin import Asked, Solution, solve_pin
 from geometry import CutPin, Pin
 from pinstress.analysis import checks, gather, gather_fields
 from pinstress.analysis.gather_surface import surfaces_of
-from pinstress.analysis.limits import limit_loads
+from pinstress.analysis.limits import limit_loads, limit_seconds
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import Entry, Solved, lasting, question
 from pinstress.cache.store import Cache
@@ -118,9 +119,14 @@ def _attempt(
 
 
 def _solve_once(plan: Plan, task: Task, keep: Keep, cache: Cache, tell: Tell) -> Solved:
-    """From the cache; else solved, and kept there."""
-    key = cache.key(question(plan, task))
+    """From the cache; else solved, and kept there. What lacks a limit load for want of time has a
+    key of its own: it is no answer where that limit load is requested.
+    """
+    key, seconds = cache.key(question(plan, task)), limit_seconds(plan)
     entry = cache.read(key, Entry)
+    lacking = None if seconds == inf else cache.key(question(plan, task, seconds))
+    if lacking is not None and (entry is None or not entry.answers(task)):
+        entry = cache.read(lacking, Entry)
     if entry is not None and entry.answers(task):
         tell(f"pin {task.pin.name}, as solved before")
         for field in entry.fields:
@@ -134,7 +140,8 @@ def _solve_once(plan: Plan, task: Task, keep: Keep, cache: Cache, tell: Tell) ->
 
     solved = _solve(plan, task, keep_both, tell)
     if lasting(plan, task, solved.peaks):
-        cache.write(key, Entry(solved, tuple(fields)))
+        stopped = any(limit is not None and limit.stopped for limit in solved.limits)
+        cache.write(lacking if lacking and stopped else key, Entry(solved, tuple(fields)))
     return solved
 
 

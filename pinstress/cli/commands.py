@@ -143,6 +143,12 @@ def commands() -> None:
     "lugs by contact in three dimensions, which takes minutes.",
 )
 @click.option(
+    "--limit-load",
+    is_flag=True,
+    help="Limit load of every row that yields, however long it takes; without it, each has 20 s of "
+    "processor time unless the study asks for it.",
+)
+@click.option(
     "--sensitivities",
     is_flag=True,
     help="Sensitivities of every pin in all cases, not only in its worst one, and in contact too.",
@@ -169,6 +175,7 @@ def run(
     jobs: int | None,
     memory_limit: float | None,
     second_opinion: str | None,
+    limit_load: bool,
     sensitivities: bool,
     fail_on_miss: bool,
     no_cache: bool,
@@ -196,6 +203,7 @@ def run(
         model=model,
         tolerance=tolerance,
         memory=memory_limit,
+        limit_load=limit_load,
     )
 
 

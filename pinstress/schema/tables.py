@@ -55,7 +55,9 @@ class AnalysisTable(StrictTable):
     limit_load: LimitLoads = "auto"
     """For which rows the load is found at which the pin collapses: those that yield, by a beam
     where that decides whether they carry their loads, otherwise by an elastic-plastic solid
-    ("auto"); all rows ("always") or those of some pins, by the solid; none ("never")."""
+    ("auto", where each has 20 s of processor time, but with `run --limit-load` as long as it
+    takes); all rows ("always") or those of some pins, by the solid, however long it takes; none
+    ("never")."""
     required_safety_factor: Annotated[Number, Field(gt=0.0)] | None = None
     """Safety factor that every pin must reach: yield strength over stress under the loads of the
     study, without the factors below. Default: no comparison."""
