@@ -3,6 +3,9 @@
 signed-von-mises   rainflow of the signed von Mises stress, mean stress, S-N curve
 critical-plane     Findley's plane of largest damage                  (fea.fatigue.critical_plane)
 fkm-p-ram          local strains by the FKM guideline                 (fea.fatigue.fkm)
+
+The first and the last take one course of stress with a sign. Where none stands for the history
+(fea.fatigue.proportional), the critical plane is taken instead, or the history is refused.
 """
 
 from __future__ import annotations
@@ -14,12 +17,14 @@ from typing import Literal
 
 import numpy as np
 
-from fea.fatigue.critical_plane import findley_k, plane_cycles
+from fea.fatigue.critical_plane import findley_k, worst_plane
 from fea.fatigue.fkm import FkmMaterial, p_ram_life
 from fea.fatigue.flight import Cycles, case_by_case, flight, rainflow
+from fea.fatigue.proportional import SEEN, Course, course
 from fea.fatigue.records import PointFatigue, PointHistory
 from fea.fatigue.sn_curve import SnCurve
 from geometry.arrays import Floats
+from geometry.coded import ArgumentError
 
 Method = Literal["signed-von-mises", "critical-plane", "fkm-p-ram"]
 SHOWN = (0.1, 0.5, 0.9)  # failure probabilities
@@ -64,16 +69,21 @@ def assess(
 ) -> PointFatigue | None:
     """Damage at a point; None where no case of the spectrum acts, or no data are given for the
     method.
+
+    Raises: ArgumentError where the method cannot see the history and the critical plane, which can,
+    lacks data (`unseen-history`).
     """
     cases = [c for c in history.cases if spectrum.occurrences.get(c.case, 0.0) > 0.0]
     if not cases or (material.fkm if spectrum.method == "fkm-p-ram" else material.curve) is None:
         return None
-    if spectrum.method == "fkm-p-ram":
-        found = _by_fkm([c.signed for c in cases], _often(history, spectrum), spectrum, material)
-    elif spectrum.method == "critical-plane":
-        found = _by_plane([c.stress for c in cases], _often(history, spectrum), spectrum, material)
+    often, seen = [spectrum.occurrences[c.case] for c in cases], course(cases)
+    method, note = _method(spectrum.method, seen, material)
+    if method == "fkm-p-ram":
+        found = _by_fkm(seen.cases, often, spectrum, material)
+    elif method == "critical-plane":
+        found = _by_plane([c.stress for c in cases], often, spectrum, material)
     else:
-        found = _by_sign([c.signed for c in cases], _often(history, spectrum), spectrum, material)
+        found = _by_sign(seen.cases, often, spectrum, material)
     damage = found.damage[None]
     shown, counts = _collective(found.equivalent, found.units)
     return PointFatigue(
@@ -81,7 +91,7 @@ def assess(
         point=history.point,
         location=history.location,
         cases=tuple(c.case for c in cases),
-        method=spectrum.method,
+        method=method,
         damage=damage,
         life=_life(damage),
         lives=tuple(_life(found.damage[p]) for p in SHOWN if p in found.damage),
@@ -90,18 +100,32 @@ def assess(
         mean=found.mean,
         amplitudes=shown,
         counts=counts,
-        note=history.chosen,
+        note="; ".join(filter(None, (history.chosen, note))),
         normal=None if found.normal is None else history.in_pin_axes(found.normal),
     )
 
 
+def _method(asked: Method, seen: Course, material: FatigueMaterial) -> tuple[Method, str]:
+    """The method that sees the history, and why, if it is not the asked one."""
+    if asked == "critical-plane":
+        return asked, ""
+    if seen.stands:
+        return asked, seen.note
+    why = (
+        f"the stress is not proportional (off by {seen.unseen:.0%} of its largest value, above "
+        f"{SEEN:.0%}), which {asked} cannot see"
+    )
+    curve = material.curve
+    if curve is None:
+        raise ArgumentError(f"{why}; the critical plane needs an S-N curve", "unseen-history")
+    if material.sensitivity is None and curve.rule != "none":
+        needs = "mean_stress_sensitivity of the S-N data"
+        raise ArgumentError(f"{why}; the critical plane needs {needs}", "unseen-history")
+    return "critical-plane", f"{why}: by the critical plane"
+
+
 def _life(damage: float) -> float | None:
     return 1.0 / damage if damage > 0.0 and isfinite(damage) else (0.0 if damage else None)
-
-
-def _often(history: PointHistory, spectrum: Spectrum) -> list[float]:
-    every = (spectrum.occurrences.get(c.case, 0.0) for c in history.cases)
-    return [n for n in every if n > 0.0]
 
 
 def _by_sign(
@@ -120,8 +144,8 @@ def _by_plane(
 ) -> _Found:
     curve, order = material.curve, flight(often)
     assert curve is not None
-    planes = plane_cycles(courses, order, findley_k(material.sensitivity or 0.0))
-    worst = max(planes, key=lambda plane: (curve.damage(plane.equivalent), plane.equivalent.max()))
+    life = curve.life(spectrum.probability)
+    worst = worst_plane(courses, order, findley_k(material.sensitivity or 0.0), life)
     damage = _damage(curve, worst.equivalent, order.units, spectrum.probability)
     largest = _largest(worst.shear, worst.equivalent)
     return _Found(damage, *largest, worst.equivalent, order.units, worst.normal)
@@ -143,10 +167,14 @@ def _by_fkm(
         if spectrum.probability not in (None, 0.5):
             asked = p_ram_life(whole, data, spectrum.probability)
         if not asked.infinite:
-            found[None] = 1.0 / (asked.repetitions * order.units)
+            found[None] = _per_unit(asked.repetitions, order.units)
         if not middle.infinite and middle.at is not None:
-            found |= {p: 1.0 / (middle.at(p) * order.units) for p in SHOWN}
+            found |= {p: _per_unit(middle.at(p), order.units) for p in SHOWN}
     return _Found(found, *_largest(cycles, cycles.amplitude), cycles.amplitude, order.units)
+
+
+def _per_unit(repetitions: float, units: int) -> float:
+    return 1.0 / (repetitions * units) if repetitions > 0.0 else inf
 
 
 def _damage(
