@@ -74,31 +74,35 @@ def p_ram_life(
             pandas.Series(asked), pandas.Series(sequence / PER_MPA), calculate_P_RAJ=False
         )
         infinite = bool(found["P_RAM_is_life_infinite"])
-    calculator = found["P_RAM_damage_calculator"]
-    bearable = found.get("P_RAM_N_max_bearable")  # which changes the calculator's damage
+    cycles, curve = found["P_RAM_collective"], found["P_RAM_woehler_curve"]
+    bearable = found.get("P_RAM_N_max_bearable")
 
     def at(wanted: float) -> float:
         with quiet():
-            bearable(wanted)
-        return _life(calculator.collective)[1]
+            bearable(wanted)  # which leaves the damage at this probability
+        calculated = found["P_RAM_damage_calculator"].collective
+        return _repetitions(calculated, calculated["D"].to_numpy(dtype=float))
 
-    cycles, repetitions = _life(calculator.collective)
+    parameter, closed = (cycles[x].to_numpy() for x in ("P_RAM", "is_closed_hysteresis"))
+    ratio = np.nan_to_num(parameter.astype(float) / float(curve.P_RAM_Z))
+    slope = np.where(ratio >= 1.0, 1.0 / curve.d_1, 1.0 / curve.d_2)
+    damage = np.where(closed, 1.0, 0.5) * 1e-3 * ratio**-slope
+    repetitions = _repetitions(cycles, damage)
+    count = int((cycles["run_index"] == 2).sum())
     never = infinite or repetitions == inf
-    return FkmLife(cycles, repetitions, never, None if bearable is None else at)
+    return FkmLife(count * repetitions, repetitions, never, None if bearable is None else at)
 
 
-def _life(cycles: pandas.DataFrame) -> tuple[float, float]:
-    """Cycles and repetitions of the sequence until failure, by equation 2.6-90 of the guideline
-    from the damage in its first and its second run; within these by the part of their damage, where
-    pyLife has none. A cycle in compression, without P_RAM, does no damage.
+def _repetitions(cycles: pandas.DataFrame, damage: Floats) -> float:
+    """Of the sequence until failure, by equation 2.6-90 of the guideline from the damage (C,) in
+    its first and its second run; within these by the part of their damage, where pyLife has none. A
+    cycle in compression, without P_RAM, does no damage.
     """
-    damage, run = (cycles[x].to_numpy(dtype=float) for x in ("D", "run_index"))
+    run = cycles["run_index"].to_numpy()
     first, second = (float(np.nansum(damage[run == n])) for n in (1, 2))
     if first >= 1.0:
-        repetitions = 1.0 / first
-    else:
-        repetitions = 1.0 + (1.0 - first) / second if second > 0.0 else inf
-    return repetitions * int((run == 2).sum()), repetitions
+        return 1.0 / first
+    return 1.0 + (1.0 - first) / second if second > 0.0 else inf
 
 
 def _parameters(material: FkmMaterial) -> dict[str, object]:
