@@ -28,6 +28,7 @@ from geometry.coded import ArgumentError
 
 Method = Literal["signed-von-mises", "critical-plane", "fkm-p-ram"]
 SHOWN = (0.1, 0.5, 0.9)  # failure probabilities
+SHEAR = 2.0 / 3.0**0.5  # Tresca's stress over von Mises stress, at most
 LEAST = 0.01  # of the largest amplitude: smaller ones are not shown
 
 
@@ -77,7 +78,7 @@ def assess(
     if not cases or (material.fkm if spectrum.method == "fkm-p-ram" else material.curve) is None:
         return None
     often, seen = [spectrum.occurrences[c.case] for c in cases], course(cases)
-    method, note = _method(spectrum.method, seen, material)
+    method, note = _method(spectrum, seen, material)
     if method == "fkm-p-ram":
         found = _by_fkm(seen.cases, often, spectrum, material)
     elif method == "critical-plane":
@@ -105,23 +106,39 @@ def assess(
     )
 
 
-def _method(asked: Method, seen: Course, material: FatigueMaterial) -> tuple[Method, str]:
+def _method(spectrum: Spectrum, seen: Course, material: FatigueMaterial) -> tuple[Method, str]:
     """The method that sees the history, and why, if it is not the asked one."""
+    asked, curve = spectrum.method, material.curve
     if asked == "critical-plane":
         return asked, ""
     if seen.stands:
         return asked, seen.note
+    if _harmless(SHEAR * seen.largest, spectrum, material):
+        return asked, "the stress is not proportional, but does no damage in any direction"
     why = (
-        f"the stress is not proportional (off by {seen.unseen:.0%} of its largest value, above "
-        f"{SEEN:.0%}), which {asked} cannot see"
+        f"the stress is not proportional (off by {100.0 * seen.unseen:.0f} % of its largest value, "
+        f"above {100.0 * SEEN:.0f} %), which {asked} cannot see"
     )
-    curve = material.curve
+    needs = ""
     if curve is None:
-        raise ArgumentError(f"{why}; the critical plane needs an S-N curve", "unseen-history")
-    if material.sensitivity is None and curve.rule != "none":
-        needs = "mean_stress_sensitivity of the S-N data"
+        needs = "an S-N curve"
+    elif material.sensitivity is None and curve.rule != "none":
+        needs = "the mean_stress_sensitivity of the S-N curve"
+    elif spectrum.probability not in (None, curve.probability) and curve.scatter == 1.0:
+        needs = "the scatter of the S-N curve"
+    if needs:
         raise ArgumentError(f"{why}; the critical plane needs {needs}", "unseen-history")
     return "critical-plane", f"{why}: by the critical plane"
+
+
+def _harmless(largest: float, spectrum: Spectrum, material: FatigueMaterial) -> bool:
+    """Whether cycles of this amplitude, Pa, at stress ratio -1 do no damage."""
+    if spectrum.method == "fkm-p-ram":
+        assert material.fkm is not None
+        both = np.array([0.0, largest, -largest, 0.0])
+        return p_ram_life(both, material.fkm, spectrum.probability or 0.5).infinite
+    assert material.curve is not None
+    return not material.curve.life(spectrum.probability).damage(np.array([largest])).any()
 
 
 def _life(damage: float) -> float | None:

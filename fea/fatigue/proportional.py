@@ -28,11 +28,12 @@ BY_SIDE = "alternating shear, signed by its direction"
 
 @dataclass(frozen=True)
 class Course:
-    """Stress with a sign, (T,) Pa in each case. unseen: of the largest stress, what it leaves out.
-    note: how it was signed, if not by the largest principal stress.
+    """Stress with a sign, (T,) Pa in each case. largest: von Mises stress, Pa. unseen: what the
+    course leaves out, over that. note: how it was signed, if not by the largest principal stress.
     """
 
     cases: list[Floats]
+    largest: float
     unseen: float
     note: str = ""
 
@@ -49,7 +50,7 @@ def course(cases: Sequence[CaseHistory]) -> Course:
     size = von_mises(stress)
     largest = float(size.max(initial=0.0))
     if not largest:
-        return Course([case.signed for case in cases], 0.0)
+        return Course([case.signed for case in cases], 0.0, 0.0)
     values, vectors = np.linalg.eigh(VON_MISES)
     deviator = stress @ (vectors * np.sqrt(np.maximum(values, 0.0)))  # (T, 6)
     line = np.linalg.svd(deviator, full_matrices=False)[2][0]
@@ -63,6 +64,6 @@ def course(cases: Sequence[CaseHistory]) -> Course:
 
     plain = min(off(signed, line), off(signed, -line))
     if plain <= SEEN or off(by_side, side * line) > SEEN:
-        return Course([case.signed for case in cases], plain)
+        return Course([case.signed for case in cases], largest, plain)
     ends = np.cumsum([len(case.signed) for case in cases])[:-1]
-    return Course(np.split(by_side, ends), off(by_side, side * line), BY_SIDE)
+    return Course(np.split(by_side, ends), largest, off(by_side, side * line), BY_SIDE)

@@ -133,10 +133,12 @@ def _points(
         try:
             point = assess(history, spectrum(table), _material(plan, history.pin))
         except ArgumentError as error:
-            failed = _Open(f"{at}, {error}", 'fatigue.method = "critical-plane" with its data')
+            failed = failed or _Open(
+                f"{at}, {error}", 'fatigue.method = "critical-plane" with its data'
+            )
         except Exception as error:  # of pyLife or ours: none may take other results with it
             reason = f"{at}, {table.method} failed ({type(error).__name__}: {error})"
-            failed = _Open(reason, f"a method other than {table.method}, which failed")
+            failed = failed or _Open(reason, f"a method other than {table.method}, which failed")
         else:
             points += [] if point is None else [point]
     return points, failed
