@@ -20,7 +20,7 @@ import numpy as np
 from fea.fatigue.critical_plane import findley_k, worst_plane
 from fea.fatigue.fkm import FkmMaterial, p_ram_life
 from fea.fatigue.flight import Cycles, case_by_case, flight, rainflow
-from fea.fatigue.proportional import SEEN, Course, course
+from fea.fatigue.proportional import SEEN, SignedCourse, course
 from fea.fatigue.records import PointFatigue, PointHistory
 from fea.fatigue.sn_curve import SnCurve
 from geometry.arrays import Floats
@@ -106,7 +106,9 @@ def assess(
     )
 
 
-def _method(spectrum: Spectrum, seen: Course, material: FatigueMaterial) -> tuple[Method, str]:
+def _method(
+    spectrum: Spectrum, seen: SignedCourse, material: FatigueMaterial
+) -> tuple[Method, str]:
     """The method that sees the history, and why, if it is not the asked one."""
     asked, curve = spectrum.method, material.curve
     if asked == "critical-plane":

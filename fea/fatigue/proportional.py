@@ -27,7 +27,7 @@ BY_SIDE = "alternating shear, signed by its direction"
 
 
 @dataclass(frozen=True)
-class Course:
+class SignedCourse:
     """Stress with a sign, (T,) Pa in each case. largest: von Mises stress, Pa. unseen: what the
     course leaves out, over that. note: how it was signed, if not by the largest principal stress.
     """
@@ -43,14 +43,14 @@ class Course:
         return self.unseen <= SEEN
 
 
-def course(cases: Sequence[CaseHistory]) -> Course:
+def course(cases: Sequence[CaseHistory]) -> SignedCourse:
     """Of all cases of a history; what it leaves out is for the caller to look at."""
     stress = np.concatenate([case.stress for case in cases])
     signed = np.concatenate([case.signed for case in cases])
     size = von_mises(stress)
     largest = float(size.max(initial=0.0))
     if not largest:
-        return Course([case.signed for case in cases], 0.0, 0.0)
+        return SignedCourse([case.signed for case in cases], 0.0, 0.0)
     values, vectors = np.linalg.eigh(VON_MISES)
     deviator = stress @ (vectors * np.sqrt(np.maximum(values, 0.0)))  # (T, 6)
     line = np.linalg.svd(deviator, full_matrices=False)[2][0]
@@ -64,6 +64,6 @@ def course(cases: Sequence[CaseHistory]) -> Course:
 
     plain = min(off(signed, line), off(signed, -line))
     if plain <= SEEN or off(by_side, side * line) > SEEN:
-        return Course([case.signed for case in cases], largest, plain)
+        return SignedCourse([case.signed for case in cases], largest, plain)
     ends = np.cumsum([len(case.signed) for case in cases])[:-1]
-    return Course(np.split(by_side, ends), largest, off(by_side, side * line), BY_SIDE)
+    return SignedCourse(np.split(by_side, ends), largest, off(by_side, side * line), BY_SIDE)

@@ -72,7 +72,7 @@ def fatigue_of(plan: Plan, found: list[Solved]) -> tuple[Fatigue | None, list[Pi
         life=table.life,
         points=tuple(points),
         left_out=(*short, *_left_out(plan, found, table, points)),
-        undecided={pin: open_.reason for pin, open_ in opens.items() if pin not in failing},
+        not_decided={pin: open_.reason for pin, open_ in opens.items() if pin not in failing},
     )
     needs = {pin: open_.needs for pin, open_ in opens.items() if pin not in failing}
     key = "fkm" if table.method == "fkm-p-ram" else "fatigue"

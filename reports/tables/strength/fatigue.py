@@ -24,7 +24,7 @@ POINTS = ("pin", "point", "x", "y", "z", "chosen")
 COLUMNS = (
     *("pin", "point", "x", "y", "z", "method", "damage", "life", "life_10", "life_50", "life_90"),
     *("utilisation", "amplitude", "mean_stress", "note", "normal_x", "normal_y", "normal_z"),
-    "undecided",
+    "not_decided",
 )
 
 
@@ -60,10 +60,12 @@ def _rows(fatigue: Fatigue | None) -> Iterator[list[Cell]]:
             *(p.pin, p.point, *p.location, p.method, p.damage, p.life, *lives),
             *(p.utilisation, p.amplitude, p.mean, p.note),
             *(p.normal or (None,) * 3),
-            fatigue.undecided.get(p.pin, ""),
+            fatigue.not_decided.get(p.pin, ""),
         ]
-    for pin in fatigue.undecided.keys() - {p.pin for p in fatigue.points}:
-        yield [pin, *(None,) * (len(COLUMNS) - 2), fatigue.undecided[pin]]
+    shown = {p.pin for p in fatigue.points}
+    for pin, reason in fatigue.not_decided.items():
+        if pin not in shown:
+            yield [pin, *(None,) * (len(COLUMNS) - 2), reason]
 
 
 def worst_points(fatigue: Fatigue) -> list[PointFatigue]:
@@ -88,7 +90,7 @@ def fatigue_grid(results: Results) -> Grid | None:
     head += ["normal of the plane"] if any(p.normal for p in worst) else []
     body = []
     for p in worst:
-        least, most = ("≥ ", "≤ ") if p.pin in fatigue.undecided else ("", "")
+        least, most = ("≥ ", "≤ ") if p.pin in fatigue.not_decided else ("", "")
         lives = [most + life_words(x) for x in p.lives] or [DASH] * len(PROBABILITIES)
         damage = least + _or_infinite(p.damage) if p.damage or least else "none"
         body.append(
@@ -123,11 +125,11 @@ def fatigue_sentence(fatigue: Fatigue) -> str:
     """The worst point in a line, with the pins that are not decided and those that another method
     than the asked one was taken for.
     """
-    known = [p for p in fatigue.points if p.pin not in fatigue.undecided]
+    known = [p for p in fatigue.points if p.pin not in fatigue.not_decided]
     sentences = [_worst(known[0], fatigue)] if known else []
     sentences += [
         f"Fatigue of pin {pin} is not decided: {reason}{_so_far(pin, fatigue)}."
-        for pin, reason in fatigue.undecided.items()
+        for pin, reason in fatigue.not_decided.items()
     ]
     sentences += [
         f"Pin {p.pin}, point {p.point}: {p.note.partition('; ')[2]}."
@@ -151,7 +153,7 @@ def _worst(worst: PointFatigue, fatigue: Fatigue) -> str:
 
 
 def _elsewhere(fatigue: Fatigue) -> str:
-    return " of the other pins" if fatigue.undecided else ""
+    return " of the other pins" if fatigue.not_decided else ""
 
 
 def _so_far(pin: str, fatigue: Fatigue) -> str:
@@ -176,7 +178,7 @@ def fatigue_json(fatigue: Fatigue | None) -> dict[str, Any] | None:
         "design_life": finite(fatigue.life),
         "points": [_point(p) for p in fatigue.points],
         "left_out": list(fatigue.left_out),
-        "undecided": dict(fatigue.undecided),
+        "not_decided": dict(fatigue.not_decided),
     }
 
 

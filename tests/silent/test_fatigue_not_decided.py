@@ -20,7 +20,7 @@ import pytest
 
 import pinstress
 from fea.fatigue.fkm import FkmMaterial, p_ram_life
-from reports.data.results import Results
+from pinstress.analysis.results import Found
 from reports.tables.json_results import to_json
 from reports.tables.strength.fatigue import fatigue_grid, fatigue_sentence
 
@@ -62,12 +62,12 @@ SEQUENCE = """day = 10
 [sequence.day]
 steps = [{ case = "work", duration = "1 s" }, { case = "jam", duration = "1 s" }]
 """
-Run = Callable[..., Results]
+Run = Callable[..., Found]
 
 
 @pytest.fixture
 def run(tmp_path: Path) -> Run:
-    def results(text: str, cases: list[str] | None = None) -> Results:
+    def results(text: str, cases: list[str] | None = None) -> Found:
         path = tmp_path / "pin.toml"
         path.write_text(text)
         return pinstress.run(pinstress.load_study(path), cases=cases)
@@ -75,7 +75,7 @@ def run(tmp_path: Path) -> Run:
     return results
 
 
-def _margin(results: Results) -> tuple[float | None, str]:
+def _margin(results: Found) -> tuple[float | None, str]:
     (found,) = (m.margin for m in results.margins if m.margin.method == "fatigue life")
     return found.margin, found.needs
 
@@ -85,15 +85,15 @@ def test_a_case_that_could_not_be_solved_leaves_the_pin_undecided(run: Run, spec
     results = run(STUDY.replace("JAM", RIGID) + spectrum)
     assert results["P", "jam"].verdict == "rigid"
     assert results.fatigue is not None
-    assert results.fatigue.undecided == {"P": "case jam was not solved (rigid)"}
+    assert results.fatigue.not_decided == {"P": "case jam was not solved (rigid)"}
     sentence = fatigue_sentence(results.fatigue)
     assert sentence.startswith("Fatigue of pin P is not decided: case jam was not solved (rigid)")
     assert "no damage" not in sentence
     assert _margin(results) == (None, "a solution of case jam")
     told = to_json(results)["fatigue"]
-    assert told["undecided"] == results.fatigue.undecided
+    assert told["not_decided"] == results.fatigue.not_decided
     rows = results.tables["fatigue"]
-    assert {row[rows.columns.index("undecided")] for row in rows.rows} == {
+    assert {row[rows.columns.index("not_decided")] for row in rows.rows} == {
         "case jam was not solved (rigid)"
     }
     grid = fatigue_grid(results)
@@ -105,7 +105,7 @@ def test_in_equilibrium_the_case_takes_most_of_the_life(run: Run) -> None:
     """What had no word: pulses of 30 kN at 30 mm in the middle of the span, by beam theory."""
     results = run(STUDY.replace("JAM", BALANCED) + BOTH)
     assert results.fatigue is not None
-    assert not results.fatigue.undecided
+    assert not results.fatigue.not_decided
     moment = 30000.0 * 25.0 - 60000.0 / 40.0 * 20.0**2 / 2.0
     amplitude = 0.5 * moment / (np.pi * 20.0**3 / 32.0) * 1.2
     damage = 10.0 * (amplitude / 250.0) ** 5 / 1e6
@@ -116,7 +116,7 @@ def test_in_equilibrium_the_case_takes_most_of_the_life(run: Run) -> None:
 def test_a_case_that_was_not_run_leaves_the_pin_undecided(run: Run) -> None:
     results = run(STUDY.replace("JAM", BALANCED) + BOTH, cases=["work"])
     assert results.fatigue is not None
-    assert results.fatigue.undecided == {"P": "case jam was not run"}
+    assert results.fatigue.not_decided == {"P": "case jam was not run"}
     assert _margin(results) == (None, "case jam to be run")
 
 
@@ -124,7 +124,7 @@ def test_a_pin_that_has_too_much_damage_already_fails(run: Run) -> None:
     hard = STUDY.replace("JAM", RIGID).replace("10000", "30000").replace("20000", "60000")
     results = run(hard.replace("life = 1000", "life = 1e6") + BOTH)
     assert results.fatigue is not None
-    assert not results.fatigue.undecided
+    assert not results.fatigue.not_decided
     assert any("too low: case jam was not solved" in said for said in results.fatigue.left_out)
     margin, needs = _margin(results)
     assert margin is not None
@@ -150,8 +150,8 @@ def test_a_failure_loses_nothing_else(
     results = run(STUDY.replace("JAM", BALANCED) + BOTH)
     assert results["P", "work"].max_von_mises
     assert results.fatigue is not None
-    assert reason in results.fatigue.undecided["P"]
-    assert "RuntimeError: no convergence" in results.fatigue.undecided["P"]
+    assert reason in results.fatigue.not_decided["P"]
+    assert "RuntimeError: no convergence" in results.fatigue.not_decided["P"]
     assert _margin(results)[0] is None
 
 
