@@ -14,7 +14,7 @@ from fea.core.pin_loads import PinLoads
 from fea.joint.records import JointResult
 from fea.solve_pin import Solution
 from geometry import CutPin
-from pinstress.analysis.gather_fatigue import fatigue_margins, fatigue_of
+from pinstress.analysis.gather_fatigue import fatigue_of
 from pinstress.analysis.mechanics.gather_loads import drive_position, mechanics, position_unit
 from pinstress.analysis.mechanics.gather_sequences import with_sequences
 from pinstress.analysis.plan import Plan, all_loads
@@ -59,8 +59,8 @@ def results_of(plan: Plan, found: list[Solved]) -> plain.Results:
     rows.sort(key=lambda row: (pins.index(row[1].pin), cases.index(row[1].case)))
     beam = next((made.beam for made in found if made.beam is not None), None)
     results = _results(study, plan.loads, rows, beam, plan.published, plan.asked.tolerance)
-    fatigue = fatigue_of(plan, found)
     landing = {(r.pin, r.case): r for made in found for r in made.landing}
+    fatigue, fatigue_margins = fatigue_of(plan, found)
     results = replace(
         results,
         pins=tuple(
@@ -78,7 +78,7 @@ def results_of(plan: Plan, found: list[Solved]) -> plain.Results:
         sensitivities=_in_order(found, pins, cases, plan.sensitive),
         histories=tuple(history for made in found for history in made.histories),
         fatigue=fatigue,
-        margins=(*results.margins, *fatigue_margins(fatigue)),
+        margins=(*results.margins, *fatigue_margins),
     )
     return _in_study_units(results, study)
 

@@ -12,6 +12,7 @@ from fea.core.memory import allowed_memory, solid_memory
 from fea.core.peak import Peak
 from fea.core.pin_loads import PinLoads
 from fea.fatigue.critical_points import stress_histories
+from fea.fatigue.records import PointHistory
 from fea.harmonic.evaluate import FirstMesh
 from fea.joint.foundation.solve_on_foundations import solve_joints
 from fea.joint.foundation.variations import prescribed_ranges
@@ -197,7 +198,7 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
         beam = checks.beam_check(study, task)
     joints = tuple(j.joint for j in joined) or _around(plan, task, peaks)
     surfaces = surfaces_of(plan.loads, task, found, pressures)
-    histories = stress_histories(task.pin.name, found)
+    histories, no_histories = _histories(task, found)
     tell(f"pin {task.pin.name}, what to change")
     to_do = change(plan.asked, task, found)
     tell(f"pin {task.pin.name}, sensitivities")
@@ -214,7 +215,18 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
         histories=histories,
         limits=limits,
         sensitivities=sensitive,
+        no_histories=no_histories,
     )
+
+
+def _histories(task: Task, found: tuple[Solution, ...]) -> tuple[tuple[PointHistory, ...], str]:
+    """Of stress at the pin's critical points; why there are none if that fails, which must not
+    take the pin's stress with it.
+    """
+    try:
+        return stress_histories(task.pin.name, found), ""
+    except Exception as error:
+        return (), f"{type(error).__name__}: {error}"
 
 
 def _in_lugs(study: Study, task: Task, asked: Asked, tell: Tell) -> tuple[LugSolution, ...]:

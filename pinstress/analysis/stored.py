@@ -35,7 +35,8 @@ class Solved:
     joints: in the same order, empty where nothing is in contact. change: what would make the pin
     reach its factor, if it does not. histories: of stress at its critical points. before: whether
     an earlier run found it. limits: limit loads, in the order of the cases too. sensitivities: of
-    the worst case, or of all. strength: in that order; found anew by every run, as it takes little
+    the worst case, or of all. no_histories: why there are no histories, if looking for them failed.
+    strength: in that order; found anew by every run, as it takes little
     and depends on more of the study.
     """
 
@@ -50,6 +51,7 @@ class Solved:
     before: bool = False
     limits: tuple[LimitLoad | None, ...] = ()
     sensitivities: tuple[PinSensitivities, ...] = ()
+    no_histories: str = ""
     strength: tuple[Checked, ...] = ()
 
 

@@ -26,13 +26,15 @@ from reports.data.decision import (
 )
 from reports.data.results import PinResult, Results
 
+FATIGUE = "fatigue life"
+
 
 @dataclass(frozen=True)
 class JudgedCheck:
     """One check of a pin in a case (empty: over several). check: its name. outcome: one of
     reports.data.decision. factor: allowable over demand, `required`: of it. used: required over
     factor, the upper end of a range, by which checks are compared. row: of the model's maximum,
-    None for a margin.
+    None for a margin. reason: why a check other than that is not decided.
     """
 
     pin: str
@@ -43,6 +45,7 @@ class JudgedCheck:
     required: float
     used: float
     row: PinResult | None = None
+    reason: str = ""
 
     @property
     def rank(self) -> tuple[int, float]:
@@ -58,6 +61,11 @@ def judged_checks(results: Results) -> list[JudgedCheck]:
         _of_margin(m, rows.get((m.pin, m.case)))
         for m in results.margins
         if m.margin.governs and m.margin.method != YIELD and m.used >= 0.0
+    )
+    open_ = results.fatigue.not_decided if results.fatigue else {}
+    found += (
+        JudgedCheck(pin, "", FATIGUE, NOT_DECIDED, None, 1.0, -inf, reason=reason)
+        for pin, reason in open_.items()
     )
     return sorted(found, key=lambda check: check.rank)
 

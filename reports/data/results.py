@@ -256,7 +256,8 @@ class Provenance:
 class Fatigue:
     """Fatigue under a spectrum, by how often each case occurs per `unit`. points: the worst first.
     probability: of failure, None for that of the S-N data. life: for which pins are designed.
-    left_out: what was not assessed, in sentences.
+    left_out: what was not assessed, in sentences. not_decided: by pin, why its damage is not known,
+    though its material has the data; points of it, if there are any, have at least their damage.
     """
 
     unit: str
@@ -266,6 +267,7 @@ class Fatigue:
     life: float | None
     points: tuple[PointFatigue, ...]
     left_out: tuple[str, ...] = ()
+    not_decided: dict[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -176,9 +176,8 @@ def _of_margin(check: JudgedCheck) -> str:
     """Of a check other than that of the model's stress against yield."""
     if check.outcome == FAILS:
         return f"Pin {check.pin} fails: {_margin_words(check)}."
-    return (
-        f"Whether pin {check.pin} is safe is not decided: {_margin_words(check)}, with its error."
-    )
+    why = f"{check.check}: {check.reason}" if check.reason else _margin_words(check)
+    return f"Whether pin {check.pin} is safe is not decided: {why}."
 
 
 def _margin_words(check: JudgedCheck) -> str:

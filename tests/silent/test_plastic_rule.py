@@ -11,12 +11,12 @@ import math
 
 import numpy as np
 import pytest
+from fea.strength.bending_stress import CONCENTRATED, OF_JOINT
 from scipy.optimize import linprog
 
 from fea.beam.round_section import Circle
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.strength.bending_stress import CONCENTRATED, OF_JOINT
 from fea.strength.plastic_bending import PLASTIC, plastic_margin
 from fea.strength.section_forces import section_forces
 from fea.strength.situation import Situation
