@@ -1,0 +1,82 @@
+"""JSON and compressed texts of files that may be damaged: what is wrong is said, and where."""
+
+from __future__ import annotations
+
+import json
+import re
+import zlib
+from base64 import b64decode
+from typing import Any, NoReturn, TypeVar
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from loads import MB
+
+Model = TypeVar("Model", bound=BaseModel)
+HALF = re.compile(r"\\u[dD][89a-fA-F]")  # of a character beyond the first 65,536
+
+
+class Damaged(ValueError):
+    """A file whose content cannot be what pinstress wrote; the message names the file."""
+
+
+class Part(BaseModel):
+    """What is read of an object of JSON; other keys may stand beside it."""
+
+    model_config = ConfigDict(strict=True, frozen=True, extra="ignore")
+
+
+def strict_json(content: bytes, name: str) -> Any:
+    """The values of a JSON text. Raises: Damaged."""
+    try:
+        text = content.decode("utf-8")
+        found = json.loads(text, parse_constant=_no_number)
+        if HALF.search(text):  # may be lone, which no file can be written with
+            json.dumps(found, ensure_ascii=False).encode()
+    except UnicodeDecodeError as error:
+        raise Damaged(f"{name} is damaged: no UTF-8 from byte {error.start:,} on") from None
+    except UnicodeEncodeError:
+        raise Damaged(f"{name} is damaged: it has half a character (a lone surrogate)") from None
+    except json.JSONDecodeError as error:
+        where = f"line {error.lineno:,}, column {error.colno:,}: {error.msg}"
+        raise Damaged(f"{name} is {'damaged: ' + where if content else 'empty'}") from None
+    except RecursionError:
+        raise Damaged(f"{name} is damaged: it is nested too deeply") from None
+    except ValueError as error:  # a number of thousands of digits
+        raise Damaged(f"{name} is damaged: {str(error).partition(';')[0]}") from None
+    return found
+
+
+def _no_number(text: str) -> NoReturn:
+    raise ValueError(f"{text} is no number")
+
+
+def validated(kind: type[Model], content: Any, name: str) -> Model:
+    """The parts of a JSON text that are used. Raises: Damaged, saying which is wrong."""
+    try:
+        return kind.model_validate(content)
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_context=False)[0]
+        where = "".join(f"[{k}]" if isinstance(k, int) else f".{k}" for k in first["loc"])
+        what = first["msg"][:1].lower() + first["msg"][1:]
+        more = error.error_count() - 1
+        also = f", and {more:,} more" if more else ""
+        raise Damaged(f"{name} is damaged: {where.lstrip('.') or 'all'}: {what}{also}") from None
+    except RecursionError:
+        raise Damaged(f"{name} is damaged: it is nested too deeply") from None
+
+
+def inflated(packed: bytes | str, most: int, name: str) -> bytes:
+    """What base64 and zlib have packed. Raises: Damaged, also where it is more than `most` bytes,
+    which are never made.
+    """
+    unpack = zlib.decompressobj()
+    try:
+        content = unpack.decompress(b64decode(packed, validate=True), most + 1)
+    except (ValueError, zlib.error) as error:
+        raise Damaged(f"{name} is damaged: {error}") from None
+    if len(content) > most:
+        raise Damaged(f"{name} is damaged: it unpacks to more than {most // MB:,} MB")
+    if not unpack.eof:
+        raise Damaged(f"{name} is damaged: it ends too early")
+    return content
