@@ -152,6 +152,7 @@ def add_pdf(directory: Path) -> dict[str, Failed]:
     Raises: InputError, where the folder is damaged or cannot be written.
     """
     try:
+        is_inside(directory, PDF)  # else a link is told of after the work
         page = _page(directory)
         content = document_of(page)
         shown = set() if content is None else set(shown_plots(content))

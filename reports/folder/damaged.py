@@ -15,6 +15,17 @@ from loads import MB
 Model = TypeVar("Model", bound=BaseModel)
 HALF = re.compile(r"\\u[dD][89a-fA-F]")  # of a character beyond the first 65,536
 
+WORDS = {  # of pydantic's errors, which speak of Python
+    "missing": "is missing",
+    "model_type": "is no object",
+    "dict_type": "is no object",
+    "list_type": "is no list",
+    "string_type": "is no text",
+    "float_type": "is no number",
+    "bool_type": "is neither true nor false",
+    "finite_number": "is no finite number",
+}
+
 
 class Damaged(ValueError):
     """A file whose content cannot be what pinstress wrote; the message names the file."""
@@ -42,13 +53,19 @@ def strict_json(content: bytes, name: str) -> Any:
         raise Damaged(f"{name} is {'damaged: ' + where if content else 'empty'}") from None
     except RecursionError:
         raise Damaged(f"{name} is damaged: it is nested too deeply") from None
-    except ValueError as error:  # a number of thousands of digits
-        raise Damaged(f"{name} is damaged: {str(error).partition(';')[0]}") from None
+    except _NoNumber as error:
+        raise Damaged(f"{name} is damaged: it has {error}, which is no number") from None
+    except ValueError:  # of int()
+        raise Damaged(f"{name} is damaged: it has a number of thousands of digits") from None
     return found
 
 
+class _NoNumber(ValueError):
+    pass
+
+
 def _no_number(text: str) -> NoReturn:
-    raise ValueError(f"{text} is no number")
+    raise _NoNumber(text)
 
 
 def validated(kind: type[Model], content: Any, name: str) -> Model:
@@ -58,10 +75,12 @@ def validated(kind: type[Model], content: Any, name: str) -> Model:
     except ValidationError as error:
         first = error.errors(include_url=False, include_context=False)[0]
         where = "".join(f"[{k}]" if isinstance(k, int) else f".{k}" for k in first["loc"])
-        what = first["msg"][:1].lower() + first["msg"][1:]
+        said = first["msg"].removeprefix("Value error, ")
+        what = WORDS.get(first["type"], f"is wrong: {said[:1].lower()}{said[1:]}")
         more = error.error_count() - 1
         also = f", and {more:,} more" if more else ""
-        raise Damaged(f"{name} is damaged: {where.lstrip('.') or 'all'}: {what}{also}") from None
+        where = where.lstrip(".") or "its content"
+        raise Damaged(f"{name} is damaged: {where} {what}{also}") from None
     except RecursionError:
         raise Damaged(f"{name} is damaged: it is nested too deeply") from None
 
@@ -73,8 +92,8 @@ def inflated(packed: bytes | str, most: int, name: str) -> bytes:
     unpack = zlib.decompressobj()
     try:
         content = unpack.decompress(b64decode(packed, validate=True), most + 1)
-    except (ValueError, zlib.error) as error:
-        raise Damaged(f"{name} is damaged: {error}") from None
+    except (ValueError, zlib.error):
+        raise Damaged(f"{name} is damaged: it cannot be unpacked") from None
     if len(content) > most:
         raise Damaged(f"{name} is damaged: it unpacks to more than {most // MB:,} MB")
     if not unpack.eof:
