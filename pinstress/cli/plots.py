@@ -119,7 +119,7 @@ def report_failed(directory: Path, failed: dict[str, Failed]) -> int:
     if not failed:
         return 0
     by_reason: dict[str, list[str]] = {}
-    for name, failure in failed.items():
+    for name, failure in sorted(failed.items(), key=lambda item: item[0] != PDF):
         by_reason.setdefault(failure.reason, []).append(name)
     said = "; ".join(f"{_listed(names)}: {why}" for why, names in by_reason.items())
     ways = [w for w, own in (("pdf", PDF in failed), ("plots", set(failed) - {PDF})) if own]
