@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from pinstress.cli.output_folder import replacing, require_replaceable
-from pinstress.cli.plots import PAINTERS, draw_pin
+from pinstress.cli.plots import PAINTERS, PICTURE_SECONDS, draw_pin
 from pinstress.cli.run import console
 from pinstress.cli.streams import unneeded
 from pinstress.cli.view import opened_results
@@ -63,7 +63,8 @@ def _plot(found: RunComparison, failed: dict[str, Failed]) -> str:
     plot = comparison_plot(found)
     if plot is None:
         return ""
-    (made,) = apart([("the plot", partial(svg, {**plot.spec, "config": on_paper()}))])
+    drawing = partial(svg, {**plot.spec, "config": on_paper()})
+    (made,) = apart([("the plot", drawing)], PICTURE_SECONDS)
     if isinstance(made, Failed):
         failed["the plot"] = made
         return ""
@@ -114,7 +115,7 @@ def _pictures(
         for side in (0, 1)
     ]
     work = [(f"pin {pair.pin}, {pair.case}", work) for pair, _, work in drawings if work]
-    made = iter(apart(work))
+    made = iter(apart(work, PICTURE_SECONDS))
     files: dict[tuple[str, str], list[Path | None]] = {}
     for pair, side, drawing in drawings:
         one = next(made) if drawing else []

@@ -35,6 +35,7 @@ FOLDER, PDF = "plots", "report.pdf"
 PAINTERS = ("pyvista.plotting",)
 NO_PAGE = "no report.html of this version of pinstress to print; run it again"
 MAX_NAMED = 3
+PICTURE_SECONDS, PDF_SECONDS = 120, 600  # of processor time; the largest take a tenth
 
 
 @dataclass(frozen=True)
@@ -152,7 +153,7 @@ def add_pdf(directory: Path) -> dict[str, Failed]:
     Raises: InputError, where the folder is damaged or cannot be written.
     """
     try:
-        is_inside(directory, PDF)  # else a link is told of after the work
+        is_inside(directory, PDF)  # a link is refused before the work
         page = _page(directory)
         content = document_of(page)
         shown = set() if content is None else set(shown_plots(content))
@@ -165,7 +166,7 @@ def add_pdf(directory: Path) -> dict[str, Failed]:
         raise InputError(f"{directory}: {NO_PAGE}", code="no-results")
     with TemporaryDirectory(prefix="pinstress-") as made:
         path = Path(made, PDF)
-        (printed,) = apart([(PDF, partial(_print, content, found, path))])
+        (printed,) = apart([(PDF, partial(_print, content, found, path))], PDF_SECONDS)
         if printed is None:
             _add(directory, {PDF: path})
             return {}
@@ -197,9 +198,10 @@ def _drawn(directory: Path, into: Path, quiet: bool) -> Drawn:
             name = f"pin_{field_name(row['pin'], row['case'])}.png"
             picture = partial(draw_pin, opened.only(row), into / name)
             work.append((f"{FOLDER}/{name}", picture))
-    found = list(zip((name for name, _ in work), apart(work), strict=True))
-    paths = [path for _, made in found if not isinstance(made, Failed) for path in made]
-    return Drawn(tuple(paths), {name: made for name, made in found if isinstance(made, Failed)})
+    made = apart(work, PICTURE_SECONDS)
+    found = list(zip((name for name, _ in work), made, strict=True))
+    paths = [path for _, one in found if not isinstance(one, Failed) for path in one]
+    return Drawn(tuple(paths), {name: one for name, one in found if isinstance(one, Failed)})
 
 
 def draw_pin(opened: Opened, path: Path, top: float | None = None) -> list[Path]:

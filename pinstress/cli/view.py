@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 import click
 
 from pinstress.cli.new_file import require_new, write_new
-from pinstress.cli.plots import PAINTERS
+from pinstress.cli.plots import PAINTERS, PICTURE_SECONDS
 from pinstress.processes.apart import apart
 from pinstress.processes.pool import preload
 from pinstress.study.errors import InputError
@@ -68,7 +68,7 @@ def view(
     with TemporaryDirectory(prefix="pinstress-") as folder:
         picture = Path(folder) / "pin.png"
         drawing = partial(render_pin, field, picture, opened.units, title)
-        (drawn,) = apart([(picture.name, drawing)])
+        (drawn,) = apart([(picture.name, drawing)], PICTURE_SECONDS)
         if drawn is not None:
             click.echo(f"Error: {screenshot} could not be drawn: {drawn.reason}", err=True)
             return 1

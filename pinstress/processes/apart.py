@@ -17,7 +17,6 @@ from reports.folder.damaged import Damaged
 
 T = TypeVar("T")
 
-SECONDS = 600  # of processor time of a piece of work; what hangs would take all
 NO_MEMORY = "there was not enough memory"
 
 
@@ -34,13 +33,16 @@ class _Made(Generic[T]):
     value: T
 
 
-def apart(work: Sequence[tuple[str, Callable[[], T]]]) -> list[T | Failed]:
+def apart(work: Sequence[tuple[str, Callable[[], T]]], seconds: int) -> list[T | Failed]:
     """What each of the functions returns, by names for messages. Where processes are started anew
-    the functions must pickle. What they print is dropped.
+    the functions must pickle. What they print is dropped. seconds: of processor time that each may
+    take, where the system can tell; what hangs would take all.
 
     Raises: KeyboardInterrupt.
     """
-    jobs: list[Job[_Made[T] | Failed]] = [Job(name, partial(_guarded, made)) for name, made in work]
+    jobs: list[Job[_Made[T] | Failed]] = [
+        Job(name, partial(_guarded, made, seconds)) for name, made in work
+    ]
     try:
         anew = not portable() and threaded()  # a forked one would wait for what a thread holds
         found = side_by_side(jobs, 2, anew=anew)  # two at a time: one would be this process
@@ -50,25 +52,25 @@ def apart(work: Sequence[tuple[str, Callable[[], T]]]) -> list[T | Failed]:
     told: list[T | Failed] = []
     for one in found:
         if isinstance(one, Died):
-            told.append(Failed(_reason(one.status)))
+            told.append(Failed(_reason(one.status, seconds)))
         else:
             told.append(one.value if isinstance(one, _Made) else one)
     return told
 
 
-def _reason(status: int) -> str:
+def _reason(status: int, seconds: int) -> str:
     if status == -getattr(signal, "SIGPROF", 0):
-        return f"it was stopped after {SECONDS} s of processor time"
+        return f"it was stopped after {seconds} s of processor time"
     hint = "; it may have run out of memory"
     text = ended(status)
     return text if status == 0 or text.endswith(hint) else text + hint
 
 
-def _guarded(work: Callable[[], T], _: Tell) -> _Made[T] | Failed:
+def _guarded(work: Callable[[], T], seconds: int, _: Tell) -> _Made[T] | Failed:
     """Done in the other process."""
     _quiet()
     if hasattr(signal, "setitimer"):
-        signal.setitimer(signal.ITIMER_PROF, SECONDS)  # SIGPROF ends the process
+        signal.setitimer(signal.ITIMER_PROF, seconds)  # SIGPROF ends the process
     try:
         return _Made(work())
     except (KeyboardInterrupt, SystemExit):

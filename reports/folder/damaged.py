@@ -1,4 +1,4 @@
-"""JSON and compressed texts of files that may be damaged: what is wrong is said, and where."""
+"""JSON and compressed texts of files that may be damaged: errors say what is wrong, and where."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Damaged(ValueError):
     """A file whose content cannot be what pinstress wrote; the message names the file."""
 
 
-class Part(BaseModel):
+class JsonPart(BaseModel):
     """What is read of an object of JSON; other keys may stand beside it."""
 
     model_config = ConfigDict(strict=True, frozen=True, extra="ignore")

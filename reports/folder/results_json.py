@@ -10,7 +10,7 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, Field
 
 from loads import MB
-from reports.folder.damaged import Damaged, Part, strict_json, validated
+from reports.folder.damaged import Damaged, JsonPart, strict_json, validated
 from reports.folder.inside import read_inside
 from reports.tables.json_results import SCHEMA
 
@@ -36,14 +36,14 @@ Ends = Annotated[list[Number | None], Field(min_length=2, max_length=2)]
 Place = Annotated[list[Number], Field(min_length=3, max_length=3)]
 
 
-class _Units(Part):
+class _Units(JsonPart):
     length: str
     force: str
     stress: str
     time: str
 
 
-class _Row(Part):
+class _Row(JsonPart):
     pin: Name
     case: Name
     model: str
@@ -58,24 +58,24 @@ class _Row(Part):
     singular_at: list[dict[str, Any]]
 
 
-class _Margin(Part):
+class _Margin(JsonPart):
     pin: str
     case: str
     method: str
     margin: Number | None
 
 
-class _Force(Part):
+class _Force(JsonPart):
     connection: str
     force: Number | None
 
 
-class _Loads(Part):
+class _Loads(JsonPart):
     case: str
     largest_forces: list[_Force]
 
 
-class _Results(Part):
+class _Results(JsonPart):
     title: str
     units: _Units
     versions: dict[str, str]

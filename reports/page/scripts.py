@@ -11,7 +11,7 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, RootModel
 
 from loads import MB
-from reports.folder.damaged import Damaged, Part, inflated, strict_json, validated
+from reports.folder.damaged import Damaged, JsonPart, inflated, strict_json, validated
 from reports.format.packed import deflated
 from reports.format.script_json import script_json
 from reports.format.template import VENDOR
@@ -91,21 +91,21 @@ class _Plots(RootModel[dict[str, Annotated[list[Any], AfterValidator(_caption_an
     """By name, a caption and a specification."""
 
 
-class _Block(Part):
+class _Block(JsonPart):
     date: Annotated[str, AfterValidator(_day)]
 
 
-class _Case(Part):
+class _Case(JsonPart):
     plot: str
 
 
-class _Pin(Part):
+class _Pin(JsonPart):
     drawing: str
     refinement: str
     cases: list[_Case]
 
 
-class _Paper(Part):
+class _Paper(JsonPart):
     """What is read of the PDF's content before typst reads all of it."""
 
     block: _Block

@@ -16,6 +16,8 @@ import json
 import os
 import subprocess
 import sys
+import zlib
+from base64 import b64encode
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
@@ -89,7 +91,7 @@ LINKED = [
 ]
 
 
-def draws_quickly(work: Any) -> list[Any]:
+def draws_quickly(work: Any, _: int) -> list[Any]:
     """Instead of engines: files with a few bytes."""
     found: list[Any] = []
     for name, made in work:
@@ -132,7 +134,7 @@ def test_a_link_inside_is_neither_read_nor_written(
 def test_a_link_among_the_plots(name: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(plots_command, "renderer_problem", lambda: "none")
 
-    def drawn(work: Any) -> list[Any]:
+    def drawn(work: Any, _: int) -> list[Any]:
         into = work[0][1].args[-1]
         (into / Path(name).name).write_bytes(b"drawn")
         return [[into / Path(name).name]] + [[] for _ in work[1:]]
@@ -423,8 +425,6 @@ def test_what_unpacks_to_more_than_it_may_is_not_unpacked(folder: Path) -> None:
         assert len(bomb) < 200_000
         with pytest.raises(Damaged, match="not 120 bytes long"):
             read_vtu(bomb, "it")
-    from tests.support.results.mutants import b64encode, zlib
-
     packed = b64encode(zlib.compress(bytes(20_000_000))).decode()
     with pytest.raises(Damaged, match="more than 1 MB"):
         inflated(packed, 2**20, "it")
