@@ -79,7 +79,7 @@ def pdf(directory: Path) -> int:
 
 def draw_and_print(directory: Path, plots: bool, pdf: bool, quiet: bool = False) -> int:
     """What a run adds to its results once they are in place; the exit status is 1 if something
-    could not be drawn, which is said and costs nothing else.
+    could not be drawn, which costs nothing else.
     """
     failed: dict[str, Failed] = {}
     try:

@@ -14,6 +14,7 @@ import os
 import signal
 import subprocess
 import sys
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
@@ -110,7 +111,8 @@ def test_the_same_where_processes_are_started_anew(monkeypatch: pytest.MonkeyPat
 
 def require_alone() -> None:
     fatal = signal.SIGABRT, signal.SIGSEGV, signal.SIGTRAP, signal.SIGKILL
-    work = [(f"signal {s}", partial(ends, int(s))) for s in fatal]
+    work: list[tuple[str, Callable[[], int]]] = [("first", fine)]
+    work += [(f"signal {s}", partial(ends, int(s))) for s in fatal]
     died = apart(
         [("first", fine), *work, ("panic", panics), ("memory", no_memory), ("last", fine)], 60
     )
