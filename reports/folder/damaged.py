@@ -15,6 +15,7 @@ from loads import MB
 Model = TypeVar("Model", bound=BaseModel)
 HALF = re.compile(r"\\u[dD][89a-fA-F]")  # of a character beyond the first 65,536
 
+DEEPEST = 100  # parts in parts; pinstress writes no more than twenty
 WORDS = {  # of pydantic's errors, which speak of Python
     "missing": "is missing",
     "model_type": "is no object",
@@ -42,6 +43,7 @@ def strict_json(content: bytes, name: str) -> Any:
     try:
         text = content.decode("utf-8")
         found = json.loads(text, parse_constant=_no_number)
+        _require_shallow(found)
         if HALF.search(text):  # may be lone, which no file can be written with
             json.dumps(found, ensure_ascii=False).encode()
     except UnicodeDecodeError as error:
@@ -58,6 +60,21 @@ def strict_json(content: bytes, name: str) -> Any:
     except ValueError:  # of int()
         raise Damaged(f"{name} is damaged: it has a number of thousands of digits") from None
     return found
+
+
+def _require_shallow(found: Any) -> None:
+    """Raises: RecursionError, as what walks or copies it later would."""
+    level = [found]
+    for _ in range(DEEPEST):
+        holders = [x.values() if isinstance(x, dict) else x for x in level if x and _holds(x)]
+        level = [below for holder in holders for below in holder if _holds(below)]
+        if not level:
+            return
+    raise RecursionError
+
+
+def _holds(node: Any) -> bool:
+    return isinstance(node, dict | list)
 
 
 class _NoNumber(ValueError):
@@ -81,8 +98,6 @@ def validated(kind: type[Model], content: Any, name: str) -> Model:
         also = f", and {more:,} more" if more else ""
         where = where.lstrip(".") or "its content"
         raise Damaged(f"{name} is damaged: {where} {what}{also}") from None
-    except RecursionError:
-        raise Damaged(f"{name} is damaged: it is nested too deeply") from None
 
 
 def inflated(packed: bytes | str, most: int, name: str) -> bytes:

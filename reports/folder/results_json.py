@@ -96,10 +96,7 @@ def read_results(directory: Path) -> dict[str, Any]:
     rows = Counter((row.pin, row.case) for row in found.pins)
     if twice := next((row for row, count in rows.items() if count > 1), None):
         raise Damaged(f"{NAME} is damaged: pin {twice[0]} in {twice[1]} is there more than once")
-    try:
-        printable: dict[str, Any] = _printable(content)
-    except RecursionError:
-        raise Damaged(f"{NAME} is damaged: it is nested too deeply") from None
+    printable: dict[str, Any] = _printable(content)
     return printable
 
 

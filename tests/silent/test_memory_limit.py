@@ -113,9 +113,7 @@ def require_alone() -> None:
     fatal = signal.SIGABRT, signal.SIGSEGV, signal.SIGTRAP, signal.SIGKILL
     work: list[tuple[str, Callable[[], int]]] = [("first", fine)]
     work += [(f"signal {s}", partial(ends, int(s))) for s in fatal]
-    died = apart(
-        [("first", fine), *work, ("panic", panics), ("memory", no_memory), ("last", fine)], 60
-    )
+    died = apart([*work, ("panic", panics), ("memory", no_memory), ("last", fine)], 60)
     assert died[0] == died[-1] == 7
     for number, one in zip(fatal, died[1:5], strict=True):
         assert isinstance(one, Failed)
