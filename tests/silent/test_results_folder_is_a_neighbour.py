@@ -2,8 +2,8 @@
 for it (nor is an address opened: test_addresses_in_a_folder.py).
 
 Before: `pdf` wrote through a link called report.pdf into the file it led to, `plots` through a link
-called plots, and wherever the names in report.html said; `sweep --resume` wrote through links at NAME.partial; a cell that named a point beyond the
-last ended `view` and `plots` by signal 11.
+called plots, and wherever the names in report.html said; `sweep --resume` wrote through links at
+NAME.partial; a cell that named a point beyond the last ended `view` and `plots` by signal 11.
 
 What is independent: files outside the folder, whose bytes are compared; links made by another user,
 where the tests run as root.
