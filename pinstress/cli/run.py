@@ -27,7 +27,7 @@ from pinstress.cli.closing import (
     report_violations,
 )
 from pinstress.cli.output_folder import replacing, require_replaceable
-from pinstress.cli.plots import FOLDER, PAGE, draw_folder, print_folder
+from pinstress.cli.plots import draw_and_print
 from pinstress.cli.shared import open_page
 from pinstress.cli.streams import unneeded
 from pinstress.processes.pool import Died, Job, Progress, Tell, preload, processes, side_by_side
@@ -37,6 +37,7 @@ from pinstress.study.file import Study
 from pinstress.study.file_names import field_name
 from reports.data.results import Field, Results, Units
 from reports.files import write_loads, write_pages, write_reports, write_stress_tables
+from reports.page.scripts import PAGE
 from reports.tables.table import MOST_IN_CSV
 from reports.text.loads import print_loads
 from reports.text.safety_factors import print_safety_factors
@@ -97,10 +98,6 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
                 _write_flows(results, staging / "vtk")
             progress("report", 1.0)
             _write(results, staging, most)
-            if wanted.plots:
-                draw_folder(staging, staging / FOLDER, wanted.quiet)
-            if wanted.pdf:
-                print_folder(staging)
     if cache:
         cache.trim()
     if wanted.as_json:
@@ -115,12 +112,13 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
         report_reused(plan, found)
         click.echo(f"Report: {directory / PAGE}", err=True)
         _large_tables(directory)
-    if wanted.opens:
-        open_page(directory / PAGE)
     status = report_missed(results, study.table.analysis.goal == "decide")
     status = max(status, report_disagreements(results))
     violated = report_violations(results) if wanted.strict else 0
-    return status if status == NUMERICS_FAILED else max(status, violated)
+    drawn = draw_and_print(directory, wanted.plots, wanted.pdf, wanted.quiet)
+    if wanted.opens:
+        open_page(directory / PAGE)
+    return status if status == NUMERICS_FAILED else max(status, violated, drawn)
 
 
 def _second_opinion(plan: Plan, quiet: bool) -> dict[str, Any]:
@@ -191,14 +189,12 @@ def loads_and_write(
     results = loads_only(study, cases)
     with replacing(directory) as staging:
         write_loads(results, staging)
-        if plots:
-            draw_folder(staging, staging / FOLDER, quiet)
     with unneeded(directory):
         print_loads(results, console())
     if not quiet:
         click.echo(f"Written: {directory}", err=True)
         _large_tables(directory)
-    return 0
+    return draw_and_print(directory, plots, False, quiet)
 
 
 def _large_tables(directory: Path) -> None:

@@ -81,8 +81,12 @@ def processes(asked: int | None) -> int:
     require_count("jobs", asked)
     if portable():
         return asked or cores()
-    threads = len(os.listdir("/proc/self/task"))
-    return 1 if threads > 1 else asked or cores()
+    return 1 if threaded() else asked or cores()
+
+
+def threaded() -> bool:
+    """Whether other threads run in this process; on Linux."""
+    return len(os.listdir("/proc/self/task")) > 1
 
 
 def preload(*modules: str) -> None:
@@ -99,12 +103,15 @@ def preload(*modules: str) -> None:
 
 
 def side_by_side(
-    jobs: Sequence[Job[T]], most: int, progress: Progress = lambda _, __: None
+    jobs: Sequence[Job[T]],
+    most: int,
+    progress: Progress = lambda _, __: None,
+    anew: bool = False,
 ) -> list[T | Died]:
     """What the jobs return, in their order; they start in that order, at most so many at a time.
 
     With `most` 1 they are done in this process. progress: called with what is being done and the
-    part of the jobs that is behind.
+    part of the jobs that is behind. anew: whether processes are started anew on Linux too.
 
     Raises: what a job raises, at once, with its name and traceback in a note; no process is left.
     """
@@ -115,7 +122,10 @@ def side_by_side(
     running: dict[Connection, _Child] = {}
     try:
         while len(found) < len(jobs):
-            new = [_start(jobs) for _ in range(min(most - len(running), len(waiting)))]
+            new = [
+                _start(jobs, anew or portable())
+                for _ in range(min(most - len(running), len(waiting)))
+            ]
             running |= {child.pipe: child for child in new}
             for child in new:
                 child.take(waiting.pop(), jobs)
@@ -153,6 +163,7 @@ def _teller(progress: Progress, part: float) -> Tell:
 class _Child:
     process: BaseProcess
     pipe: Connection
+    anew: bool
     number: int = -1
     doing: str = ""
 
@@ -160,7 +171,7 @@ class _Child:
         """Do this job next."""
         self.number, self.doing = number, jobs[number].name
         with suppress(OSError):  # it has ended meanwhile, as `next` will tell
-            self.pipe.send(jobs[number] if portable() else number)
+            self.pipe.send(jobs[number] if self.anew else number)
 
     def next(self) -> tuple[str, Any]:
         """What it says next: "tells", "raises", "returns" or "dies", and what."""
@@ -189,10 +200,10 @@ def ended(status: int) -> str:
     return text + "; it may have run out of memory" * (status == -KILLED)
 
 
-def _start(jobs: Sequence[Job[T]]) -> _Child:
+def _start(jobs: Sequence[Job[T]], anew: bool) -> _Child:
     ours, theirs = multiprocessing.Pipe()
     process: BaseProcess
-    if portable():
+    if anew:
         process = started_anew(_serve, (), theirs, os.getpid(), tuple(_preloaded))
     else:
         process = multiprocessing.get_context("fork").Process(
@@ -201,7 +212,7 @@ def _start(jobs: Sequence[Job[T]]) -> _Child:
         with interrupts.blocked():  # a child that ours reach would go on with what we are doing
             process.start()
     theirs.close()  # so that its end is the pipe's
-    return _Child(process, ours)
+    return _Child(process, ours, anew)
 
 
 def _serve(

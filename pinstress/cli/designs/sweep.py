@@ -26,7 +26,9 @@ from pinstress.processes.folder_lock import Release, lock
 from pinstress.processes.interrupts import Unfinished
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study
-from reports.designs.page import write_designs_page
+from reports.designs.columns import designs_of
+from reports.designs.page import render_designs
+from reports.folder.inside import write_inside
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -99,9 +101,7 @@ def _write(directory: Path, table: pa.Table) -> None:
     try:
         manifest.add(directory, list(FILES))
         write_table(table, directory / TABLE)
-        partial = directory / f"{PAGE}.partial"
-        write_designs_page(table, partial)
-        partial.replace(directory / PAGE)
+        write_inside(directory, PAGE, render_designs(designs_of(table)).encode())
     except OSError as error:  # a full disk
         raise InputError(
             f"--out: cannot write to {directory} ({error.strerror})", code="cannot-write"
@@ -112,6 +112,12 @@ def _require_usable(directory: Path, parts: Parts, resume: bool) -> None:
     """Raises: InputError for a folder with other files than those of a sweep, with a sweep that did
     not end and is not to be resumed, or with none to resume.
     """
+    if directory.is_dir() and (link := manifest.first_link(directory)):
+        raise InputError(
+            f"--out: {directory}: {link} is a link, a pipe or a device, which pinstress did not "
+            "make; remove it or choose another folder",
+            code="not-ours",
+        )
     if directory.exists() and (not directory.is_dir() or manifest.entries(directory)):
         begun = directory.is_dir() and (parts.folder / STATED).is_file()
         mark = f"{FOLDER}/{STATED}" if begun else TABLE
