@@ -29,7 +29,7 @@ SMALL = 0.01  # of the largest force or torque: less is round-off of numbers tha
 MOST = 0.1  # of it: more means that a load or a support is missing
 NOISE = 1e-9  # of the largest load: smaller ones are zero
 FREE = 1e-6  # of the largest couple: more has no solution in lugs that are all free to tilt
-ALONE = 1e-6  # of the largest force: misfit at which the change of one force closes the balance
+ALONE = 1e-6  # of the largest couple: what may remain where one changed force is enough
 
 
 class Carried(NamedTuple):
@@ -146,7 +146,7 @@ def _refusal(pin: PinLike, shares: tuple[float, ...], carried: Carried) -> tuple
     if torque > MOST:
         said = f"their torque about the axis is {torque:.2g} of the largest applied (its {react} "
         return f"{loose}{said}at most {MOST:g}); {clamp}", "torque-imbalance"
-    if carried.lugs and couple > FREE + force / 2.0:  # which is shared, at its own arm
+    if carried.lugs and couple > FREE + force / 2.0:  # the links share the force
         said = f"their couple across the axis is {couple:.2g} of the largest force times the "
         said += "length of the pin, which no lug reacts, since all are free to tilt; "
         return f"{loose}{said}give a lug the stiffness of its tilt", "couple-imbalance"

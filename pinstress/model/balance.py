@@ -18,7 +18,7 @@ from pinstress.schema.cases import GivenCase
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study
 
-TOLD = 1e-4  # share of what is left over from which it is said beside what is more
+TOLD = 1e-4  # share from which a part is reported beside a larger one
 
 
 def unheld(study: Study, task: Task) -> list[str]:
