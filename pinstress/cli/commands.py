@@ -328,14 +328,17 @@ def chart(
     short_help="Validate a study without solving it.",
     help=example("pinstress check studies/grenier2008.toml")
     + "\nRead and validate a study and all its files without solving; print what would be run.\n\n"
-    "Exit status: 0 done; 1 done, but a pin is not held; 2 bad input.",
+    "Exit status: 0 done; 1 done, but a pin is not held, or its loads are not in equilibrium; "
+    "2 bad input.",
 )
 @click.argument("study", type=click.Path(path_type=Path))
 def check(study: Path) -> int:
     from pinstress.cli.check import describe
 
-    text, unheld = describe(read_study(study))
+    text, unheld, warnings = describe(read_study(study))
     click.echo(text)
+    for line in warnings:
+        click.echo(f"Warning: {line}", err=True)
     for line in unheld:
         click.echo(f"Not decided: {line}.", err=True)
     return NOT_REACHED if unheld else REACHED

@@ -30,6 +30,7 @@ from pinstress.cli.output_folder import replacing, require_replaceable
 from pinstress.cli.plots import draw_and_print
 from pinstress.cli.shared import open_page
 from pinstress.cli.streams import unneeded
+from pinstress.model.balance import other_warnings
 from pinstress.processes.pool import Died, Job, Progress, Tell, preload, processes, side_by_side
 from pinstress.processes.system import portable
 from pinstress.study.choices import Chosen
@@ -83,6 +84,8 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
     require_replaceable(directory)
     also: Any = wanted.vtk if wanted.vtk in ("motion", "solid") else None
     plan = replace(prepare(study, also=also, **chosen), sensitive=wanted.sensitive)
+    for warning in other_warnings(study, plan.tasks):
+        click.echo(f"Warning: {warning}", err=True)
     most = processes(wanted.jobs)
     ask = _second_opinion(plan, wanted.quiet) if wanted.second else {}
     cache = user_cache() if wanted.cached else None
