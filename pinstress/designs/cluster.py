@@ -27,8 +27,8 @@ EXPRESSION = "[found := {}, exec(text, found), found['versions'](packages)][-1]"
 
 
 class Cluster:
-    """A connected scheduler. expected: the versions that workers must have. tell: called with what
-    is odd.
+    """A connected scheduler. packages: of which workers must have our versions, as of pinstress and
+    Python. tell: called with what is odd.
     """
 
     patience = ANSWERS
@@ -37,11 +37,12 @@ class Cluster:
         self,
         client: Client,
         address: str,
-        expected: Mapping[str, str],
+        packages: Sequence[str],
         tell: Callable[[str], None],
     ) -> None:
         self.client, self.address = client, address
-        self._expected, self._tell = dict(expected), tell
+        self._packages, self._expected = packages, asking.versions(packages)
+        self._tell = tell
         self._same, self._paused, self._told = set[str](), set[str](), set[str]()
         self._looked, self._able = 0.0, time.monotonic()
         self.workers = 0
@@ -132,10 +133,6 @@ class Cluster:
         self.require_same(found)
         self._same |= set(found)
 
-    @property
-    def _packages(self) -> list[str]:
-        return [name for name in self._expected if name not in ("Python", "pinstress")]
-
     def _tell_of_paused(self, paused: set[str]) -> None:
         for address in sorted(paused):
             self._tell_once(
@@ -168,7 +165,7 @@ def _works(worker: Mapping[str, Any]) -> bool:
 
 @contextmanager
 def connected(
-    address: str, expected: Mapping[str, str], tell: Callable[[str], None]
+    address: str, packages: Sequence[str], tell: Callable[[str], None]
 ) -> Iterator[Cluster]:
     """The user's cluster, whose workers have been asked. Raises: InputError where nothing answers,
     or no worker is there, or one has other versions.
@@ -185,7 +182,7 @@ def connected(
                 code="no-scheduler",
             ) from None
         try:
-            yield Cluster(client, address, expected, tell)
+            yield Cluster(client, address, packages, tell)
         finally:
             with suppress(TimeoutError, OSError):
                 client.close(timeout=1.0)  # type: ignore[no-untyped-call]

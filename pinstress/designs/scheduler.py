@@ -60,7 +60,7 @@ def solve_on(
     """
     contents = _read(files)
     problem = replace(problem, files=_hash(contents))
-    with connected(address, versions(NUMERIC), tell) as cluster:
+    with connected(address, NUMERIC, tell) as cluster:
         running: dict[Future[Answer], Batch] = {}
         work = work_of(cluster.workers)
 

@@ -6,6 +6,7 @@ Its text is sent to other computers and run there: it imports nothing but the st
 from __future__ import annotations
 
 import hashlib
+import os
 import sys
 from collections.abc import Iterator, Sequence
 from importlib import metadata, util
@@ -18,10 +19,16 @@ SHOWN = 8  # digits of the hash of a source
 
 def versions(packages: Sequence[str]) -> dict[str, str]:
     """The versions of Python, of this program with the start of the hash of its source, and of
-    packages; MISSING for what cannot be imported.
+    packages, MISSING for what cannot be imported; and which code a system makes the program take
+    (pinstress.processes.system), whose numbers differ in their last digits.
     """
-    python = f"{sys.version_info.major}.{sys.version_info.minor}"
-    return {"Python": python, "pinstress": _ours()} | {name: _version(name) for name in packages}
+    portable = sys.platform != "linux" or os.environ.get("PINSTRESS_PORTABLE") == "1"
+    own = {
+        "Python": f"{sys.version_info.major}.{sys.version_info.minor}",
+        "code for": "all systems" if portable else "Linux",
+        "pinstress": _ours(),
+    }
+    return own | {name: _version(name) for name in packages}
 
 
 def _ours() -> str:

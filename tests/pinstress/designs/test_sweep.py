@@ -267,7 +267,7 @@ def test_a_scheduler_that_does_not_answer_is_named(monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(module, "ANSWERS", 0.5)
     for address in ("tcp://127.0.0.1:1", "nonsense://"):
         with pytest.raises(InputError, match="no scheduler of dask answers at") as raised:
-            module.connected(address, {}, print).__enter__()
+            module.connected(address, (), print).__enter__()
         assert raised.value.code == "no-scheduler"
 
 

@@ -39,16 +39,18 @@ class DaskCluster:
     stack: ExitStack
 
     def worker(
-        self, folder: Path | None = None, *options: str, source: Path = ROOT
+        self, folder: Path | None = None, *options: str, source: Path = ROOT, **variables: str
     ) -> subprocess.Popen[str]:
-        """Start one. folder: where it begins; source: where it finds pinstress."""
+        """Start one. folder: where it begins; source: where it finds pinstress; variables: of its
+        environment.
+        """
         at = folder or self.folder
-        scratch = self.folder / "scratch"
+        scratch, env = self.folder / "scratch", _environment(source) | variables
         command = [
             *_dask("worker", self.address), "--nthreads", "1", "--no-nanny",
             "--local-directory", str(scratch), *options,
         ]  # fmt: skip
-        return self.stack.enter_context(started(command, cwd=at, env=_environment(source), **QUIET))
+        return self.stack.enter_context(started(command, cwd=at, env=env, **QUIET))
 
 
 @contextmanager
