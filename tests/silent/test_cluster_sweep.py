@@ -34,6 +34,7 @@ SHAPES = f'"{DIAMETER}" = {{ from = "1.5 in", to = "4.5 in" }}'
 FEW = f'"{DIAMETER}" = {{ from = "1.5 in", to = "3 in" }}'
 FORCES = "forces = { B = [0.0, -988.86] }"
 TABLE = 'table = "loads.csv"'
+MANY = 20_000  # designs, of a sweep that would take longer than a worker takes to join
 
 
 def _study(folder: Path, count: int, parameters: str = SHAPES, text: str = QUICK) -> None:
@@ -178,7 +179,7 @@ def test_a_worker_with_another_version_that_joins_later_is_refused(
     tmp_path: Path, source: object
 ) -> None:
     assert callable(source)
-    _study(tmp_path, 400, text=ONE_PIN)
+    _study(tmp_path, MANY, text=ONE_PIN)
     with dask_cluster(tmp_path / "cluster") as cluster:
         cluster.worker()
         with _begun(cluster, tmp_path) as sweep:
@@ -199,7 +200,7 @@ def _factors(parts: Path) -> set[float]:
 
 
 def test_a_scheduler_that_stops_answering_is_said(tmp_path: Path) -> None:
-    _study(tmp_path, 400, text=ONE_PIN)
+    _study(tmp_path, MANY, text=ONE_PIN)
     with dask_cluster(tmp_path / "cluster") as cluster:
         cluster.worker()
         with _begun(cluster, tmp_path) as sweep:
