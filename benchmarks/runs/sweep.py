@@ -20,7 +20,7 @@ from benchmarks.timing import Floats, power, table
 from pinstress import Study, shipped_studies, study_from
 from pinstress.designs.batches import Batch, Batches, Done, aim_of
 from pinstress.designs.sweep import Kept, Sweep, planned, solved
-from pinstress.designs.workers import Work, failed_rows, solve_side_by_side
+from pinstress.designs.workers import BatchQueue, failed_rows, solve_side_by_side
 
 COUNTS = 250, 500, 1_000  # designs of other shapes
 STRENGTHS = 100, 200, 400  # of each of 50 loads of one shape
@@ -170,7 +170,7 @@ def _solved_by(jobs: int, plan: Sweep, some: range) -> tuple[float, list[Done]]:
     others = set(range(len(plan.values))) - set(some)
     batches = Batches(plan.problem.numbers, plan.values, others, jobs)
     start = time.perf_counter()
-    work = Work(batches, found.append, partial(failed_rows, ()))
+    work = BatchQueue(batches, found.append, partial(failed_rows, ()))
     solve_side_by_side(plan.problem, work, jobs)
     return time.perf_counter() - start, found
 

@@ -22,7 +22,7 @@ from pinstress.cache.store import PACKAGES
 from pinstress.designs.batches import Batch, DesignProblem, Done, solve_batch
 from pinstress.designs.cluster import Cluster, connected, lost_connection, other_versions, short
 from pinstress.designs.versions import versions
-from pinstress.designs.workers import Work
+from pinstress.designs.workers import BatchQueue
 from pinstress.model.imported_pin import LARGEST_BODY
 from pinstress.study.errors import InputError
 
@@ -38,7 +38,7 @@ Contents = tuple[tuple[str, bytes], ...]  # of files by their paths
 
 
 @dataclass(frozen=True)
-class Answer:
+class WorkerAnswer:
     """Of a worker: its address and versions; what was solved, None if it first needs the files."""
 
     worker: str
@@ -53,7 +53,7 @@ def solve_on(
     address: str,
     problem: DesignProblem,
     files: tuple[Path, ...],
-    work_of: Callable[[int], Work],
+    work_of: Callable[[int], BatchQueue],
     tell: Callable[[str], None],
 ) -> None:
     """Solve batches on the cluster whose scheduler has an address. files: those that the study
@@ -65,7 +65,7 @@ def solve_on(
     contents = _read(files)
     problem = replace(problem, files=_hash(contents))
     with connected(address, NUMERIC, tell) as cluster:
-        running: dict[Future[Answer], Batch] = {}
+        running: dict[Future[WorkerAnswer], Batch] = {}
         work = work_of(cluster.workers)
 
         def start(batch: Batch, given: Contents | None) -> None:
@@ -93,7 +93,7 @@ def solve_on(
                     work.done(outcome.done)
 
 
-def solve_there(problem: DesignProblem, contents: Contents | None, batch: Batch) -> Answer:
+def solve_there(problem: DesignProblem, contents: Contents | None, batch: Batch) -> WorkerAnswer:
     """In a worker: solve a batch, with the contents of the study's files, if they are given or were
     before.
     """
@@ -105,7 +105,7 @@ def solve_there(problem: DesignProblem, contents: Contents | None, batch: Batch)
     if known is not None:
         with sent_files(dict(known)):
             done = solve_batch(problem, batch)
-    return Answer(get_worker().address, _versions_here(), done)
+    return WorkerAnswer(get_worker().address, _versions_here(), done)
 
 
 @lru_cache(1)
@@ -128,13 +128,13 @@ def _hash(contents: Contents) -> str:
     ).hexdigest()
 
 
-def _outcome(cluster: Cluster, future: Future[Answer]) -> Answer | KilledWorker | None:
+def _outcome(cluster: Cluster, future: Future[WorkerAnswer]) -> WorkerAnswer | KilledWorker | None:
     """Of a batch that is done; None where its rows went with the worker that had them.
 
     Raises: InputError where the connection is lost, or a worker cannot do it.
     """
     if future.status == "finished":
-        found: Answer | None = cluster.rows(future)
+        found: WorkerAnswer | None = cluster.rows(future)
         return found
     if future.status != "error":  # cancelled: the scheduler has ended
         raise lost_connection(cluster.address)

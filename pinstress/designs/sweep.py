@@ -14,7 +14,7 @@ from pinstress.designs.laws import Floats
 from pinstress.designs.parameters import Parameter, parameters_of
 from pinstress.designs.sample import designs_of
 from pinstress.designs.table import assembled, table_of
-from pinstress.designs.workers import Work, failed_rows, solve_here, solve_side_by_side
+from pinstress.designs.workers import BatchQueue, failed_rows, solve_here, solve_side_by_side
 from pinstress.processes.pool import cores
 from pinstress.study.choices import require_count
 from pinstress.study.file import Study
@@ -128,8 +128,8 @@ def solved(
     def batches(at_once: int) -> Batches:
         return Batches(sweep.problem.numbers, sweep.values, done, at_once)
 
-    def work(at_once: int) -> Work:
-        return Work(batches(at_once), keep, partial(failed_rows, evaluator.table))
+    def work(at_once: int) -> BatchQueue:
+        return BatchQueue(batches(at_once), keep, partial(failed_rows, evaluator.table))
 
     most = min(jobs or cores(), total - count)
     if scheduler is not None and count < total:

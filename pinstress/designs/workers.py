@@ -16,7 +16,7 @@ Keep = Callable[[Done], None]
 Lost = Callable[[Batch], Done]
 
 
-class Work:
+class BatchQueue:
     """The batches that are to be solved, with those whose process ended by itself.
 
     Such a batch is halved until the design is known; that one is solved alone, since the process
@@ -71,7 +71,7 @@ def solve_here(problem: DesignProblem, batches: Batches, keep: Keep) -> None:
 
 
 def solve_side_by_side(
-    problem: DesignProblem, work: Work, jobs: int, tick: Callable[[], None] = lambda: None
+    problem: DesignProblem, work: BatchQueue, jobs: int, tick: Callable[[], None] = lambda: None
 ) -> None:
     """Solve batches in `jobs` processes of this machine, which keep what they have meshed. tick:
     called several times in a second.

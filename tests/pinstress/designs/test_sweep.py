@@ -37,7 +37,7 @@ from pinstress.designs.parts import Identity, Parts, identity, is_ours
 from pinstress.designs.summary import summary
 from pinstress.designs.sweep import Kept, planned, solved
 from pinstress.designs.table import assembled, facts, write_table
-from pinstress.designs.workers import Work, failed_rows
+from pinstress.designs.workers import BatchQueue, failed_rows
 from tests.support.programs.command_line import QUICK
 from tests.support.programs.swept import DEADLY, DIAMETER, FORCE, STRENGTH, swept
 from tests.support.results.made_up_designs import made_up_designs
@@ -278,7 +278,7 @@ def test_a_batch_whose_process_died_is_halved_and_its_last_design_solved_alone()
     batches.learn(Done(Batch((0,), ((0.0,),)), [], 1e-3))
     kept: list[tuple[int, ...]] = []
     lost = partial(failed_rows, (("B", "landing"),))
-    work = Work(batches, lambda done: kept.append(done.batch.designs), lost)
+    work = BatchQueue(batches, lambda done: kept.append(done.batch.designs), lost)
     killed = {3}  # beside others by another one's need of memory, and then by its own
     together = [work.take(), work.take()]
     while (batch := together.pop() if together else work.take()) is not None:
