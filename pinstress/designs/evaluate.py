@@ -13,6 +13,7 @@ import re
 from collections import OrderedDict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Generic, TypeVar
 
 from fea.asked import Asked
@@ -90,7 +91,8 @@ class Recent(Generic[K, V]):
 class Evaluator:
     """A study whose numbers change. pins, cases: names; all by default. parameters: in the order of
     the values of `rows`. table: the (pin, case) of a design's rows, in their order. meshes: what
-    was solved of pins that are not in contact.
+    was solved of pins that are not in contact. files: those that the study names, as far as
+    whoever made it (pinstress.designs.batches) noted them.
 
     Raises: InputError where the study as it is cannot be run.
     """
@@ -108,6 +110,7 @@ class Evaluator:
         self._raw["analysis"] = analysis  # whose default depends on [vary]
         self.study = with_raw(study, self._raw)
         plan = prepare(self.study, pins=pins, cases=cases)
+        self.files: tuple[Path, ...] = ()
         self._memory = plan.asked.memory  # free when it began: to ask again takes a millisecond
         self._cases = tuple(plan.loads)
         found = {(t.pin.name, case.case): None for t in plan.tasks for case in t.loads}
@@ -131,7 +134,7 @@ class Evaluator:
         try:
             study = self.changed(numbers)
             loads = self._loads_of(study, numbers)
-        except InputError as error:
+        except (InputError, MemoryError) as error:
             return [_failed(self.study, pin, case, error) for pin, case in self.table]
         rows: dict[tuple[str, str], DesignRow] = {}
         for pin in self._pins:
@@ -201,7 +204,7 @@ class Evaluator:
             return
         try:
             made = tasks(study, [pin_of(study, name)], right)
-        except (InputError, ArithmeticError) as error:
+        except (InputError, ArithmeticError, MemoryError) as error:
             yield from ((c, _failed(study, name, c, error)) for c in right)
             return
         asked = asked_of(study, memory=self._memory)

@@ -11,8 +11,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Generic, TypeVar
 
-from pinstress.processes.pool import Died, Job, Tell, ended, side_by_side, threaded
-from pinstress.processes.system import portable
+from pinstress.processes.pool import Died, Job, Tell, can_fork, ended, side_by_side
 from reports.folder.damaged import Damaged
 
 T = TypeVar("T")
@@ -44,8 +43,8 @@ def apart(work: Sequence[tuple[str, Callable[[], T]]], seconds: int) -> list[T |
         Job(name, partial(_guarded, made, seconds)) for name, made in work
     ]
     try:
-        anew = not portable() and threaded()  # a forked one would wait for what a thread holds
-        found = side_by_side(jobs, 2, anew=anew)  # two at a time: one would be this process
+        # Two at a time: one would be this process.
+        found = side_by_side(jobs, 2, anew=not can_fork())
     except (OSError, MemoryError) as error:  # no further process can be started
         why = NO_MEMORY if isinstance(error, MemoryError) else str(error.strerror)
         return [Failed(f"no process could be started for it ({why})") for _ in jobs]

@@ -52,6 +52,7 @@ PLUMBING = {  # without any rule of the physics, and not named on the page
     "loads/tables/csv_table.py",
     "loads/tables/force_table.py",
     "loads/tables/regular_file.py",
+    "loads/tables/sent_files.py",
 }
 
 

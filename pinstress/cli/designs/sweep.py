@@ -24,6 +24,7 @@ from pinstress.designs.table import read_table, table_of, write_table
 from pinstress.processes import interrupts
 from pinstress.processes.folder_lock import Release, lock
 from pinstress.processes.interrupts import Unfinished
+from pinstress.processes.pool import cores
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study
 from reports.designs.columns import designs_of
@@ -73,15 +74,22 @@ def sweep_and_write(
                 count = len(sweep.values)
                 click.echo(f"Continued from {before:,} designs to {count:,}.", err=True)
         try:
-            with progress(way.quiet) as report:
-                table = solved(sweep, parts, way.jobs, way.scheduler, report)
+            alone = way.scheduler is not None or (way.jobs or cores()) == 1
+            with progress(way.quiet, alone) as report:
+                table = solved(sweep, parts, way.jobs, way.scheduler, report, _warn)
         except BaseException as error:
             if parts.count and (isinstance(error, KeyboardInterrupt) or interrupts.came()):
                 raise Unfinished(_kept(parts)) from None
+            if parts.count and isinstance(error, InputError):
+                raise InputError(f"{error}\n{_kept(parts)}", code=error.code) from None
             raise
         _write(directory, table)
         parts.finish()
     return _told(directory, table, way)
+
+
+def _warn(message: str) -> None:
+    click.echo(f"Warning: {message}", err=True)
 
 
 def _told(directory: Path, table: pa.Table, way: Way) -> int:
@@ -181,8 +189,10 @@ def _kept(parts: Parts) -> str:
 
 
 @contextmanager
-def progress(quiet: bool) -> Iterator[Report]:
-    """A progress bar on stderr if it is a terminal, otherwise a line now and then."""
+def progress(quiet: bool, alone: bool = True) -> Iterator[Report]:
+    """A progress bar on stderr if it is a terminal, otherwise a line now and then. alone: whether
+    no process is forked meanwhile, so that a thread may refresh the bar; otherwise every call does.
+    """
     from rich import progress as rich
 
     shown = Console(stderr=True)
@@ -196,12 +206,16 @@ def progress(quiet: bool) -> Iterator[Report]:
     )
     lines = _Lines(quiet or shown.is_terminal)
     with rich.Progress(
-        *columns, console=shown, transient=True, disable=quiet or not shown.is_terminal
+        *columns,
+        console=shown,
+        transient=True,
+        disable=quiet or not shown.is_terminal,
+        auto_refresh=alone,
     ) as bar:
         task = bar.add_task("designs", total=None)
 
         def report(count: int, total: int) -> None:
-            bar.update(task, completed=count, total=total)
+            bar.update(task, completed=count, total=total, refresh=not alone)
             lines.tell(count, total)
 
         yield report
