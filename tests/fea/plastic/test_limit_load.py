@@ -185,11 +185,11 @@ def test_finer_meshes_stay_within_the_bracket() -> None:
     pin, loads = _cantilever()
     meshes = [limit(pin, loads, f, ("start",)) for f in (COARSE, FINE, HexSize(6, 0.125))]
     lower, upper = bracket(meshes[:2])
-    assert upper / lower < 1.06
+    assert upper / lower < 1.07  # a hundredth of it for equilibrium of whole elements alone
     assert lower <= meshes[2].reached <= upper
     assert lower <= meshes[2].above.factor <= upper
     lower, upper = bracket(meshes[1:])
-    assert upper / lower < 1.05
+    assert upper / lower < 1.06
 
 
 @pytest.mark.slow
