@@ -13,6 +13,7 @@ from reports.plots.theme import on_paper
 
 VERSION = "6.4"  # of Vega-Lite
 CLIP = re.compile(r'(?<=id="clip)\d+(?=")|(?<=url\(#clip)\d+(?=\))')
+TWO_UNITS = re.compile("[\U00010000-\U0010ffff]")
 SCALE = 2.0  # pixels of a PNG per unit
 
 
@@ -31,10 +32,19 @@ def draw(plots: Iterable[Plot], directory: Path) -> list[Path]:
 
 
 def svg(spec: Spec) -> str:
-    """A specification with its configuration, drawn."""
+    """A specification with its configuration, drawn. Vega cuts long texts within characters that
+    are two UTF-16 units, such as emoji, and fails: these are then written as U+1F600.
+    """
     import vl_convert
 
-    return _numbered(vl_convert.vegalite_to_svg(json.dumps(still(spec)), vl_version=VERSION))
+    text = json.dumps(still(spec), ensure_ascii=False)
+    try:
+        return _numbered(vl_convert.vegalite_to_svg(text, vl_version=VERSION))
+    except ValueError:
+        named = TWO_UNITS.sub(lambda found: f"U+{ord(found[0]):X}", text)
+        if named == text:
+            raise
+    return _numbered(vl_convert.vegalite_to_svg(named, vl_version=VERSION))
 
 
 def _numbered(svg: str) -> str:
