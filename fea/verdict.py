@@ -134,6 +134,7 @@ def zones(result: MeshResult, singularities: Sequence[Singularity]) -> tuple[Sin
             max_von_mises=inside.maximum,
             advice=singularity.advice,
             strength=inside.strength,
+            felt=inside.felt,
         )
         for singularity, inside in zip(singularities, result.singularities, strict=True)
         if inside.acts

@@ -48,7 +48,8 @@ class SingularZone:
     measured, None where it was not; exponent_theory: 0 for a logarithm. excluded: distance (m)
     within which stress is excluded. governs: whether the stress inside (max_von_mises, Pa, which
     depends on the mesh) exceeds that outside of all zones. advice: what to do about it. strength:
-    of the singularity, where the exponent was measured.
+    of the singularity, where the exponent was measured. felt: the largest stress inside but next to
+    its very edge, Pa, which does not depend on the mesh; 0 where that is not known.
     """
 
     location: Point
@@ -61,6 +62,7 @@ class SingularZone:
     max_von_mises: Stress
     advice: str
     strength: Strength | None = None
+    felt: Stress = 0.0
 
 
 @dataclass(frozen=True)

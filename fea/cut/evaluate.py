@@ -11,7 +11,6 @@ import numpy as np
 from fea.core.mesh_result import MeshResult
 from fea.core.pin_loads import AnyLoads, PinLoads
 from fea.core.solution import Picture
-from fea.core.voigt import ENTRIES, TENSOR
 from fea.cut.local_fields import (
     RATIO,
     RISE,
@@ -22,6 +21,7 @@ from fea.cut.local_fields import (
     section_points,
 )
 from fea.cut.region import surface_ends, zone
+from fea.cut.shown import ShownCut, shown
 from fea.cut.supports import ClampMotions, Support, motions, reactions
 from fea.harmonic.evaluate import (
     HarmonicAnswer,
@@ -36,25 +36,25 @@ from fea.singular.singularities import VARIED, Singularity
 from fea.solid.nodal_loads import Unit
 from fea.solid.superposition import squares
 from geometry import CutPin
-from geometry.arrays import Floats, Ints, Mask
+from geometry.arrays import Floats
 from geometry.mesh.cut_piece import Piece
 from geometry.mesh.sizing import Grade
 
 FINE = 0.25  # element of the first section about a cut, of its radius
 GROWTH = 0.5  # of that with the distance
 LEAST = 1e-3  # of the stress: what brings less is solved as if it brought so much
-SECTORS = 48  # of the surface that is shown, away from the pieces
 
 
 @dataclass(frozen=True)
 class CutSolution:
     """The uncut pin, whose stress where it is cut does not count, and the pieces about the cuts.
-    reactions: motions of redundant clamps that go with loads.
+    reactions: motions of redundant clamps that go with loads; held: its first support, if any.
     """
 
     section: HarmonicSolution
     pieces: tuple[LocalFields, ...]
     reactions: ClampMotions
+    held: Support | None = None
 
     @property
     def corners(self) -> tuple[Singularity, ...]:
@@ -121,7 +121,7 @@ def cut_solution(
     found = tuple(there or next(new) for there in known)
     fields = _without(section.fields, [zone(piece) for piece in pieces])
     section = replace(section, fields=fields, elsewhere=NOWHERE)
-    return CutSolution(section, found, reactions(supports, found))
+    return CutSolution(section, found, reactions(supports, found), next(iter(supports), None))
 
 
 def _supports(problem: SectionProblem) -> list[Support]:
@@ -174,20 +174,6 @@ def _without(fields: MeridianFields, zones: Sequence[tuple[float, float]]) -> Me
     return replace(fields, unread=np.unique(np.concatenate([fields.unread, *cut])))
 
 
-@dataclass(frozen=True)
-class ShownCut:
-    """The surface as it is shown: points (P, 3) m, triangles (M, 3), and of L unit loads, each in
-    one phase, stress (P, 6, L) Pa and displacement (P, 3, L) m; read: (P,) where the maximum is
-    looked for.
-    """
-
-    points: Floats
-    triangles: Ints
-    stress: Floats
-    displacement: Floats
-    read: Mask
-
-
 class CutAnswer:
     """What a solution says of any loads made of its unit loads (fea.core.solution)."""
 
@@ -234,96 +220,8 @@ class CutAnswer:
 
     @cached_property
     def surface(self) -> ShownCut:
-        """The pieces in place, the uncut pin between them."""
-        pieces = self.solution.pieces
-        between = [(p.piece.z0, p.piece.z1) for p in pieces]
-        uncut = _revolved(self.section, pieces[0].units, between)
-        parts = [uncut, *(_shown(piece) for piece in pieces)]
-        starts = np.cumsum([0, *(len(part.points) for part in parts)])
-        return ShownCut(
-            np.concatenate([p.points for p in parts]),
-            np.concatenate([p.triangles + i for p, i in zip(parts, starts, strict=False)]),
-            np.concatenate([p.stress for p in parts]),
-            np.concatenate([p.displacement for p in parts]),
-            np.concatenate([p.read for p in parts]),
-        )
-
-
-def _shown(piece: LocalFields) -> ShownCut:
-    return ShownCut(piece.points, piece.triangles, piece.stress, piece.displacement, piece.read)
-
-
-def _revolved(
-    section: HarmonicAnswer, units: tuple[Unit, ...], pieces: Sequence[tuple[float, float]]
-) -> ShownCut:
-    """The outline turned about the axis, without what lies in the pieces."""
-    fields = section.fields
-    ends = np.arange(fields.skin).reshape(-1, 5)[:, [0, 4]]
-    rows, part = [ends], [np.tile([0.0, 1.0], (len(ends), 1))]
-    keep_rows, keep_part = np.concatenate(rows), np.concatenate(part)
-    for low, high in pieces:
-        keep_rows, keep_part = _outside_of(fields.points[:, 1], keep_rows, keep_part, low, high)
-    a, b, t = keep_rows[:, 0].repeat(2), keep_rows[:, 1].repeat(2), keep_part.ravel()
-
-    def along(values: Floats) -> Floats:
-        w = t.reshape(-1, *(1,) * (values.ndim - 1))
-        return np.asarray((1.0 - w) * values[a] + w * values[b])
-
-    own = [fields.loads.index(load) for load, _ in units]
-    r, z = along(fields.points[: fields.skin]).T
-    stress, moved = (
-        along(x[: fields.skin])[..., own] for x in (fields.stress, fields.displacement)
-    )
-    angle = np.arange(SECTORS) * 2.0 * np.pi / SECTORS
-    n, phase = (np.array(x) for x in ([load.n for load, _ in units], [p for _, p in units]))
-    psi = n * angle[:, None] - phase * np.pi / 2.0
-    even, odd = np.cos(psi), np.sin(psi)
-    stress = np.where([[x] for x in (True, True, True, False, True, False)],
-                      stress[:, None] * even[:, None], stress[:, None] * odd[:, None])  # fmt: skip
-    moved = np.where([[True], [False], [True]], moved[:, None] * even[:, None],
-                     moved[:, None] * odd[:, None])  # fmt: skip
-    turn = np.zeros((SECTORS, 3, 3))
-    turn[:, 0, 0] = turn[:, 1, 1] = np.cos(angle)
-    turn[:, 1, 0] = np.sin(angle)
-    turn[:, 0, 1] = -np.sin(angle)
-    turn[:, 2, 2] = 1.0
-    tensor = np.einsum("sai,psijl,sbj->psabl", turn, stress[:, :, TENSOR], turn, optimize=True)
-    points = np.stack([r[:, None] * np.cos(angle), r[:, None] * np.sin(angle),
-                       np.broadcast_to(z[:, None], (len(z), SECTORS))], axis=2)  # fmt: skip
-    i = SECTORS * 2 * np.arange(len(keep_rows))[:, None] + np.arange(SECTORS)
-    j = SECTORS * 2 * np.arange(len(keep_rows))[:, None] + (np.arange(SECTORS) + 1) % SECTORS
-    quads = np.stack([i, j, j + SECTORS, i + SECTORS], axis=2).reshape(-1, 4)
-    read = fields.outside(section.singularities)[: fields.skin]
-    count = len(units)
-    return ShownCut(
-        points.reshape(-1, 3),
-        quads[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3),
-        np.stack([tensor[:, :, a, b] for a, b in ENTRIES], axis=2).reshape(-1, 6, count),
-        np.einsum("sai,psil->psal", turn, moved).reshape(-1, 3, count),
-        (read[a] & read[b]).repeat(SECTORS),
-    )
-
-
-def _outside_of(
-    z: Floats, rows: Ints, part: Floats, low: float, high: float
-) -> tuple[Ints, Floats]:
-    """Edges between points `rows` (E, 2), from one to another part of their length (E, 2), without
-    what lies between two z.
-    """
-    out_rows, out_part = [], []
-    for (a, b), (s, t) in zip(rows, part, strict=True):
-        at = [z[a] + x * (z[b] - z[a]) for x in (s, t)]
-        if max(at) <= low or min(at) >= high:
-            out_rows.append((a, b))
-            out_part.append((s, t))
-            continue
-        for end in (low, high):
-            if min(at) < end < max(at):
-                cut = (end - z[a]) / (z[b] - z[a])
-                outer = (s, cut) if (at[0] < end) == (end == low) else (cut, t)
-                out_rows.append((a, b))
-                out_part.append(outer)
-    return np.array(out_rows, dtype=np.int64).reshape(-1, 2), np.array(out_part).reshape(-1, 2)
+        """The pieces in place, the uncut pin between them, held as its first clamp is."""
+        return shown(self.section, self.solution.pieces, self.solution.held)
 
 
 def cut_result(

@@ -16,6 +16,7 @@ from fea.core.voigt import ENTRIES, TENSOR
 from fea.cut.inner_corners import InnerCorner, inner_corners
 from fea.cut.local_model import LocalModel, turned
 from fea.cut.lost_loads import bearings
+from fea.cut.movement import displacement, rigid
 from fea.cut.region import zone
 from fea.harmonic.fields import MeridianFields
 from fea.singular.singularities import Singularity, outside
@@ -35,7 +36,6 @@ ENDED = (
 BESIDE = 5.0  # stress at a cut over what another one changes beside it, at most (4.4 seen)
 ABOUT = 16  # of its nodes on the outline, the nearest ones to there
 RISE = 0.3  # of a piece's maximum, by meshes finer than the first one, at most (0.1 seen)
-NEAR = 3  # points of the section between which displacements are interpolated
 
 
 @dataclass(frozen=True)
@@ -56,8 +56,9 @@ class LocalFineness:
 @dataclass(frozen=True)
 class LocalFields:
     """On one mesh of a piece, in the pin's frame: points (P, 3) m of the surface, triangles (M, 3)
-    of them, stress (P, 6, L) Pa of L unit loads, each in one phase; displacement (P, 3, L) m of the
-    uncut pin. read: (P,) where the maximum is looked for but for inner corners of cuts. outer, and
+    of them, stress (P, 6, L) Pa of L unit loads, each in one phase. uncut: (P, 3, L) m, the
+    displacement of the uncut pin; displaced: what the cuts add to it against their piece's lower
+    end. read: (P,) where the maximum is looked for but for inner corners of cuts. outer, and
     changed: rows on the outline of the uncut pin, and what the cuts change of their stress (O, 6,
     L); ended: (O,) which of these are where the piece ends. moved: (2, 6, L) by how much the cuts
     move its ends, as a shift (m) and a turn (rad) about the pin's origin. scatter: (P,) of the
@@ -69,7 +70,8 @@ class LocalFields:
     points: Floats
     triangles: Ints
     stress: Floats
-    displacement: Floats
+    uncut: Floats
+    displaced: Floats
     read: Mask
     outer: Ints
     changed: Floats
@@ -298,19 +300,22 @@ def local_fields(
     for end in ends:
         at_end |= np.abs(points[:, 2] - end) < ON_END * length
     outer = np.flatnonzero(~read.cut)
-    moved = _displacement(fields, flat_r, flat_z, np.arctan2(points[:, 1], points[:, 0]), units)
+    uncut = displacement(fields, flat_r, flat_z, np.arctan2(points[:, 1], points[:, 0]), units)
+    moved = _in_pin(read.moved, model.piece)
+    displaced = np.einsum("ab,pbl->pal", _turn(model.piece.angle), read.displaced)
     return LocalFields(
         model.piece,
         units,
         points,
         model.triangles,
         turned(read.stress, np.broadcast_to(_turn(model.piece.angle), (len(points), 3, 3))),
-        moved,
+        uncut,
+        displaced - rigid(moved[0], points),
         outside(singularities, flat_r, flat_z),
         outer,
         read.difference[outer],
         at_end[outer],
-        _in_pin(read.moved, model.piece),
+        moved,
         model.unknowns,
         tuple(
             replace(corner, distance=np.tile(corner.distance, len(x)))
@@ -371,21 +376,3 @@ def _cartesian(amplitude: Floats, angle: Floats, turned: float, units: tuple[Uni
     tensor = polar[..., TENSOR, :]
     found = np.einsum("...ai,...ijl,...bj->...abl", turn, tensor, turn, optimize=True)
     return np.stack([found[..., a, b, :] for a, b in ENTRIES], axis=-2)
-
-
-def _displacement(
-    fields: MeridianFields, r: Floats, z: Floats, angle: Floats, units: tuple[Unit, ...]
-) -> Floats:
-    """Of the uncut pin, (P, 3, L) m, between the nearest of its points."""
-    known = fields.points[: len(fields.displacement)]
-    distance, near = (np.asarray(a) for a in cKDTree(known).query(np.stack([r, z], axis=1), NEAR))
-    weight = 1.0 / (distance + 1e-9 * np.ptp(known[:, 1]))
-    weight /= weight.sum(axis=1, keepdims=True)
-    own = [fields.loads.index(load) for load, _ in units]
-    amplitude = np.einsum("ps,psal->pal", weight, fields.displacement[near][..., own])
-    n, phase = (np.array(found) for found in ([load.n for load, _ in units], [p for _, p in units]))
-    psi = n * angle[:, None] - phase * np.pi / 2.0
-    radial, round_, along = np.moveaxis(amplitude, 1, 0)
-    radial, round_, along = radial * np.cos(psi), round_ * np.sin(psi), along * np.cos(psi)
-    c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
-    return np.stack([radial * c - round_ * s, radial * s + round_ * c, along], axis=1)

@@ -46,15 +46,17 @@ ENDS = ("start", "end")
 @dataclass(frozen=True)
 class Read:
     """At points (P, 3), m, of a piece, those of each image after the other: the stress of the cut
-    pin (P, 6, L), Pa, and by how much it is not that of the uncut one; which are on a cut. moved:
-    (2, 6, L) by how much the piece's lower and upper ends move for the cuts, as a shift (m) and a
-    turn (rad) about the origin of its frame.
+    pin (P, 6, L), Pa, and by how much it is not that of the uncut one; which are on a cut;
+    displaced: (P, 3, L) m by how much the cuts move them, besides a rigid motion of all. moved: (2,
+    6, L) by how much they move the piece's lower and upper ends, besides the same motion, as a
+    shift (m) and a turn (rad) about the origin of its frame.
     """
 
     points: Floats
     stress: Floats
     difference: Floats
     cut: Mask
+    displaced: Floats
     moved: Floats
 
 
@@ -117,9 +119,14 @@ class LocalModel:
         return np.asarray(np.concatenate(parts) / self.finer**2)
 
     @cached_property
+    def nodes(self) -> Ints:
+        """Of its faces, face by face, (P,)."""
+        return np.concatenate([r.nodes for r in self.readings])
+
+    @cached_property
     def points(self) -> Floats:
-        """Nodes of its faces (P, 3), m, face by face, from the mirror plane or the lower end on."""
-        return np.concatenate([self.space.nodes[r.nodes] for r in self.readings])
+        """These nodes (P, 3), m, from the mirror plane or the lower end on."""
+        return np.asarray(self.space.nodes[self.nodes])
 
     @property
     def images(self) -> Floats:
@@ -146,6 +153,7 @@ class LocalModel:
         scale = np.where(largest > 0.0, largest, 1.0) / weight
         difference = np.zeros_like(by_class)
         moved = np.zeros((2, 6, uncut.shape[3]))
+        displaced = np.zeros((*by_class.shape[:2], 3, uncut.shape[3]))
         forces = [self._forces(part / scale) for part in by_class]
         pressed = self._forces(_pressure(len(self.points)))
         most = max(float(np.linalg.norm(f)) for f in (pressed, *forces))
@@ -155,12 +163,14 @@ class LocalModel:
                 more, spread = self._spread(by_class[c] / scale, parity, by_kind)
                 u = self._displace(forces[c] + more, parity, whole)
                 moved += self._moved(u, parity) * scale
+                displaced[c] = u.reshape(-1, 3, u.shape[1])[self.nodes] * scale
                 difference[c] = self._stress(u, by_class[c] / scale, spread, c) * scale
         total = self._in_faces(by_class) + difference
         total[:, self.cut, 2:5] = 0.0
         whole, changed = (self._everywhere(x) for x in (total, difference))
         cut = np.tile(self.cut, len(by_class))
-        return Read(self.images.reshape(-1, 3), whole, changed, cut, moved)
+        displaced = self.parities.everywhere(displaced)
+        return Read(self.images.reshape(-1, 3), whole, changed, cut, displaced, moved)
 
     def _moved(self, u: Floats, parity: tuple[int, ...]) -> Floats:
         """The rigid motions (2, 6, L) of both ends by displacements (3 N, L) of a class. Of what

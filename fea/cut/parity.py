@@ -65,6 +65,15 @@ class Parities:
         back = stress * self.stress_signs[:, None, :, None]
         return np.asarray(np.tensordot(self.characters, back, axes=1) / len(self.images))
 
+    def everywhere(self, displacement: Floats) -> Floats:
+        """Displacements at all images (G P, 3, L) of those of each class at the points themselves,
+        (C, P, 3, L).
+        """
+        found = np.einsum(
+            "cg,ga,cpal->gpal", self.characters, self.images, displacement, optimize=True
+        )
+        return np.asarray(found.reshape(-1, *found.shape[2:]))
+
     def fixed(self, parity: tuple[int, ...]) -> dict[str, tuple[int, ...]]:
         """Components that vanish on each mirror."""
         out = {}

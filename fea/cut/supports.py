@@ -91,8 +91,8 @@ def reactions(supports: Sequence[Support], pieces: Sequence[LocalFields]) -> Cla
     first = len(units) - len(moved)
     if not moved:
         return ClampMotions(units, (), np.zeros((0, first)))
-    reached = [_reached(s, pieces) for s in supports]
-    gap = np.concatenate([BACKWARDS[:, None] * (x - reached[0]) for x in reached[1:]])
+    there = [reached(s, pieces) for s in supports]
+    gap = np.concatenate([BACKWARDS[:, None] * (x - there[0]) for x in there[1:]])
     system = np.eye(len(moved)) + gap[:, first:]
     scale = np.tile(
         np.repeat([1.0, pieces[0].piece.profile.largest_diameter], 3), len(supports) - 1
@@ -106,7 +106,7 @@ def reactions(supports: Sequence[Support], pieces: Sequence[LocalFields]) -> Cla
     return ClampMotions(units[:first], moved, -np.linalg.solve(system, gap[:, :first]))
 
 
-def _reached(support: Support, pieces: Sequence[LocalFields]) -> Floats:
+def reached(support: Support, pieces: Sequence[LocalFields]) -> Floats:
     """The rigid motion of the place of a clamp against the pin's start by all cuts before it,
     (6, L): a shift and a turn about the pin's origin.
     """

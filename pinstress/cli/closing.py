@@ -92,6 +92,16 @@ def report_violations(results: Results) -> int:
     return REQUIREMENT_MISSED if short or depending or negative else 0
 
 
+def report_status_zero(results: Results) -> None:
+    """Why the exit status is 0 where a pin misses its requirements, or may miss them."""
+    if any(check.outcome in (FAILS, YIELDS, DEPENDS) for check in judged_checks(results)):
+        click.echo(
+            "Exit status 0: the run is complete; --fail-on-miss makes it 4 where a pin misses its "
+            "requirements, or may, as here.",
+            err=True,
+        )
+
+
 def report_missed(results: Results, decide: bool) -> int:
     """The rows without a converged maximum or without a decision, and those that failed; returns
     the exit status.

@@ -24,6 +24,7 @@ from pinstress.cli.closing import (
     report_missed,
     report_reused,
     report_slow_rows,
+    report_status_zero,
     report_violations,
 )
 from pinstress.cli.output_folder import replacing, require_replaceable
@@ -118,6 +119,8 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
     status = report_missed(results, study.table.analysis.goal == "decide")
     status = max(status, report_disagreements(results))
     violated = report_violations(results) if wanted.strict else 0
+    if not (status or wanted.strict or wanted.quiet):
+        report_status_zero(results)
     drawn = draw_and_print(directory, wanted.plots, wanted.pdf, wanted.quiet)
     if wanted.opens:
         open_page(directory / PAGE)

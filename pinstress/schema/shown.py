@@ -10,6 +10,8 @@ from itertools import islice
 
 LONGEST = 80  # characters of a name or value in a message
 COMPARED = 1000  # names compared for a hint, which must be quick
+CANDIDATES = 5  # for a hint, by their letters
+PART = 3  # letters, at least, of a name that is part of another
 LISTED = 20  # names that a message lists
 ELLIPSIS = "…"
 
@@ -39,13 +41,38 @@ def listed(names: Iterable[object]) -> str:
 
 
 def nearest(name: object, known: Iterable[str], cutoff: float = 0.6) -> str | None:
-    """The known name that is most like this one, if any is: first but for capitals."""
+    """The known name that is most like this one, if any is: first but for capitals. None that
+    merely has some letters in common.
+    """
     wanted, among = cut(str(name)), [cut(k) for k in islice(known, COMPARED)]
     for each in among:
         if each.casefold() == wanted.casefold():
             return each
-    found = difflib.get_close_matches(wanted, among, n=1, cutoff=cutoff)
-    return found[0] if found else None
+    found = difflib.get_close_matches(wanted, among, n=CANDIDATES, cutoff=cutoff)
+    return next((one for one in found if _misspelt(wanted.casefold(), one.casefold())), None)
+
+
+def _misspelt(a: str, b: str) -> bool:
+    """Whether one is part of the other, or a third of the letters at most are wrong, left out, added
+    or swapped with the next.
+    """
+    if min(len(a), len(b)) >= PART and (a in b or b in a):
+        return True
+    return _mistakes(a, b) <= max(1, max(len(a), len(b)) // 3)
+
+
+def _mistakes(a: str, b: str) -> int:
+    """Of this kind (the optimal string alignment distance)."""
+    before: list[int] = []
+    row = list(range(len(b) + 1))
+    for i, x in enumerate(a, 1):
+        last, before, row = before, row, [i]
+        for j, y in enumerate(b, 1):
+            best = min(before[j] + 1, row[j - 1] + 1, before[j - 1] + (x != y))
+            if i > 1 and j > 1 and x == b[j - 2] and a[i - 2] == y:
+                best = min(best, last[j - 2] + 1)
+            row.append(best)
+    return row[-1]
 
 
 def near(name: object, known: Iterable[str]) -> str:

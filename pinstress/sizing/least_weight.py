@@ -11,12 +11,12 @@ from pinstress.analysis.results import run
 from pinstress.model.pins import pin as pin_of
 from pinstress.processes.pool import Died, Job, Progress, preload, side_by_side
 from pinstress.remedies.secant import CLOSE
-from pinstress.sizing.lightest_pin import Aim, Lightest, Start, lightest_pin
+from pinstress.sizing.lightest_pin import Aim, Lightest, Start, as_it_is, lightest_pin
 from pinstress.sizing.other_dimensions import written_study
 from pinstress.sizing.pin_shape import VariedShape
 from pinstress.sizing.scaled_study import resized_study
 from pinstress.study.file import Study
-from reports.data.decision import factor_ends
+from reports.data.decision import ORDER, SAFE, factor_ends, outcome
 from reports.data.results import PinResult, Results
 
 PASSES = 5
@@ -57,7 +57,7 @@ def lighten(
     for count in range(1, PASSES + 1):
         found = _all(study, plan, names, aim, starts, jobs, progress)
         first = {each.pin: each.before for each in found} | first
-        starts = {x.pin: Start(x.values, x.scale, x.whole) for x in found}
+        starts = {x.pin: Start(x.values, x.scale, x.whole, x.decided) for x in found}
         new = _written(study, aim, found)
         progress("run of the new study", 0.9)
         results = run(new, pins=names, jobs=jobs)
@@ -66,7 +66,34 @@ def lighten(
             break
         plan = replace(plan, loads=prepare(new, pins=pins).loads)
     kept = tuple(replace(each, before=first[each.pin]) for each in found)
+    if worse := _worse(study, aim, kept, results, jobs):
+        kept = tuple(
+            as_it_is(study, aim, each, worse[each.pin]) if each.pin in worse else each
+            for each in kept
+        )
+        new = _written(study, aim, list(kept))
+        results = run(new, pins=names, jobs=jobs)
     return LightStudy(new, kept, results, count, settled)
+
+
+def _worse(
+    study: Study, aim: Aim, found: tuple[Lightest, ...], results: Results, jobs: int
+) -> dict[str, str]:
+    """By pin, why what was found is decided worse than the pin as it is: a row that is safe is
+    better than one that is not decided, this better than one that fails.
+    """
+    changed = {x.pin for x in found if not x.kept and (x.values or x.scale is not None)}
+    doubtful = {p.pin for p in results.pins if ORDER[outcome(p)] < ORDER[SAFE]} & changed
+    if not doubtful:
+        return {}
+    start = run(_written(study, aim, []), pins=sorted(doubtful), jobs=jobs)
+    before = {(p.pin, p.case): outcome(p) for p in start.pins}
+    out: dict[str, str] = {}
+    for p in results.pins:
+        was, now = before.get((p.pin, p.case)), outcome(p)
+        if p.pin in doubtful and was is not None and ORDER[now] < ORDER[was]:
+            out[p.pin] = f"the lightest pin that was found is {now} in {p.case}, this one {was}"
+    return out
 
 
 def low_factor(pin: PinResult) -> float | None:
@@ -98,6 +125,7 @@ def _all(
 
 
 def _written(study: Study, aim: Aim, found: list[Lightest]) -> Study:
+    found = [each for each in found if not each.kept]
     scales = {each.pin: each.scale for each in found if each.scale is not None}
     scaled = resized_study(study, scales, aim.step, aim.required)
     values = {each.pin: each.values for each in found if each.values is not None}

@@ -33,7 +33,9 @@ from pinstress.sizing.pin_stress import (
     SolvedPin,
     UndifferentiatedError,
 )
-from pinstress.sizing.scaled_study import resized_study, rounded
+from pinstress.sizing.scaled_study import resized_study
+from pinstress.sizing.singular_places import decided
+from pinstress.sizing.written_dimensions import ROUNDING, STEPS_UP, binding, rounded_values
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study
 
@@ -47,10 +49,9 @@ CORRECTIONS = 3  # of what rough cells say
 SCALINGS = 10
 DOUBT = 0.03  # of the weight of a pin that is only scaled, where that was found by slopes
 REPAIRS = 4
-STEPS_UP = 40  # of diameters rounded to steps
-ROUNDING = 2e-3  # of a geometric limit, by which four digits may break it
 WHOLE = "scaled as a whole, because its stress has no derivatives by its dimensions{}"
 CUTS = ": it has cuts, or is no body of revolution"
+AS_IT_IS = "left as it is: "
 
 Tell = Callable[[str], None]
 
@@ -79,8 +80,8 @@ class Lightest:
     neither where nothing reaches the factor, and `why`. before, factor: lower end of its factor as
     it was and with these. scaled: its volume, m^3, were it only scaled, whole: the dimensions then,
     m; None where that is not known. optimality: of what the search found; binding: what binds, in
-    words, by its multiplier. solved: designs. way: why it is only scaled, or how the search ended
-    if it did not converge.
+    words, by its multiplier. solved: designs. way: why it is only scaled, or left as it is, or how
+    the search ended if it did not converge. decided: as of Start.
     """
 
     pin: str
@@ -95,17 +96,25 @@ class Lightest:
     solved: int = 0
     why: str = ""
     way: str = ""
+    decided: frozenset[str] | None = None
+
+    @property
+    def kept(self) -> bool:
+        """Whether it is left as it is."""
+        return self.way.startswith(AS_IT_IS)
 
 
 @dataclass(frozen=True)
 class Start:
     """A pin's dimensions by key, m, or its scale, and dimensions of it that is only scaled, m, as
-    they were found under other loads.
+    they were found under other loads. decided: cases in which no singularity may govern; by default
+    those in which none does in the pin as it is given.
     """
 
     values: dict[str, float] | None = None
     scale: float | None = None
     whole: tuple[float, ...] | None = None
+    decided: frozenset[str] | None = None
 
 
 def lightest_pin(
@@ -131,37 +140,69 @@ def lightest_pin(
         shape, known = problem.shape, start.values or {}
         values = np.array([known.get(d.key, d.value) for d in shape.dimensions])
         stress.at(values, FAR)
-        before = problem.required * float(np.exp(-stress.sure(values).worst))
+        sure = stress.sure(values)
+        before = problem.required * float(np.exp(-sure.largest))
+        stress.watched = decided(sure.peaks) if start.decided is None else start.decided
+        start = replace(start, decided=stress.watched)
         first = stress.at(values)
         search = _Search(problem, stress, aim)
         if start.values is not None:
-            return replace(_found(search, first, start.whole), before=before)
-        near, whole = _scaled(search, first, roughly=len(values) > 1)
-        return replace(_found(search, near, tuple(map(float, whole))), before=before)
+            found = _found(search, first, start.whole)
+        else:
+            near, whole = _scaled(search, first, roughly=len(values) > 1)
+            found = _found(search, near, tuple(map(float, whole)))
+        return replace(found, before=before, decided=stress.watched)
     except UndifferentiatedError:
-        return _only_scaled(stress, aim, start.scale or 1.0)
+        return _only_scaled(stress, aim, start)
     except ImpossibleError as error:
-        return Lightest(pin, before=before, solved=stress.count, why=str(error))
+        failed = Lightest(pin, before=before, solved=stress.count, why=str(error))
+        if before is None or not stress.watched:
+            return failed
+        if start.values is None and before >= problem.required and not _singular(stress):
+            return as_it_is(study, aim, failed, str(error))
+        return lightest_pin(study, plan, pin, aim, replace(start, decided=frozenset()), tell)
 
 
-def _only_scaled(stress: PinStress, aim: Aim, start: float) -> Lightest:
+def _singular(stress: PinStress) -> bool:
+    """Whether a singularity governs in the design that was solved first."""
+    return any(peak.verdict == "singular" for peak in stress.solved[0].peaks)
+
+
+def as_it_is(study: Study, aim: Aim, found: Lightest, why: str) -> Lightest:
+    """The pin as it is in the study in place of what was found, which is decided worse."""
+    shape = VariedShape(study, pin_of(study, found.pin), aim.vary, aim.limits)
+    values = {d.key: d.value for d in shape.dimensions} or None
+    scale = 1.0 if values is None else None
+    return Lightest(
+        found.pin, values, scale, found.before, found.before, solved=found.solved,
+        way=AS_IT_IS + why,
+    )  # fmt: skip
+
+
+def _only_scaled(stress: PinStress, aim: Aim, start: Start) -> Lightest:
     """Without derivatives: all its dimensions times the same, as `size` does."""
-    problem, factors = stress.problem, {}
+    problem, first = stress.problem, start.scale or 1.0
+    factors: dict[float, float] = {}
+    stress.watched = start.decided or frozenset()
 
     def factor_at(scale: float) -> float:
         found = stress.of(resized_study(problem.study, {problem.name: scale}, aim.step))
+        if not factors and start.decided is None:
+            stress.watched = decided(found.peaks)
         factors[scale] = problem.required * float(np.exp(-found.worst))
         return factors[scale]
 
     try:
-        best = smallest(factor_at, problem.required, start)
+        best = smallest(factor_at, problem.required, first)
         way = WHOLE.format("" if isinstance(problem.shape.whole, Pin) else CUTS)
     except (NoSizeError, ImpossibleError, InputError) as error:
         return Lightest(
-            problem.name, before=factors.get(start), solved=len(factors), why=str(error)
+            problem.name, before=factors.get(first), solved=len(factors), why=str(error)
         )
-    before, count = factors[start], len(factors)
-    return Lightest(problem.name, None, best.scale, before, best.factor, solved=count, way=way)
+    return Lightest(
+        problem.name, None, best.scale, factors[first], best.factor, solved=len(factors), way=way,
+        decided=stress.watched,
+    )  # fmt: skip
 
 
 def problem_of(study: Study, plan: Plan, pin: str, aim: Aim) -> PinProblem | str:
@@ -212,7 +253,7 @@ class _Search:
     def raised(self, solved: SolvedPin) -> tuple[StressPlace, ...]:
         """Over what is aimed at, a little below what is allowed."""
         aim = ROUGH_AIM if self.stress.in_contact else AIM
-        return tuple(replace(p, value=p.value + aim) for p in solved.places)
+        return tuple(replace(p, value=p.value + aim) for p in solved.every)
 
     def least_weight(self, start: Floats) -> Optimum:
         """From dimensions' logarithms."""
@@ -225,7 +266,7 @@ class _Search:
     def written(self, values: Floats) -> Floats:
         """As they are written."""
         metre = self.problem.study.system.factor("length")
-        return _rounded(self.shape, values, self.aim.step, metre)
+        return rounded_values(self.shape, values, self.aim.step, metre)
 
     def keeps(self, values: Floats) -> bool:
         """Whether geometric limits hold but for the digits that are written."""
@@ -249,11 +290,11 @@ def _found(search: _Search, near: SolvedPin, whole: tuple[float, ...] | None) ->
     return Lightest(
         search.problem.name,
         dict(zip(shape.keys, map(float, best.values), strict=True)),
-        factor=aim.required * float(np.exp(-best.worst)),
+        factor=aim.required * float(np.exp(-best.largest)),
         scaled=before,
         whole=tuple(map(float, as_whole)),
         optimality=optimum.optimality,
-        binding=tuple(_binding(search, optimum)),
+        binding=tuple(binding(shape, optimum)),
         solved=search.stress.count,
         way=optimum.why,
     )
@@ -266,7 +307,7 @@ def _optimum(search: _Search, near: SolvedPin) -> Optimum:
     if len(search.shape.dimensions) > 1 or not -NEAR <= near.worst <= 0.0:
         found = search.least_weight(np.log(near.values))
     else:
-        x, places = np.log(near.values), near.places
+        x, places = np.log(near.values), near.every
         found = Optimum(x, search.weight(x)[0], places, optimality(search, x, places), 0)
     if search.stress.in_contact:
         for _ in range(CORRECTIONS):
@@ -357,44 +398,3 @@ def _repaired(search: _Search, values: Floats) -> SolvedPin | None:
         else:
             more += 0.5 * step / float(values.min())
     return None
-
-
-def _rounded(shape: VariedShape, values: Floats, step: float | None, metre: float) -> Floats:
-    """As they are written: four digits, diameters up, bores and fillets down; diameters up to a
-    step (m), and by further steps where a geometric limit is broken by that.
-    """
-    up = {"diameters": 1, "bores": -1, "fillets": -1}
-    out, steps = [], np.zeros(len(values))
-    for k, (dimension, value) in enumerate(zip(shape.dimensions, values, strict=True)):
-        kind = kind_of(dimension.key)
-        own = None
-        if step is not None and kind == "diameters":
-            own = (step / 2.0 if dimension.key.startswith("meridian") else step) / metre
-            steps[k] = own * metre
-        out.append(rounded(float(value) / metre, own, up[kind]) * metre)
-    found = np.array(out)
-    for _ in range(STEPS_UP if step is not None else 0):
-        limits, slopes = shape.at_limits(found)
-        if not len(limits) or limits.min() >= -ROUNDING:
-            break
-        grow = (slopes[int(limits.argmin())] > 0.0) & (steps > 0.0)
-        if not grow.any():
-            break
-        found = found + np.where(grow, steps, 0.0)
-    return found
-
-
-def _binding(search: _Search, optimum: Optimum) -> list[tuple[str, float]]:
-    """What binds, the largest multiplier first."""
-    keys, limits = search.shape.keys, search.shape.geometric
-    out = []
-    for name, multiplier in optimum.optimality.multipliers.items():
-        kind, _, number = name.rpartition(" ")
-        text = name
-        if kind == "limit":
-            text = limits[int(number) - 1].text
-        elif kind in ("least", "most"):
-            far = f"{FARTHEST:g} times {'less' if kind == 'least' else 'more'}"
-            text = f"{keys[int(number) - 1]} {far}"
-        out.append((text, multiplier))
-    return sorted(out, key=lambda one: (-one[1], one[0]))

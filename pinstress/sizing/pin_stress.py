@@ -42,12 +42,12 @@ from pinstress.sizing.optimise import ImpossibleError, StressPlace, worst
 from pinstress.sizing.other_dimensions import paths_of, study_with
 from pinstress.sizing.pin_shape import VariedShape
 from pinstress.sizing.scaled_study import hole_in_eye, wider_eyes
+from pinstress.sizing.singular_places import BENDING, CasePlace, SingularPlaces
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study, raw_study
 
 WINDOW = 0.15  # of the logarithm of stress below the largest: where derivatives are found
 UNKNOWN = 0.3  # the same of places where they are not yet known
-BENDING = -3.0  # power of the diameter, where nothing is known
 SMALL = 0.05  # of the largest force in any case: a case whose forces are smaller does not govern
 BELOW = 1.0  # the logarithm of stress below the largest, from which on a case is left out
 ANOTHER = 0.7  # the logarithm of a dimension's change after which all cases are looked at again
@@ -73,15 +73,28 @@ class PinProblem:
 
 @dataclass(frozen=True)
 class SolvedPin:
-    """Peaks and places at values (n,) of the dimensions, m; places by the logarithms of these."""
+    """Peaks and places at values (n,) of the dimensions, m; places by the logarithms of these.
+    singular: by case, those of unbounded stress that must not govern.
+    """
 
     values: Floats
     peaks: tuple[Peak, ...]
     places: tuple[StressPlace, ...]
+    singular: tuple[CasePlace, ...] = ()
+
+    @property
+    def every(self) -> tuple[StressPlace, ...]:
+        """Those that limit the search."""
+        return (*self.places, *(place for _, place in self.singular))
 
     @property
     def worst(self) -> float:
-        """The logarithm of the largest stress over what is allowed."""
+        """The largest of these."""
+        return worst(self.every)
+
+    @property
+    def largest(self) -> float:
+        """The logarithm of the largest stress, as it counts, over what is allowed."""
         return worst(self.places)
 
 
@@ -101,7 +114,9 @@ class UndifferentiatedError(Exception):
 
 
 class PinStress:
-    """Solves a pin with other dimensions. in_contact: whether lugs hold it, once solved."""
+    """Solves a pin with other dimensions. in_contact: whether lugs hold it, once solved. watched:
+    cases in which no singularity may govern, none to begin with.
+    """
 
     def __init__(self, problem: PinProblem, tell: Tell) -> None:
         self.problem, self._tell = problem, tell
@@ -113,6 +128,8 @@ class PinStress:
         self._sure: list[SolvedPin] = []
         self._finer: dict[str, float] = {}  # what finer cells add to the logarithm, by place
         self.in_contact = False
+        self.watched: frozenset[str] = frozenset()
+        self._singular = SingularPlaces(shape)
         self._cases: tuple[str, ...] = ()  # that may govern near the dimensions `_about`
         self._about: Floats | None = None
         self.count = 0  # of designs
@@ -154,16 +171,19 @@ class PinStress:
             if place.name in before:
                 more = place.value - before[place.name]
                 self._finer[place.name] = self._finer.get(place.name, 0.0) + more
-        return known
+        return self._watched(known)
 
     def of(self, study: Study) -> SolvedPin:
         """Of the pin in a study, without derivatives. Raises: ImpossibleError."""
-        return self._solved(study, None, 0.0, "usual")
+        return self._watched(self._solved(study, None, 0.0, "usual"))
+
+    def _watched(self, found: SolvedPin) -> SolvedPin:
+        return replace(found, singular=tuple(x for x in found.singular if x[0] in self.watched))
 
     def _as_finer(self, found: SolvedPin) -> SolvedPin:
         add = self._finer
         places = (replace(p, value=p.value + add.get(p.name, 0.0)) for p in found.places)
-        return replace(found, places=tuple(places)) if add else found
+        return self._watched(replace(found, places=tuple(places)))
 
     def _possible(self, values: Floats) -> Study:
         """Raises: ImpossibleError."""
@@ -179,12 +199,15 @@ class PinStress:
         self._tell(f"pin {self.problem.name}, design {self.count}")
         peaks: list[Peak] = []
         found: list[tuple[_Found, float]] = []
+        singular: list[CasePlace] = []
         asked = replace(self.problem.asked, cells=cells)
         try:
             for task in self._tasks(study, values):
                 for peak, parts in self._of_task(study, task, asked, values is not None):
                     peaks.append(peak)
-                    found += [(part, self._allowed(task, peak)) for part in parts]
+                    allowed = self._allowed(task, peak)
+                    found += [(part, allowed) for part in parts]
+                    singular += self._singular.of(task.pin, peak, allowed, values)
         except (InputError, ArgumentError, ArithmeticError, MemoryError) as error:
             raise ImpossibleError(str(error) or "out of memory") from None
         if not peaks:
@@ -201,7 +224,8 @@ class PinStress:
                 slope = values * self._slope(part)
                 self._known.add(part.name)
             places.append(StressPlace(part.name, value, slope, part.guess))
-        return SolvedPin(np.zeros(0) if values is None else values, tuple(peaks), tuple(places))
+        at = np.zeros(0) if values is None else values
+        return SolvedPin(at, tuple(peaks), tuple(places), tuple(singular))
 
     def _tasks(self, study: Study, values: Floats | None) -> list[Task]:
         """The pin under the cases that may govern."""

@@ -14,6 +14,7 @@ from reports.plots.theme import on_paper
 
 VERSION = "6.4"  # of Vega-Lite
 CLIP = re.compile(r'(?<=id="clip)\d+(?=")|(?<=url\(#clip)\d+(?=\))')
+TWO_UNITS = re.compile("[\U00010000-\U0010ffff]")
 SCALE = 2.0  # pixels of a PNG per unit
 
 
@@ -37,15 +38,28 @@ def draw_plot(plot: Plot, directory: Path) -> list[Path]:
 def svg(spec: Spec) -> str:
     """A specification with its configuration, drawn; no address is opened.
 
+    Vega cuts long texts within characters that are two UTF-16 units, such as emoji, and fails:
+    these are then written as U+1F600.
+
     Raises: ValueError where Vega-Lite cannot, Damaged for an address in it.
     """
-    import vl_convert
-
     require_no_address(spec, "the plot")
-    text = json.dumps(still(spec))
-    made = vl_convert.vegalite_to_svg(text, vl_version=VERSION, allowed_base_urls=[])
+    text = json.dumps(still(spec), ensure_ascii=False)
+    named = TWO_UNITS.sub(lambda found: f"U+{ord(found[0]):X}", text)
+    try:
+        made = _drawn(text)
+    except ValueError:
+        if named == text:
+            raise
+        made = _drawn(named)
     require_self_contained(made, "the plot")
     return _numbered(made)
+
+
+def _drawn(text: str) -> str:
+    import vl_convert
+
+    return vl_convert.vegalite_to_svg(text, vl_version=VERSION, allowed_base_urls=[])
 
 
 def _numbered(svg: str) -> str:

@@ -210,10 +210,14 @@ def why_missed(found: list[PinResult]) -> str:
     if missing:
         return f"it fails in the run of the new study, case {', '.join(missing)}"
     if singular:
+        zones = [
+            z.kind for p in found if p.verdict == "singular" for z in p.singular_at if z.governs
+        ]
+        where = " and ".join(dict.fromkeys(zones))
         return (
             f"the factor is reached only outside the excluded zones; in {', '.join(singular)} the "
-            "stress is singular at a sharp corner or the edge of a clamp or lug, whatever the "
-            "size; singular_zones.csv of a run lists remedies"
+            f"stress is singular at {where}, whatever the size; singular_zones.csv of a run lists "
+            "remedies"
         )
     if loose:
         return f"in {', '.join(loose)} the error of the stress leaves it open"

@@ -15,10 +15,13 @@ INTRODUCTION = (
 CONTACT = (
     "In contact with lugs stress is not quite proportional to loads: take the load as an estimate."
 )
-SINGULAR = (
-    "Of singular rows the factor is reached only outside the excluded zones: remove the sharp "
-    "corner or clamp edge first."
-)
+SINGULAR = "Of singular rows the factor is reached only outside the excluded zones: first {}."
+REMEDIES = {
+    "sharp corner": "give the sharp corner a radius",
+    "edge of a clamp": "replace the clamp by its hub, or by loads in equilibrium",
+    "edge of a load": 'spread the load by distribution = "cosine", a pressure without such an edge',
+    "edge of a lug": "give the bore of the lug an edge_radius",
+}
 
 
 def changes_grid(results: Results) -> Grid:
@@ -50,7 +53,15 @@ def change_notes(results: Results) -> list[str]:
             pins.setdefault(change.diameter_note, []).append(change.pin)
     notes = [f"{'Pins' if pin[1:] else 'Pin'} {', '.join(pin)}: {n}." for n, pin in pins.items()]
     notes += [CONTACT] * any(not c.proportional for c in results.changes)
-    return notes + [SINGULAR] * any(c.singular for c in results.changes)
+    remedies = _remedies(results)
+    return notes + [SINGULAR.format("; ".join(remedies))] * bool(remedies)
+
+
+def _remedies(results: Results) -> list[str]:
+    """What each singularity that governs one of the rows needs."""
+    rows = {(c.pin, c.case) for c in results.changes if c.singular}
+    zones = [z for p in results.pins if (p.pin, p.case) in rows for z in p.singular_at if z.governs]
+    return [text for kind, text in REMEDIES.items() if any(z.kind.endswith(kind) for z in zones)]
 
 
 def _loads(change: Change) -> str:

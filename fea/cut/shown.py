@@ -1,0 +1,165 @@
+"""The surface of a cut pin as it is shown: local solids in place, the uncut pin between them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from fea.core.voigt import ENTRIES, TENSOR
+from fea.cut.local_fields import LocalFields
+from fea.cut.movement import axis_kept, rigid
+from fea.cut.supports import Support, reached
+from fea.harmonic.evaluate import HarmonicAnswer
+from fea.solid.nodal_loads import Unit
+from geometry.arrays import Floats, Ints, Mask
+
+SECTORS = 48  # of the surface, away from the pieces
+NEAR = 40  # points of another piece to which its displacements are fitted
+ACROSS = 0.1  # of their distance from there across the pin counts
+ON_END = 1e-9  # of a piece's length
+
+
+@dataclass(frozen=True)
+class ShownCut:
+    """The surface as it is shown: points (P, 3) m, triangles (M, 3), and of L unit loads, each in
+    one phase, stress (P, 6, L) Pa and displacement (P, 3, L) m; read: (P,) where the maximum is
+    looked for.
+    """
+
+    points: Floats
+    triangles: Ints
+    stress: Floats
+    displacement: Floats
+    read: Mask
+
+
+def shown(section: HarmonicAnswer, pieces: Sequence[LocalFields], held: Support | None) -> ShownCut:
+    """held: the first clamp, which stays where it is; of a pin without one both ends of its axis
+    stay on it.
+    """
+    between = [(p.piece.z0, p.piece.z1) for p in pieces]
+    uncut = _revolved(section, pieces[0].units, between)
+    parts = [uncut, *(ShownCut(p.points, p.triangles, p.stress, p.uncut, p.read) for p in pieces)]
+    starts = np.cumsum([0, *(len(part.points) for part in parts)])
+    points = np.concatenate([p.points for p in parts])
+    displacement = np.concatenate([p.displacement for p in parts])
+    for piece, start in zip(pieces, starts[1:], strict=False):
+        displacement += _moved_by(piece, points, int(start))
+    length = float(section.fields.points[:, 1].max())
+    whole = np.sum([p.moved[1] - p.moved[0] for p in pieces], axis=0)
+    motion = reached(held, pieces) if held else axis_kept(whole, length)
+    return ShownCut(
+        points,
+        np.concatenate([p.triangles + i for p, i in zip(parts, starts, strict=False)]),
+        np.concatenate([p.stress for p in parts]),
+        displacement - rigid(motion, points),
+        np.concatenate([p.read for p in parts]),
+    )
+
+
+def _moved_by(piece: LocalFields, points: Floats, own: int) -> Floats:
+    """How far the cuts of a piece move points (P, 3) of the pin against what lies below it, (P, 3,
+    L) m; its own points begin at number `own`. Beside it they do so by its outline.
+    """
+    z0, z1 = piece.piece.z0, piece.piece.z1
+    near = ON_END * (z1 - z0)
+    out = np.zeros((len(points), 3, len(piece.units)))
+    above = np.flatnonzero(points[:, 2] >= z1 - near)
+    out[above] = rigid(piece.moved[1] - piece.moved[0], points[above])
+    amid = np.flatnonzero((points[:, 2] > z0 + near) & (points[:, 2] < z1 - near))
+    amid = amid[(amid < own) | (amid >= own + len(piece.points))]
+    if len(amid):
+        out[amid] = _beside(piece, points[amid])
+    out[own : own + len(piece.points)] = piece.displaced
+    return out
+
+
+def _beside(piece: LocalFields, points: Floats) -> Floats:
+    """The same at points (P, 3) of another piece, inside of its outline too: linear functions that
+    fit best what is on the outline all about the axis near there.
+    """
+    outline, squeezed = piece.points[piece.outer], np.array([ACROSS, ACROSS, 1.0])
+    count = min(NEAR, len(outline))
+    found = cKDTree(outline * squeezed).query(points * squeezed, count)
+    distance, near = (np.asarray(x) for x in found)
+    confidence = 1.0 - (distance / (1.001 * distance[:, -1:])) ** 2
+    offsets = (outline[near] - points[:, None]) / np.abs(outline).max()
+    terms = np.concatenate([np.ones((*near.shape, 1)), offsets], axis=2) * confidence[..., None]
+    weights = np.linalg.pinv(terms)[:, 0] * confidence
+    return np.asarray(np.einsum("ps,psal->pal", weights, piece.displaced[piece.outer][near]))
+
+
+def _revolved(
+    section: HarmonicAnswer, units: tuple[Unit, ...], pieces: Sequence[tuple[float, float]]
+) -> ShownCut:
+    """The outline turned about the axis, without what lies in the pieces."""
+    fields = section.fields
+    ends = np.arange(fields.skin).reshape(-1, 5)[:, [0, 4]]
+    rows, part = [ends], [np.tile([0.0, 1.0], (len(ends), 1))]
+    keep_rows, keep_part = np.concatenate(rows), np.concatenate(part)
+    for low, high in pieces:
+        keep_rows, keep_part = _outside_of(fields.points[:, 1], keep_rows, keep_part, low, high)
+    a, b, t = keep_rows[:, 0].repeat(2), keep_rows[:, 1].repeat(2), keep_part.ravel()
+
+    def along(values: Floats) -> Floats:
+        w = t.reshape(-1, *(1,) * (values.ndim - 1))
+        return np.asarray((1.0 - w) * values[a] + w * values[b])
+
+    own = [fields.loads.index(load) for load, _ in units]
+    r, z = along(fields.points[: fields.skin]).T
+    stress, moved = (
+        along(x[: fields.skin])[..., own] for x in (fields.stress, fields.displacement)
+    )
+    angle = np.arange(SECTORS) * 2.0 * np.pi / SECTORS
+    n, phase = (np.array(x) for x in ([load.n for load, _ in units], [p for _, p in units]))
+    psi = n * angle[:, None] - phase * np.pi / 2.0
+    even, odd = np.cos(psi), np.sin(psi)
+    stress = np.where([[x] for x in (True, True, True, False, True, False)],
+                      stress[:, None] * even[:, None], stress[:, None] * odd[:, None])  # fmt: skip
+    moved = np.where([[True], [False], [True]], moved[:, None] * even[:, None],
+                     moved[:, None] * odd[:, None])  # fmt: skip
+    turn = np.zeros((SECTORS, 3, 3))
+    turn[:, 0, 0] = turn[:, 1, 1] = np.cos(angle)
+    turn[:, 1, 0] = np.sin(angle)
+    turn[:, 0, 1] = -np.sin(angle)
+    turn[:, 2, 2] = 1.0
+    tensor = np.einsum("sai,psijl,sbj->psabl", turn, stress[:, :, TENSOR], turn, optimize=True)
+    points = np.stack([r[:, None] * np.cos(angle), r[:, None] * np.sin(angle),
+                       np.broadcast_to(z[:, None], (len(z), SECTORS))], axis=2)  # fmt: skip
+    i = SECTORS * 2 * np.arange(len(keep_rows))[:, None] + np.arange(SECTORS)
+    j = SECTORS * 2 * np.arange(len(keep_rows))[:, None] + (np.arange(SECTORS) + 1) % SECTORS
+    quads = np.stack([i, j, j + SECTORS, i + SECTORS], axis=2).reshape(-1, 4)
+    read = fields.outside(section.singularities)[: fields.skin]
+    count = len(units)
+    return ShownCut(
+        points.reshape(-1, 3),
+        quads[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3),
+        np.stack([tensor[:, :, a, b] for a, b in ENTRIES], axis=2).reshape(-1, 6, count),
+        np.einsum("sai,psil->psal", turn, moved).reshape(-1, 3, count),
+        (read[a] & read[b]).repeat(SECTORS),
+    )
+
+
+def _outside_of(
+    z: Floats, rows: Ints, part: Floats, low: float, high: float
+) -> tuple[Ints, Floats]:
+    """Edges between points `rows` (E, 2), from one to another part of their length (E, 2), without
+    what lies between two z.
+    """
+    out_rows, out_part = [], []
+    for (a, b), (s, t) in zip(rows, part, strict=True):
+        at = [z[a] + x * (z[b] - z[a]) for x in (s, t)]
+        if max(at) <= low or min(at) >= high:
+            out_rows.append((a, b))
+            out_part.append((s, t))
+            continue
+        for end in (low, high):
+            if min(at) < end < max(at):
+                cut = (end - z[a]) / (z[b] - z[a])
+                outer = (s, cut) if (at[0] < end) == (end == low) else (cut, t)
+                out_rows.append((a, b))
+                out_part.append(outer)
+    return np.array(out_rows, dtype=np.int64).reshape(-1, 2), np.array(out_part).reshape(-1, 2)
