@@ -36,12 +36,8 @@ def given_warnings(study: Study) -> list[str]:
     """A warning for every pin and case whose loads leave over more than round-off, but no more than
     bands share: of given forces on pins with a profile, which take no time to find.
     """
-    out = []
-    for name, case in study.table.case.items():
-        for pin in study.table.pin:
-            if isinstance(case, GivenCase) and _stated(study, pin, name):
-                out += _quietly(partial(_of_given, study, name, case, pin))
-    return out
+    given = {name: x for name, x in study.table.case.items() if isinstance(x, GivenCase)}
+    return [text for name in given for text in _quietly(partial(_of_given, study, name))]
 
 
 def other_warnings(study: Study, todo: list[Task]) -> list[str]:
@@ -63,9 +59,25 @@ def _reacted(study: Study, task: Task) -> dict[str, str]:
     }
 
 
-def _of_given(study: Study, name: str, case: GivenCase, pin: str) -> list[str]:
-    loads = {name: CaseLoads(given_case(study, name, case))}
-    todo = tasks(study, [pin_of(study, pin)], loads)
+def _of_given(study: Study, name: str) -> list[str]:
+    case = study.table.case[name]
+    assert isinstance(case, GivenCase)
+    loads = CaseLoads(given_case(study, name, case))
+    loaded = {*loads.reactions.connections}
+    unclamped = [p for p, x in study.table.pin.items() if _stated(study, p, name) and not x.clamp]
+    return [
+        text
+        for p in unclamped
+        for text in _quietly(partial(_of_pin, study, p, name, loads, loaded))
+    ]
+
+
+def _of_pin(study: Study, name: str, case: str, loads: CaseLoads, loaded: set[str]) -> list[str]:
+    """Nothing of a pin that the case does not load, of which others would say so."""
+    pin = pin_of(study, name)
+    if not loaded & {*pin.connections}:
+        return []
+    todo = tasks(study, [pin], {case: loads})
     return [text for task in todo for text in _reacted(study, task).values()]
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from math import inf
+from typing import Any
 
 from fea.strength.margin import PinMargin
 from fea.strength.model_stress import RUPTURE, YIELD
@@ -83,7 +84,7 @@ def pins_with(worst: Iterable[JudgedCheck], *outcomes: str) -> list[str]:
     return [check.pin for check in worst if check.outcome in outcomes]
 
 
-def headline_json(results: Results, sentence: str) -> dict[str, object] | None:
+def headline_json(results: Results, sentence: str) -> dict[str, Any] | None:
     """For results.json; None where nothing was solved."""
     worst = worst_checks(results)
     if not worst:

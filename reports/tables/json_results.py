@@ -41,7 +41,7 @@ def to_json(results: Results) -> dict[str, Any]:
         "required_safety_factor": finite(results.required_safety_factor),
         "tolerance": finite(results.tolerance),
         "versions": {name: results.versions[name] for name in sorted(results.versions)},
-        "headline": headline_json(results, headline(results)),
+        "headline": _headline(results),
         "pins": [_pin(pin) for pin in results.pins],
         "margins": margins_json(results),
         "changes": [asdict(change) for change in results.changes],
@@ -151,6 +151,13 @@ def _pin(pin: PinResult) -> dict[str, Any]:
         "held": pin.held,
         "left_out": list(pin.left_out),
     }
+
+
+def _headline(results: Results) -> dict[str, Any] | None:
+    found = headline_json(results, headline(results))
+    if found is not None:
+        found["worst"]["factor"] = finite(found["worst"]["factor"])
+    return found
 
 
 def _dependence(d: Dependence) -> dict[str, Any]:

@@ -93,7 +93,7 @@ def fine() -> int:
 @pytest.fixture
 def forked(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever threads other tests have left here: a process started anew takes a second."""
-    monkeypatch.setattr(apart_module, "threaded", lambda: False)
+    monkeypatch.setattr(apart_module, "can_fork", lambda: True)
 
 
 @pytest.mark.usefixtures("forked")

@@ -142,7 +142,9 @@ def _row(study: Study, found: LightStudy, each: Lightest, aim: Aim, heavy: bool)
         binding=each.binding[:EACH],
         bands=tuple(_bands(study, found.study, each.pin)) if written else (),
         solved=each.solved,
-        why=(why_missed(mine) or _unlikely(found, each.pin, aim)) if written else each.why,
+        why=(why_missed(found.results, each.pin) or _unlikely(found, each.pin, aim))
+        if written
+        else each.why,
         way=each.way,
     )
 

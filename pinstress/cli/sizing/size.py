@@ -24,6 +24,7 @@ from pinstress.study.choices import require_positive
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study
 from reports.data.decision import DEPENDS, FAILS, NOT_DECIDED, factor_ends, outcome
+from reports.data.headline import worst_checks
 from reports.data.results import PinResult, Results
 from reports.format.numbers import DASH, engineering, short
 from reports.format.ranges import factor_range
@@ -174,7 +175,7 @@ def _row(study: Study, new: Study, sized: Sized, results: Results) -> SizeRow:
         stricter="" if worst is None else _stricter(worst),
         weights=(_weight(study, sized.pin), _weight(new, sized.pin)),
         slenderness=slenderness(pin_of(new, sized.pin)),
-        why=_why(sized, mine),
+        why=sized.why if sized.scale is None else why_missed(results, sized.pin),
     )
 
 
@@ -194,13 +195,9 @@ def _stricter(worst: PinResult) -> str:
     return f"{least.name} at {least.at}: {engineering(least.factor)}"
 
 
-def _why(sized: Sized, found: list[PinResult]) -> str:
-    """Why the factor is not verifiably reached; empty if it is."""
-    return sized.why if sized.scale is None else why_missed(found)
-
-
-def why_missed(found: list[PinResult]) -> str:
-    """The same of a pin that was found, from its rows in the run of the new study."""
+def why_missed(results: Results, pin: str) -> str:
+    """Why the factor is not shown to be reached, from the run of the new study; empty if it is."""
+    found = [p for p in results.pins if p.pin == pin and p.safety_factor is not None]
     singular = [p.case for p in found if p.verdict == "singular"]
     if not found:
         return "the run of the new study gives no safety factor"
@@ -221,6 +218,9 @@ def why_missed(found: list[PinResult]) -> str:
         )
     if loose:
         return f"in {', '.join(loose)} the error of the stress leaves it open"
+    check = worst_checks(results)[pin]
+    if check.row is None and check.outcome == FAILS:
+        return f"{check.check} has a margin of safety of {1.0 / check.used - 1.0:.3g} in that run"
     if depends:
         over = ", ".join(dict.fromkeys(d.over for p in found for d in p.depends_on))
         return (
