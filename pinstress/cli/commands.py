@@ -156,7 +156,8 @@ def commands() -> None:
 @click.option(
     "--fail-on-miss",
     is_flag=True,
-    help="Exit with status 4 where a pin misses its required factor or a margin is negative.",
+    help="Exit with status 4 where a pin fails, or its result depends on a range, or a margin is "
+    "negative.",
 )
 @click.option("--no-cache", is_flag=True, help="Solve all pins again; do not reuse cached results.")
 @click.option("--json", "as_json", is_flag=True, help="Print results.json instead of the table.")
