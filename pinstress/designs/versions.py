@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from importlib import metadata, util
 from pathlib import Path
 
-OURS = "pinstress", "loads", "geometry", "fea"  # packages whose source makes the numbers
+OURS = "pinstress", "loads", "geometry", "fea", "reports"  # whose source makes numbers and outcomes
 MISSING = "missing"
 SHOWN = 8  # digits of the hash of a source
 
