@@ -53,8 +53,8 @@ def nearest(name: object, known: Iterable[str], cutoff: float = 0.6) -> str | No
 
 
 def _misspelt(a: str, b: str) -> bool:
-    """Whether one is part of the other, or a third of the letters at most are wrong, left out, added
-    or swapped with the next.
+    """Whether one is part of the other, or a third of the letters at most are wrong, left out,
+    added or swapped with the next.
     """
     if min(len(a), len(b)) >= PART and (a in b or b in a):
         return True
