@@ -52,7 +52,8 @@ def _trial(rng: np.random.Generator, k: int, fillet: tuple[float, float] | None)
         Segment(float(lengths[1]), thick, bore, connection="B"),
         Segment(float(lengths[2]), d, bore, connection="C"),
     )
-    share = float(rng.uniform(0.3, 0.7))
+    rng.uniform(0.3, 0.7)  # keeps what is drawn after it
+    share = float((lengths[1] + lengths[2]) / (lengths[0] + 2.0 * lengths[1] + lengths[2]))
     both = np.stack([-share * force[:, 0], force[:, 0], (share - 1.0) * force[:, 0]], axis=1)
     loads = PinLoads("case", ("A", "B", "C"), both, distribution=distribution)
     return Trial(Pin(f"floating {k}", segments, rho), (), loads)

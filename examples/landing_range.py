@@ -14,7 +14,8 @@ for pin in results.landing:
     print(f"\npin {pin.pin} ({pin.verdict}): factor of safety against yield, by impulse time")
     print("sink speed " + "".join(f"{time:8.3f} s" for time in times))
     for speed in speeds:
-        row = pin.safety_factor[pin.velocity_change == speed]
+        as_stated = np.array(pin.pulses) == pin.nominal_pulse
+        row = pin.safety_factor[(pin.velocity_change == speed) & as_stated]
         print(f"{speed / 12:5.0f} ft/s " + "".join(f"{factor:10.2f}" for factor in row))
     yields = int((pin.safety_factor < 1.0).sum())
     print(f"pin {pin.pin} yields in {yields} of {pin.safety_factor.size} landings")

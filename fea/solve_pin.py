@@ -17,7 +17,8 @@ import numpy as np
 from fea.asked import DECIDED, Asked, Goal, Model, decided, enough
 from fea.beam.error_model import PLAIN
 from fea.beam.model import BeamAnswer
-from fea.core.equilibrium import Balance, out_of_balance
+from fea.core.equilibrium import NOTHING as NO_SUPPORT
+from fea.core.equilibrium import Balance, Carried, out_of_balance
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.over_time import Between, rise_between, through_time
@@ -78,7 +79,7 @@ def solve_pin(
         )
     constrained = tuple(pin.surface(name) for name in clamps)
     job = PinJob(pin, material, constrained, asked, progress, between, first or FirstMesh())
-    balances = {} if clamps else {c.case: out_of_balance(pin, c, material.density) for c in cases}
+    balances = {} if clamps else {c.case: _balance(pin, c, material) for c in cases}
     shares = {case: imbalance(pin, balance) for case, balance in balances.items()}
     notes = {case: _reacted(share) for case, share in shares.items() if share}
     out: dict[str, Solution] = {}
@@ -189,6 +190,13 @@ def _with_local_solids(
             f"pin {pin.name}: no local solid about the cuts will do, since {reason}", why.codes[-1]
         )
     return {}, replace(job, asked=replace(job.asked, because=why))
+
+
+def _balance(pin: PinLike, case: PinLoads, material: Material) -> Balance:
+    """Of the loads as they are given; couples of pressures are those that contact has found."""
+    pressed = case.links is not case
+    carried = Carried(couple=True) if pressed else NO_SUPPORT
+    return out_of_balance(pin, case, material.density, carried)
 
 
 def imbalance(pin: PinLike, balance: Balance) -> tuple[float, float] | None:

@@ -54,6 +54,7 @@ from loads.spatial_leg import Contact, LegDynamics, LegMotion, SpatialLeg, leg_d
 from loads.tables.csv_table import TableError, read_table
 from loads.tables.force_table import Layout, table_cases
 from loads.tables.regular_file import MB, FileError, read_regular, require_regular
+from loads.tables.sent_files import noted_files, on_disk, sent_files
 
 __all__ = [
     "GROUND",
@@ -120,6 +121,8 @@ __all__ = [
     "mobility",
     "motion_reactions",
     "move",
+    "noted_files",
+    "on_disk",
     "over_time",
     "peak_forces",
     "rack_and_pinion",
@@ -129,5 +132,6 @@ __all__ = [
     "require_possible",
     "require_regular",
     "resolved",
+    "sent_files",
     "table_cases",
 ]

@@ -29,8 +29,7 @@ from tests.support.programs.process_group import children
 
 os.environ["PINSTRESS_CACHE"] = ""  # what is tested is solved, in other processes too
 
-if portable():
-    resource_tracker.ensure_running()  # multiprocessing's, which stays to the end
+resource_tracker.ensure_running()  # of processes started anew; it stays to the end
 
 ROOT = Path(__file__).parent.parent
 INCH = 0.0254

@@ -128,7 +128,7 @@ class PressureEdge:
 
 @cache
 def pressure_edge() -> PressureEdge:
-    """Two pressures that meet, on opposite sides of a pin."""
+    """Pressures that meet, on opposite sides of a pin."""
     name = "pressure_edge"
     return PressureEdge(tuple(even(name, n)[0] for n in ACROSS), finest(name), row(name))
 

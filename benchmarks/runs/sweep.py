@@ -13,7 +13,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,10 +20,7 @@ from benchmarks.timing import Floats, power, table
 from pinstress import Study, shipped_studies, study_from
 from pinstress.designs.batches import Batch, Batches, Done, aim_of
 from pinstress.designs.sweep import Kept, Sweep, planned, solved
-from pinstress.designs.workers import failed_rows, local, processes_of, solve_on
-
-if TYPE_CHECKING:
-    from distributed import Client
+from pinstress.designs.workers import BatchQueue, failed_rows, solve_side_by_side
 
 COUNTS = 250, 500, 1_000  # designs of other shapes
 STRENGTHS = 100, 200, 400  # of each of 50 loads of one shape
@@ -168,23 +164,23 @@ def _asking(study: Study, key: str) -> Study:
     return study_from(study.text.replace("[analysis]", f"[analysis]\n{key}"))
 
 
-def _solved_on(client: Client, plan: Sweep, some: range) -> tuple[float, list[Done]]:
+def _solved_by(jobs: int, plan: Sweep, some: range) -> tuple[float, list[Done]]:
     """Wall time of some designs, s, and their batches."""
     found: list[Done] = []
     others = set(range(len(plan.values))) - set(some)
-    batches = Batches(plan.problem.numbers, plan.values, others, processes_of(client))
+    batches = Batches(plan.problem.numbers, plan.values, others, jobs)
     start = time.perf_counter()
-    with client.as_current():  # where there is another one
-        solve_on(client, plan.problem, batches, found.append, partial(failed_rows, ()))
+    work = BatchQueue(batches, found.append, partial(failed_rows, ()))
+    solve_side_by_side(plan.problem, work, jobs)
     return time.perf_counter() - start, found
 
 
 def _processor_time() -> float:
-    """Of this process and its children, s."""
+    """Of this process and its children, also those that have ended, s."""
     import psutil
 
     us = psutil.Process()
-    return sum(sum(each.cpu_times()[:2]) for each in (us, *us.children(recursive=True)))
+    return sum(sum(each.cpu_times()[:4]) for each in (us, *us.children(recursive=True)))
 
 
 def _efficiency() -> str:
@@ -194,24 +190,22 @@ def _efficiency() -> str:
     plan = planned(_study(COMPARED * (ROUNDS + 1)))
     rounds = [range(k * COMPARED, (k + 1) * COMPARED) for k in range(ROUNDS + 1)]
     times, batches = [], list[Done]()
-    with local(1) as one, local(2) as two:
-        for client in (one, two):  # that imports are done, and meshes kept
-            _solved_on(client, plan, rounds[0])
-        for some in rounds[1:]:
-            spent: list[float] = []
-            for client in (one, two):
-                before = _processor_time()
-                seconds, found = _solved_on(client, plan, some)
-                spent += [seconds, _processor_time() - before]
-            batches += found
-            times.append(spent)
+    for some in rounds:  # the first that imports are done
+        spent: list[float] = []
+        for jobs in (1, 2):
+            before = _processor_time()
+            seconds, found = _solved_by(jobs, plan, some)
+            spent += [seconds, _processor_time() - before]
+        batches += found
+        times.append(spent)
+    times = times[1:]
     good = [one / (2.0 * two) for one, _, two, _ in times]
     middle, more = statistics.median(good), statistics.median(b / a for _, a, _, b in times)
     rows = [(k, *x, f"{y:.0%}") for k, (x, y) in enumerate(zip(times, good, strict=True), 1)]
     head = ("round", "s by one", "processor time, s", "s by two", "processor time, s", "efficiency")
     return (
-        f"{COMPARED} designs of other shapes, the same by one process and by two in turn, without "
-        f"the start of the processes; the median of the efficiencies is {middle:.0%}, and two "
+        f"{COMPARED} designs of other shapes, the same by one process and by two in turn, with "
+        f"their start; the median of the efficiencies is {middle:.0%}, and two "
         f"processes take {more:.2f} times the processor time of one ({len(batches)} batches, the "
         f"median {statistics.median(b.seconds for b in batches):.2f} s):\n\n{table(head, rows)}"
     )
@@ -222,35 +216,31 @@ def _nothing(problem: object, batch: Batch) -> Done:
 
 
 def _overhead(plan: Sweep) -> tuple[float, float]:
-    """Processor time (s) of a task that does nothing: of this process with its scheduler, and of
-    the processes that solve.
+    """Processor time (s) of a task that does nothing: of this process with a scheduler of dask, and
+    of the processes that solve.
     """
     import psutil
+    from distributed import Client, LocalCluster
 
-    values = np.zeros((TASKS, len(plan.problem.numbers)))
-    us = psutil.Process()
-    with local(JOBS) as client:
-        lost = partial(failed_rows, ())
-        found = []
-        for some in (values[: 10 * JOBS], values):
-            batches = _Single(plan.problem.numbers, some, set(), JOBS)
+    us, found = psutil.Process(), (0.0, 0.0)
+    with (
+        LocalCluster(JOBS, threads_per_worker=1, host="127.0.0.1", dashboard_address=None) as ours,
+        Client(ours) as client,
+    ):
+        for count in (10 * JOBS, TASKS):
             here, all_ = sum(us.cpu_times()[:2]), _processor_time()
-            solve_on(client, plan.problem, batches, lambda _: None, lost, _nothing)
+            batch = Batch((0,), ((0.0,) * len(plan.problem.numbers),))
+            tasks = [client.submit(_nothing, plan.problem, batch, pure=False) for _ in range(count)]
+            client.gather(tasks)
             own = sum(us.cpu_times()[:2]) - here
-            found.append((own / len(some), (_processor_time() - all_ - own) / len(some)))
-    return found[-1]
-
-
-class _Single(Batches):
-    def learn(self, done: Done) -> None:
-        """Nothing: a design a batch."""
+            found = own / count, (_processor_time() - all_ - own) / count
+    return found
 
 
 def _simulated() -> str:
     plan = planned(_study(COMPARED))
     overhead, theirs = _overhead(plan)
-    with local(JOBS) as client:
-        _, batches = _solved_on(client, plan, range(COMPARED))
+    _, batches = _solved_by(JOBS, plan, range(COMPARED))
     relative = np.array([b.seconds / len(b.batch.designs) for b in batches])
     relative /= relative.mean()
     aim = aim_of(WORKERS)

@@ -36,7 +36,7 @@ def limit_opinion(
     """On the first mesh of fea.plastic.solve, under the loads of one instant."""
     made = body_on(pin, FlowRule(material), clamps, loads, SIZES[0])
     try:
-        ours = limit_on_mesh(made.body, made.forces, finer(made.body.elements)).lower
+        ours = limit_on_mesh(made.body, made.forces, finer(made.body.elements)).reached
         with tempfile.TemporaryDirectory(prefix="pinstress-") as folder:
             theirs = factor_reached(made, BEYOND * ours, Path(folder))
     except (CalculixError, SolveError) as error:

@@ -1,9 +1,10 @@
 """Hand checks of a pin: shear, bearing and bending.
 
-Nominal stresses of the textbooks from the beam's internal forces (fea.beam.timoshenko), each at the
-place and the instant where it is largest. With their strengths: yield in bending, yield over
-sqrt(3) in shear (von Mises), and yield in bearing. The last is a convention, and a safe one: a pin
-whose neighbour holds it in bears more before it is marked.
+Nominal stresses of the textbooks from the beam's internal forces (fea.beam.timoshenko) with the
+force of each link even over its band, each at the place and the instant where it is largest. With
+their strengths: yield in bending, yield over sqrt(3) in shear (von Mises), and yield in bearing.
+The last is a convention, and a safe one: a pin whose neighbour holds it in bears more before it is
+marked.
 
 Source: R. G. Budynas & J. K. Nisbett, Shigley's Mechanical Engineering Design, 3-10 and 3-11
 (bending, transverse shear), 5-5 (distortion energy), 8-12 (shear and bearing of bolts and pins);
@@ -31,6 +32,10 @@ from geometry.arrays import Floats
 SHIGLEY = "Budynas & Nisbett, Shigley's Mechanical Engineering Design"
 JOINTS = f"{SHIGLEY}, 8-12"
 CONVENTION = f"{JOINTS}; yield as its strength is a convention"
+MEAN_SHEAR = "single shear, mean"
+NEUTRAL_AXIS = "single shear, at the neutral axis"
+DOUBLE_SHEAR = "double shear, mean"
+BEARING = "bearing"
 BENDING = "bending"
 HALVES = 0.1  # part of a band's load by which its two sides may differ in double shear
 
@@ -52,10 +57,9 @@ def hand_checks(
     highest, formula = mean * section.vq_it, "V Q / (I t)" if section.inner else "4 V / (3 A)"
     cell, z, t, largest = _largest(forces, c, MOMENT)
     bent = _label(pin, forces, cell), z, _time(loads, t)
-    axis = "single shear, at the neutral axis"
     made = (
-        HandCheck("single shear, mean", *shear, mean, in_shear, "V / A", JOINTS, ruptures="shear"),
-        HandCheck(axis, *shear, highest, in_shear, formula, f"{SHIGLEY}, 3-11"),
+        HandCheck(MEAN_SHEAR, *shear, mean, in_shear, "V / A", JOINTS, ruptures="shear"),
+        HandCheck(NEUTRAL_AXIS, *shear, highest, in_shear, formula, f"{SHIGLEY}, 3-11"),
         *_double_shear(pin, forces, c, loads, in_shear),
         *_bearing(pin, loads, yields),
         HandCheck(BENDING, *bent, largest, yields, "M c / I", f"{SHIGLEY}, 3-10"),
@@ -114,7 +118,7 @@ def _double_shear(
         if load[t] > 0.0 and np.linalg.norm(V[0, t] + V[1, t]) <= HALVES * load[t]:
             area = min(forces.sections[i].area for i in adjacent)
             stress, at = float(load[t]) / (2.0 * area), (band.name, band.middle, _time(loads, t))
-            found = HandCheck("double shear, mean", *at, stress, strength, "F / (2 A)", JOINTS)
+            found = HandCheck(DOUBLE_SHEAR, *at, stress, strength, "F / (2 A)", JOINTS)
             out.append(replace(found, ruptures="shear"))
     return out
 
@@ -129,7 +133,7 @@ def _bearing(pin: Pin, loads: PinLoads, strength: float | None) -> list[HandChec
         if size[t] > 0.0:
             pressure = float(size[t]) / (2.0 * band.radius * band.length)
             at = band.name, band.middle, _time(loads, t)
-            found = HandCheck("bearing", *at, pressure, strength, "F / (d L)", CONVENTION)
+            found = HandCheck(BEARING, *at, pressure, strength, "F / (d L)", CONVENTION)
             out.append(replace(found, ruptures="bearing"))
     return out
 

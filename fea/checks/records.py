@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,6 +18,8 @@ from fea.core.dimensions import (
     Time,
 )
 
+JOINT_MODEL = "joint model"  # as the basis of section forces
+FOR_COMPARISON = "for comparison"
 WINDOW = (0.3, 0.8)  # of the loaded length: away from the root and from the load's end
 
 
@@ -28,7 +30,9 @@ class HandCheck:
 
     at: the segment, by the name of its surface; z: there, m; time: s, None without a motion.
     material: whose strength it is. ruptures: the strength of that material ("shear", "bearing",
-    "ultimate") that the stress reaches at rupture; empty where that is no measure of it.
+    "ultimate") that the stress reaches at rupture; empty where that is no measure of it. basis:
+    where the force or moment comes from, if it is not from even loads. governs: whether it may; if
+    not, it is there for comparison.
     """
 
     name: str
@@ -41,11 +45,29 @@ class HandCheck:
     source: str
     material: str = ""
     ruptures: str = ""
+    basis: str = ""
+    governs: bool = True
 
     @property
     def factor(self) -> float | None:
         """Factor of safety."""
         return self.strength / self.stress if self.strength and self.stress else None
+
+    @property
+    def shown(self) -> str:
+        """The name, and the joint model where it takes the section forces of that."""
+        return shown_with_basis(self.name, self.basis)
+
+    @property
+    def compared(self) -> HandCheck:
+        """The same for comparison only."""
+        return replace(self, name=f"{self.name}, {FOR_COMPARISON}", governs=False)
+
+
+def shown_with_basis(name: str, basis: str) -> str:
+    """The name of a check, and the joint model where it takes the section forces of that."""
+    named = JOINT_MODEL in name or not basis.startswith(JOINT_MODEL)
+    return name if named else f"{name} ({JOINT_MODEL})"
 
 
 @dataclass(frozen=True)

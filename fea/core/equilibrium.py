@@ -1,31 +1,59 @@
-"""Whether an unconstrained pin can be solved: the imbalance of its loads, and what reacts it.
+"""Whether an unconstrained pin can be solved: what its loads leave over, and what reacts it.
 
-Its bands react the imbalance (`fea.core.tractions.closing_tractions`). They always react couples,
-as real hubs do. A force, or a torque about the axis, that is more than a small part of the loads
-means that a support is missing.
+One rule for forces and couples, stated here alone (SMALL, MOST). What is left over of the forces is
+measured by the largest of them; a couple across the axis by that force times the length of the pin
+(or by the largest moment that is given, if that is more); a torque about the axis by the largest
+torque. Above SMALL there is a warning, above MOST the pin is not solved; below, its bands share
+it (`fea.core.tractions.closing_tractions`).
+
+What supports carry is not left over (`Carried`): a clamp carries everything, so clamped pins are
+not asked. Lugs of a structure carry forces across the axis, two of them couples too. A lug whose
+tilt has a stiffness, or that is guided, carries couples, as in single shear. Where all lugs are
+free to tilt contact has no solution with any couple. Frictionless contact carries neither torques
+nor forces along the axis; on foundations a structure does.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import combinations
+from typing import NamedTuple
 
 import numpy as np
 
 from fea.core.pin_loads import PinLoads
-from geometry import PinLike
+from geometry import CutPin, Pin, PinLike
 from geometry.arrays import Floats
 
-MOST = 0.1  # imbalance allowed, of the largest force or torque
+SMALL = 0.01  # of the largest force or torque: less is round-off of numbers that were typed
+MOST = 0.1  # of it: more means that a load or a support is missing
 NOISE = 1e-9  # of the largest load: smaller ones are zero
+FREE = 1e-6  # of the largest couple: more has no solution in lugs that are all free to tilt
+ALONE = 1e-6  # of the largest couple: what may remain where one changed force is enough
+
+
+class Carried(NamedTuple):
+    """What supports react besides the bands' small share: forces and couples across the axis,
+    forces and torques along it. lugs: whether the pin sits in lugs.
+    """
+
+    force: bool = False
+    couple: bool = False
+    along: bool = False
+    lugs: bool = False
+
+
+NOTHING = Carried()
 
 
 @dataclass(frozen=True)
 class Balance:
-    """The imbalance that the bands react, largest over the instants: force in N, couple (about the
-    pin's middle) in N m.
+    """The imbalance of the loads, largest over the instants: force in N, couple (about the pin's
+    middle) in N m.
 
     largest: the largest force in the case, N. refusal: why the pin cannot be solved, or None; code:
-    of the refusal.
+    of the refusal. left: force, couple across the axis and torque that no support carries; shares:
+    these over what the rule measures them by. instant: number of the one where the worst is.
     """
 
     force: float
@@ -33,44 +61,137 @@ class Balance:
     largest: float
     refusal: str | None
     code: str = ""
+    left: tuple[float, ...] = (0.0, 0.0, 0.0)
+    shares: tuple[float, ...] = (0.0, 0.0, 0.0)
+    instant: int = 0
+
+    @property
+    def notable(self) -> bool:
+        """Whether what is left over is more than round-off of typed numbers."""
+        return max(self.shares) > SMALL
 
 
-def out_of_balance(pin: PinLike, loads: PinLoads, density: float | None = None) -> Balance:
+def out_of_balance(
+    pin: PinLike, loads: PinLoads, density: float | None = None, carried: Carried = NOTHING
+) -> Balance:
     """The balance of a pin without clamps under its loads and, with a density (kg/m^3), its own
-    weight and inertia.
+    weight and inertia. carried: by its supports.
     """
-    z = np.array([pin.band(name).middle for name in loads.surfaces]) - sum(pin.ends) / 2.0
-    force = loads.forces.sum(axis=1)
-    couple = (np.cross(z[:, None] * [0.0, 0.0, 1.0], loads.forces) + loads.moments).sum(axis=1)
+    force, couple = _left(pin, loads)
     largest = _largest(loads.forces)
     if density is not None:
         own = density * pin.volume * loads.body
         force = force + own
+        arm = centre_of_volume(pin) - sum(pin.ends) / 2.0
+        couple = couple + np.cross([0.0, 0.0, arm], own)
         largest = max(largest, _largest(own))
-    torque, torques = float(np.abs(couple[:, 2]).max()), float(np.abs(loads.moments[..., 2]).max())
-    least = NOISE * max(largest, _largest(loads.moments) / pin.length)
-    left = max(_largest(force[:, :2]), float(np.abs(force[:, 2]).max()))
-    why, code = "", ""
-    if len(pin.connections) < 2:
-        code = "one-band"
-        why = (
-            "the pin is not clamped and only one connection bears on it, so nothing reacts its load"
-        )
-    elif left > max(MOST * largest, least):
-        code = "force-imbalance"
-        why = (
-            "the pin is not clamped and its loads are not in equilibrium: their resultant is "
-            f"{left / largest:.2g} of the largest load (its bands react at most {MOST:g})"
-        )
-    elif torque > max(MOST * torques, least * pin.length):
-        code = "torque-imbalance"
-        why = (
-            "the pin is not clamped and its loads are not in equilibrium: their torque about the "
-            f"axis is {torque / torques:.2g} of the largest applied (its bands react at most "
-            f"{MOST:g})"
-        )
-    refusal = f"{why}; name its clamped surfaces in pin.{pin.name}.clamp" if why else None
-    return Balance(_largest(force), _largest(couple), largest, refusal, code)
+    moments = loads.moments
+    turning = max(largest * pin.length, _largest(moments[..., :2]))
+    twisting = float(np.abs(moments[..., 2]).max(initial=0.0))
+    least = NOISE * max(largest, _largest(moments) / pin.length)
+    across, along = not carried.force, not carried.along
+    each = (
+        (np.maximum(across * _size(force[:, :2]), along * np.abs(force[:, 2])), largest, least),
+        ((not carried.couple) * _size(couple[:, :2]), turning, least * pin.length),
+        (along * np.abs(couple[:, 2]), twisting, least * pin.length),
+    )
+    over_time = np.array([_over(*x) for x in each])
+    shares = tuple(map(float, over_time.max(axis=1)))
+    kind = int(np.argmax(shares))
+    refusal, code = _refusal(pin, shares, carried)
+    return Balance(
+        _largest(force), _largest(couple), largest, refusal, code,
+        tuple(float(size.max(initial=0.0)) for size, *_ in each), shares,
+        int(np.argmax(over_time[kind])),
+    )  # fmt: skip
+
+
+def _left(pin: PinLike, loads: PinLoads) -> tuple[Floats, Floats]:
+    """Resultant of the forces (T, 3) N, and couple about the pin's middle (T, 3) N m."""
+    z = np.array([pin.band(name).middle for name in loads.surfaces]) - sum(pin.ends) / 2.0
+    couple = np.cross(z[:, None] * [0.0, 0.0, 1.0], loads.forces) + loads.moments
+    return loads.forces.sum(axis=1), couple.sum(axis=1)
+
+
+def centre_of_volume(pin: PinLike) -> float:
+    """z in m; of a body from a file the middle of its length."""
+    profile = pin.profile if isinstance(pin, CutPin) else pin
+    if not isinstance(profile, Pin):
+        return sum(pin.ends) / 2.0
+    area = np.array([s.mean_area for s in profile.segments])
+    ends = np.array(profile.stations)
+    return float(area @ np.diff(ends**2) / 2.0 / (area @ np.diff(ends)))
+
+
+def _over(left: Floats, scale: float, least: float) -> Floats:
+    """What is left over of a scale, zero where it is round-off."""
+    return np.where(left > least, left / max(scale, least, np.finfo(float).tiny), 0.0)
+
+
+def _refusal(pin: PinLike, shares: tuple[float, ...], carried: Carried) -> tuple[str | None, str]:
+    """Why a pin with such shares left over is not solved, and the code of that."""
+    force, couple, torque = shares
+    name = f"pin.{pin.name}"
+    loose, react = "the pin is not clamped and its loads are not in equilibrium: ", "bands react"
+    clamp = f"name its clamped surfaces in {name}.clamp"
+    if carried.lugs:
+        loose, react = "the loads of the pin in its lugs are not in equilibrium: ", "links share"
+        clamp = "load all its links, or name a lug after a segment where none bears"
+    elif len(pin.connections) < 2:
+        why = "the pin is not clamped and only one connection bears on it, so nothing reacts its "
+        return f"{why}load; {clamp}", "one-band"
+    if force > MOST:
+        said = f"their resultant is {force:.2g} of the largest load (its {react} "
+        return f"{loose}{said}at most {MOST:g}); {clamp}", "force-imbalance"
+    if torque > MOST:
+        said = f"their torque about the axis is {torque:.2g} of the largest applied (its {react} "
+        return f"{loose}{said}at most {MOST:g}); {clamp}", "torque-imbalance"
+    if carried.lugs and couple > FREE + force / 2.0:  # the links share the force
+        said = f"their couple across the axis is {couple:.2g} of the largest force times the "
+        said += "length of the pin, which no lug reacts, since all are free to tilt; "
+        return f"{loose}{said}give a lug the stiffness of its tilt", "couple-imbalance"
+    if couple > MOST:
+        said = f"their couple across the axis is {couple:.2g} of the largest force times the "
+        said += f"length of the pin (its bands react at most {MOST:g}); give it lugs, whose tilt "
+        return f"{loose}{said}carries couples ({name}.lug), or {clamp}", "couple-imbalance"
+    return None, ""
+
+
+def closing(pin: PinLike, loads: PinLoads, instant: int) -> dict[str, Floats] | None:
+    """Changes (2,) N, across the axis, of the forces at an instant that would put them in balance:
+    of one band if that is enough, else of those two that need the least. None where only zero
+    loads, or couples, would do.
+    """
+    force, couple = _left(pin, loads.at(np.array([instant])))
+    middle = sum(pin.ends) / 2.0
+    left = force[0, :2]
+    first = np.array([couple[0, 1], -couple[0, 0]])  # sum of z F, with the couples that are given
+    z = {name: pin.band(name).middle - middle for name in loads.surfaces}
+    now = dict(zip(loads.surfaces, loads.forces[instant, :, :2], strict=True))
+    largest = _largest(loads.forces)
+    alone = [n for n in z if np.linalg.norm(z[n] * left - first) <= ALONE * largest * pin.length]
+    found = [{name: -left} for name in alone]
+    if not found:
+        for a, b in combinations(z, 2):
+            if abs(z[a] - z[b]) > NOISE * pin.length:
+                at_b = (first - z[a] * left) / (z[a] - z[b])
+                found.append({a: -left - at_b, b: at_b})
+    found = [x for x in found if _remains(now, x, largest)]
+    return min(found, key=_total, default=None)
+
+
+def _remains(now: dict[str, Floats], change: dict[str, Floats], largest: float) -> bool:
+    """Whether loads remain where forces are changed so."""
+    after = [force + change.get(name, 0.0) for name, force in now.items()]
+    return _largest(np.array(after)) > 0.1 * largest
+
+
+def _total(change: dict[str, Floats]) -> float:
+    return sum(float(np.linalg.norm(x)) for x in change.values())
+
+
+def _size(vectors: Floats) -> Floats:
+    return np.asarray(np.linalg.norm(vectors, axis=-1))
 
 
 def _largest(vectors: Floats) -> float:

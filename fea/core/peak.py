@@ -128,6 +128,20 @@ class Peak:
         return float(self.governing.times[0])
 
     @property
+    def upper_end(self) -> float:
+        """The maximum with its error, or the upper end of its interval, Pa."""
+        if self.interval is not None:
+            return self.interval[1]
+        return (self.max_von_mises or 0.0) + (self.error_estimate or 0.0)
+
+    @property
+    def lower_end(self) -> float:
+        """The maximum less its error, or the lower end of its interval, Pa."""
+        if self.interval is not None:
+            return self.interval[0]
+        return (self.max_von_mises or 0.0) - (self.error_estimate or 0.0)
+
+    @property
     def own_error(self) -> float | None:
         """On meshes and between instants, Pa, without the effect of the excluded distance."""
         return self.error_estimate if self.parts is None else self.parts.total
@@ -152,19 +166,16 @@ class Peak:
 def decides(peak: Peak, limit: float) -> bool | None:
     """Whether the maximum stays below a limit (Pa); None if not decided.
 
-    A converged maximum is compared as it is, an unconverged one with its error. A singular one
-    exceeds the limit if its whole interval does; it never stays below, since stress at the
-    singularity itself is unbounded.
+    A maximum is compared with its error, whatever its verdict: one that straddles the limit decides
+    nothing. A singular one exceeds the limit if its whole interval does; it never stays below,
+    since stress at the singularity itself is unbounded.
     """
     stress, error = peak.max_von_mises, peak.error_estimate
     if stress is None or error is None:
         return None
-    if peak.verdict == "converged":
-        return stress <= limit
-    low, high = peak.interval or (stress - error, stress + error)
-    if low > limit:
+    if peak.lower_end > limit:
         return False
-    return True if high <= limit and peak.verdict == "unconverged" else None
+    return True if peak.upper_end <= limit and peak.verdict != "singular" else None
 
 
 def discretisation_error(

@@ -3,6 +3,9 @@
 signed-von-mises   rainflow of the signed von Mises stress, mean stress, S-N curve
 critical-plane     Findley's plane of largest damage                  (fea.fatigue.critical_plane)
 fkm-p-ram          local strains by the FKM guideline                 (fea.fatigue.fkm)
+
+The first and the last take one course of stress with a sign. Where none stands for the history
+(fea.fatigue.proportional), the critical plane is taken instead, or the history is refused.
 """
 
 from __future__ import annotations
@@ -14,15 +17,18 @@ from typing import Literal
 
 import numpy as np
 
-from fea.fatigue.critical_plane import findley_k, plane_cycles
+from fea.fatigue.critical_plane import findley_k, worst_plane
 from fea.fatigue.fkm import FkmMaterial, p_ram_life
 from fea.fatigue.flight import Cycles, case_by_case, flight, rainflow
+from fea.fatigue.proportional import SEEN, SignedCourse, course
 from fea.fatigue.records import PointFatigue, PointHistory
 from fea.fatigue.sn_curve import SnCurve
 from geometry.arrays import Floats
+from geometry.coded import ArgumentError
 
 Method = Literal["signed-von-mises", "critical-plane", "fkm-p-ram"]
 SHOWN = (0.1, 0.5, 0.9)  # failure probabilities
+SHEAR = 2.0 / 3.0**0.5  # Tresca's stress over von Mises stress, at most
 LEAST = 0.01  # of the largest amplitude: smaller ones are not shown
 
 
@@ -64,16 +70,21 @@ def assess(
 ) -> PointFatigue | None:
     """Damage at a point; None where no case of the spectrum acts, or no data are given for the
     method.
+
+    Raises: ArgumentError where the method cannot see the history and the critical plane, which can,
+    lacks data (`unseen-history`).
     """
     cases = [c for c in history.cases if spectrum.occurrences.get(c.case, 0.0) > 0.0]
     if not cases or (material.fkm if spectrum.method == "fkm-p-ram" else material.curve) is None:
         return None
-    if spectrum.method == "fkm-p-ram":
-        found = _by_fkm([c.signed for c in cases], _often(history, spectrum), spectrum, material)
-    elif spectrum.method == "critical-plane":
-        found = _by_plane([c.stress for c in cases], _often(history, spectrum), spectrum, material)
+    often, seen = [spectrum.occurrences[c.case] for c in cases], course(cases)
+    method, note = _method(spectrum, seen, material)
+    if method == "fkm-p-ram":
+        found = _by_fkm(seen.cases, often, spectrum, material)
+    elif method == "critical-plane":
+        found = _by_plane([c.stress for c in cases], often, spectrum, material)
     else:
-        found = _by_sign([c.signed for c in cases], _often(history, spectrum), spectrum, material)
+        found = _by_sign(seen.cases, often, spectrum, material)
     damage = found.damage[None]
     shown, counts = _collective(found.equivalent, found.units)
     return PointFatigue(
@@ -81,7 +92,7 @@ def assess(
         point=history.point,
         location=history.location,
         cases=tuple(c.case for c in cases),
-        method=spectrum.method,
+        method=method,
         damage=damage,
         life=_life(damage),
         lives=tuple(_life(found.damage[p]) for p in SHOWN if p in found.damage),
@@ -90,18 +101,50 @@ def assess(
         mean=found.mean,
         amplitudes=shown,
         counts=counts,
-        note=history.chosen,
+        note="; ".join(filter(None, (history.chosen, note))),
         normal=None if found.normal is None else history.in_pin_axes(found.normal),
     )
 
 
+def _method(
+    spectrum: Spectrum, seen: SignedCourse, material: FatigueMaterial
+) -> tuple[Method, str]:
+    """The method that sees the history, and why, if it is not the asked one."""
+    asked, curve = spectrum.method, material.curve
+    if asked == "critical-plane":
+        return asked, ""
+    if seen.stands:
+        return asked, seen.note
+    if _harmless(SHEAR * seen.largest, spectrum, material):
+        return asked, "the stress is not proportional, but does no damage in any direction"
+    why = (
+        f"the stress is not proportional (off by {100.0 * seen.unseen:.0f} % of its largest value, "
+        f"above {100.0 * SEEN:.0f} %), which {asked} cannot see"
+    )
+    needs = ""
+    if curve is None:
+        needs = "an S-N curve"
+    elif material.sensitivity is None and curve.rule != "none":
+        needs = "the mean_stress_sensitivity of the S-N curve"
+    elif spectrum.probability not in (None, curve.probability) and curve.scatter == 1.0:
+        needs = "the scatter of the S-N curve"
+    if needs:
+        raise ArgumentError(f"{why}; the critical plane needs {needs}", "unseen-history")
+    return "critical-plane", f"{why}: by the critical plane"
+
+
+def _harmless(largest: float, spectrum: Spectrum, material: FatigueMaterial) -> bool:
+    """Whether cycles of this amplitude, Pa, at stress ratio -1 do no damage."""
+    if spectrum.method == "fkm-p-ram":
+        assert material.fkm is not None
+        both = np.array([0.0, largest, -largest, 0.0])
+        return p_ram_life(both, material.fkm, spectrum.probability or 0.5).infinite
+    assert material.curve is not None
+    return not material.curve.life(spectrum.probability).damage(np.array([largest])).any()
+
+
 def _life(damage: float) -> float | None:
     return 1.0 / damage if damage > 0.0 and isfinite(damage) else (0.0 if damage else None)
-
-
-def _often(history: PointHistory, spectrum: Spectrum) -> list[float]:
-    every = (spectrum.occurrences.get(c.case, 0.0) for c in history.cases)
-    return [n for n in every if n > 0.0]
 
 
 def _by_sign(
@@ -120,8 +163,8 @@ def _by_plane(
 ) -> _Found:
     curve, order = material.curve, flight(often)
     assert curve is not None
-    planes = plane_cycles(courses, order, findley_k(material.sensitivity or 0.0))
-    worst = max(planes, key=lambda plane: (curve.damage(plane.equivalent), plane.equivalent.max()))
+    life = curve.life(spectrum.probability)
+    worst = worst_plane(courses, order, findley_k(material.sensitivity or 0.0), life)
     damage = _damage(curve, worst.equivalent, order.units, spectrum.probability)
     largest = _largest(worst.shear, worst.equivalent)
     return _Found(damage, *largest, worst.equivalent, order.units, worst.normal)
@@ -143,10 +186,14 @@ def _by_fkm(
         if spectrum.probability not in (None, 0.5):
             asked = p_ram_life(whole, data, spectrum.probability)
         if not asked.infinite:
-            found[None] = 1.0 / (asked.repetitions * order.units)
+            found[None] = _per_unit(asked.repetitions, order.units)
         if not middle.infinite and middle.at is not None:
-            found |= {p: 1.0 / (middle.at(p) * order.units) for p in SHOWN}
+            found |= {p: _per_unit(middle.at(p), order.units) for p in SHOWN}
     return _Found(found, *_largest(cycles, cycles.amplitude), cycles.amplitude, order.units)
+
+
+def _per_unit(repetitions: float, units: int) -> float:
+    return 1.0 / (repetitions * units) if repetitions > 0.0 else inf
 
 
 def _damage(

@@ -1,9 +1,11 @@
 """The few points of a pin at which fatigue is assessed, and the stress there over all cases.
 
 Damage follows the range of stress, not its peak, and is larger where the mean is tensile. So the
-surface is searched for local maxima of `a + 0.3 m`, with amplitude a and mean m of the range that
-signed von Mises stress covers over all cases, zero load included. Singular zones are left out. The
-points of the largest von Mises stress are added to them.
+surface is searched for local maxima of `a + 0.3 m` over all cases, zero load included: m is the
+signed von Mises stress of the tensor in the middle of the range of each component, and a the
+largest von Mises stress of the difference from it, which sees stress that changes its sign or its
+direction. Singular zones are left out. The points of the largest von Mises stress are added to
+them.
 
 One mesh is searched, that of the case with the largest stress; of other cases' meshes the nearest
 node answers.
@@ -34,7 +36,7 @@ SAME = 0.05  # of that: nearer points are one
 SOME = 2  # of the points one in so many is compared with others
 TRIED = 500  # points whose neighbours are compared
 CLOSE = 9  # points about a local maximum that are compared at all angles
-CHUNK = 4096  # points and angles at once
+CHUNK = 16_384  # points and angles, by cases, at once
 
 
 @dataclass(frozen=True)
@@ -153,22 +155,23 @@ def _local_maxima(cases: Sequence[_Case]) -> Iterator[_Place]:
 
 
 def _score(cases: Sequence[_Case], points: Floats, turns: int, instants: int) -> Floats:
-    """Amplitude and a part of the mean, (P, A) Pa, of what the signed stress covers at points (P,)
-    and angles (A,) over all cases, zero load included.
+    """Amplitude and a part of the mean, (P, A) Pa, at points (P,) and angles (A,) over all cases,
+    zero load included.
     """
     turns = turns if cases[0].known.revolved else 1
     angles = np.tile(2.0 * np.pi * np.arange(turns) / turns, len(points))
-    low, high = np.zeros(len(angles)), np.zeros(len(angles))
-    for case in cases:
-        rows = np.repeat(_nearest(case.known, points), turns)
-        some = case.instants(instants)
-        for k in range(0, len(rows), CHUNK):
-            here = slice(k, k + CHUNK)
-            signed = signed_von_mises(case.known.at(rows[here], angles[here], some))
-            low[here] = np.minimum(low[here], signed.min(axis=1))
-            high[here] = np.maximum(high[here], signed.max(axis=1))
-    score = 0.5 * (high - low) + MEAN * 0.5 * (high + low)
-    return np.asarray(score.reshape(len(points), turns))
+    known = [(c.known, np.repeat(_nearest(c.known, points), turns), c.instants(instants))
+             for c in cases]  # fmt: skip
+    chunk = max(CHUNK // len(cases), 1)
+    score = np.zeros(len(angles))
+    for k in range(0, len(angles), chunk):
+        here = slice(k, k + chunk)
+        stress = [of.at(rows[here], angles[here], some) for of, rows, some in known]
+        whole = np.concatenate([np.zeros_like(stress[0][:, :1]), *stress], axis=1)
+        middle = 0.5 * (whole.min(axis=1) + whole.max(axis=1))
+        apart = von_mises(whole - middle[:, None]).max(axis=1)
+        score[here] = apart + MEAN * signed_von_mises(middle)
+    return score.reshape(len(points), turns)
 
 
 def _nearest(known: StressPoints, points: Floats) -> Ints:

@@ -6,12 +6,18 @@ its P_RAJ is not used here.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
+from math import inf
+from typing import TYPE_CHECKING, Literal
 
+import numpy as np
+
+from fea.fatigue.quiet import quiet
 from geometry.arrays import Floats
+
+if TYPE_CHECKING:
+    import pandas
 
 MaterialGroup = Literal["Steel", "SteelCast", "Al_wrought"]
 PER_MPA, PER_MM = 1e6, 1e-3
@@ -63,21 +69,40 @@ def p_ram_life(
     asked = _parameters(material) | {"P_A": probability, "P_L": loads[0]}
     if loads[1] is not None:
         asked["s_L"] = loads[1] / PER_MPA
-    with warnings.catch_warnings():  # pyLife 2.3 uses what pandas 3 deprecates
-        warnings.simplefilter("ignore", DeprecationWarning)
+    with quiet():
         found = perform_fkm_nonlinear_assessment(
             pandas.Series(asked), pandas.Series(sequence / PER_MPA), calculate_P_RAJ=False
         )
-    cycles, repetitions = (
-        float(found[f"P_RAM_lifetime_n_{of}"]) for of in ("cycles", "times_load_sequence")
-    )
+        infinite = bool(found["P_RAM_is_life_infinite"])
+    cycles, curve = found["P_RAM_collective"], found["P_RAM_woehler_curve"]
+    bearable = found.get("P_RAM_N_max_bearable")
 
     def at(wanted: float) -> float:
-        return float(found["P_RAM_N_max_bearable"](wanted)) * repetitions / cycles
+        with quiet():
+            bearable(wanted)  # which leaves the damage at this probability
+        calculated = found["P_RAM_damage_calculator"].collective
+        return _repetitions(calculated, calculated["D"].to_numpy(dtype=float))
 
-    scattered = "P_RAM_N_max_bearable" in found
-    infinite = bool(found["P_RAM_is_life_infinite"])
-    return FkmLife(cycles, repetitions, infinite, at if scattered else None)
+    parameter, closed = (cycles[x].to_numpy() for x in ("P_RAM", "is_closed_hysteresis"))
+    ratio = np.nan_to_num(parameter.astype(float) / float(curve.P_RAM_Z))
+    slope = np.where(ratio >= 1.0, 1.0 / curve.d_1, 1.0 / curve.d_2)
+    damage = np.where(closed, 1.0, 0.5) * 1e-3 * ratio**-slope
+    repetitions = _repetitions(cycles, damage)
+    count = int((cycles["run_index"] == 2).sum())
+    never = infinite or repetitions == inf
+    return FkmLife(count * repetitions, repetitions, never, None if bearable is None else at)
+
+
+def _repetitions(cycles: pandas.DataFrame, damage: Floats) -> float:
+    """Of the sequence until failure, by equation 2.6-90 of the guideline from the damage (C,) in
+    its first and its second run; within these by the part of their damage, where pyLife has none. A
+    cycle in compression, without P_RAM, does no damage.
+    """
+    run = cycles["run_index"].to_numpy()
+    first, second = (float(np.nansum(damage[run == n])) for n in (1, 2))
+    if first >= 1.0:
+        return 1.0 / first
+    return 1.0 + (1.0 - first) / second if second > 0.0 else inf
 
 
 def _parameters(material: FkmMaterial) -> dict[str, object]:

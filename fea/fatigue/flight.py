@@ -11,9 +11,10 @@ Source of the counting: four-point rainflow, ASTM E1049-85 (2017), by pyLife.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
+from itertools import accumulate, chain, pairwise
 from math import floor, lcm
 
 import numpy as np
@@ -30,11 +31,18 @@ PASSES = 3
 @dataclass(frozen=True)
 class Flight:
     """Numbers of the cases in their order until the spectrum repeats itself, and how many units
-    these are.
+    these are. ends: of each unit in that order; by default they are one.
     """
 
     order: tuple[int, ...]
     units: int
+    ends: tuple[int, ...] = field(default=(), compare=False)
+
+    @property
+    def each(self) -> Iterator[tuple[int, ...]]:
+        """The cases of one unit after the other."""
+        ends = self.ends or (len(self.order),)
+        return (self.order[a:b] for a, b in pairwise((0, *ends)))
 
     def sequence(self, cases: Sequence[Floats]) -> Floats:
         """Of what there is of every case, one after the other."""
@@ -73,15 +81,15 @@ def flight(occurrences: Sequence[float]) -> Flight:
             f"the spectrum has more than {MOST:,} cases until it repeats itself",
             "too-many-occurrences",
         )
-    return Flight(
+    each = [
         tuple(
             case
-            for unit in range(units)
             for case, n in enumerate(exact)
             for _ in range(floor((unit + 1) * n) - floor(unit * n))
-        ),
-        units,
-    )
+        )
+        for unit in range(units)
+    ]
+    return Flight(tuple(chain.from_iterable(each)), units, tuple(accumulate(map(len, each))))
 
 
 def turning_points(values: Floats) -> Ints:

@@ -16,17 +16,42 @@ Mean stress, as the equivalent amplitude at stress ratio -1:
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf
+from math import inf, isfinite
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from fea.fatigue.quiet import quiet
 from geometry.arrays import Floats
 
 if TYPE_CHECKING:
     import pandas
 
 MeanStress = Literal["none", "fkm", "goodman", "swt", "walker"]
+
+SOFTER = 0.95  # of the knee
+
+
+@dataclass(frozen=True)
+class Life:
+    """An S-N curve at one failure probability, for many cycles in little time: knee: amplitude, Pa,
+    and cycles; slopes: above and below it.
+    """
+
+    knee: tuple[float, float]
+    slopes: tuple[float, float]
+
+    def damage(self, equivalent: Floats) -> Floats:
+        """Of each cycle of equivalent amplitudes (C,) Pa."""
+        ratio, (above, below) = equivalent / self.knee[0], self.slopes
+        low = np.minimum(ratio, 1.0) ** below if isfinite(below) else 0.0
+        return np.asarray(np.where(ratio >= 1.0, ratio**above, low) / self.knee[1])
+
+    def softer(self, equivalent: Floats) -> Floats:
+        """The same, with the slope above the knee down to SOFTER of it."""
+        ratio, damage = equivalent / self.knee[0], self.damage(equivalent)
+        near = ratio ** self.slopes[0] / self.knee[1]
+        return np.asarray(np.where((ratio >= SOFTER) & (ratio < 1.0), near, damage))
 
 
 @dataclass(frozen=True)
@@ -51,7 +76,8 @@ class SnCurve:
             from pylife.strength.meanstress import fkm_goodman
 
             M = self.parameter
-            return np.asarray(fkm_goodman(amplitude, mean, M, M / 3.0, -1.0), dtype=float)
+            with quiet():
+                return np.asarray(fkm_goodman(amplitude, mean, M, M / 3.0, -1.0), dtype=float)
         if self.rule == "goodman":
             left = 1.0 - np.maximum(mean, 0.0) / self.parameter
             return np.where(left > 0.0, amplitude / np.where(left > 0.0, left, 1.0), inf)
@@ -68,7 +94,17 @@ class SnCurve:
         import pylife.materiallaws.woehlercurve  # noqa: F401, which teaches pandas
 
         wanted = self.probability if probability is None else probability
-        return np.asarray(self._series().woehler.cycles(amplitude, wanted), dtype=float)
+        with quiet():
+            return np.asarray(self._series().woehler.cycles(amplitude, wanted), dtype=float)
+
+    def life(self, probability: float | None = None) -> Life:
+        """At a failure probability, by default that of the curve."""
+        import pylife.materiallaws.woehlercurve  # noqa: F401, which teaches pandas
+
+        wanted = self.probability if probability is None else probability
+        with quiet():
+            at = self._series().woehler.transform_to_failure_probability(wanted)
+        return Life((float(at.SD), float(at.ND)), (self.slope, self.slope_below))
 
     def damage(
         self, equivalent: Floats, counts: Floats | float = 1.0, probability: float | None = None
@@ -76,7 +112,8 @@ class SnCurve:
         """Of cycles of equivalent amplitudes (C,) Pa, each occurring `counts` times."""
         if not len(equivalent):
             return 0.0
-        return float((counts / self.cycles(equivalent, probability)).sum())
+        with np.errstate(divide="ignore"):  # an infinite amplitude has no life
+            return float((counts / self.cycles(equivalent, probability)).sum())
 
     def _series(self) -> pandas.Series:
         import pandas

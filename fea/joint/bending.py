@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from fea.core.pin_loads import Floats, PinLoads
 from fea.joint.contact import Bands
+from fea.joint.lugs.lug import Lug
 from fea.joint.records import JointForces
 from geometry import Pin
 
@@ -19,12 +20,16 @@ def stations(pin: Pin) -> Floats:
     return np.union1d(np.linspace(*pin.ends, STATIONS), pin.stations)
 
 
-def joint_forces(pin: Pin, mass: Floats, bands: Bands, loads: PinLoads) -> JointForces:
-    """At all instants, as `bending_moment`."""
-    z = stations(pin)
-    across = (f(pin, mass, bands, loads, z) for f in (shear_force, bending_moment))
-    shear, moment = (np.linalg.norm(x, axis=2) for x in across)
-    return JointForces(z, loads.times, shear, moment)
+def joint_forces(
+    pin: Pin, mass: Floats, bands: Bands, loads: PinLoads, lugs: Sequence[Lug]
+) -> JointForces:
+    """At all instants, as `bending_moment`. lugs: one for each of the bands."""
+    z, names = stations(pin), tuple(lug.connection for lug in lugs)
+    across = loads.forces[:, :, :2]
+    forces = [across[:, bands.band == b].sum(axis=1) for b in range(len(names))]
+    in_sections = (f(pin, mass, bands, loads, z) for f in (shear_force, bending_moment))
+    shear, moment = (np.linalg.norm(x, axis=2) for x in in_sections)
+    return JointForces(z, loads.times, shear, moment, names, np.stack(forces, axis=1))
 
 
 def bending_moment(pin: Pin, mass: Floats, bands: Bands, loads: PinLoads, z: Floats) -> Floats:

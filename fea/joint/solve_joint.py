@@ -14,6 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
+from fea.core.equilibrium import centre_of_volume
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, LugEdge, PinLoads
 from fea.harmonic.evaluate import FirstMesh
@@ -323,7 +324,7 @@ class JointModel:
         """About the middle of the bands along x and y, (T, 2) N m, of the body force."""
         z = self.bands.z
         middle = 0.5 * (z.min() + z.max())
-        arm = _centre(self.whole) - middle
+        arm = centre_of_volume(self.whole) - middle
         x, y = (loads.body[:, :2] * self._mass).T
         return np.stack([-arm * y, arm * x], axis=1)
 
@@ -353,10 +354,3 @@ def edges_of(pin: Pin, material: Material, lugs: Sequence[Lug]) -> tuple[LugEdge
             at, rounded = (band.radius, z), lug.edge_radius > 0.0
             found.append(LugEdge(lug.connection, *at, exponent, feature, rounded))
     return tuple(found)
-
-
-def _centre(pin: Pin) -> float:
-    """z of the centre of volume of the cylinders, m."""
-    area = np.array([s.mean_area for s in pin.segments])
-    ends = np.array(pin.stations)
-    return float(area @ np.diff(ends**2) / 2.0 / (area @ np.diff(ends)))

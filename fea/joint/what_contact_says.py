@@ -32,7 +32,7 @@ def joint_result(
         bending_moments=tuple(zip(z.tolist(), moment.tolist(), strict=True)),
         range=over,
         remark=remark,
-        along=joint_forces(contact.pin, contact.mass, contact.bands, case),
+        along=joint_forces(contact.pin, contact.mass, contact.bands, case, contact.lugs),
     )
 
 

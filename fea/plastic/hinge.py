@@ -1,17 +1,25 @@
 """Plastic hinges and slip of a pin as a beam: bounds of its load factor at every instant.
 
-Static theorem: internal forces in equilibrium, here the elastic ones, that yield in no section,
+Static theorem: internal forces in equilibrium, here the elastic ones, of which every section can
+carry its own,
 
-    (M/Mp)^2 + (N/Np)^2 + (V/Vs)^2 + (T/Tp)^2 <= 1,
+    g(M/Mp, N/Np)^2 + (V/Vs + T/Tp)^2 <= 1.
 
-with Mp the plastic moment, Np = A s_y, Tp the plastic torque, and Vs = A s_y / sqrt 3 over the
-elastic ratio of the largest to the mean shear stress, so that shear alone would yield nowhere.
+g is the part that is used of the curve of bending with an axial force (fea.plastic.interaction).
+Torsion has one shear stress everywhere, Tp the plastic torque; shear has that of a field with
+s_tz = -C sin theta, in equilibrium with elastic bending, whose largest value is the V Q / (I t) of
+the neutral axis (3/4 A and half of A resist in a solid bar and a thin tube), so that the sum of
+both is nowhere exceeded. It leaves sqrt(1 - (V/Vs + T/Tp)^2) of the yield stress for bending and
+pulling.
 
 Kinematic theorem: the least of the work of flow over the power of the loads among mechanisms. Slip
-of a section costs Vp = A s_y / sqrt 3. A hinge costs Mp; one is enough where one side of a span is
-free, three where both are clamped. Next to a clamp or a shoulder the section cannot
-warp and contract: a hinge is ROOM away from it, where the solid has it too, and what is nearer is
-left to slip.
+of a section costs Vp = A s_y / sqrt 3, twist Tp; to slip apart along a plane of slope t from the
+section Vp (t + 1 / t), which is 2 Vp = 1.155 Np if there is room for a slope of one. A hinge bends
+and stretches as the curve g has it, or twists as well, which takes
+s_y sqrt(A (A e^2 + I k^2 + J t^2 / 3)) per length at most (by Schwarz's inequality, for a stretch
+e, a curvature k and a twist t). One is enough where one side of a span is free, three, which bend
+alone, where both are clamped. Next to a clamp or a shoulder the section cannot warp and contract:
+a hinge is ROOM away from it, where the solid has it too, and what is nearer slips and twists.
 
 Both are theorems of beams. The solid differs by what happens within a diameter of loads and clamps,
 so of a bracket only what is beyond BEAM_ERROR decides.
@@ -31,6 +39,7 @@ from fea.beam.round_section import Circle
 from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, Span, stepped_beam
 from fea.core.material import Material
 from fea.core.pin_loads import AnyLoads
+from fea.plastic.interaction import bent_and_pulled
 from geometry import Pin
 from geometry.arrays import Floats, Mask
 
@@ -71,9 +80,17 @@ def beam_bounds(
     for span in forces.spans:
         z, sections, inside = _sampled(forces, span, amounts)
         strong = _strengths(sections)
-        lower = np.minimum(lower, first * _static(sections, strong, inside))
+        across = np.linalg.norm(inside, axis=1) / strong  # (T, S, 4)
+        most, least = _bending_and_axial(sections, across)
+        lower = np.minimum(lower, first * _static(sections, across, most))
         slip = np.minimum(slip, last * _slip(span, strong, inside))
-        upper = np.minimum(upper, last * _hinges(span, sections, z, strong, inside))
+        room = _room(span, sections, z)
+        if span.left and span.right:
+            away = room >= 2.0 * ROOM
+            power = _three_hinges(z, away, strong[:, MOMENT], inside[..., MOMENT])
+        else:
+            power = _one_mechanism(room, across, least)
+        upper = np.minimum(upper, last * _inverse(power))
     return BeamBounds(lower, np.minimum(upper, slip), slip)
 
 
@@ -91,24 +108,43 @@ def _sampled(
 def _strengths(sections: list[Circle]) -> Floats:
     """Vp, Mp, Np, Tp (S, 4) per Pa of yield stress."""
     return np.array(
-        [
-            (
-                s.area / math.sqrt(3.0),
-                s.plastic_modulus,
-                s.area,
-                2.0 / 3.0 * math.pi * (s.outer**3 - s.inner**3) / math.sqrt(3.0),
-            )
-            for s in sections
-        ]
+        [(s.area / math.sqrt(3.0), s.plastic_modulus, s.area, _torque(s)) for s in sections]
     ).reshape(-1, 4)
 
 
-def _static(sections: list[Circle], strong: Floats, inside: Floats) -> Floats:
-    """Lower bounds (T,) per Pa of yield stress."""
-    peak = np.ones_like(strong)
-    peak[:, SHEAR] = [s.vq_it for s in sections]
-    used = np.sqrt(((inside * peak / strong) ** 2).sum(axis=(1, 3)))
-    return _inverse(used.max(axis=1))
+def _torque(section: Circle) -> float:
+    """Plastic torque per Pa of yield stress, m^3."""
+    return 2.0 / 3.0 * math.pi * (section.outer**3 - section.inner**3) / math.sqrt(3.0)
+
+
+def _bending_and_axial(sections: list[Circle], across: Floats) -> tuple[Floats, Floats]:
+    """What bending with an axial force uses of each section, at most and at least, (T, S); at
+    least with torsion: work of flow is no more than by the mean square of its strain.
+    """
+    most, least = np.empty((2, *across.shape[:2]))
+    for section in set(sections):
+        same = np.array([s == section for s in sections])
+        moment, axial = across[:, same, MOMENT], across[:, same, AXIAL]
+        most[:, same], least[:, same] = bent_and_pulled(section, moment, axial)
+    squares = np.array(
+        [
+            (
+                s.plastic_modulus**2 / (s.area * s.inertia),
+                1.0,
+                _torque(s) ** 2 * 3.0 / (s.area * s.polar),
+            )
+            for s in sections
+        ]
+    )
+    together = np.sqrt((across[..., [MOMENT, AXIAL, TORQUE]] ** 2 * squares).sum(axis=2))
+    return most, np.maximum(least, together)
+
+
+def _static(sections: list[Circle], across: Floats, bent: Floats) -> Floats:
+    """Lower bounds (T,) per Pa of yield stress. bent: what bending and pulling use, (T, S)."""
+    peak = np.array([s.vq_it for s in sections])
+    sheared = across[..., SHEAR] * peak + across[..., TORQUE]
+    return _inverse(np.hypot(bent, sheared).max(axis=1))
 
 
 def _slip(span: Span, strong: Floats, inside: Floats) -> Floats:
@@ -124,30 +160,26 @@ def _slip(span: Span, strong: Floats, inside: Floats) -> Floats:
     return _inverse(power.max(axis=(1, 2)))
 
 
-def _hinges(
-    span: Span, sections: list[Circle], z: Floats, strong: Floats, inside: Floats
-) -> Floats:
-    """Upper bounds (T,) per Pa of yield stress, by bending, pulling and twisting."""
-    away = _away(span, sections, z)
-    across = np.linalg.norm(inside, axis=1) / strong  # (T, S, 4)
-    if span.left and span.right:
-        return _inverse(_three_hinges(z, away, strong[:, MOMENT], inside[..., MOMENT]))
-    used = across[:, :, [AXIAL, TORQUE]].max(axis=(1, 2))
-    if away.any():
-        used = np.maximum(used, across[:, away, MOMENT].max(axis=1))
-    return _inverse(used)
+def _one_mechanism(room: Floats, across: Floats, bent: Floats) -> Floats:
+    """Power over work (T,) of a section that twists, slips apart or is a hinge. bent: of a hinge,
+    (T, S).
+    """
+    steep = np.minimum(room, 1.0)  # of a plane that ends before clamps and thicker sections
+    apart = math.sqrt(3.0) * steep / (1.0 + steep**2) * across[..., AXIAL]
+    hinge = np.where(room >= 2.0 * ROOM, bent, 0.0)
+    return np.asarray(np.maximum(np.maximum(across[..., TORQUE], apart), hinge).max(axis=1))
 
 
-def _away(span: Span, sections: list[Circle], z: Floats) -> Mask:
-    """Which sections (S,) have room for a hinge between clamps and thicker ones."""
-    radius = np.array([s.outer for s in sections])
-    gap = np.where(radius > (1.0 + 1e-9) * radius[:, None], np.abs(z - z[:, None]), np.inf)
-    room = gap.min(axis=1)
+def _room(span: Span, sections: list[Circle], z: Floats) -> Floats:
+    """Distance (S,) from clamps and thicker sections over the outer radius."""
+    outer, inner = np.array([(s.outer, s.inner) for s in sections]).T
+    more = (outer > (1.0 + 1e-9) * outer[:, None]) | (inner < (1.0 - 1e-9) * inner[:, None])
+    room = np.where(more, np.abs(z - z[:, None]), np.inf).min(axis=1)
     if span.left:
         room = np.minimum(room, z - z[0])
     if span.right:
         room = np.minimum(room, z[-1] - z)
-    return np.asarray(room >= ROOM * 2.0 * radius)
+    return np.asarray(room / outer)
 
 
 def _three_hinges(z: Floats, away: Mask, strong: Floats, moment: Floats) -> Floats:

@@ -18,6 +18,7 @@ import numpy as np
 
 from fea.core.linear_solver import Analysis, SolveError
 from fea.plastic.body import FlowingBody
+from fea.plastic.budget import Budget
 from fea.plastic.flow import Flow
 from geometry.arrays import Floats
 
@@ -41,13 +42,13 @@ class State:
 
 
 class EquilibriumPath:
-    """A body under forces (U,), N.
+    """A body under forces (U,), N. budget: asked before every iteration.
 
     Raises: SolveError for a body that is not constrained, from here and from the steps.
     """
 
-    def __init__(self, body: FlowingBody, forces: Floats) -> None:
-        self.body, self.load = body, forces
+    def __init__(self, body: FlowingBody, forces: Floats, budget: Budget | None = None) -> None:
+        self.body, self.load, self.budget = body, forces, budget or Budget()
         stiff = body.stiffness(body.at_rest().tangent)
         self._analysis = Analysis(stiff, body.ties.first // 3)
         self.elastic = self._analysis.factorize(stiff)(forces)
@@ -77,7 +78,10 @@ class EquilibriumPath:
         raise failed
 
     def step(self, now: State, before: State | None, work: float) -> State:
-        """The state at a work (J), from the one now and, for a guess, the one before that."""
+        """The state at a work (J), from the one now and, for a guess, the one before that.
+
+        Raises: SolveError; OutOfTimeError.
+        """
         guess = (work - now.work) * (
             self.elastic / self.compliance
             if before is None
@@ -87,6 +91,7 @@ class EquilibriumPath:
         flow = self.body.flow(u, now.flow)
         size = float(np.linalg.norm(self.load))
         for _ in range(MOST_ITERATIONS):
+            self.budget.require()
             inner = self.body.forces(flow.stress)
             solve = self._analysis.factorize(self.body.stiffness(flow.tangent))
             a, b = solve(np.stack([-inner, self.load], axis=1)).T

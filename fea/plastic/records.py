@@ -13,9 +13,9 @@ from fea.core.dimensions import Floats, Length, Lengths, Stresses
 
 @dataclass(frozen=True)
 class PlasticMesh:
-    """One mesh of the solid: unknowns, bounds of the load factor on it, change of volume over the
-    equivalent strain of its mechanism and what is charged for it in the upper bound, load steps and
-    iterations.
+    """One mesh of the solid: unknowns, the load factor that equilibrium reached on it (lower, of
+    which the lower bound is made) and the upper bound, change of volume over the equivalent strain
+    of its mechanism and what is charged for it in the upper bound, load steps and iterations.
     """
 
     unknowns: int
@@ -61,7 +61,8 @@ class LimitLoad:
 
     carries: whether the pin carries its loads (factor 1) without collapse; None where that is not
     decided. permanent_set: what is left of the largest displacement after the loads reached the
-    factor permanent_at and were taken off. curve, flow: of the finest mesh.
+    factor permanent_at and were taken off. curve, flow: of the finest mesh. stopped: there is no
+    answer because it would have taken longer than a limit load may that nobody asked for.
     """
 
     method: Literal["beam", "solid", "none"]
@@ -76,3 +77,4 @@ class LimitLoad:
     curve: LoadCurve | None = None
     flow: FlowField | None = None
     note: str = ""
+    stopped: bool = False

@@ -6,6 +6,7 @@ solid    elastic-plastic, on two meshes, a third if they differ much    (fea.pla
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import replace
 from typing import Literal
@@ -13,10 +14,11 @@ from typing import Literal
 from fea.core.material import Material
 from fea.core.memory import solid_memory
 from fea.core.pin_loads import PinLoads
+from fea.plastic.budget import Budget, OutOfTimeError
 from fea.plastic.flow import FlowRule
 from fea.plastic.flow_field import flow_field
 from fea.plastic.hinge import BEAM_ERROR, BeamBounds, beam_bounds
-from fea.plastic.limit_load import OnMesh, bracket, limit_on_mesh
+from fea.plastic.limit_load import WEAK_EQUILIBRIUM, OnMesh, bracket, limit_on_mesh
 from fea.plastic.pin_body import PinBody, acting_at, finer, pin_body, plane_of
 from fea.plastic.records import LimitLoad, PlasticMesh
 from geometry import Pin, PinLike
@@ -25,12 +27,18 @@ from geometry.mesh.hexahedra import HexSize
 Rung = Literal["auto", "solid"]
 
 SIZES = HexSize(2, 0.5), HexSize(4, 0.25), HexSize(6, 1.0 / 6.0)
-WIDEST = 0.05  # of a bracket, over its middle
+WIDEST = 0.05 + WEAK_EQUILIBRIUM  # of a bracket, over its middle
 MOST_UNKNOWNS = 60_000  # of the solid: a minute or two
+PER_UNKNOWN = 3e-3  # s of the first two meshes per unknown of the first, about
+GROWTH = 1.5  # exponent of the time of a mesh over its unknowns, at least
 BEFORE_COLLAPSE = 0.95  # of the limit: at most the load after which the permanent set is reported
 TETRAHEDRA = (
     "only for pins of a profile without holes and flats: others need tetrahedra, which lock when "
     "the metal flows"
+)
+TOO_LONG = (
+    "limit load not computed, because it takes more than {:g} s of processor time: --limit-load "
+    "computes it"
 )
 TOO_LARGE = "the solid would need more than {:,} unknowns or the memory that is allowed"
 
@@ -42,13 +50,15 @@ def limit_load(
     loads: PinLoads,
     rung: Rung = "auto",
     memory: float | None = None,
+    seconds: float = math.inf,
 ) -> LimitLoad:
     """Of a pin clamped at surfaces (by name) under the loads of one instant. rung: "solid" even if
-    the beam decides. memory: MB that may be used.
+    the beam decides. memory: MB that may be used. seconds: of processor time that it may take, or
+    there is no answer: never a part of one.
 
     Raises: ArgumentError for a material without yield strength; SolveError.
     """
-    begin = time.perf_counter()
+    begin, budget = time.perf_counter(), Budget(seconds)
     rule = FlowRule(material)
     if not isinstance(pin, Pin):
         return LimitLoad("none", note=TETRAHEDRA)
@@ -67,7 +77,11 @@ def limit_load(
                 seconds=time.perf_counter() - begin,
                 note=f"the theorems for beams; that decides by more than {BEAM_ERROR:.0%}",
             )
-    meshes, last, note = _meshes(pin, rule, clamps, loads, memory)
+    try:
+        meshes, last, note = _meshes(pin, rule, clamps, loads, (memory, budget))
+    except OutOfTimeError:
+        spent, note = time.perf_counter() - begin, TOO_LONG.format(seconds)
+        return LimitLoad("none", seconds=spent, note=note, stopped=True)
     if last is None or len(meshes) < 2:
         return LimitLoad("none", seconds=time.perf_counter() - begin, note=note)
     flow = flow_field(last, meshes[-1].last, plane_of(loads, 0))
@@ -92,20 +106,35 @@ def of_beam(
 
 
 def _meshes(
-    pin: Pin, rule: FlowRule, clamps: tuple[str, ...], loads: PinLoads, memory: float | None
+    pin: Pin,
+    rule: FlowRule,
+    clamps: tuple[str, ...],
+    loads: PinLoads,
+    most: tuple[float | None, Budget],
 ) -> tuple[list[OnMesh], PinBody | None, str]:
     """The finest two at least, if there is room for them, with the body of the last; why not
-    otherwise.
+    otherwise. most: memory, MB, and time.
+
+    Raises: SolveError; OutOfTimeError, too, before a mesh that would take longer than is left: the
+    first two by the number of unknowns, which is the same on every computer, another by the time of
+    the one before it.
     """
+    memory, budget = most
     meshes: list[OnMesh] = []
     last: PinBody | None = None
+    took = 0.0
     for size in SIZES:
         made = body_on(pin, rule, clamps, loads, size)
         too_much = memory is not None and solid_memory(made.body.size) > memory
         if made.body.size > MOST_UNKNOWNS or too_much:
             return meshes, last, TOO_LARGE.format(MOST_UNKNOWNS)
-        last = made
-        meshes.append(limit_on_mesh(made.body, made.forces, finer(made.body.elements)))
+        if last is None:
+            budget.require(made.body.size * PER_UNKNOWN)
+        else:
+            budget.require(took * (made.body.size / last.body.size) ** GROWTH)
+        last, before = made, budget.spent
+        meshes.append(limit_on_mesh(made.body, made.forces, finer(made.body.elements), budget))
+        took = budget.spent - before
         if len(meshes) > 1 and narrow(*bracket(meshes)):
             break
     return meshes, last, ""
@@ -127,10 +156,10 @@ def _of_solid(
     meshes: list[OnMesh], bounds: BeamBounds | None, rule: FlowRule, note: str
 ) -> LimitLoad:
     lower, upper = bracket(meshes)
+    finest = meshes[-1]
     if bounds is not None and bounds.slip[0] < upper:
         upper, note = float(bounds.slip[0]), "slip of a section is the upper bound"
-        lower = min(lower, upper)
-    finest = meshes[-1]
+        lower = min(lower, 2.0 * upper - finest.reached)  # as far below as the mesh is above
     at = min(1.0, BEFORE_COLLAPSE * lower)
     return LimitLoad(
         "solid",
@@ -143,7 +172,7 @@ def _of_solid(
         meshes=tuple(
             PlasticMesh(
                 m.unknowns,
-                m.lower,
+                m.reached,
                 m.above.factor,
                 m.above.volume,
                 m.above.charge,

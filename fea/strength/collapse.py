@@ -19,7 +19,8 @@ def collapse_margin(limit: LimitLoad, factors: LoadFactors, time: float | None) 
     """time: of the governing instant, s."""
     factor = factors.at("ultimate")
     if limit.lower is None or limit.upper is None:
-        return not_made(METHOD, CLAUSE, "ultimate", factor, f"a limit load: {limit.note}")
+        needs = "a limit load (--limit-load)" if limit.stopped else f"a limit load: {limit.note}"
+        return not_made(METHOD, CLAUSE, "ultimate", factor, needs)
     basis = (
         f"collapse at {limit.lower:.4g} to {limit.upper:.4g} times the loads, by a {limit.method}"
     )

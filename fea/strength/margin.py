@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass, replace
 from typing import Annotated, Literal
 
+from fea.checks.records import FOR_COMPARISON, shown_with_basis
 from fea.core.dimensions import Time
 
 Level = Literal["limit", "ultimate"]
-JOINT_MODEL = "joint model"  # as the basis of section forces
 RATIO = "1"  # the dimension of a demand that is a ratio already: an interaction, a damage
 
 
@@ -45,8 +45,7 @@ class Margin:
     @property
     def shown(self) -> str:
         """The method, and the joint model where it takes the section forces of that."""
-        named = JOINT_MODEL in self.method or not self.basis.startswith(JOINT_MODEL)
-        return self.method if named else f"{self.method} ({JOINT_MODEL})"
+        return shown_with_basis(self.method, self.basis)
 
     @property
     def utilisation(self) -> float | None:
@@ -81,7 +80,7 @@ class PinMargin:
 
 def compared(margin: Margin) -> Margin:
     """The same for comparison only."""
-    return replace(margin, method=f"{margin.method}, for comparison", governs=False)
+    return replace(margin, method=f"{margin.method}, {FOR_COMPARISON}", governs=False)
 
 
 def not_made(method: str, clause: str, level: Level, factor: float, needs: str) -> Margin:

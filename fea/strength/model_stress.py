@@ -18,18 +18,25 @@ from fea.strength.situation import LoadFactors
 from fea.strength.worst import strength_key
 
 CLAUSE = "14 CFR 25.305"
+YIELD, RUPTURE = "von Mises stress, yield", "von Mises stress, rupture"
 METHODS: tuple[tuple[str, Level, str], ...] = (
-    ("von Mises stress, yield", "limit", "yield"),
-    ("von Mises stress, rupture", "ultimate", "ultimate"),
+    (YIELD, "limit", "yield"),
+    (RUPTURE, "ultimate", "ultimate"),
 )
 
 
-def model_margins(peak: Peak, material: Material, factors: LoadFactors) -> list[Margin]:
-    """Both, of one pin in one case."""
-    demand = _upper(peak)
+def model_margins(
+    peak: Peak, material: Material, factors: LoadFactors, required: float | None = None
+) -> list[Margin]:
+    """Both, of one pin in one case. required: the safety factor against yield that the study asks
+    for, which counts in place of a smaller factor at limit load.
+    """
+    demand = None if peak.max_von_mises is None else peak.upper_end
     out = []
     for method, level, which in METHODS:
         factor = factors.at(level)
+        if method == YIELD:
+            factor = max(factor, required or 0.0)
         strength: float | None = getattr(material, f"{which}_strength")
         if strength is None:
             needs = strength_key(material.name, which)
@@ -41,15 +48,6 @@ def model_margins(peak: Peak, material: Material, factors: LoadFactors) -> list[
             found = Margin(method, CLAUSE, level, demand, strength, factor)
             out.append(replace(found, time=peak.time, basis=_basis(peak)))
     return out
-
-
-def _upper(peak: Peak) -> float | None:
-    """Pa."""
-    if peak.max_von_mises is None:
-        return None
-    if peak.interval is not None:
-        return peak.interval[1]
-    return peak.max_von_mises + (peak.error_estimate or 0.0)
 
 
 def _basis(peak: Peak) -> str:

@@ -7,6 +7,7 @@ may give (shear, bearing, ultimate), at ultimate load. Of the places of a check 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
 from fea.checks.records import HandCheck
 from fea.core.material import Material
@@ -47,8 +48,10 @@ def _margin(
 ) -> Margin:
     factor = factors.at(level)
     if strength is None:
-        return not_made(check.name, check.source, level, factor, key)
+        lacks = not_made(check.name, check.source, level, factor, key)
+        return replace(lacks, governs=check.governs)
+    basis = "; ".join(filter(None, (check.basis, check.formula)))
     return Margin(
         check.name, check.source, level, check.stress, strength, factor,
-        at=check.at, time=check.time, basis=check.formula,
+        at=check.at, time=check.time, basis=basis, governs=check.governs,
     )  # fmt: skip

@@ -6,10 +6,13 @@ W_pl is exact for a perfectly plastic section (fea.beam.round_section). A_v is t
 pi of a circular hollow section, or that at which V Q / (I t) reaches yield, which is safe, too, and
 larger for thick ones: 3 A / 4 if solid. Both together: (M / M_pl)^2 + (V / V_pl)^2 <= 1 in every
 section, whose root is the utilisation, at ultimate load with the yield strength: a hinge is no
-permissible state at limit load.
+permissible state at limit load. Shear at one stress tau everywhere leaves sqrt(f_y^2 - 3 tau^2) for
+bending, which gives this circle. Axial force and torque are not in it: fea.plastic.hinge has them.
 
-Source: EN 1993-1-1:2005, 6.2.6(3) g (shear area); the circle of M and V is more cautious than 6.2.8
-of the same up to 0.83 V_pl.
+This is a rule of pinstress and of no standard. EN 1993-1-1:2005 has shear alone in 6.2.6, bending
+with shear in 6.2.8, both with axial force in 6.2.9 and 6.2.10.
+
+Source: EN 1993-1-1:2005, 6.2.6(3) g, for the shear area of a circular hollow section alone.
 """
 
 from __future__ import annotations
@@ -24,7 +27,8 @@ from fea.strength.section_forces import SectionForces
 from fea.strength.situation import Situation
 from fea.strength.worst import Check, strength_key
 
-PLASTIC = Check("plastic bending and shear", "EN 1993-1-1, 6.2.6", "ultimate", RATIO)
+PLASTIC = Check("plastic bending and shear", "rule of pinstress", "ultimate", RATIO)
+RULE = "(M/M_pl)^2 + (V/V_pl)^2 <= 1, without axial force and torque"
 
 
 def plastic_shear(section: Circle, strength: float) -> float:
@@ -41,4 +45,4 @@ def plastic_margin(s: Situation, forces: SectionForces) -> Margin:
     M = fy * forces.of_sections("plastic_modulus")
     V = np.array([plastic_shear(section, fy) for section in forces.sections])
     used = np.hypot(forces.moment / M, forces.shear / V)
-    return PLASTIC.along(s, forces, used, np.ones(used.shape[1]))
+    return PLASTIC.along(s, forces, used, np.ones(used.shape[1]), RULE)

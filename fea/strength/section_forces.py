@@ -20,14 +20,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam.line_load import acting, shares
-from fea.beam.round_section import Circle, circle
+from fea.beam.round_section import Circle, weakest
 from fea.beam.stress import sample
 from fea.beam.timoshenko import MOMENT, SHEAR, InternalForces, stepped_beam
+from fea.checks.records import JOINT_MODEL
 from fea.joint.records import JointForces
-from fea.strength.margin import JOINT_MODEL
 from fea.strength.situation import Situation
 from geometry.arrays import Floats
 
+EVEN = "even load on each band"
+SHARED = "the couple that is left over is shared by all bands"
 Cells = NDArray[np.intp]  # (S,) numbers of a beam's cells
 
 
@@ -52,6 +54,7 @@ class SectionForces:
 
 def section_forces(s: Situation) -> tuple[SectionForces, SectionForces]:
     """With even loads on the bands, and with concentrated ones. Raises: as `stepped_beam`."""
+    s = replace(s, loads=s.by_formula)
     forces = stepped_beam(s.pin, s.material, acting(s.loads), s.clamps)
     c = shares(forces.loads, s.loads)
     cells, z = sample(forces)
@@ -65,19 +68,20 @@ def section_forces(s: Situation) -> tuple[SectionForces, SectionForces]:
     there = np.concatenate([cells[~inside], _cells(forces, middles)])
     both = np.concatenate([outside, at_bands], axis=1)
     at_middles = _sized(s, forces, there, where, both)
-    return even, replace(at_middles, basis="forces at the middles of bands")
+    middles_of = "forces at the middles of bands"
+    return even, replace(at_middles, basis=even.basis.replace(EVEN, middles_of))
 
 
 def of_joint(s: Situation, joint: JointForces) -> SectionForces:
     """By the model of the joint, on both sides of each station."""
     inner = np.array(s.pin.stations[1:-1])
     sides = [np.searchsorted(inner, joint.z, side=side) for side in ("left", "right")]
-    segments = np.concatenate(sides)
-    sections = [circle(segment) for segment in s.pin.segments]
+    segments, z = [int(i) for i in np.concatenate(sides)], np.tile(joint.z, 2)
+    from_start = (z - np.array(s.pin.stations)[segments]).tolist()
     return SectionForces(
-        np.tile(joint.z, 2),
-        tuple(sections[int(i)] for i in segments),
-        tuple(s.pin.labels[int(i)] for i in segments),
+        z,
+        tuple(weakest(s.pin.segments[i], x, x) for i, x in zip(segments, from_start, strict=True)),
+        tuple(s.pin.labels[i] for i in segments),
         np.tile(joint.shear, 2),
         np.tile(joint.moment, 2),
         joint.times,
@@ -128,5 +132,5 @@ def _sized(
         V.T,
         M.T,
         s.loads.times,
-        "even load on each band",
+        EVEN if s.balanced else f"{EVEN}; {SHARED}",
     )

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
+from fea.core.equilibrium import out_of_balance
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.joint.lugs.lug import Lug
@@ -15,6 +17,7 @@ from fea.strength.margin import Level
 from geometry import Pin
 from geometry.arrays import Floats
 
+SMALL = 0.01  # couple that balance leaves, of the largest force times the pin's length
 SUPPORTS = 2  # lugs of a structure whose forces follow from equilibrium
 
 
@@ -40,7 +43,8 @@ class Situation:
     """A pin in a case. lugs: those that the study gives; loads: on all bands that carry, in balance
     or with `clamps`. replaceable: whether the pin is meant to be replaced. joint: section forces by
     the joint model, if one supports the pin; even_governs: whether checks of bending and shear take
-    the even loads of the formulas all the same.
+    the even loads of the formulas all the same. simple: the loads by the statics of formulas, where
+    those of the joint differ.
     """
 
     pin: Pin
@@ -52,6 +56,27 @@ class Situation:
     replaceable: bool = False
     joint: JointForces | None = None
     even_governs: bool = False
+    simple: PinLoads | None = None
+
+    @property
+    def by_formula(self) -> PinLoads:
+        """The loads of which formulas make section forces."""
+        return self.loads if self.simple is None else self.simple
+
+    @cached_property
+    def balanced(self) -> bool:
+        """Whether these loads leave no couple across the pin that its bands would have to share."""
+        if self.clamps:
+            return True
+        left = out_of_balance(self.pin, self.by_formula)
+        return left.couple <= SMALL * left.largest * self.pin.length
+
+    @property
+    def joint_governs(self) -> bool:
+        """Whether section forces of the joint govern: also beside even loads that are requested,
+        where these leave out the couples of lugs.
+        """
+        return self.joint is not None and not (self.even_governs and self.balanced)
 
     @property
     def across(self) -> Floats:
@@ -80,8 +105,20 @@ def with_supports(pin: Pin, loads: PinLoads, structure: Sequence[str]) -> PinLoa
     moment = (force * (middles - first)[:, None] + couple).sum(axis=1)
     at_second = -moment / (second - first)
     at_first = -force.sum(axis=1) - at_second
-    added = np.zeros((len(loads), SUPPORTS, 3))
-    added[:, 0, :2], added[:, 1, :2] = at_first, at_second
+    return _with_forces(loads, structure, np.stack([at_first, at_second], axis=1))
+
+
+def with_solved(loads: PinLoads, structure: Sequence[str], joint: JointForces) -> PinLoads:
+    """The loads, at the joint's instants, with the forces of a structure's lugs as the joint model
+    has them.
+    """
+    own = [joint.lugs.index(name) for name in structure]
+    return _with_forces(loads, structure, joint.forces[:, own])
+
+
+def _with_forces(loads: PinLoads, structure: Sequence[str], across: Floats) -> PinLoads:
+    """across: of the structure's lugs on the pin, (T, S, 2) N."""
+    added = np.concatenate([across, np.zeros((*across.shape[:2], 1))], axis=2)
     none = np.zeros_like(added)
     return replace(
         loads,

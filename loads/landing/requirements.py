@@ -55,7 +55,7 @@ DROPS = {
 @dataclass(frozen=True)
 class GroundRule:
     """Parts of a reference load at the wheel: vertical, drag (aft; negative: forward), side. base:
-    what the reference is.
+    what the reference is. deflection: of strut and tyre, over that at the reference load.
     """
 
     clause: str
@@ -63,6 +63,7 @@ class GroundRule:
     drag: float
     side: float
     base: str
+    deflection: float = 1.0
 
 
 LARGEST, STATIC = "largest vertical reaction", "static load on the wheel"
@@ -73,8 +74,8 @@ GROUND_RULES = {
     ),
     "25.479-drift": GroundRule(
         "14 CFR 25.479(d)(2): 75 % of the largest vertical reaction, with 40 % of that aft and "
-        "25 % to the side",
-        0.75, 0.75 * 0.40, 0.75 * 0.25, LARGEST,
+        "25 % to the side, at 75 % of the deflection of strut and tyres at that reaction",
+        0.75, 0.75 * 0.40, 0.75 * 0.25, LARGEST, 0.75,
     ),
     "23.479-drag": GroundRule(
         "14 CFR 23.479(b): the largest vertical reaction with a quarter of it aft, the least drag",

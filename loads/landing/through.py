@@ -20,6 +20,7 @@ from loads.landing.travel import Levered
 from loads.linkage import Linkage, Point
 from loads.loop_equations import number
 from loads.motion import Course, Motion
+from loads.power_balance import energy
 
 POINTS = 65  # strokes at which the rise of the axle is computed
 UNIT = 1.0  # s, of a drive through these strokes
@@ -56,14 +57,42 @@ def axes(linkage: Linkage, forward: str) -> tuple[Point, Point]:
 
 def travel(linkage: Linkage, place: Touchdown, stroke: float) -> Levered:
     """The strokes of a strut by the rise of its axle. Raises: LinkageError, LoadsArgumentError."""
+    strokes, motion = _closing(linkage, place, stroke)
+    at, _, _ = motion.joint(place.joint)
+    rises = (at - at[0]) @ np.array(place.up)
+    return Levered(tuple(rises.tolist()), tuple(strokes.tolist()))
+
+
+def effective_mass(linkage: Linkage, place: Touchdown, stroke: float) -> float:
+    """Mass at the axle (kg) that has as much kinetic energy as all bodies and pins while the strut
+    closes and the aircraft stands still: 2 T / (rate of rise)^2, which changes along the stroke as
+    the leg swings, in the mean over the rise of the axle. Raises: as `travel`.
+    """
+    _, motion = _closing(linkage, place, stroke)
+    at, rate, _ = motion.joint(place.joint)
+    up = np.array(place.up)
+    rises, rates = (at - at[0]) @ up, rate @ up
+    mass = 2.0 * energy(motion).kinetic / rates**2
+    return float(np.trapezoid(mass, rises) / rises[-1])
+
+
+def _closing(linkage: Linkage, place: Touchdown, stroke: float) -> tuple[Floats, Motion]:
+    """Strokes from none to the whole one, and the leg in them as its strut closes evenly."""
     strokes = np.linspace(0.0, stroke, POINTS)
     assert place.strut is not None
     laws: list[Law] = [StateDrive(value) for value in place.extended]
     start = place.extended[place.strut]
     laws[place.strut] = ConstantDrive(start, start - stroke, UNIT)
-    at, _, _ = Course(linkage, laws, 0.0, UNIT).at(UNIT * strokes / stroke).joint(place.joint)
-    rises = (at - at[0]) @ np.array(place.up)
-    return Levered(tuple(rises.tolist()), tuple(strokes.tolist()))
+    return strokes, Course(linkage, laws, 0.0, UNIT).at(UNIT * strokes / stroke)
+
+
+def at_deflection(landing: Landing, place: Touchdown, time: float, part: float) -> tuple[Law, ...]:
+    """Laws that keep the leg at a part of the stroke of its strut at a time (s) of a drop."""
+    there = (float(law(np.array([time]))[0][0]) for law in laws(landing, place))
+    return tuple(
+        StateDrive(first + part * (value - first))
+        for first, value in zip(place.extended, there, strict=True)
+    )
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from loads.tables.csv_table import Row, TableError, read_table
+from loads.tables.sent_files import stamp
 
 COMPONENTS = ("fx", "fy", "fz", "mx", "my", "mz")
 DIMENSIONS = {"f": "force", "m": "moment", "t": "time"}  # by a column's first letter
@@ -101,8 +102,7 @@ def read_forces(path: Path, layout: Layout, unit: Unit, known: set[str]) -> Iter
 def _rows(path: Path, layout: Layout) -> Iterator[Row]:
     """Those of the case, where the table has cases. Raises: TableError where none is."""
     at, numbered = str(layout.columns.get("case", "case")), _numbered(layout.columns)
-    stamp = path.stat().st_mtime_ns if path.is_file() else 0
-    cases = _by_case(path, stamp, at, numbered)
+    cases = _by_case(path, stamp(path), at, numbered)
     if cases is None:
         yield from read_table(path, (), free=True, numbered=numbered)
         return
@@ -115,8 +115,8 @@ def _rows(path: Path, layout: Layout) -> Iterator[Row]:
 
 
 @lru_cache(maxsize=1)  # the cases of one table follow each other
-def _by_case(path: Path, stamp: int, at: str, numbered: bool) -> dict[str, list[Row]] | None:
-    """The rows by the column of the case, `at`; None without it. stamp: of the file."""
+def _by_case(path: Path, _: str, at: str, numbered: bool) -> dict[str, list[Row]] | None:
+    """The rows by the column of the case, `at`; None without it. _: the stamp of the file."""
     found: dict[str, list[Row]] = {}
     for row in read_table(path, (), free=True, numbered=numbered):
         if at not in row.cells:

@@ -9,6 +9,7 @@ import stat
 from pathlib import Path
 
 from loads.coded import LoadsError
+from loads.tables.sent_files import content_sent
 
 MB = 2**20
 # So that nothing waits, and no byte is changed, where the system knows of such a thing.
@@ -22,13 +23,16 @@ class FileError(LoadsError, ValueError):
 
 def read_regular(path: Path, most: int) -> bytes:
     """The content of a file of at most so many bytes. Raises: FileError, OSError."""
+    given = content_sent(path)
+    if given is not None:
+        _require_size(len(given), most)
+        return given
     require_regular(path, most)  # before it is opened: opening alone starts some devices
     descriptor = os.open(path, READ)
     with open(descriptor, "rb") as file:
         _require(os.fstat(descriptor), most)  # it may be another one by now
         content = file.read(most + 1)
-    if len(content) > most:  # it is growing, or has no size of its own
-        raise _too_large(most)
+    _require_size(len(content), most)  # it is growing, or has no size of its own
     return content
 
 
@@ -42,9 +46,9 @@ def _require(found: os.stat_result, most: int) -> None:
         raise FileError("is a folder; name a file", "folder")
     if not stat.S_ISREG(found.st_mode):
         raise FileError("is a pipe or a device; name a regular file", "not-regular")
-    if found.st_size > most:
-        raise _too_large(most)
+    _require_size(found.st_size, most)
 
 
-def _too_large(most: int) -> FileError:
-    return FileError(f"is larger than {most // MB:,} MB, the limit for such a file", "too-large")
+def _require_size(size: int, most: int) -> None:
+    if size > most:
+        raise FileError(f"is larger than {most // MB:,} MB, the limit for such a file", "too-large")

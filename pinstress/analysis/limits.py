@@ -1,8 +1,13 @@
-"""Limit loads of the rows of a task that the study requests."""
+"""Limit loads of the rows of a task that the study or `--limit-load` requests.
+
+A row that yields has its limit load without being asked, if that is a matter of seconds of
+processor time. Whether it is may depend on the computer; what is found never does.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from math import inf
 
 from fea.core.peak import Peak
 from fea.joint.solve_in_lugs import LugSolution
@@ -18,6 +23,9 @@ from pinstress.study.file import Study
 ON_FOUNDATIONS = 'not for a pin on elastic foundations: use joints = "contact"'
 
 
+UNASKED = 20.0  # s of processor time of a limit load that was not asked for
+
+
 def limit_rung(study: Study, pin: str) -> Rung | None:
     """Which model finds the limit loads of a pin; None: they are not requested."""
     asked = study.table.analysis.limit_load
@@ -27,11 +35,22 @@ def limit_rung(study: Study, pin: str) -> Rung | None:
     return rungs[asked]
 
 
+def rung_of(plan: Plan, pin: str) -> Rung | None:
+    """The same in a run, which may request more than the study."""
+    return limit_rung(plan.study, pin) or ("auto" if plan.limit_load else None)
+
+
+def limit_seconds(plan: Plan) -> float:
+    """Processor time that a limit load may take, s: endless where someone asked for it."""
+    asked = plan.limit_load or plan.study.table.analysis.limit_load != "auto"
+    return inf if asked else UNASKED
+
+
 def limit_loads(
     plan: Plan, task: Task, found: Iterable[Solution | LugSolution], tell: Tell
 ) -> tuple[LimitLoad | None, ...]:
     """One for each case of a task, None where it is not requested."""
-    rung = limit_rung(plan.study, task.pin.name)
+    rung = rung_of(plan, task.pin.name)
     return tuple(_limit_load(plan, task, solved, rung, tell) for solved in found)
 
 
@@ -50,8 +69,9 @@ def _limit_load(
             return LimitLoad("none", note=ON_FOUNDATIONS)
         pin, loads = in_lugs.rings, in_lugs.pressed(loads)
     clamps = tuple(pin.surface(name) for name in task.clamps)
+    seconds = limit_seconds(plan)
     try:
-        return limit_load(pin, task.material, clamps, loads, rung, plan.asked.memory)
+        return limit_load(pin, task.material, clamps, loads, rung, plan.asked.memory, seconds)
     except ArithmeticError as error:  # the elastic answer stands
         return LimitLoad("none", note=str(error))
 

@@ -42,7 +42,8 @@ class Plan:
 
     checked: the task whose pin the beam check compares, if any. also: which fields are wanted
     in addition to those of the model at the governing instant. sensitive: whether sensitivities of
-    all cases are wanted, and not of each pin's worst one alone.
+    all cases are wanted, and not of each pin's worst one alone. limit_load: whether those of all
+    rows that yield are, however long they take.
     """
 
     study: Study
@@ -53,6 +54,7 @@ class Plan:
     checked: Task | None
     also: Also = None
     sensitive: bool = False
+    limit_load: bool = False
 
 
 def prepare(
@@ -64,12 +66,14 @@ def prepare(
     tolerance: float | None = None,
     memory: float | None = None,
     also: Also = None,
+    limit_load: bool = False,
 ) -> Plan:
     """Compute the reactions and prepare the pins for `solve`.
 
     pins, cases: names; all by default. model, tolerance: instead of the study's. memory: MB that a
     solid may take, by default most of what is free now. also: fields along the whole motion, or of
-    all of a revolved pin.
+    all of a revolved pin. limit_load: find the limit load of every row that yields, however long it
+    takes; otherwise as the study has it, where "auto" gives each 20 s of processor time.
 
     Raises: InputError for bad input.
     """
@@ -107,7 +111,7 @@ def prepare(
             )
         if task.lugs:
             _require_model(study, asked.model, task.pin.name)
-    return Plan(study, asked, loads, todo, published, checked, also)
+    return Plan(study, asked, loads, todo, published, checked, also, limit_load=limit_load)
 
 
 def _require_model(study: Study, model: Model, pin: str) -> None:

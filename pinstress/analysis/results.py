@@ -146,13 +146,16 @@ def run(
     model: Model | None = None,
     tolerance: float | None = None,
     memory_limit: float | None = None,
+    limit_load: bool = False,
     fields: bool = False,
     jobs: int | None = 1,
 ) -> Found:
     """Analyse a study.
 
     pins, cases: names; all by default. model, tolerance: override those of the study. memory_limit:
-    limit for a solid model in MB, by default most of the free memory. fields: whether to keep every
+    limit for a solid model in MB, by default most of the free memory. limit_load: find the limit
+    load of every row that yields, however long it takes; otherwise as the study has it, where
+    "auto" gives each 20 s of processor time. fields: whether to keep every
     pin's field (some 10 MB each) for `to_pyvista` and `picture`, which otherwise solve the pin
     again. jobs: number of parallel processes (None: number of cores); 1, in this process, if fields
     are kept or other threads run. A pin whose numerics fail has the
@@ -163,7 +166,13 @@ def run(
     most = processes(jobs)
     with one_thread():
         plan = prepare(
-            study, pins=pins, cases=cases, model=model, tolerance=tolerance, memory=memory_limit
+            study,
+            pins=pins,
+            cases=cases,
+            model=model,
+            tolerance=tolerance,
+            memory=memory_limit,
+            limit_load=limit_load,
         )
     return solve(plan, fields=fields, jobs=most)
 

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from math import inf
 
 from fea.checks.opinions import Opinion
 from fea.core.memory import allowed_memory, solid_memory
 from fea.core.peak import Peak
 from fea.core.pin_loads import PinLoads
 from fea.fatigue.critical_points import stress_histories
+from fea.fatigue.records import PointHistory
 from fea.harmonic.evaluate import FirstMesh
 from fea.joint.foundation.solve_on_foundations import solve_joints
 from fea.joint.foundation.variations import prescribed_ranges
@@ -21,7 +23,7 @@ from fea.solve_pin import Asked, Solution, solve_pin
 from geometry import CutPin, Pin
 from pinstress.analysis import checks, gather, gather_fields
 from pinstress.analysis.gather_surface import surfaces_of
-from pinstress.analysis.limits import limit_loads
+from pinstress.analysis.limits import limit_loads, limit_seconds
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import Entry, Solved, lasting, question
 from pinstress.cache.store import Cache
@@ -118,9 +120,14 @@ def _attempt(
 
 
 def _solve_once(plan: Plan, task: Task, keep: Keep, cache: Cache, tell: Tell) -> Solved:
-    """From the cache; else solved, and kept there."""
-    key = cache.key(question(plan, task))
+    """From the cache; else solved, and kept there. What lacks a limit load for want of time has a
+    key of its own: it is no answer where that limit load is requested.
+    """
+    key, seconds = cache.key(question(plan, task)), limit_seconds(plan)
     entry = cache.read(key, Entry)
+    lacking = None if seconds == inf else cache.key(question(plan, task, seconds))
+    if lacking is not None and (entry is None or not entry.answers(task)):
+        entry = cache.read(lacking, Entry)
     if entry is not None and entry.answers(task):
         tell(f"pin {task.pin.name}, as solved before")
         for field in entry.fields:
@@ -134,7 +141,8 @@ def _solve_once(plan: Plan, task: Task, keep: Keep, cache: Cache, tell: Tell) ->
 
     solved = _solve(plan, task, keep_both, tell)
     if lasting(plan, task, solved.peaks):
-        cache.write(key, Entry(solved, tuple(fields)))
+        stopped = any(limit is not None and limit.stopped for limit in solved.limits)
+        cache.write(lacking if lacking and stopped else key, Entry(solved, tuple(fields)))
     return solved
 
 
@@ -190,7 +198,7 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
         beam = checks.beam_check(study, task)
     joints = tuple(j.joint for j in joined) or _around(plan, task, peaks)
     surfaces = surfaces_of(plan.loads, task, found, pressures)
-    histories = stress_histories(task.pin.name, found)
+    histories, no_histories = _histories(task, found)
     tell(f"pin {task.pin.name}, what to change")
     to_do = change(plan.asked, task, found)
     tell(f"pin {task.pin.name}, sensitivities")
@@ -207,7 +215,18 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
         histories=histories,
         limits=limits,
         sensitivities=sensitive,
+        no_histories=no_histories,
     )
+
+
+def _histories(task: Task, found: tuple[Solution, ...]) -> tuple[tuple[PointHistory, ...], str]:
+    """Of stress at the pin's critical points; why there are none if that fails, which must not
+    take the pin's stress with it.
+    """
+    try:
+        return stress_histories(task.pin.name, found), ""
+    except Exception as error:
+        return (), f"{type(error).__name__}: {error}"
 
 
 def _in_lugs(study: Study, task: Task, asked: Asked, tell: Tell) -> tuple[LugSolution, ...]:

@@ -17,7 +17,7 @@ from fea.refine import MESHES, MOST_UNKNOWNS
 from fea.solve_pin import count_loads, unknowns_after
 from geometry import CutPin, Pin, PinLike
 from loads import read_regular
-from pinstress.analysis.limits import limit_rung
+from pinstress.analysis.limits import rung_of
 from pinstress.analysis.plan import Plan
 from pinstress.model.tasks import Task
 from pinstress.strength.checked import Checked
@@ -35,7 +35,8 @@ class Solved:
     joints: in the same order, empty where nothing is in contact. change: what would make the pin
     reach its factor, if it does not. histories: of stress at its critical points. before: whether
     an earlier run found it. limits: limit loads, in the order of the cases too. sensitivities: of
-    the worst case, or of all. strength: in that order; found anew by every run, as it takes little
+    the worst case, or of all. no_histories: why there are no histories, if looking for them failed.
+    strength: in that order; found anew by every run, as it takes little
     and depends on more of the study.
     """
 
@@ -50,6 +51,7 @@ class Solved:
     before: bool = False
     limits: tuple[LimitLoad | None, ...] = ()
     sensitivities: tuple[PinSensitivities, ...] = ()
+    no_histories: str = ""
     strength: tuple[Checked, ...] = ()
 
 
@@ -67,9 +69,10 @@ class Entry:
         return own == rows and {(f.pin, f.case) for f in self.fields} <= set(rows)
 
 
-def question(plan: Plan, task: Task) -> object:
+def question(plan: Plan, task: Task, seconds: float | None = None) -> object:
     """All that the answer to a task depends on, but for versions and memory, as what
-    pinstress.cache.serialise takes.
+    pinstress.cache.serialise takes. seconds: of an answer without some limit load, which would have
+    taken longer.
     """
     study, cases = plan.study, [plan.loads[loads.case] for loads in task.loads]
     check = study.table.beam_check if task is plan.checked else None
@@ -80,7 +83,7 @@ def question(plan: Plan, task: Task) -> object:
         task.lugs,
         task.surroundings,
         study.table.analysis.joints,
-        limit_rung(study, task.pin.name),
+        rung_of(plan, task.pin.name),
         task.loads,
         task.left_out,
         task.ranges,
@@ -92,6 +95,7 @@ def question(plan: Plan, task: Task) -> object:
         plan.sensitive,
         study.system,
         None if check is None else check.model_dump(),
+        *(() if seconds is None else (seconds,)),
     )
 
 

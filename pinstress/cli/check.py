@@ -6,12 +6,12 @@ import math
 from collections.abc import Sized
 from functools import partial
 
-from fea.core.equilibrium import out_of_balance
 from geometry import PinLike
 from loads import Linkage
 from loads.closed_form.four_bar import four_bar
 from pinstress.designs.correlations import correlations_of
 from pinstress.designs.parameters import parameters_of, require_laws
+from pinstress.model.balance import other_warnings, unheld
 from pinstress.model.cases import CaseLoads, case_loads
 from pinstress.model.lugs import lugs
 from pinstress.model.mechanism.drives import span
@@ -19,7 +19,7 @@ from pinstress.model.mechanism.linkage import determined, linkage
 from pinstress.model.pins import pin as pin_of
 from pinstress.model.pins import shape_notes, weight
 from pinstress.model.sequence import require_times
-from pinstress.model.tasks import Task, tasks
+from pinstress.model.tasks import tasks
 from pinstress.schema.cases import GivenCase, LegCase, MotionCase
 from pinstress.schema.landing import DropCase, GroundCase
 from pinstress.schema.pins import PinTable
@@ -29,8 +29,9 @@ from pinstress.study.file import Study
 from pinstress.study.published_tables import read_published
 
 
-def describe(study: Study) -> tuple[str, list[str]]:
-    """A summary of a valid study, and why unconstrained pins would not be solved.
+def describe(study: Study) -> tuple[str, list[str], list[str]]:
+    """A summary of a valid study, why unconstrained pins would not be solved, and what the loads of
+    others leave over.
 
     Raises: InputError for errors that involve several tables.
     """
@@ -67,7 +68,8 @@ def describe(study: Study) -> tuple[str, list[str]]:
     lines.append(f"model {a.model}, tolerance {a.tolerance:g}{goal}")
     if table.vary is not None or "reliability" in table.model_fields_set:
         lines += _varied(study)
-    return "\n".join(lines), [line for task in todo for line in _unheld(task)]
+    loose = [line for task in todo for line in unheld(study, task)]
+    return "\n".join(lines), loose, other_warnings(study, todo)
 
 
 def _sampled(vary: VaryTable) -> bool:
@@ -97,18 +99,6 @@ def _varied(study: Study) -> list[str]:
             f"{a.samples:,} plain and {a.importance_samples:,} importance samples"
         )
     return lines
-
-
-def _unheld(task: Task) -> list[str]:
-    """Why a pin would not be solved, by case."""
-    if task.clamps or task.lugs:
-        return []
-    balances = {c.case: out_of_balance(task.pin, c, task.material.density) for c in task.loads}
-    return [
-        f"pin {task.pin.name} is unconstrained in case {case}: {balance.refusal}"
-        for case, balance in balances.items()
-        if balance.refusal
-    ]
 
 
 def _pin(study: Study, pin: PinLike) -> str:

@@ -11,10 +11,11 @@ import click
 
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import Solved
-from reports.data.decision import FAILS, YIELDS, outcome
-from reports.data.governing import governing
+from reports.data.decision import DEPENDS, FAILS, NOT_DECIDED, YIELDS, as_described, outcome
+from reports.data.headline import judged_checks
 from reports.data.results import PinResult, Results, SingularZone
 from reports.format.numbers import engineering
+from reports.format.words import depends_words, undecided_because
 
 NUMERICS_FAILED, REQUIREMENT_MISSED = 3, 4  # exit statuses
 Reason = TypeVar("Reason", bound=Hashable)
@@ -73,34 +74,37 @@ def report_disagreements(results: Results) -> int:
 
 
 def report_violations(results: Results) -> int:
-    """The pins that miss their required factor or have a negative margin; returns the status."""
+    """The pins that miss their required factor, as described or within a range that the study
+    leaves open, or have a negative margin; returns the status.
+    """
     short = [p for p in results.pins if outcome(p) in (FAILS, YIELDS)]
     if short:
         click.echo(f"Required factor missed: {_listed(short)}.", err=True)
-    negative = [found for found in governing(results) if found.used > 1.0]
-    for found in negative:
-        m = found.margin
-        click.echo(
-            f"Negative margin of safety: {found.pin} ({found.case}): {m.method}, "
-            f"{engineering(m.margin, 3)}.",
-            err=True,
-        )
-    return REQUIREMENT_MISSED if short or negative else 0
+    depending = [p for p in results.pins if outcome(p) == DEPENDS]
+    for p in depending:
+        within = depends_words(p.depends_on, results.units)
+        click.echo(f"Safe as described, but not within {within}: {_listed([p])}.", err=True)
+    negative = [c for c in judged_checks(results) if c.row is None and c.outcome == FAILS]
+    for c in negative:
+        case = f" ({c.case})" if c.case else ""
+        spare = engineering(1.0 / c.used - 1.0, 3)
+        click.echo(f"Negative margin of safety: {c.pin}{case}: {c.check}, {spare}.", err=True)
+    return REQUIREMENT_MISSED if short or depending or negative else 0
 
 
 def report_status_zero(results: Results) -> None:
-    """Why the exit status is 0 where a pin misses its requirements."""
-    short = any(outcome(p) in (FAILS, YIELDS) for p in results.pins)
-    if short or any(found.used > 1.0 for found in governing(results)):
+    """Why the exit status is 0 where a pin misses its requirements, or may miss them."""
+    if any(check.outcome in (FAILS, YIELDS, DEPENDS) for check in judged_checks(results)):
         click.echo(
             "Exit status 0: the run is complete; --fail-on-miss makes it 4 where a pin misses its "
-            "requirements, as here.",
+            "requirements, or may, as here.",
             err=True,
         )
 
 
 def report_missed(results: Results, decide: bool) -> int:
-    """The rows without a converged maximum and those that failed; returns the exit status.
+    """The rows without a converged maximum or without a decision, and those that failed; returns
+    the exit status.
 
     decide: whether the study only requests a decision on the required factor.
     """
@@ -108,14 +112,25 @@ def report_missed(results: Results, decide: bool) -> int:
     missed = [
         p
         for p in results.pins
-        if p.verdict not in ("converged", "failed")
-        and not (decide and p.meets_required is not None)
+        if p.verdict not in ("converged", "failed") and not (decide and p.decided is not None)
     ]
     for line in _lines(missed):
         click.echo(line, err=True)
+    near = [
+        p
+        for p in results.pins
+        if p.verdict == "converged"
+        and p.required is not None
+        and p.safety_factor is not None
+        and as_described(p) == NOT_DECIDED
+    ]
+    for which, why in _together((p, undecided_because(p)) for p in near):
+        click.echo(
+            f"Not decided: {_listed(which)}: {why}; a smaller tolerance may decide.", err=True
+        )
     for which, reason in _together((p, p.note) for p in failed):
         click.echo(f"Error: the numerics failed: {_listed(which)}: {reason}", err=True)
-    return NUMERICS_FAILED if failed else int(bool(missed))
+    return NUMERICS_FAILED if failed else int(bool(missed or near))
 
 
 def _lines(rows: Iterable[PinResult]) -> list[str]:

@@ -143,6 +143,12 @@ def commands() -> None:
     "lugs by contact in three dimensions, which takes minutes.",
 )
 @click.option(
+    "--limit-load",
+    is_flag=True,
+    help="Limit load of every row that yields, however long it takes; without it, each has 20 s of "
+    "processor time unless the study asks for it.",
+)
+@click.option(
     "--sensitivities",
     is_flag=True,
     help="Sensitivities of every pin in all cases, not only in its worst one, and in contact too.",
@@ -169,6 +175,7 @@ def run(
     jobs: int | None,
     memory_limit: float | None,
     second_opinion: str | None,
+    limit_load: bool,
     sensitivities: bool,
     fail_on_miss: bool,
     no_cache: bool,
@@ -196,6 +203,7 @@ def run(
         model=model,
         tolerance=tolerance,
         memory=memory_limit,
+        limit_load=limit_load,
     )
 
 
@@ -320,14 +328,17 @@ def chart(
     short_help="Validate a study without solving it.",
     help=example("pinstress check studies/grenier2008.toml")
     + "\nRead and validate a study and all its files without solving; print what would be run.\n\n"
-    "Exit status: 0 done; 1 done, but a pin is not held; 2 bad input.",
+    "Exit status: 0 done; 1 done, but a pin is not held, or its loads are not in equilibrium; "
+    "2 bad input.",
 )
 @click.argument("study", type=click.Path(path_type=Path))
 def check(study: Path) -> int:
     from pinstress.cli.check import describe
 
-    text, unheld = describe(read_study(study))
+    text, unheld, warnings = describe(read_study(study))
     click.echo(text)
+    for line in warnings:
+        click.echo(f"Warning: {line}", err=True)
     for line in unheld:
         click.echo(f"Not decided: {line}.", err=True)
     return NOT_REACHED if unheld else REACHED

@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import click
 
 from pinstress.cli.output_folder import replacing, require_replaceable
-from pinstress.cli.plots import PAINTERS
+from pinstress.cli.plots import PAINTERS, PICTURE_SECONDS, draw_pin
 from pinstress.cli.run import console
 from pinstress.cli.streams import unneeded
 from pinstress.cli.view import opened_results
+from pinstress.processes.apart import Failed, apart
 from pinstress.processes.pool import preload
 from pinstress.schema.units import SYSTEMS, UnitSystem
 from pinstress.study.errors import InputError
 from reports.data.comparison import DECISION, UNCHANGED, RowPair, RunComparison, compared
 from reports.page.comparison import PicturePair, write_comparison
+from reports.plots.comparison import comparison_plot
+from reports.plots.draw import svg
+from reports.plots.theme import on_paper
 from reports.text.comparison import print_comparison, write_markdown
 from reports.vtk.read_back import Opened
 from reports.vtk.renderer import renderer_problem
@@ -24,8 +30,9 @@ MARK = "comparison.html"
 MOST = 6  # pictures
 
 
-def compare(first: Path, second: Path, out: Path | None, pictures: bool) -> None:
-    """Print what differs between two results folders; also write it into a folder.
+def compare(first: Path, second: Path, out: Path | None, pictures: bool) -> int:
+    """Print what differs between two results folders; also write it into a folder; returns the
+    exit status: 1 if something could not be drawn.
 
     Raises: InputError.
     """
@@ -38,68 +45,107 @@ def compare(first: Path, second: Path, out: Path | None, pictures: bool) -> None
     with unneeded(out or first):
         print_comparison(found, console())
     if out is None:
-        return
+        return 0
+    failed: dict[str, Failed] = {}
     with replacing(out, MARK) as staging:
         write_markdown(found, staging / "comparison.md")
-        drawn = _pictures(found, opened, staging) if pictures else ()
-        write_comparison(found, staging / MARK, drawn)
+        drawn = _pictures(found, opened, staging, failed) if pictures else ()
+        write_comparison(found, staging / MARK, _plot(found, failed), drawn)
     click.echo(f"Comparison: {out / MARK}", err=True)
+    if failed:
+        said = "; ".join(f"{name}: {failure.reason}" for name, failure in failed.items())
+        click.echo(f"Error: missing in it: {said}", err=True)
+    return int(bool(failed))
+
+
+def _plot(found: RunComparison, failed: dict[str, Failed]) -> str:
+    """The plot of the page as SVG; empty where there is none."""
+    plot = comparison_plot(found)
+    if plot is None:
+        return ""
+    drawing = partial(svg, {**plot.spec, "config": on_paper()})
+    (made,) = apart([("the plot", drawing)], PICTURE_SECONDS)
+    if isinstance(made, Failed):
+        failed["the plot"] = made
+        return ""
+    return made
 
 
 def _compared(a: Opened, b: Opened) -> RunComparison:
+    one, other = (_system(x) for x in (a, b))
+    units = tuple(other.factor(x) / one.factor(x) for x in ("stress", "force"))
     folders = str(a.directory), str(b.directory)
-    try:
-        one, other = (_system(x) for x in (a, b))
-        units = tuple(other.factor(x) / one.factor(x) for x in ("stress", "force"))
-        return compared(a.content, b.content, folders, (units[0], units[1]))
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise InputError(
-            f"{' or '.join(folders)}: its results.json is not complete ({error!r}); run it again",
-            code="unreadable-results",
-        ) from None
+    return compared(a.content, b.content, folders, (units[0], units[1]))
 
 
 def _system(opened: Opened) -> UnitSystem:
+    """Raises: InputError."""
     units = opened.units
-    return next(s for s in SYSTEMS.values() if (s.length, s.stress) == (units.length, units.stress))
+    for system in SYSTEMS.values():
+        if all(getattr(system, name) == value for name, value in vars(units).items()):
+            return system
+    raise InputError(
+        f"{opened.directory}: results.json is damaged: units: not those of any of "
+        f"{', '.join(SYSTEMS)}",
+        code="unreadable-results",
+    )
 
 
 def _pictures(
-    found: RunComparison, opened: tuple[Opened, Opened], into: Path
+    found: RunComparison, opened: tuple[Opened, Opened], into: Path, failed: dict[str, Failed]
 ) -> tuple[PicturePair, ...]:
-    """Of the rows that changed most."""
+    """Of the rows that changed most. failed: what could not be drawn is put there.
+
+    Raises: InputError.
+    """
     problem = renderer_problem()
     if problem is not None:
         click.echo(f"No pictures of the pins: {problem}", err=True)
         return ()
     preload(*PAINTERS)
     rows = [row for row in found.rows if row.kind != UNCHANGED][:MOST]
+    units = 1.0, _system(opened[1]).factor("stress") / _system(opened[0]).factor("stress")
+    drawings = [
+        (
+            pair,
+            side,
+            _drawing(opened[side], pair, units[side], into / f"picture_{k}_{'ab'[side]}.png"),
+        )
+        for k, pair in enumerate(rows, 1)
+        for side in (0, 1)
+    ]
+    work = [(f"pin {pair.pin}, {pair.case}", work) for pair, _, work in drawings if work]
+    made = iter(apart(work, PICTURE_SECONDS))
+    files: dict[tuple[str, str], list[Path | None]] = {}
+    for pair, side, drawing in drawings:
+        one = next(made) if drawing else []
+        if isinstance(one, Failed):
+            if one.damaged:
+                raise InputError(
+                    f"{opened[side].directory}: {one.reason}", code="unreadable-results"
+                )
+            failed[f"the picture of pin {pair.pin} in {pair.case}"] = one
+            one = []
+        files.setdefault((pair.pin, pair.case), []).append(one[0] if one else None)
     return tuple(
         PicturePair(
             f"Pin {row.pin}, {row.case}" + f": {row.kind}" * (row.kind == DECISION),
-            (
-                _drawn(opened[0], row, 1.0, into / f"picture_{k}_a.png"),
-                _drawn(opened[1], row, _stress_of(*opened), into / f"picture_{k}_b.png"),
-            ),
+            (files[row.pin, row.case][0], files[row.pin, row.case][1]),
         )
-        for k, row in enumerate(rows, 1)
+        for row in rows
     )
 
 
-def _stress_of(a: Opened, b: Opened) -> float:
-    """The unit of stress of the second run in that of the first."""
-    return _system(b).factor("stress") / _system(a).factor("stress")
-
-
-def _drawn(opened: Opened, pair: RowPair, unit: float, path: Path) -> Path | None:
-    """One of two pictures whose colours mean the same; unit: of stress, in that of the pair."""
-    from reports.vtk.render import render_pin
-
+def _drawing(
+    opened: Opened, pair: RowPair, unit: float, path: Path
+) -> Callable[[], list[Path]] | None:
+    """What draws one of two pictures whose colours mean the same, None for a row that is not in
+    this run; unit: of stress, in that of the pair.
+    """
     maxima = [s.maximum for s in (pair.first, pair.second) if s and s.maximum is not None]
     top = max(maxima, default=0.0) / unit
     try:
         row = opened.row(pair.pin, pair.case)
-        render_pin(opened.field(row), path, opened.units, opened.title(row), top)
-    except (ValueError, FileNotFoundError):  # not in this run, or a beam
+    except ValueError:
         return None
-    return path
+    return partial(draw_pin, opened.only(row), path, top)

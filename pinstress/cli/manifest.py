@@ -7,9 +7,14 @@ from __future__ import annotations
 
 import json
 import os
+import stat
+from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path, PurePosixPath
 from typing import Any
+
+from reports.folder.inside import PARTIAL as SUFFIX
+from reports.folder.inside import read_inside
 
 NAME = ".pinstress.json"
 PARTIAL = f"{NAME}.partial"
@@ -32,6 +37,16 @@ def add(folder: Path, names: list[str]) -> None:
     _write(folder, sorted(((listed(folder) or set()) | set(names)) - {NAME}))
 
 
+def drop(folder: Path, names: list[str]) -> None:
+    """Take entries, which are gone, from the list of a folder that has one."""
+    _write(folder, sorted((listed(folder) or set()) - set(names) - {NAME}))
+
+
+def partial_names(names: Iterable[str]) -> list[str]:
+    """What files are called while reports.folder.inside writes them."""
+    return [name + SUFFIX for name in names]
+
+
 def ours(folder: Path) -> set[str] | None:
     """What we may remove from a folder: the listed files, or everything if its writer was killed
     while writing. None if the folder is not empty and has no list of ours.
@@ -44,17 +59,23 @@ def ours(folder: Path) -> set[str] | None:
 
 def listed(folder: Path) -> set[str] | None:
     """The files that we wrote into a folder, with the list itself; None without a list of ours."""
-    path = folder / NAME
     try:
-        if not _is_file(path) or path.stat().st_size > LARGEST:
-            return None
-        content: Any = json.loads(path.read_text(encoding="utf-8"))
+        content: Any = json.loads(read_inside(folder, NAME, LARGEST))
         if content["schema"] != SCHEMA:
             return None
         names = {str(name) for name in content["files"]}
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
-    return {NAME} | {n for n in names if ".." not in PurePosixPath(n).parts and n[:1] != "/"}
+    return {NAME} | {n for n in names if _is_below(n)}
+
+
+def _is_below(name: str) -> bool:
+    """Whether it is the name of something in the folder."""
+    try:
+        os.fsencode(name)
+    except UnicodeEncodeError:
+        return False
+    return ".." not in PurePosixPath(name).parts and name[:1] != "/" and "\0" not in name
 
 
 def entries(folder: Path) -> set[str]:
@@ -66,6 +87,17 @@ def entries(folder: Path) -> set[str]:
             ending = "/" if name in folders and not path.is_symlink() else ""
             found.add(path.relative_to(folder).as_posix() + ending)
     return found
+
+
+def first_link(folder: Path) -> str | None:
+    """An entry that is neither a regular file nor a folder, and by which others would be read or
+    written; None where there is none.
+    """
+    for name in sorted(entries(folder)):
+        mode = (folder / name).lstat().st_mode
+        if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
+            return name
+    return None
 
 
 def remove(folder: Path, names: set[str]) -> None:
@@ -88,10 +120,6 @@ def _write(folder: Path, names: list[str]) -> None:
     except BaseException:
         partial.unlink(missing_ok=True)
         raise
-
-
-def _is_file(path: Path) -> bool:
-    return path.is_file() and not path.is_symlink()
 
 
 def _raise(error: OSError) -> None:

@@ -103,10 +103,10 @@ def schema() -> None:
     "`plots` of an earlier run or of `pinstress loads`.",
 )
 @click.argument("results", type=click.Path(path_type=Path))
-def plots(results: Path) -> None:
+def plots(results: Path) -> int:
     from pinstress.cli.plots import plots as draw
 
-    draw(results)
+    return draw(results)
 
 
 @click.command(
@@ -117,10 +117,10 @@ def plots(results: Path) -> None:
     "factors, what to change, every pin with its plots, loads, and the values with their sources.",
 )
 @click.argument("results", type=click.Path(path_type=Path))
-def pdf_of(results: Path) -> None:
+def pdf_of(results: Path) -> int:
     from pinstress.cli.plots import pdf
 
-    pdf(results)
+    return pdf(results)
 
 
 @click.command(
@@ -143,10 +143,10 @@ def pdf_of(results: Path) -> None:
     is_flag=True,
     help="With --out: also draw the pins that changed most, side by side (slower).",
 )
-def compare_runs(first: Path, second: Path, out: Path | None, pictures: bool) -> None:
+def compare_runs(first: Path, second: Path, out: Path | None, pictures: bool) -> int:
     from pinstress.cli.compare import compare
 
-    compare(first, second, out, pictures)
+    return compare(first, second, out, pictures)
 
 
 @click.command(
@@ -167,10 +167,10 @@ def compare_runs(first: Path, second: Path, out: Path | None, pictures: bool) ->
 @click.option("--force", is_flag=True, help="Overwrite FILE if it exists.")
 def view(
     results: Path, pin: str | None, case: str | None, screenshot: Path | None, force: bool
-) -> None:
+) -> int:
     from pinstress.cli.view import view as show
 
-    show(results, pin, case, screenshot, force)
+    return show(results, pin, case, screenshot, force)
 
 
 @click.command(

@@ -1,50 +1,106 @@
-"""The `plots` and `pdf` commands: what the report of a folder shows, as files."""
+"""The `plots` and `pdf` commands: what the report of a folder shows, as files.
+
+They are drawn elsewhere, by engines in processes of their own, and come into the folder one by one,
+each complete or not at all.
+"""
 
 from __future__ import annotations
 
-import shutil
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import click
 
-from loads import FileError, read_regular
 from pinstress.cli import manifest
+from pinstress.processes import interrupts
+from pinstress.processes.apart import NO_MEMORY, Failed, apart
+from pinstress.processes.interrupts import Unfinished
 from pinstress.processes.pool import preload
 from pinstress.study.errors import InputError
 from pinstress.study.file_names import field_name
-from reports.page.scripts import document_of, plots_of
-from reports.pdf.typeset import shown_plots, write_pdf
-from reports.plots.draw import draw
-from reports.vtk.read_back import LARGEST, open_results
+from reports.folder.damaged import Damaged
+from reports.folder.inside import NotPlain, is_inside, read_inside, write_inside
+from reports.folder.results_json import LARGEST
+from reports.page.scripts import PAGE, document_of, plots_of
+from reports.pdf.typeset import Content, shown_plots, typeset
+from reports.plots.draw import draw_plot
+from reports.plots.spec import Plot
+from reports.vtk.read_back import Opened, open_results
 from reports.vtk.renderer import renderer_problem
 
-FOLDER, PAGE, PDF = "plots", "report.html", "report.pdf"
+FOLDER, PDF = "plots", "report.pdf"
 PAINTERS = ("pyvista.plotting",)
+NO_PAGE = "no report.html of this version of pinstress to print; run it again"
+MAX_NAMED = 3
+PICTURE_SECONDS, PDF_SECONDS = 120, 600  # of processor time; the largest take a tenth
 
 
-def plots(directory: Path, quiet: bool = False) -> None:
-    """Draw the plots and the pins of a results folder into its folder `plots`.
+@dataclass(frozen=True)
+class Drawn:
+    """Files that were drawn, and why others were not, by their names in the folder."""
+
+    paths: tuple[Path, ...]
+    failed: dict[str, Failed]
+
+
+def plots(directory: Path, quiet: bool = False) -> int:
+    """Draw the plots and the pins of a results folder into its folder `plots`; returns the exit
+    status: 1 if something could not be drawn.
 
     Raises: InputError.
     """
     known = require_results(directory)
     own = f"{FOLDER}/"
-    strange = {n for n in manifest.entries(directory) - known - {own} if n.startswith(own)}
-    if strange:
-        text = f"{directory}: pinstress did not write {min(strange)}; move it elsewhere"
-        raise InputError(text, code="strange-file")
-    with TemporaryDirectory(prefix="pinstress-") as made:
-        paths = draw_folder(directory, Path(made), quiet)
-        try:
-            manifest.add(directory, [own, *(own + path.name for path in paths)])
-            (directory / FOLDER).mkdir(exist_ok=True)
-            for path in paths:
-                shutil.copyfile(path, directory / FOLDER / path.name)
-        except OSError as error:
-            text = f"{directory}: cannot be written ({error.strerror})"
-            raise InputError(text, code="cannot-write") from None
-    click.echo(f"Written: {directory / FOLDER}", err=True)
+    strange = {n for n in _entries(directory) - known - {own} if n.startswith(own)}
+    if strange or FOLDER in _entries(directory):
+        raise _strange(directory, min(strange, default=FOLDER))
+    drawn = add_plots(directory, quiet)
+    if drawn.paths:
+        click.echo(f"Written: {directory / FOLDER}", err=True)
+    return report_failed(directory, drawn.failed)
+
+
+def pdf(directory: Path) -> int:
+    """Write report.pdf into a results folder; returns the exit status: 1 if it could not be made.
+
+    Raises: InputError.
+    """
+    known = require_results(directory)
+    if PDF in _entries(directory) - known:
+        raise _strange(directory, PDF)
+    failed = add_pdf(directory)
+    if not failed:
+        click.echo(f"Written: {directory / PDF}", err=True)
+    return report_failed(directory, failed)
+
+
+def draw_and_print(directory: Path, plots: bool, pdf: bool, quiet: bool = False) -> int:
+    """What a run adds to its results once they are in place; the exit status is 1 if something
+    could not be drawn, which costs nothing else.
+    """
+    failed: dict[str, Failed] = {}
+    try:
+        if plots:
+            failed |= _attempted(f"{FOLDER}/", lambda: add_plots(directory, quiet).failed)
+        if pdf:
+            failed |= _attempted(PDF, lambda: add_pdf(directory))
+    except BaseException as error:
+        if isinstance(error, KeyboardInterrupt) or interrupts.came():
+            raise Unfinished(f"the results in {directory} are complete but for pictures") from None
+        raise
+    return report_failed(directory, failed)
+
+
+def _attempted(name: str, add: Callable[[], dict[str, Failed]]) -> dict[str, Failed]:
+    try:
+        return add()
+    except (InputError, OSError, ImportError) as error:
+        return {name: Failed(str(error))}
+    except MemoryError:
+        return {name: Failed(NO_MEMORY)}
 
 
 def require_results(directory: Path) -> set[str]:
@@ -59,63 +115,156 @@ def require_results(directory: Path) -> set[str]:
     return known
 
 
-def draw_folder(directory: Path, into: Path, quiet: bool = False) -> list[Path]:
-    """Draw what the report of a folder shows, and its pins by their fields; returns the files.
+def report_failed(directory: Path, failed: dict[str, Failed]) -> int:
+    """What could not be drawn, in one message; returns the exit status."""
+    if not failed:
+        return 0
+    by_reason: dict[str, list[str]] = {}
+    for name, failure in sorted(failed.items(), key=lambda item: item[0] != PDF):
+        by_reason.setdefault(failure.reason, []).append(name)
+    said = "; ".join(f"{_listed(names)}: {why}" for why, names in by_reason.items())
+    ways = [w for w, own in (("pdf", PDF in failed), ("plots", set(failed) - {PDF})) if own]
+    again = " and ".join(f"`pinstress {way} {directory}`" for way in ways)
+    click.echo(
+        f"Error: not drawn: {said}. All other results in {directory} are complete; {again} "
+        f"{'tries' if len(ways) == 1 else 'try'} again.",
+        err=True,
+    )
+    return 1
 
-    Raises: InputError.
+
+def add_plots(directory: Path, quiet: bool = False) -> Drawn:
+    """Draw what the report of a folder shows, and its pins by their fields, into it.
+
+    Raises: InputError, where the folder is damaged or cannot be written.
+    """
+    with TemporaryDirectory(prefix="pinstress-") as made:
+        drawn = _drawn(directory, Path(made), quiet)
+        for failure in drawn.failed.values():
+            if failure.damaged:
+                raise _unreadable(directory, failure.reason)
+        _add(directory, {f"{FOLDER}/{path.name}": path for path in drawn.paths})
+        return drawn
+
+
+def add_pdf(directory: Path) -> dict[str, Failed]:
+    """Write report.pdf of what the folder's report.html says; why it could not be made.
+
+    Raises: InputError, where the folder is damaged or cannot be written.
     """
     try:
-        drawn = list(plots_of(read_regular(directory / PAGE, LARGEST).decode("utf-8")))
+        is_inside(directory, PDF)  # a link is refused before the work
+        page = _page(directory)
+        content = document_of(page)
+        shown = set() if content is None else set(shown_plots(content))
+        found = {plot.name: plot for plot in plots_of(page) if plot.name in shown}
+    except FileNotFoundError:
+        content = None
+    except (OSError, Damaged) as error:
+        raise _unreadable(directory, error) from None
+    if content is None:
+        raise InputError(f"{directory}: {NO_PAGE}", code="no-results")
+    with TemporaryDirectory(prefix="pinstress-") as made:
+        path = Path(made, PDF)
+        (printed,) = apart([(PDF, partial(_print, content, found, path))], PDF_SECONDS)
+        if printed is None:
+            _add(directory, {PDF: path})
+            return {}
+        if printed.damaged:
+            raise _unreadable(directory, printed.reason)
+        return {PDF: printed}
+
+
+def _drawn(directory: Path, into: Path, quiet: bool) -> Drawn:
+    try:
+        shown = plots_of(_page(directory))
         opened = open_results(directory)
-    except (OSError, ValueError, FileError):
+        solid = is_inside(directory, "vtk")
+    except FileNotFoundError:
         text = f"{directory}: no report.html and results.json to draw from"
         raise InputError(text, code="no-results") from None
-    paths = draw(drawn, into)
-    rows = [row for row in opened.content["pins"] if (directory / "vtk").is_dir()]
+    except (OSError, Damaged) as error:
+        raise _unreadable(directory, error) from None
+    work: list[tuple[str, Callable[[], Sequence[Path]]]] = [
+        (f"{FOLDER}/{plot.name}.svg", partial(draw_plot, plot, into)) for plot in shown
+    ]
+    rows = opened.content["pins"] if solid else []
     problem = renderer_problem() if rows else None
     if problem is not None and not quiet:
         click.echo(f"No pictures of the pins: {problem}", err=True)
     if rows and problem is None:
         preload(*PAINTERS)
-        from reports.vtk.render import render_pin
-
         for row in rows:
-            picture = into / f"pin_{field_name(row['pin'], row['case'])}.png"
-            try:
-                field = opened.field(row)
-            except FileNotFoundError:  # a beam has none
-                continue
-            render_pin(field, picture, opened.units, opened.title(row))
-            paths.append(picture)
-    return paths
+            name = f"pin_{field_name(row['pin'], row['case'])}.png"
+            picture = partial(draw_pin, opened.only(row), into / name)
+            work.append((f"{FOLDER}/{name}", picture))
+    made = apart(work, PICTURE_SECONDS)
+    found = list(zip((name for name, _ in work), made, strict=True))
+    paths = [path for _, one in found if not isinstance(one, Failed) for path in one]
+    return Drawn(tuple(paths), {name: one for name, one in found if isinstance(one, Failed)})
 
 
-def pdf(directory: Path) -> None:
-    """Write report.pdf into a results folder. Raises: InputError."""
-    known = require_results(directory)
-    target = directory / PDF
-    if PDF in manifest.entries(directory) - known:
-        text = f"{directory}: pinstress did not write {PDF}; move it elsewhere"
-        raise InputError(text, code="strange-file")
+def draw_pin(opened: Opened, path: Path, top: float | None = None) -> list[Path]:
+    """A picture of the only row; none of a beam, which has no field. Raises: Damaged."""
+    from reports.vtk.render import render_pin
+
+    (row,) = opened.content["pins"]
     try:
-        manifest.add(directory, [PDF])
-        print_folder(directory)
+        field = opened.field(row)
+    except FileNotFoundError:
+        return []
+    except NotPlain as error:
+        raise Damaged(str(error)) from None
+    render_pin(field, path, opened.units, opened.title(row), top)
+    return [path]
+
+
+def _print(content: Content, shown: dict[str, Plot], path: Path) -> None:
+    path.write_bytes(typeset(content, shown))
+
+
+def _page(directory: Path) -> str:
+    """Raises: Damaged, OSError."""
+    try:
+        return read_inside(directory, PAGE, LARGEST).decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise Damaged(f"{PAGE} is damaged: no UTF-8 from byte {error.start:,} on") from None
+
+
+def _add(directory: Path, made: dict[str, Path]) -> None:
+    """Files into a folder and its list; first they are listed, so that a process that is killed
+    leaves nothing that is not ours.
+    """
+    names = [*made, *({f"{FOLDER}/"} if any("/" in name for name in made) else ())]
+    partial_names = manifest.partial_names(made)
+    try:
+        manifest.add(directory, [*names, *partial_names])
+        for name, path in made.items():
+            write_inside(directory, name, path.read_bytes())
+        manifest.drop(directory, partial_names)
     except OSError as error:
-        text = f"{target}: cannot be written ({error.strerror})"
+        text = f"{directory}: cannot be written ({error.strerror})"
         raise InputError(text, code="cannot-write") from None
-    click.echo(f"Written: {target}", err=True)
 
 
-def print_folder(directory: Path) -> None:
-    """Write report.pdf of what the folder's report.html says. Raises: InputError, OSError."""
-    problem = f"{directory}: no report.html of this version of pinstress to print; run it again"
+def _entries(directory: Path) -> set[str]:
+    """Raises: InputError."""
     try:
-        page = read_regular(directory / PAGE, LARGEST).decode("utf-8")
-        content = document_of(page)
-    except (OSError, ValueError, FileError):
-        content = None
-    if content is None:
-        raise InputError(problem, code="no-results")
-    wanted = set(shown_plots(content))
-    plots = {plot.name: plot for plot in plots_of(page) if plot.name in wanted}
-    write_pdf(content, plots, directory / PDF)
+        return manifest.entries(directory)
+    except OSError as error:
+        raise _unreadable(directory, error.strerror) from None
+
+
+def _unreadable(directory: Path, why: object) -> InputError:
+    return InputError(f"{directory}: {why}", code="unreadable-results")
+
+
+def _strange(directory: Path, name: str) -> InputError:
+    text = f"{directory}: pinstress did not write {name}; move it elsewhere"
+    return InputError(text, code="strange-file")
+
+
+def _listed(names: Iterable[str]) -> str:
+    found = list(names)
+    more = len(found) - MAX_NAMED
+    return ", ".join(found[:MAX_NAMED]) + (f" and {more} more" if more > 0 else "")

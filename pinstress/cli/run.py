@@ -28,9 +28,10 @@ from pinstress.cli.closing import (
     report_violations,
 )
 from pinstress.cli.output_folder import replacing, require_replaceable
-from pinstress.cli.plots import FOLDER, PAGE, draw_folder, print_folder
+from pinstress.cli.plots import draw_and_print
 from pinstress.cli.shared import open_page
 from pinstress.cli.streams import unneeded
+from pinstress.model.balance import other_warnings
 from pinstress.processes.pool import Died, Job, Progress, Tell, preload, processes, side_by_side
 from pinstress.processes.system import portable
 from pinstress.study.choices import Chosen
@@ -38,6 +39,7 @@ from pinstress.study.file import Study
 from pinstress.study.file_names import field_name
 from reports.data.results import Field, Results, Units
 from reports.files import write_loads, write_pages, write_reports, write_stress_tables
+from reports.page.scripts import PAGE
 from reports.tables.table import MOST_IN_CSV
 from reports.text.loads import print_loads
 from reports.text.safety_factors import print_safety_factors
@@ -83,6 +85,8 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
     require_replaceable(directory)
     also: Any = wanted.vtk if wanted.vtk in ("motion", "solid") else None
     plan = replace(prepare(study, also=also, **chosen), sensitive=wanted.sensitive)
+    for warning in other_warnings(study, plan.tasks):
+        click.echo(f"Warning: {warning}", err=True)
     most = processes(wanted.jobs)
     ask = _second_opinion(plan, wanted.quiet) if wanted.second else {}
     cache = user_cache() if wanted.cached else None
@@ -98,10 +102,6 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
                 _write_flows(results, staging / "vtk")
             progress("report", 1.0)
             _write(results, staging, most)
-            if wanted.plots:
-                draw_folder(staging, staging / FOLDER, wanted.quiet)
-            if wanted.pdf:
-                print_folder(staging)
     if cache:
         cache.trim()
     if wanted.as_json:
@@ -116,14 +116,15 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
         report_reused(plan, found)
         click.echo(f"Report: {directory / PAGE}", err=True)
         _large_tables(directory)
-    if wanted.opens:
-        open_page(directory / PAGE)
     status = report_missed(results, study.table.analysis.goal == "decide")
     status = max(status, report_disagreements(results))
     violated = report_violations(results) if wanted.strict else 0
     if not (status or wanted.strict or wanted.quiet):
         report_status_zero(results)
-    return status if status == NUMERICS_FAILED else max(status, violated)
+    drawn = draw_and_print(directory, wanted.plots, wanted.pdf, wanted.quiet)
+    if wanted.opens:
+        open_page(directory / PAGE)
+    return status if status == NUMERICS_FAILED else max(status, violated, drawn)
 
 
 def _second_opinion(plan: Plan, quiet: bool) -> dict[str, Any]:
@@ -194,14 +195,12 @@ def loads_and_write(
     results = loads_only(study, cases)
     with replacing(directory) as staging:
         write_loads(results, staging)
-        if plots:
-            draw_folder(staging, staging / FOLDER, quiet)
     with unneeded(directory):
         print_loads(results, console())
     if not quiet:
         click.echo(f"Written: {directory}", err=True)
         _large_tables(directory)
-    return 0
+    return draw_and_print(directory, plots, False, quiet)
 
 
 def _large_tables(directory: Path) -> None:

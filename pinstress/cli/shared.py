@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -49,12 +50,14 @@ def choices(command: Command) -> Command:
 
 def read_study(path: Path) -> Study:
     """Load a study; warn of implausible or contradictory numbers. Raises: InputError."""
-    from pinstress.model.given import balance_warnings
+    from pinstress.model.balance import given_warnings
+    from pinstress.model.landing import unsprung_warnings
     from pinstress.model.weights import weight_warnings
     from pinstress.study.file import load_study
 
     study = load_study(path)
-    for warning in (*study.warnings, *weight_warnings(study), *balance_warnings(study)):
+    found = (weight_warnings(study), unsprung_warnings(study), given_warnings(study))
+    for warning in (*study.warnings, *chain.from_iterable(found)):
         click.echo(f"Warning: {warning}", err=True)
     return study
 

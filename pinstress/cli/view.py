@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import os
 import sys
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import click
+
 from pinstress.cli.new_file import require_new, write_new
-from pinstress.cli.plots import PAINTERS
+from pinstress.cli.plots import PAINTERS, PICTURE_SECONDS
+from pinstress.processes.apart import apart
 from pinstress.processes.pool import preload
 from pinstress.study.errors import InputError
 from reports.vtk.read_back import Opened, open_results
@@ -24,8 +28,9 @@ def view(
     case: str | None,
     screenshot: Path | None,
     force: bool = False,
-) -> None:
-    """Show a pin of a results folder, by default the one with the lowest factor.
+) -> int:
+    """Show a pin of a results folder, by default the one with the lowest factor; returns the exit
+    status: 1 if it could not be drawn.
 
     screenshot: a PNG file to write instead of opening a window; force: overwrite it.
     Raises: InputError.
@@ -34,20 +39,20 @@ def view(
     try:
         row = opened.row(pin, case)
         field = opened.field(row)
-    except ValueError as error:
-        raise InputError(f"{directory}: {error}", code="unreadable-results") from None
     except FileNotFoundError as error:
         raise InputError(
             f"{error}: no such file; there is no field for a beam, for a pin that was not "
             "solved, or after a run with --vtk none",
             code="no-field",
         ) from None
+    except (OSError, ValueError) as error:
+        raise InputError(f"{directory}: {error}", code="unreadable-results") from None
     title = opened.title(row)
     preload(*PAINTERS)
     if screenshot is None:
         _require_display()
         show_pin(field, opened.units, title)
-        return
+        return 0
     if screenshot.suffix.lower() != ".png" or not screenshot.parent.is_dir():
         raise InputError(
             f"--screenshot {screenshot}: give a .png file in an existing folder",
@@ -62,10 +67,15 @@ def view(
         )
     with TemporaryDirectory(prefix="pinstress-") as folder:
         picture = Path(folder) / "pin.png"
-        render_pin(field, picture, opened.units, title)
+        drawing = partial(render_pin, field, picture, opened.units, title)
+        (drawn,) = apart([(picture.name, drawing)], PICTURE_SECONDS)
+        if drawn is not None:
+            click.echo(f"Error: {screenshot} could not be drawn: {drawn.reason}", err=True)
+            return 1
         if force and os.path.lexists(screenshot):
             _remove(screenshot)
         write_new(screenshot, picture.read_bytes(), OVERWRITE)
+    return 0
 
 
 def _remove(path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Designs in batches of a second of work and more, here or on a cluster of dask.
+"""Designs in batches of a second of work and more, for processes here or on other computers.
 
 A batch is solved as a whole; which designs are in one, and where and when it is solved, changes
 none of their numbers. Designs that share a shape are in the same batch as far as possible, so that
@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from geometry.mesh.moved.near_mesh import step
+from loads import noted_files
 from pinstress.designs.evaluate import DesignRow, Evaluator
 from pinstress.designs.laws import Floats
 from pinstress.designs.number import Number
@@ -36,7 +37,8 @@ Rows = list[list[DesignRow]]
 @dataclass(frozen=True)
 class DesignProblem:
     """All that a process needs to solve designs of a study, as text: small, and the same for all
-    versions of the libraries between.
+    versions of the libraries between. files: hash of the contents that were sent of the files that
+    the study names; empty where they are read as they lie here.
     """
 
     path: Path
@@ -45,6 +47,7 @@ class DesignProblem:
     numbers: tuple[Number, ...]
     pins: tuple[str, ...] | None = None
     cases: tuple[str, ...] | None = None
+    files: str = ""
 
     @classmethod
     def of(
@@ -55,8 +58,11 @@ class DesignProblem:
         cases: Sequence[str] | None = None,
     ) -> DesignProblem:
         """The problem of a study, whose files are named by absolute paths."""
-        names = [None if x is None else tuple(x) for x in (pins, cases)]
-        return cls(study.path.absolute(), study.text, study.located, tuple(numbers), *names)
+        path, named = (
+            study.path.absolute(),
+            [None if x is None else tuple(x) for x in (pins, cases)],
+        )
+        return cls(path, study.text, study.located, tuple(numbers), named[0], named[1])
 
 
 @dataclass(frozen=True)
@@ -98,8 +104,11 @@ def solve_batch(problem: DesignProblem, batch: Batch) -> Done:
 @lru_cache(1)
 def evaluator_of(problem: DesignProblem) -> Evaluator:
     """One in a process, which remembers what it solved."""
-    study = parse_study(problem.path, problem.text, problem.located)
-    return Evaluator(study, problem.numbers, problem.pins, problem.cases)
+    with noted_files() as files:
+        study = parse_study(problem.path, problem.text, problem.located)
+        found = Evaluator(study, problem.numbers, problem.pins, problem.cases)
+    found.files = tuple(sorted(files))
+    return found
 
 
 def ordered(numbers: Sequence[Number], values: Floats) -> list[int]:

@@ -13,13 +13,13 @@ import re
 from collections import OrderedDict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Generic, TypeVar
 
 from fea.asked import Asked
 from fea.core.material import Material
 from fea.core.peak import Peak, Verdict
 from fea.harmonic.evaluate import EveryMesh
-from fea.joint.solve_in_lugs import LugSolution
 from geometry import ArgumentError
 from loads import Linkage
 from pinstress.analysis.plan import asked_of, prepare
@@ -28,6 +28,7 @@ from pinstress.analysis.stored import shape_of
 from pinstress.cache.serialise import pack
 from pinstress.designs.laws import Floats
 from pinstress.designs.number import Number, put
+from pinstress.designs.outcomes import DesignAnswer, bare_answer, outcome_of
 from pinstress.designs.parameters import Parameter
 from pinstress.model.cases import CaseLoads, case_loads
 from pinstress.model.mechanism.linkage import determined, linkage
@@ -35,6 +36,7 @@ from pinstress.model.pins import pin as pin_of
 from pinstress.model.tasks import Task, tasks
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study, raw_study, with_raw
+from reports.data.decision import NOT_DECIDED
 
 MOST_LOADS, MOST_PEAKS = 64, 4096  # that are remembered, loads of each case
 WITHOUT_LOADS = ("pin", "material", "analysis")  # tables of which loads do not depend
@@ -49,7 +51,7 @@ class DesignRow:
     """One pin in one case of a design, in SI. max_von_mises, error_estimate: Pa, None where there
     is no maximum (verdict `failed` or `rigid`). governing_time: s, None without a motion. mass: kg,
     None without a density. reason, code: why the verdict is not `converged`, for people and for
-    programs.
+    programs. outcome, depends_on: as of a run (pinstress.designs.outcomes).
     """
 
     pin: str
@@ -62,6 +64,8 @@ class DesignRow:
     mass: float | None = None
     reason: str = ""
     code: str = ""
+    outcome: str = NOT_DECIDED
+    depends_on: str = ""
 
 
 class Recent(Generic[K, V]):
@@ -87,7 +91,8 @@ class Recent(Generic[K, V]):
 class Evaluator:
     """A study whose numbers change. pins, cases: names; all by default. parameters: in the order of
     the values of `rows`. table: the (pin, case) of a design's rows, in their order. meshes: what
-    was solved of pins that are not in contact.
+    was solved of pins that are not in contact. files: those that the study names, as far as
+    whoever made it (pinstress.designs.batches) noted them.
 
     Raises: InputError where the study as it is cannot be run.
     """
@@ -105,6 +110,7 @@ class Evaluator:
         self._raw["analysis"] = analysis  # whose default depends on [vary]
         self.study = with_raw(study, self._raw)
         plan = prepare(self.study, pins=pins, cases=cases)
+        self.files: tuple[Path, ...] = ()
         self._memory = plan.asked.memory  # free when it began: to ask again takes a millisecond
         self._cases = tuple(plan.loads)
         found = {(t.pin.name, case.case): None for t in plan.tasks for case in t.loads}
@@ -116,7 +122,7 @@ class Evaluator:
             MOST_LOADS * len(self._cases)
         )
         self.meshes = EveryMesh()
-        self._peaks = Recent[str, tuple[Peak, ...]](MOST_PEAKS)
+        self._answers = Recent[str, tuple[DesignAnswer, ...]](MOST_PEAKS)
         self._of_loads = {
             case: [k for k, number in enumerate(self.numbers) if self._moves(number, case)]
             for case in self._cases
@@ -128,7 +134,7 @@ class Evaluator:
         try:
             study = self.changed(numbers)
             loads = self._loads_of(study, numbers)
-        except InputError as error:
+        except (InputError, MemoryError) as error:
             return [_failed(self.study, pin, case, error) for pin, case in self.table]
         rows: dict[tuple[str, str], DesignRow] = {}
         for pin in self._pins:
@@ -198,24 +204,27 @@ class Evaluator:
             return
         try:
             made = tasks(study, [pin_of(study, name)], right)
-        except (InputError, ArithmeticError) as error:
+        except (InputError, ArithmeticError, MemoryError) as error:
             yield from ((c, _failed(study, name, c, error)) for c in right)
             return
         asked = asked_of(study, memory=self._memory)
         for task in made:
-            yield from self._solved(study, task, asked)
+            yield from self._solved(study, task, asked, right)
 
-    def _solved(self, study: Study, task: Task, asked: Asked) -> Iterable[tuple[str, DesignRow]]:
+    def _solved(
+        self, study: Study, task: Task, asked: Asked, loads: Mapping[str, CaseLoads]
+    ) -> Iterable[tuple[str, DesignRow]]:
         material, density = task.material, task.material.density
         mass = density * task.pin.volume if density else None
         try:
-            peaks = self._peaks_of(study, task, asked)
+            answers = self._answers_of(study, task, asked, loads)
         except (InputError, ArgumentError, ArithmeticError, MemoryError) as error:
             names = [loads.case for loads in task.loads]
             yield from ((c, _failed(study, task.pin.name, c, error)) for c in names)
             return
-        for peak in peaks:
-            good = peak.verdict == "converged"
+        required = study.table.analysis.required_safety_factor
+        for answer in answers:
+            peak, good = answer.peak, answer.peak.verdict == "converged"
             yield (
                 peak.case,
                 DesignRow(
@@ -229,18 +238,19 @@ class Evaluator:
                     mass,
                     "" if good else peak.note,
                     "" if good else _code(peak),
+                    *outcome_of(answer, task, required, study.system),
                 ),
             )
 
-    def _peaks_of(self, study: Study, task: Task, asked: Asked) -> tuple[Peak, ...]:
+    def _answers_of(
+        self, study: Study, task: Task, asked: Asked, loads: Mapping[str, CaseLoads]
+    ) -> tuple[DesignAnswer, ...]:
         key = _question(study, task, asked)
-        known = self._peaks.get(key)
-        if known is not None:
-            return known
-        found = solutions(study, task, asked, lambda _: None, self.meshes)
-        peaks = (s.solution.peak if isinstance(s, LugSolution) else s.peak for s in found)
-        bare = tuple(replace(p, history=(), singular_at=()) for p in peaks)
-        return self._peaks.put(key, bare)
+        known = self._answers.get(key)
+        if known is None:
+            found = solutions(study, task, asked, lambda _: None, self.meshes)
+            known = self._answers.put(key, tuple(bare_answer(task, s, loads) for s in found))
+        return known
 
 
 def _names(content: object, case: str) -> bool:

@@ -14,6 +14,7 @@ from pinstress.designs.table import read_table, write_table
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study
 from pinstress.study.inputs import inputs
+from reports.folder.inside import write_inside
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -51,9 +52,7 @@ class Parts:
         mine = self.identity
         stated = {"sweep": mine.sweep, "but_count": mine.but_count, "count": mine.count}
         text = json.dumps({"schema": SCHEMA, **stated}, indent=1) + "\n"
-        partial = self.folder / f"{STATED}.partial"
-        partial.write_text(text, encoding="utf-8")
-        partial.replace(self.folder / STATED)
+        write_inside(self.folder, STATED, text.encode())
 
     def there(self) -> bool:
         """Whether a sweep was begun here."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Protocol
@@ -14,20 +14,26 @@ from pinstress.designs.laws import Floats
 from pinstress.designs.parameters import Parameter, parameters_of
 from pinstress.designs.sample import designs_of
 from pinstress.designs.table import assembled, table_of
-from pinstress.designs.workers import failed_rows, local, processes_of, remote, solve_here, solve_on
+from pinstress.designs.workers import BatchQueue, failed_rows, solve_here, solve_side_by_side
 from pinstress.processes.pool import cores
 from pinstress.study.choices import require_count
 from pinstress.study.file import Study
 
 if TYPE_CHECKING:
     import pyarrow as pa
-    from distributed import Client
 
 Report = Callable[[int, int], None]
+
+log = logging.getLogger(__name__)
 
 
 class Store(Protocol):
     """Where batches are kept."""
+
+    @property
+    def count(self) -> int:
+        """How many there are."""
+        ...
 
     def write(self, table: pa.Table) -> None:
         """Keep one."""
@@ -43,6 +49,11 @@ class Kept:
 
     def __init__(self) -> None:
         self._tables: list[pa.Table] = []
+
+    @property
+    def count(self) -> int:
+        """As that of Store."""
+        return len(self._tables)
 
     def write(self, table: pa.Table) -> None:
         """As that of Store."""
@@ -85,16 +96,20 @@ def solved(
     jobs: int | None = None,
     scheduler: str | None = None,
     report: Report = lambda _, __: None,
+    tell: Callable[[str], None] = log.warning,
 ) -> pa.Table:
     """The table of all designs, of which those in the store are not solved again. jobs: processes
     on this machine, by default as many as there are cores; scheduler: address of a cluster of dask
-    instead. report: called with the number of designs that are solved, and of all.
+    instead. report: called with the number of designs that are solved, and of all. tell: called
+    with what is odd about a cluster.
 
     Raises: InputError.
     """
     require_count("jobs", jobs)
-    empty = table_of(sweep.study, sweep.parameters, [])
-    done = {i - 1 for part in store.read(empty.schema) for i in part["design"].unique().to_pylist()}
+    done = set[int]()
+    if store.count:
+        schema = table_of(sweep.study, sweep.parameters, []).schema
+        done = {i - 1 for part in store.read(schema) for i in part["design"].unique().to_pylist()}
     total, count = len(sweep.values), len(done)
     report(count, total)
 
@@ -108,18 +123,24 @@ def solved(
         count += len(rising)
         report(count, total)
 
-    most = min(jobs or cores(), max(total - count, 1))
-    numbers = sweep.problem.numbers
-    if scheduler is None and most == 1:
-        solve_here(sweep.problem, Batches(numbers, sweep.values, done, 1), keep)
-    elif count < total:
-        cluster: AbstractContextManager[Client]
-        cluster = local(most) if scheduler is None else remote(scheduler)
-        table = evaluator_of(sweep.problem).table
-        with cluster as client:
-            batches = Batches(numbers, sweep.values, done, processes_of(client))
-            solve_on(client, sweep.problem, batches, keep, partial(failed_rows, table))
-    return assembled(store.read(empty.schema))
+    evaluator = evaluator_of(sweep.problem)  # for forked processes, too, before Arrow has threads
+
+    def batches(at_once: int) -> Batches:
+        return Batches(sweep.problem.numbers, sweep.values, done, at_once)
+
+    def work(at_once: int) -> BatchQueue:
+        return BatchQueue(batches(at_once), keep, partial(failed_rows, evaluator.table))
+
+    most = min(jobs or cores(), total - count)
+    if scheduler is not None and count < total:
+        from pinstress.designs.scheduler import solve_on  # dask, which takes a second to import
+
+        solve_on(scheduler, sweep.problem, evaluator.files, work, tell)
+    elif most > 1:
+        solve_side_by_side(sweep.problem, work(most), most, lambda: report(count, total))
+    else:
+        solve_here(sweep.problem, batches(1), keep)
+    return assembled(store.read(table_of(sweep.study, sweep.parameters, []).schema))
 
 
 def sweep(
@@ -133,9 +154,8 @@ def sweep(
     """Solve the designs of a study's [vary]; a table with a row for each design, pin and case, as
     designs.parquet has it (docs/sweep.md).
 
-    pins, cases: names; all by default. jobs: number of processes (None: number of cores); with
-    more than one, a script must be guarded by `if __name__ == "__main__":`. scheduler: address of a
-    scheduler of dask instead.
+    pins, cases: names; all by default. jobs: number of processes (None: number of cores).
+    scheduler: address of a scheduler of dask instead.
 
     Raises: InputError for bad input. A design that fails is a row with its reason.
     """

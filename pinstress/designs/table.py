@@ -16,6 +16,7 @@ from pinstress.designs.number import unit_of
 from pinstress.designs.parameters import Parameter
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study
+from reports.folder.inside import write_inside
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -25,6 +26,8 @@ RESULTS = {  # by column: the dimension, or None of a text; SI in a DesignRow
     "max_von_mises": "stress",
     "error_estimate": "stress",
     "safety_factor": "",
+    "outcome": None,
+    "depends_on": None,
     "verdict": None,
     "governing_time": "time",
     "mass": "mass",
@@ -76,16 +79,13 @@ def assembled(parts: Sequence[pa.Table]) -> pa.Table:
 
 
 def write_table(table: pa.Table, path: Path) -> None:
-    """Write a table so that its file is complete or absent."""
+    """Write a table so that its file is complete or absent. Raises: OSError, also for a link."""
+    import pyarrow as pa
     from pyarrow import parquet
 
-    partial = path.with_name(f"{path.name}.partial")
-    try:
-        parquet.write_table(table, partial, compression="zstd", row_group_size=100_000)
-        partial.replace(path)
-    except BaseException:
-        partial.unlink(missing_ok=True)
-        raise
+    content = pa.BufferOutputStream()
+    parquet.write_table(table, content, compression="zstd", row_group_size=100_000)
+    write_inside(path.parent, path.name, memoryview(content.getvalue()))
 
 
 def read_table(path: Path) -> pa.Table:

@@ -1,33 +1,65 @@
-"""Processes that solve batches: this one, a cluster of dask on this machine, or the user's own.
-
-Of a cluster on this machine nothing listens but on 127.0.0.1, and no page of dask's is served. Its
-processes ignore interrupts: this one ends them.
-"""
+"""Processes of this machine that solve batches: this one, or several over pipes. No network."""
 
 from __future__ import annotations
 
-import logging
-import signal
-import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any
 
 from pinstress.designs.batches import Batch, Batches, DesignProblem, Done, solve_batch
 from pinstress.designs.evaluate import DesignRow
-from pinstress.processes.threads import THREADS, hold_threads
-from pinstress.study.errors import InputError
+from pinstress.processes.pool import Died, Tell, preload, served
+from pinstress.processes.threads import hold_threads
 
-if TYPE_CHECKING:
-    from distributed import Client
-
-ANSWERS = 10.0  # s within which a scheduler must answer
-WORKERS = 30.0  # s within which it must have a worker
-AHEAD = 2  # batches for each process: one that is solved and one that waits
+LIBRARIES = "gmsh", "pymetis", "cvxopt.cholmod"  # that solving imports on demand
 
 Keep = Callable[[Done], None]
-Solve = Callable[[DesignProblem, Batch], Done]
+Lost = Callable[[Batch], Done]
+
+
+class BatchQueue:
+    """The batches that are to be solved, with those whose process ended by itself.
+
+    Such a batch is halved until the design is known; that one is solved alone, since the process
+    may have ended by another one's need of memory, and given up if it ends its process again.
+    keep: called with each batch as it ends, in any order. lost: the rows of a design given up.
+    """
+
+    def __init__(self, batches: Batches, keep: Keep, lost: Lost) -> None:
+        self._batches, self._keep, self._lost = batches, keep, lost
+        self._again: list[Batch] = []
+        self._suspects: list[Batch] = []
+        self._alone: set[tuple[int, ...]] = set()
+        self._in_work = 0
+
+    def take(self) -> Batch | None:
+        """The next to be solved; None while there is none, or one that must be solved alone."""
+        if self._again:
+            found = self._again.pop()
+        elif self._batches.left:
+            found = self._batches.next()
+        elif self._suspects and not self._in_work:
+            found = self._suspects.pop()
+            self._alone.add(found.designs)
+        else:
+            return None
+        self._in_work += 1
+        return found
+
+    def done(self, done: Done) -> None:
+        """Keep what was solved."""
+        self._in_work -= 1
+        self._batches.learn(done)
+        self._keep(done)
+
+    def died(self, batch: Batch) -> None:
+        """Take note that its process ended by itself."""
+        self._in_work -= 1
+        if len(batch.designs) > 1:
+            self._again += batch.halves()
+        elif batch.designs in self._alone:
+            self._keep(self._lost(batch))
+        else:
+            self._suspects.append(batch)
 
 
 def solve_here(problem: DesignProblem, batches: Batches, keep: Keep) -> None:
@@ -38,181 +70,30 @@ def solve_here(problem: DesignProblem, batches: Batches, keep: Keep) -> None:
         keep(done)
 
 
-def solve_on(
-    client: Client,
-    problem: DesignProblem,
-    batches: Batches,
-    keep: Keep,
-    lost: Callable[[Batch], Done],
-    solve: Solve = solve_batch,
+def solve_side_by_side(
+    problem: DesignProblem, work: BatchQueue, jobs: int, tick: Callable[[], None] = lambda: None
 ) -> None:
-    """Solve batches on a cluster. keep: called with each as it ends, in any order. lost: the rows
-    of a design whose processes died each time. solve: what solves a batch.
-
-    Raises: InputError where the processes of a cluster cannot solve the study.
+    """Solve batches in `jobs` processes of this machine, which keep what they have meshed. tick:
+    called several times in a second.
     """
-    running: dict[Any, Batch] = {}  # by future
-    suspects: list[Batch] = []  # designs whose process died, perhaps by another one's fault
-    alone: set[tuple[int, ...]] = set()
-
-    def start(batch: Batch) -> None:
-        running[client.submit(solve, problem, batch, pure=False)] = batch
-
-    def fill() -> None:
-        most = AHEAD * processes_of(client)
-        while batches.left and len(running) < most:
-            start(batches.next())
-
-    fill()
-    while running or suspects:
-        if not running:
-            alone.add(suspects[-1].designs)
-            start(suspects.pop())
-        future = _ended(client, list(running))
-        if future is None:
-            continue
-        batch = running.pop(future)
-        outcome = _outcome(client, future)
-        if isinstance(outcome, Done):
-            batches.learn(outcome)
-            keep(outcome)
-        elif outcome is None:
-            raise InputError(
-                "--scheduler: the connection to the scheduler is lost; the batches that are done "
-                "are kept, for --resume",
-                code="no-scheduler",
-            )
-        elif not _died(outcome):
-            raise _unusable(outcome)
-        elif len(batch.designs) > 1:
-            for half in batch.halves():
-                start(half)
-        elif batch.designs in alone:
-            keep(lost(batch))
-        else:
-            suspects.append(batch)
-        fill()
-
-
-def _ended(client: Client, running: list[Any]) -> Any:
-    """One of the batches that are done; None if none is for a while. Raises: InputError when the
-    cluster has no process left.
-    """
-    from distributed import wait
-
-    try:
-        return wait(running, timeout=WORKERS, return_when="FIRST_COMPLETED").done.pop()
-    except TimeoutError:
-        _require_processes(client)
-        return None
-
-
-def _require_processes(client: Client) -> None:
-    if not client.nthreads():
-        raise InputError(
-            "the processes that solve designs have ended, and no other began within "
-            f"{WORKERS:g} s; the batches that are done are kept, for --resume",
-            code="no-worker",
-        )
-
-
-def _outcome(client: Client, future: Any) -> Done | BaseException | None:
-    """Of a batch that is done: its rows or its error; None where the connection is lost. Rows are
-    lost with the process that holds them, until they are fetched.
-
-    Raises: InputError when the cluster has no process left.
-    """
-    from distributed import KilledWorker
-
-    found: Done | BaseException | None = None
-    while future.status == "finished" and found is None:
-        try:
-            found = future.result(timeout=WORKERS)
-        except KilledWorker as error:
-            found = error
-        except TimeoutError:
-            _require_processes(client)
-    if future.status == "error" and found is None:
-        found = future.exception(timeout=WORKERS)
-    return found
-
-
-def processes_of(client: Client) -> int:
-    """How many batches a cluster solves at a time: each of its processes one."""
-    return max(1, len(client.nthreads()))
-
-
-@contextmanager
-def local(jobs: int) -> Iterator[Client]:
-    """A cluster of `jobs` processes on this machine, which end with the block."""
-    import dask
-    from distributed import Client, LocalCluster
-
     hold_threads()
-    quiet: dict[str, Any] = {
-        "distributed.worker.daemon": True,
-        "distributed.comm.timeouts.connect": "30s",
-        "distributed.scheduler.allowed-failures": 1,
-        "distributed.admin.system-monitor.interval": "10s",
-        "distributed.admin.tick.interval": "1s",  # of 20 ms and with a profile of the stack these
-        "distributed.worker.profile.enabled": False,  # take 3 % of a core while they wait
-        "distributed.scheduler.http.routes": [],  # a port is opened, but nothing is served there
-        "distributed.worker.http.routes": [],
-        # dask would have every large array returned to the system: half of the time, measured
-        "distributed.nanny.pre-spawn-environ": dict.fromkeys(THREADS, 1),
-    }
-    with dask.config.set(quiet), _silent():
-        with _ignored_by_children():
-            cluster = LocalCluster(
-                n_workers=jobs,
-                threads_per_worker=1,
-                processes=True,
-                host="127.0.0.1",
-                dashboard_address="127.0.0.1:0",
-                scheduler_kwargs={"dashboard": False},
-                worker_dashboard_address=None,
-                memory_limit=None,
-                silence_logs=logging.CRITICAL,
-            )
-        try:
-            with Client(cluster, timeout=ANSWERS) as client:
-                yield client
-        finally:
-            cluster.close(timeout=ANSWERS)
+    preload(*LIBRARIES)
+
+    def take() -> tuple[str, Batch] | None:
+        batch = work.take()
+        return None if batch is None else (f"designs {min(batch.designs) + 1} ...", batch)
+
+    def give(batch: Batch, outcome: Done | Died) -> None:
+        if isinstance(outcome, Died):
+            work.died(batch)
+        else:
+            work.done(outcome)
+
+    served(partial(_solve, problem), take, give, jobs, lambda _: tick())
 
 
-@contextmanager
-def remote(address: str) -> Iterator[Client]:
-    """The user's cluster. Raises: InputError where nothing answers, or there is no process."""
-    from distributed import Client
-
-    class Closed(Client):
-        """A client that is closed here, and not by Python where it has never been connected."""
-
-        def __del__(self) -> None:
-            pass
-
-    with _silent():
-        try:
-            client = Closed(  # type: ignore[no-untyped-call]  # as all of dask
-                address, timeout=ANSWERS, set_as_default=False
-            )
-        except Exception as error:  # whatever dask raises for an address or what answers there
-            raise InputError(
-                f"--scheduler: no scheduler of dask answers at {address} within {ANSWERS:g} s "
-                f"({_short(error)}); start one with: dask scheduler",
-                code="no-scheduler",
-            ) from None
-        with client:
-            try:
-                client.wait_for_workers(1, timeout=WORKERS)
-            except TimeoutError:
-                raise InputError(
-                    f"--scheduler: the scheduler at {address} has no worker after {WORKERS:g} s; "
-                    f"start one with: dask worker {address} --nthreads 1",
-                    code="no-worker",
-                ) from None
-            yield client
+def _solve(problem: DesignProblem, batch: Batch, _: Tell) -> Done:
+    return solve_batch(problem, batch)
 
 
 def failed_rows(table: tuple[tuple[str, str], ...], batch: Batch) -> Done:
@@ -228,55 +109,3 @@ def failed_rows(table: tuple[tuple[str, str], ...], batch: Batch) -> Done:
     )
     rows = [[row(pin=pin, case=case) for pin, case in table] for _ in batch.designs]
     return Done(batch, rows, 0.0)
-
-
-def _died(error: BaseException) -> bool:
-    from distributed import KilledWorker
-
-    return isinstance(error, KilledWorker)
-
-
-def _unusable(error: BaseException) -> BaseException:
-    """An error of a batch, as the command reports it."""
-    if isinstance(error, InputError):
-        return error
-    if isinstance(error, ImportError):
-        return InputError(
-            f"--scheduler: its workers cannot import what this process can ({_short(error)}); "
-            "install the same version of pinstress there",
-            code="other-version",
-        )
-    return error
-
-
-def _short(error: BaseException) -> str:
-    return (str(error).strip() or type(error).__name__).splitlines()[0][:200]
-
-
-@contextmanager
-def _silent() -> Iterator[None]:
-    """Without what dask logs of connections that end."""
-    parts = "worker", "nanny", "scheduler", "core", "comm", "client"
-    names = ("distributed", *(f"distributed.{part}" for part in parts), "tornado", "asyncio")
-    found = [logging.getLogger(name) for name in names]
-    before = [each.level for each in found]
-    for each in found:
-        each.setLevel(logging.CRITICAL + 1)
-    try:
-        yield
-    finally:
-        for each, level in zip(found, before, strict=True):
-            each.setLevel(level)
-
-
-@contextmanager
-def _ignored_by_children() -> Iterator[None]:
-    """Processes that are started meanwhile ignore interrupts from the keyboard."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)

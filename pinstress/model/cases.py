@@ -29,7 +29,7 @@ from loads import (
     require_possible,
 )
 from loads.arrays import Floats
-from loads.landing import GROUND_RULES, Landing, pushes
+from loads.landing import GROUND_RULES, Landing, at_deflection, pushes
 from loads.landing import laws as landing_laws
 from pinstress.model.given import given_case
 from pinstress.model.impulses import (
@@ -228,7 +228,7 @@ def _drop(study: Study, name: str, case: DropCase, mechanism: Linkage, extremes:
     course = Course(mechanism, landing_laws(landing, where), 0.0, leg.duration)
     loads: list[Load] = [*springs(study, mechanism), *pushes(mechanism, landing, where)]
     moved = _Moved(name, course, tuple(loads))
-    return replace(_over_time(moved, case.samples, drop_note(case)), landing=landing)
+    return replace(_over_time(moved, case.samples, drop_note(case, leg)), landing=landing)
 
 
 def _on_ground(
@@ -243,9 +243,8 @@ def _on_ground(
         leg, where = drop(study, case.drop, of, mechanism)
         landing = fallen(study, case.drop, leg)
         peak = landing.peaks["vertical"]
-        reference = peak.value
-        courses = (law(np.array([peak.time]))[0] for law in landing_laws(landing, where))
-        drives = [StateDrive(float(value[0])) for value in courses]
+        reference, part = peak.value, GROUND_RULES[case.rule].deflection
+        drives = list(at_deflection(landing, where, peak.time, part))
         where = place(study, name, case, mechanism)
     applied = ground_load(where, GROUND_RULES[case.rule], reference, mechanism)
     note = ground_note(study, case, reference) if reference else ""

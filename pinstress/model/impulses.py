@@ -16,15 +16,17 @@ from pinstress.study.file import Study
 
 @dataclass(frozen=True)
 class ImpulseLoads:
-    """Reactions over pairs of impulse time (s) and velocity change (m/s), an instant each: times
-    and velocities (P,), forces (P,) N. nominal: the case's own pair.
+    """Reactions over combinations of impulse time (s), velocity change (m/s) and pulse, an instant
+    each: times and velocities (P,), P pulses, forces (P,) N. nominal, nominal_pulse: of the case.
     """
 
     times: Floats
     velocities: Floats
+    pulses: tuple[str, ...]
     forces: Floats
     reactions: Reactions
     nominal: tuple[float, float]
+    nominal_pulse: str
 
 
 @dataclass(frozen=True)
@@ -64,11 +66,11 @@ def _load(
     return load(study, f"case.{name}.apply[{which + 1}]", table, force, mechanism)
 
 
-def _size(impulse: ImpulseTable, velocity: float, time: float) -> float:
+def _size(impulse: ImpulseTable, velocity: float, time: float, pulse: str = "") -> float:
     mass = impulse.mass
     if mass is None:
         mass = (impulse.weight or 0.0) / impulse.gravity
-    return impulse_force(mass, velocity, time, impulse.pulse)
+    return impulse_force(mass, velocity, time, pulse or impulse.pulse)
 
 
 def _directed(direction: tuple[float, float], size: float) -> tuple[float, float]:
@@ -91,8 +93,9 @@ def _impulse_note(study: Study, load: ApplyTable) -> str:
 def over_range(
     study: Study, name: str, case: StaticCase | InstantCase, motion: Motion
 ) -> ImpulseLoads | None:
-    """The case again for every pair in the ranges of its impulse, if it has any. Raises: InputError
-    where several have.
+    """The case again for every combination in the ranges of its impulse, if it has any.
+
+    Raises: InputError where several impulses have ranges.
     """
     ranged = [k for k, x in enumerate(case.apply) if x.impulse and x.impulse.range]
     if not ranged:
@@ -104,16 +107,22 @@ def over_range(
     impulse = case.apply[ranged[0]].impulse
     assert impulse is not None
     assert impulse.range is not None
-    times, velocities = (
-        x.ravel() for x in np.meshgrid(impulse.range.impulse_time, impulse.range.velocity_change)
-    )
-    sizes = np.array([_size(impulse, v, t) for t, v in zip(times, velocities, strict=True)])
+    pulses = tuple(dict.fromkeys((impulse.pulse, *(impulse.range.pulse or ()))))
+    points = [
+        (time, velocity, pulse)
+        for pulse in pulses
+        for velocity in impulse.range.velocity_change
+        for time in impulse.range.impulse_time
+    ]
+    sizes = np.array([_size(impulse, v, t, pulse) for t, v, pulse in points])
     return ImpulseLoads(
-        times,
-        velocities,
+        np.array([t for t, _, _ in points]),
+        np.array([v for _, v, _ in points]),
+        tuple(pulse for *_, pulse in points),
         sizes,
         _of_sizes(study, name, motion, ranged[0], sizes),
         (impulse.impulse_time, impulse.velocity_change),
+        impulse.pulse,
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from loads import Applied, Law, Linkage, StateDrive
+from loads import Applied, Law, Linkage, LinkageError, StateDrive
 from loads.coded import LoadsArgumentError
 from loads.landing import (
     DROPS,
@@ -21,15 +21,19 @@ from loads.landing import (
     Touchdown,
     Wheel,
     axes,
+    effective_mass,
     land,
     required_velocity,
     travel,
 )
 from loads.landing.requirements import GroundRule
 from pinstress.model.mechanism.drives import state
-from pinstress.model.mechanism.linkage import STANDARD_GRAVITY
+from pinstress.model.mechanism.linkage import STANDARD_GRAVITY, linkage
 from pinstress.schema.landing import AtWheel, DropCase, GroundCase, StrutTable, TyreTable
+from pinstress.study.errors import InputError
 from pinstress.study.file import Study
+
+AGREES = 0.1  # of the mechanism's unsprung mass, which changes by as much along a stroke
 
 
 def place(study: Study, name: str, case: AtWheel, mechanism: Linkage) -> Touchdown:
@@ -57,9 +61,50 @@ def drop(study: Study, name: str, case: DropCase, mechanism: Linkage) -> tuple[D
         key = f"case.{name}.tyre"
         tyre = _tyre(case.tyre)
         key = f"case.{name}"
-        return _drop(case, mechanism, strut, rises, tyre), where
+        own = case.unsprung or _unsprung(case, mechanism, where)
+        return _drop(case, mechanism, strut, rises, tyre, own), where
     except LoadsArgumentError as error:
         raise study.error(f"{key}: {error}", code=error.code) from None
+
+
+def _unsprung(case: DropCase, mechanism: Linkage, where: Touchdown) -> float:
+    """That of the mechanism, kg. Raises: LoadsArgumentError where it has none."""
+    if case.strut is None:
+        raise LoadsArgumentError(
+            "give unsprung: without a strut nothing in the mechanism moves with the axle",
+            "no-unsprung",
+        )
+    found = effective_mass(mechanism, where, case.strut.stroke)
+    if found <= 0.0:
+        raise LoadsArgumentError(
+            "give unsprung, or masses of the bodies that move with the axle: the mechanism has "
+            "none",
+            "no-unsprung",
+        )
+    return found
+
+
+def unsprung_warnings(study: Study) -> list[str]:
+    """For every drop whose unsprung mass is not that of its mechanism, with both."""
+    drops = {n: c for n, c in study.table.case.items() if isinstance(c, DropCase)}
+    found = []
+    for name, case in drops.items():
+        if case.unsprung is None or case.strut is None:
+            continue
+        try:
+            mechanism = linkage(study)
+            own = effective_mass(mechanism, place(study, name, case, mechanism), case.strut.stroke)
+        except (InputError, LinkageError, LoadsArgumentError):
+            continue  # whoever needs the case says what is wrong with it
+        if abs(case.unsprung - own) > AGREES * own:
+            text = (
+                f"case.{name}.unsprung: {case.unsprung:.4g} kg is stated, but the mechanism's "
+                f"bodies move with the axle like {own:.4g} kg; the stated mass is used for the "
+                "fall, the bodies' for the forces in the leg. Remove it to use that of the "
+                "mechanism, or correct the masses"
+            )
+            found.append(str(study.error(text)))
+    return found
 
 
 def _drop(
@@ -68,12 +113,13 @@ def _drop(
     strut: Strut | None,
     rises: Telescopic | Levered,
     tyre: PowerTyre | TableTyre,
+    unsprung: float,
 ) -> Drop:
     g = (mechanism.gravity[0] ** 2 + mechanism.gravity[1] ** 2) ** 0.5
     mass = case.mass if case.mass is not None else (case.weight or 0.0) / STANDARD_GRAVITY
-    if case.unsprung >= mass:
+    if unsprung >= mass:
         raise LoadsArgumentError(
-            f"unsprung, {case.unsprung:g} kg, is part of the mass on the leg, {mass:g} kg, and "
+            f"unsprung, {unsprung:.6g} kg, is part of the mass on the leg, {mass:g} kg, and "
             "must be smaller",
             "unsprung-too-large",
         )
@@ -84,12 +130,12 @@ def _drop(
         velocity = required_velocity(case.rule, case.wing_loading)
     lift = case.lift if case.lift is not None else (0.0 if rule is None else rule.lift)
     return Drop(
-        sprung=mass - case.unsprung,
-        unsprung=case.unsprung,
+        sprung=mass - unsprung,
+        unsprung=unsprung,
         velocity=velocity,
         tyre=tyre,
         strut=strut,
-        wheel=_wheel(case),
+        wheel=_wheel(case, unsprung),
         lift=lift,
         gravity=g,
         duration=case.duration,
@@ -119,11 +165,11 @@ def _tyre(table: TyreTable) -> PowerTyre | TableTyre:
     return TableTyre(tuple(table.deflection or ()), tuple(table.force or ()), table.damping)
 
 
-def _wheel(case: DropCase) -> Wheel | None:
+def _wheel(case: DropCase, unsprung: float) -> Wheel | None:
     w = case.wheel
     if w is None:
         return None
-    mass = case.unsprung if w.mass is None else w.mass
+    mass = unsprung if w.mass is None else w.mass
     return Wheel(w.inertia, w.radius, w.speed, w.friction, w.stiffness, mass, w.damping)
 
 
@@ -135,9 +181,12 @@ def fallen(study: Study, name: str, leg: Drop) -> Landing:
         raise study.error(f"case.{name}: {error}", code=error.code) from None
 
 
-def drop_note(case: DropCase) -> str:
-    """The clause of a drop."""
-    return "" if case.rule is None else f"{DROPS[case.rule].clause}."
+def drop_note(case: DropCase, leg: Drop) -> str:
+    """The clause of a drop, and its unsprung mass where the mechanism gives it."""
+    clause = "" if case.rule is None else f"{DROPS[case.rule].clause}."
+    if case.unsprung is not None:
+        return clause
+    return f"{clause} Unsprung mass {leg.unsprung:.4g} kg, of the mechanism's bodies.".strip()
 
 
 def still(where: Touchdown) -> list[Law]:

@@ -39,6 +39,35 @@ def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]
             at,
             "clamped-in-lugs",
         )
+    out = _fitting(study, pin, at)
+    if joints == "foundation" and (reason := beyond_foundations(pin, out)):
+        raise study.error(
+            f'pin {pin.name} on foundations: {reason}; use analysis.joints = "contact"',
+            at,
+            "beyond-foundations",
+        )
+    return out
+
+
+def given_lugs(study: Study, pin: PinLike, holding: tuple[Lug, ...]) -> tuple[Lug, ...]:
+    """Those of a pin that the study gives, which checks know whatever holds the pin. holding: its
+    `lugs`, where these hold it.
+
+    Raises: InputError for impossible ones.
+    """
+    given = study.table.pin[pin.name].lug
+    profile = pin.profile if isinstance(pin, CutPin) else pin
+    if not given or not isinstance(profile, Pin):
+        return ()
+    every = holding or _fitting(study, profile, f"pin.{pin.name}.lug")
+    return tuple(lug for lug in every if lug.connection in given)
+
+
+def _fitting(study: Study, pin: Pin, at: str) -> tuple[Lug, ...]:
+    """One for every connection and those of a structure. at: their key. Raises: InputError for
+    impossible ones.
+    """
+    table = study.table.pin[pin.name]
     made_of = material(study, table.material)
     out = []
     for connection in _held(pin, table):
@@ -51,12 +80,6 @@ def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]
             fitted(on_structure(pin, tried), made_of, tried)
     except ArgumentError as error:
         raise study.error(str(error), at, error.code) from None
-    if joints == "foundation" and (reason := beyond_foundations(pin, out)):
-        raise study.error(
-            f'pin {pin.name} on foundations: {reason}; use analysis.joints = "contact"',
-            at,
-            "beyond-foundations",
-        )
     return tuple(out)
 
 

@@ -20,6 +20,7 @@ from geometry import (
 from geometry.coded import Place
 from geometry.shape.drill import FLAT_TIP
 from geometry.shape.polyline import Bend, Stripe, pin_of_polyline, with_stripes
+from loads import on_disk
 from pinstress.schema.pins import BottomTable, HoleTable, PassageTable, PinTable
 from pinstress.study.errors import Wrong
 from pinstress.study.file import Study
@@ -218,5 +219,6 @@ def _from_file(study: Study, name: str, p: PinTable) -> PinLike:
 
     assert p.geometry is not None
     places = tuple(Band(n, b.z, b.surface, b.connection) for n, b in p.band.items())
-    file = BodyFile(name, study.path_to(p.geometry), METRES[p.geometry_unit], places)
+    path = on_disk(study.path_to(p.geometry))
+    file = BodyFile(name, path, METRES[p.geometry_unit], places)
     return read_body(file, (clamp for _, clamp in _clamps(study, name)))

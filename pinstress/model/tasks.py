@@ -15,7 +15,7 @@ from fea.joint.lugs.lug import Lug
 from geometry import PinLike
 from loads import Reactions
 from pinstress.model.cases import CaseLoads
-from pinstress.model.lugs import Surroundings, lugs, surroundings
+from pinstress.model.lugs import Surroundings, given_lugs, lugs, surroundings
 from pinstress.model.moving_loads import MovingLoads
 from pinstress.model.pins import material
 from pinstress.study.file import Study
@@ -36,7 +36,8 @@ class Task:
     left_out: by case, the connections whose force and moment are not applied because their band is
     clamped. ranges: by case, the loads over the ranges of its impulse. between: of the cases that
     are motions, the loads at any times. lugs: that support the pin, if any; surroundings: in which
-    it may sit where none do. impulses: by case, of those that have one.
+    it may sit where none do. impulses: by case, of those that have one. given: the lugs that the
+    study gives, whether they support the pin or not.
     """
 
     pin: PinLike
@@ -49,6 +50,7 @@ class Task:
     lugs: tuple[Lug, ...] = ()
     surroundings: Surroundings | None = None
     impulses: dict[str, PinImpulse] = field(default_factory=dict)
+    given: tuple[Lug, ...] = ()
 
 
 def tasks(study: Study, pins: list[PinLike], loads: dict[str, CaseLoads]) -> list[Task]:
@@ -111,9 +113,11 @@ def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, 
             impulses[case] = PinImpulse(given.impulse.time, made(given.impulse.reactions))
     in_lugs = lugs(study, pin, clamps) if cases else ()
     around = surroundings(study, pin, clamps) if cases and not in_lugs else None
+    given_ones = given_lugs(study, pin, in_lugs) if cases else ()
     return Task(
-        pin, made_of, clamps, tuple(cases), left_out, ranges, between, in_lugs, around, impulses
-    )
+        pin, made_of, clamps, tuple(cases), left_out, ranges, between, in_lugs, around, impulses,
+        given_ones,
+    )  # fmt: skip
 
 
 def _at(made: Callable[..., PinLoads], moving: MovingLoads, times: Floats) -> PinLoads:

@@ -1,4 +1,4 @@
-"""Jobs side by side, in as many processes, each of which takes one job after another.
+"""Jobs side by side, in as many processes, each of which takes one job after another over a pipe.
 
 Forked on Linux, because a child then has every library imported (two seconds otherwise) and all
 that it needs without anything being sent. A fork is safe while no other thread runs, so
@@ -7,7 +7,8 @@ thread. On other systems processes are started anew (pinstress.processes.anew) a
 which must pickle. One thread costs nothing that was measured: of a solid with 185,000 unknowns
 neither time nor any bit of the answer changed. A crash inside a mesher ends its process and costs
 the job that was being done; another process goes on with the rest. Not a process for every job: the
-memory that each touches anew took a sixth of all the time of many small pins.
+memory that each touches anew took a sixth of all the time of many small pins. No socket is opened
+that another process could find: whoever is neither this process nor its child cannot send a job.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ import traceback
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from importlib import import_module
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
@@ -38,6 +40,8 @@ T = TypeVar("T")
 T_co = TypeVar("T_co", covariant=True)
 Tell = Callable[[str], None]
 Progress = Callable[[str, float], None]
+Item = TypeVar("Item")
+Serve = Callable[[Item, Tell], T]
 
 TICK = 0.2  # s between two calls of progress at most, for its clock
 GRACE = 0.5  # s for a process to clean up once asked to end
@@ -81,8 +85,12 @@ def processes(asked: int | None) -> int:
     require_count("jobs", asked)
     if portable():
         return asked or cores()
-    threads = len(os.listdir("/proc/self/task"))
-    return 1 if threads > 1 else asked or cores()
+    return (asked or cores()) if can_fork() else 1
+
+
+def can_fork() -> bool:
+    """Whether that is safe: with other threads, the child could wait for their locks forever."""
+    return not portable() and len(os.listdir("/proc/self/task")) == 1
 
 
 def preload(*modules: str) -> None:
@@ -99,12 +107,15 @@ def preload(*modules: str) -> None:
 
 
 def side_by_side(
-    jobs: Sequence[Job[T]], most: int, progress: Progress = lambda _, __: None
+    jobs: Sequence[Job[T]],
+    most: int,
+    progress: Progress = lambda _, __: None,
+    anew: bool = False,
 ) -> list[T | Died]:
     """What the jobs return, in their order; they start in that order, at most so many at a time.
 
     With `most` 1 they are done in this process. progress: called with what is being done and the
-    part of the jobs that is behind.
+    part of the jobs that is behind. anew: whether processes are started anew on Linux too.
 
     Raises: what a job raises, at once, with its name and traceback in a note; no process is left.
     """
@@ -112,33 +123,78 @@ def side_by_side(
         return [job.work(_teller(progress, i / len(jobs))) for i, job in enumerate(jobs)]
     waiting = list(reversed(range(len(jobs))))
     found: dict[int, T | Died] = {}
+    sends = anew or portable()
+
+    def take() -> tuple[str, int | tuple[int, Job[T]]] | None:
+        if not waiting:
+            return None
+        number = waiting.pop()
+        return jobs[number].name, (number, jobs[number]) if sends else number
+
+    def give(item: int | tuple[int, Job[T]], value: T | Died) -> None:
+        found[item if isinstance(item, int) else item[0]] = value
+
+    serve: Serve[Any, T] = _sent_job if sends else partial(_numbered_job, jobs)
+
+    def show(doing: str) -> None:
+        progress(doing, len(found) / len(jobs))
+
+    served(serve, take, give, most, show, lambda: not sends)
+    return [found[i] for i in range(len(jobs))]
+
+
+def served(
+    serve: Serve[Item, T],
+    take: Callable[[], tuple[str, Item] | None],
+    give: Callable[[Item, T | Died], None],
+    most: int,
+    progress: Callable[[str], None] = lambda _: None,
+    forks: Callable[[], bool] = can_fork,
+) -> None:
+    """Have processes serve items, at most so many at a time, until none is left. take: the name of
+    the next item and the item, None while there is none. give: called with each and what came of
+    it; there may be further items then. progress: called with what is being done. forks: whether
+    the next process is forked, by default where that is safe.
+
+    A process that is not forked is started anew and sent `serve`; items are always sent.
+
+    Raises: what `serve` raises, at once, with the name and traceback in a note; no process is left.
+    """
     running: dict[Connection, _Child] = {}
     try:
-        while len(found) < len(jobs):
-            new = [_start(jobs) for _ in range(min(most - len(running), len(waiting)))]
-            running |= {child.pipe: child for child in new}
-            for child in new:
-                child.take(waiting.pop(), jobs)
+        while True:
+            while len(running) < most and (item := take()) is not None:
+                child = _start(serve, forks())
+                running[child.pipe] = child
+                child.take(*item)
+            if not running:
+                return
             for pipe in wait(list(running), TICK):
                 assert isinstance(pipe, Connection)
                 child = running[pipe]
                 kind, value = child.next()
                 if kind == "tells":
                     child.doing = value
-                elif kind == "raises":
+                    continue
+                if kind == "raises":
                     raise value
+                give(child.item, value)
+                if kind == "returns" and (item := take()) is not None:
+                    child.take(*item)
                 else:
-                    found[child.number] = value
-                    if kind == "returns" and waiting:
-                        child.take(waiting.pop(), jobs)
-                    else:
-                        running.pop(pipe).close()
-            doing = "; ".join(child.doing for child in running.values())
+                    running.pop(pipe).close()
             interrupts.require_none()
-            progress(doing, len(found) / len(jobs))
+            progress("; ".join(child.doing for child in running.values()))
     finally:
         _end(list(running.values()))
-    return [found[i] for i in range(len(jobs))]
+
+
+def _numbered_job(jobs: Sequence[Job[T]], number: int, tell: Tell) -> T:
+    return jobs[number].work(tell)
+
+
+def _sent_job(item: tuple[int, Job[T]], tell: Tell) -> T:
+    return item[1].work(tell)
 
 
 def _teller(progress: Progress, part: float) -> Tell:
@@ -153,14 +209,14 @@ def _teller(progress: Progress, part: float) -> Tell:
 class _Child:
     process: BaseProcess
     pipe: Connection
-    number: int = -1
+    item: Any = None
     doing: str = ""
 
-    def take(self, number: int, jobs: Sequence[Job[Any]]) -> None:
-        """Do this job next."""
-        self.number, self.doing = number, jobs[number].name
+    def take(self, name: str, item: object) -> None:
+        """Do this next."""
+        self.item, self.doing = item, name
         with suppress(OSError):  # it has ended meanwhile, as `next` will tell
-            self.pipe.send(jobs[number] if portable() else number)
+            self.pipe.send((name, item))
 
     def next(self) -> tuple[str, Any]:
         """What it says next: "tells", "raises", "returns" or "dies", and what."""
@@ -189,14 +245,14 @@ def ended(status: int) -> str:
     return text + "; it may have run out of memory" * (status == -KILLED)
 
 
-def _start(jobs: Sequence[Job[T]]) -> _Child:
+def _start(serve: Serve[Item, T], forks: bool) -> _Child:
     ours, theirs = multiprocessing.Pipe()
     process: BaseProcess
-    if portable():
-        process = started_anew(_serve, (), theirs, os.getpid(), tuple(_preloaded))
+    if not forks:
+        process = started_anew(_serve, serve, theirs, os.getpid(), tuple(_preloaded))
     else:
         process = multiprocessing.get_context("fork").Process(
-            target=_serve, args=(jobs, theirs, os.getpid()), daemon=False
+            target=_serve, args=(serve, theirs, os.getpid()), daemon=False
         )
         with interrupts.blocked():  # a child that ours reach would go on with what we are doing
             process.start()
@@ -205,10 +261,10 @@ def _start(jobs: Sequence[Job[T]]) -> _Child:
 
 
 def _serve(
-    jobs: Sequence[Job[T]], pipe: Connection, parent: int, libraries: tuple[str, ...] = ()
+    serve: Serve[Item, T], pipe: Connection, parent: int, libraries: tuple[str, ...] = ()
 ) -> None:
-    """What a process does: the jobs that it is sent, by number or themselves, until there is none.
-    libraries: to be imported first.
+    """What a process does: the items that it is sent, until there is none. libraries: to be
+    imported first.
     """
     hold_threads()  # of a user of Python, whose environment does not say so
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # an interrupt is for the parent, which ends us
@@ -217,26 +273,26 @@ def _serve(
     try:
         end_with_parent(parent)
         preload(*libraries)
-        _do_jobs(jobs, pipe)
+        _do_items(serve, pipe)
     finally:  # nothing is left to be cleaned up
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
 
 
-def _do_jobs(jobs: Sequence[Job[T]], pipe: Connection) -> None:
+def _do_items(serve: Serve[Item, T], pipe: Connection) -> None:
     def say(kind: str, value: object) -> None:
         pipe.send((kind, pickle.dumps(value)))
 
     while (sent := pipe.recv()) is not None:
-        job = jobs[sent] if isinstance(sent, int) else sent
+        name, item = sent
         try:
-            say("returns", job.work(lambda message: say("tells", message)))
+            say("returns", serve(item, lambda message: say("tells", message)))
         except Exception as error:
             text = "".join(traceback.format_exception(error))
-            error.add_note(f"{job.name}, in its own process:\n{text}")
+            error.add_note(f"{name}, in its own process:\n{text}")
             try:
                 say("raises", error)
             except (pickle.PicklingError, TypeError, AttributeError):
-                say("raises", RuntimeError(f"{job.name}, in its own process:\n{text}"))
+                say("raises", RuntimeError(f"{name}, in its own process:\n{text}"))
 
 
 def _leave(*_: object) -> None:

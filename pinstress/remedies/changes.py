@@ -42,14 +42,16 @@ class Failing:
 
 def change(asked: Asked, task: Task, solutions: tuple[Solution, ...]) -> Change | None:
     """What to change of a pin, for the worst of its cases; None where none is below the required
-    factor (below yield where none is required).
+    factor (below yield where none is required) with its error.
     """
     strength, required = task.material.yield_strength, asked.required or 1.0
     worst = max(solutions, key=lambda s: s.peak.max_von_mises or 0.0)
     peak = worst.peak
-    if strength is None or not peak.max_von_mises or peak.max_von_mises <= strength / required:
+    if strength is None or not peak.max_von_mises:
         return None
-    high = peak.interval[1] if peak.interval else peak.max_von_mises
+    high = peak.upper_end
+    if (peak.max_von_mises if peak.verdict == "singular" else high) <= strength / required:
+        return None
     failing = Failing(task, worst, strength / required / high)
     impulse = task.impulses.get(peak.case)
     problem = _problem(asked, failing)

@@ -88,13 +88,20 @@ class GivenCase(CaseTable):
         return self
 
 
+Pulse = Literal["rectangular", "half-sine", "triangular"]
+
+
 class ImpulseRange(StrictTable):
-    """Other values of the impulse: the safety factor is computed for all pairs."""
+    """Other values of the impulse, of which none is known better: the safety factor is computed for
+    all combinations, and a pin is safe only if it meets its factor in all of them.
+    """
 
     impulse_time: Annotated[list[Duration], Field(min_length=1)]
     """Durations of the impulse."""
     velocity_change: Annotated[list[Annotated[Velocity, POSITIVE]], Field(min_length=1)]
     """Velocity changes."""
+    pulse: Annotated[list[Pulse], Field(min_length=1)] | None = None
+    """Shapes of the pulse. Default: that of the impulse."""
 
 
 class ImpulseTable(StrictTable):
@@ -114,7 +121,7 @@ class ImpulseTable(StrictTable):
     """Change of velocity."""
     impulse_time: Duration
     """Duration of the impulse."""
-    pulse: Literal["rectangular", "half-sine", "triangular"] = "rectangular"
+    pulse: Pulse = "rectangular"
     """Shape of the pulse; its ratio of peak to mean is 1, pi/2 or 2."""
     direction: tuple[Number, Number]
     """Direction of the force in world axes; a vector of any length except 0."""

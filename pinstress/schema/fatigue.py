@@ -67,4 +67,5 @@ class FatigueTable(StrictTable):
     """Failure probability at which damage is found. Default: that of the S-N curve."""
     method: Literal["signed-von-mises", "critical-plane", "fkm-p-ram"] = "signed-von-mises"
     """Stress that counts: the von Mises stress with a sign, Findley's critical plane, or local
-    strains by the FKM guideline."""
+    strains by the FKM guideline. Where a stress with a sign does not stand for all components, the
+    critical plane is taken instead, or fatigue is not decided."""

@@ -136,7 +136,7 @@ class WheelTable(StrictTable):
     stiffness: Stiffness | None = None
     """Fore-and-aft stiffness of the leg at the axle. Default: rigid, without spring-back."""
     mass: Mass | None = None
-    """Mass that moves fore and aft with the axle. Default: `unsprung` of the case."""
+    """Mass that moves fore and aft with the axle. Default: the unsprung mass of the case."""
     damping: Annotated[Number, Field(ge=0.0, lt=1.0)] = 0.0
     """Damping of that bending, ratio to critical."""
 
@@ -170,8 +170,10 @@ class DropCase(AtWheel):
     """Weight on this leg, the unsprung part included. Give either `weight` or `mass`."""
     mass: Mass | None = None
     """Mass on this leg, the unsprung part included."""
-    unsprung: Annotated[Mass, POSITIVE]
-    """Mass below the strut: wheel, tyre, axle, piston."""
+    unsprung: Annotated[Mass, POSITIVE] | None = None
+    """Mass below the strut: wheel, tyre, axle, piston. Default: that of the mechanism, whose bodies
+    have as much kinetic energy while the strut closes as this mass at the axle. Without a strut it
+    must be given."""
     velocity: Annotated[Velocity, POSITIVE] | None = None
     """Velocity of descent. Default: that of the rule."""
     wing_loading: Stress | None = None
@@ -219,7 +221,7 @@ class GroundCase(AtWheel):
     either `reference` or, for the former, `drop`."""
     drop: str | None = None
     """A case of kind "drop", whose largest vertical reaction is the reference, with its strut as at
-    that instant."""
+    that instant; for 25.479-drift at 75 % of its stroke then."""
 
     @model_validator(mode="after")
     def _one_reference(self) -> "GroundCase":

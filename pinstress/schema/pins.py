@@ -302,8 +302,8 @@ class PinTable(StrictTable):
     contact stress at limit load, too."""
     clamp: list[str] = []
     """Clamped surfaces: "start" and "end" (the end faces), the name or connection of a segment (its
-    outer surface), "hole 1", "flat 1", "slot 1", "passage 1", or a band. Default: none; the loads
-    must then be nearly in equilibrium."""
+    outer surface), "hole 1", "flat 1", "slot 1", "passage 1", or a band. Default: none; forces and
+    couples must then be nearly in equilibrium, or carried by lugs."""
 
     @model_validator(mode="after")
     def _one_shape(self) -> "PinTable":

@@ -55,9 +55,12 @@ class AnalysisTable(StrictTable):
     limit_load: LimitLoads = "auto"
     """For which rows the load is found at which the pin collapses: those that yield, by a beam
     where that decides whether they carry their loads, otherwise by an elastic-plastic solid
-    ("auto"); all rows ("always") or those of some pins, by the solid; none ("never")."""
+    ("auto", where each has 20 s of processor time, but with `run --limit-load` as long as it
+    takes); all rows ("always") or those of some pins, by the solid, however long it takes; none
+    ("never")."""
     required_safety_factor: Annotated[Number, Field(gt=0.0)] | None = None
-    """Safety factor that every pin must reach. Default: no comparison."""
+    """Safety factor that every pin must reach: yield strength over stress under the loads of the
+    study, without the factors below. Default: no comparison."""
     limit_factor: Annotated[Number, Field(gt=0.0)] = 1.0
     """Factor on the loads of the study for checks at limit load, against yield."""
     ultimate_factor: Annotated[Number, Field(gt=0.0)] = 1.5
@@ -68,9 +71,10 @@ class AnalysisTable(StrictTable):
     CFR 25.625 demands 1.15."""
 
     bending_moment: Literal["joint", "formula"] = "joint"
-    """Which bending moments and shear forces the margins of pins in solved joints take: those of
+    """Which bending moments and shear forces the checks of pins in solved joints take: those of
     the joint model ("joint") or those of even loads on the bands ("formula"); the others are
-    listed for comparison. Pins without a joint model always have the formulas'."""
+    listed for comparison, but the joint model's govern too where even loads leave a couple over.
+    Pins without a joint model always have the formulas'."""
 
     @model_validator(mode="after")
     def _ultimate_is_more(self) -> "AnalysisTable":

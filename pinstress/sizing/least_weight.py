@@ -16,7 +16,7 @@ from pinstress.sizing.other_dimensions import written_study
 from pinstress.sizing.pin_shape import VariedShape
 from pinstress.sizing.scaled_study import resized_study
 from pinstress.study.file import Study
-from reports.data.decision import ORDER, SAFE, outcome
+from reports.data.decision import ORDER, SAFE, factor_ends, outcome
 from reports.data.results import PinResult, Results
 
 PASSES = 5
@@ -97,13 +97,8 @@ def _worse(
 
 
 def low_factor(pin: PinResult) -> float | None:
-    """The factor that counts: of a converged row as it is, of any other its lower end."""
-    if pin.safety_factor is None or pin.verdict == "converged":
-        return pin.safety_factor
-    if pin.safety_factor_interval is not None:
-        return pin.safety_factor_interval[0]
-    stress, error = pin.max_von_mises, pin.error_estimate
-    return pin.safety_factor / (1.0 + (error or 0.0) / stress) if stress else None
+    """The factor that counts: that of the maximum with its error."""
+    return factor_ends(pin)[0] if pin.safety_factor is not None and pin.max_von_mises else None
 
 
 def _all(
@@ -145,8 +140,8 @@ def _agrees(each: Lightest, results: Results, aim: Aim) -> bool:
     """Whether the run has the factor that was found for a pin, with little excess."""
     more = aim.of_pin(each.pin)
     mine = [p for p in results.pins if p.pin == each.pin]
-    if any(p.verdict == "unconverged" and p.meets_required for p in mine):
-        return all(p.meets_required is not False for p in mine)  # it ended where that was decided
+    if any(p.verdict == "unconverged" and p.decided for p in mine):
+        return all(p.decided is not False for p in mine)  # it ended where that was decided
     low = [f / more.get(p.case, 1.0) for p in mine if (f := low_factor(p)) is not None]
     if each.factor is None or not low:
         return True

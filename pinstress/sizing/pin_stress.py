@@ -109,16 +109,6 @@ class _Found:
     guess: Floats | None = None
 
 
-def counted(peak: Peak) -> float:
-    """The stress (Pa) that is compared with what is allowed: a converged one as it is, the upper
-    end of any other.
-    """
-    stress = peak.max_von_mises or 0.0
-    if peak.verdict == "converged":
-        return stress
-    return peak.interval[1] if peak.interval else stress + (peak.error_estimate or 0.0)
-
-
 class UndifferentiatedError(Exception):
     """Stress has no derivatives by dimensions: of a pin with cuts, or of some in contact."""
 
@@ -281,10 +271,10 @@ class PinStress:
             if not peak.max_von_mises:
                 continue
             if not differentiated:
-                yield peak, [_Found(peak.case, peak.case, counted(peak), lambda: np.zeros(0))]
+                yield peak, [_Found(peak.case, peak.case, peak.upper_end, lambda: np.zeros(0))]
             elif isinstance(each, LugSolution):
                 slopes = partial(self._by_contact, study, task, each, peak.max_von_mises)
-                yield peak, [_Found(peak.case, peak.case, counted(peak), slopes)]
+                yield peak, [_Found(peak.case, peak.case, peak.upper_end, slopes)]
             else:
                 yield peak, self._parts(task, each, dimensions, section)
 
@@ -340,7 +330,7 @@ class PinStress:
                 slope = np.array([made.by_dimension.get(d.key, 0.0) for d in dimensions])
                 return slope / made.maximum
 
-            return [_Found(peak.case, peak.case, counted(peak), whole)]
+            return [_Found(peak.case, peak.case, peak.upper_end, whole)]
         zones = answer.singularities
         if peak.verdict != "converged" and peak.interval is not None:
             near = min(VARIED)
@@ -349,7 +339,7 @@ class PinStress:
         solved = SolvedCase(pin, task.material, clamps, solution.loads, answer.solution, zones)
         masks = halves(pin.stations, answer.fields.points)
         tops = parts.tops(solved, solution.loads, masks)
-        times = counted(peak) / max(top.top.value for top in tops)
+        times = peak.upper_end / max(top.top.value for top in tops)
 
         def slopes(top: PartTop, mask: Mask) -> Callable[[], Floats]:
             return lambda: parts.slopes(solved, solution.loads, top, mask) / top.top.value

@@ -81,7 +81,8 @@ def size_pin(
     before: float | None = None
     start = others.get(pin, 1.0)
     try:
-        before = factor_at(start)
+        factor_at(start)
+        before = _nominal(study, found[start])
         best = smallest(factor_at, wish.required, start)
         scale, factor = best.scale, best.factor
         if wish.step is not None:
@@ -135,6 +136,14 @@ def governing(plan: Plan, study: Study, pin: str, tell: Tell = lambda _: None) -
 
 
 def _factor(study: Study, peak: Peak) -> float:
+    """Of the maximum with its error, which has to decide; of a singular one, which decides nothing,
+    of the maximum outside the excluded zones.
+    """
+    factor, stress = _nominal(study, peak), peak.max_von_mises or 0.0
+    return factor if peak.verdict == "singular" else factor * stress / peak.upper_end
+
+
+def _nominal(study: Study, peak: Peak) -> float:
     material = material_of(study, study.table.pin[peak.pin].material)
     factor = peak.safety_factor(material.yield_strength)
     assert factor is not None  # a pin without strength is refused before

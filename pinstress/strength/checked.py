@@ -7,20 +7,21 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fea.checks.hand_checks import hand_checks
 from fea.checks.lug_checks import lug_checks
 from fea.checks.records import HandCheck
 from fea.core.peak import Peak
 from fea.core.pin_loads import PinLoads
 from fea.joint.lugs.fit import on_structure
+from fea.joint.lugs.lug import Lug
 from fea.joint.records import JointResult
 from fea.plastic.records import LimitLoad
 from fea.strength.bending_arms import BendingArms, bending_arms
 from fea.strength.collapse import collapse_margin
 from fea.strength.margin import PinMargin, not_made
 from fea.strength.model_stress import model_margins
-from fea.strength.pin_checks import formula_margins
-from fea.strength.situation import LoadFactors, Situation, with_supports
+from fea.strength.nominal_stress import nominal_margins
+from fea.strength.pin_checks import formula_margins, pin_checks
+from fea.strength.situation import LoadFactors, Situation, with_solved, with_supports
 from geometry import CutPin, Pin
 from pinstress.model.tasks import Task
 from pinstress.study.file import Study
@@ -43,7 +44,8 @@ def checked(
 ) -> Checked:
     """By formula and by the model. A pin that is cut is checked as if it were not."""
     factors = load_factors(study)
-    margins = model_margins(peak, task.material, factors)
+    required = study.table.analysis.required_safety_factor
+    margins = model_margins(peak, task.material, factors, required)
     if limit is not None:
         margins.append(collapse_margin(limit, factors, peak.time))
     loads = next(x for x in task.loads if x.case == peak.case)
@@ -56,16 +58,20 @@ def checked(
         s, why = _situation(study, task, profile, loads, joint)
         if s is None:
             checks = _lugs_checked(study, task, profile, loads)
+            made_of = {lug.material.name: lug.material for lug in task.given}
+            margins += nominal_margins(checks, made_of, factors)
         else:
-            checks = hand_checks(s.pin, s.material, s.loads, s.clamps)
-            checks += _lugs_checked(study, task, s.pin, s.loads)
+            checks = pin_checks(s) + _lugs_checked(study, task, s.pin, s.loads)
             if peak.verdict == "rigid":
                 why = "supports of the pin, or loads in equilibrium"
             else:
                 margins += formula_margins(s, checks)
                 arms = _arms(s, task, peak, joint)
-    if why:
-        margins.append(not_made(FORMULAS, "", "limit", factors.at("limit"), why))
+    lacking = {FORMULAS: why} if why else {}
+    if isinstance(profile, Pin):
+        lacking |= _held_lugs(study, task)
+    for method, needs in lacking.items():
+        margins.append(not_made(method, "", "limit", factors.at("limit"), needs))
     return Checked(checks, tuple(PinMargin(peak.pin, peak.case, m) for m in margins), arms)
 
 
@@ -88,28 +94,30 @@ def factor_assumption(study: Study, found: Sequence[Checked]) -> tuple[str, ...]
 def _situation(
     study: Study, task: Task, profile: Pin, loads: PinLoads, joint: JointResult | None
 ) -> tuple[Situation | None, str]:
-    """None, and why, where equilibrium does not give all forces."""
+    """None, and why, where neither the joint nor equilibrium gives all forces."""
+    along = joint.along if joint else None
+    if along is not None and along.times is not None and len(along.times) != len(loads):
+        loads = task.between[loads.case](along.times)
     structure = [x.connection for x in task.lugs if x.connection not in profile.connections]
-    whole = with_supports(profile, loads, structure)
+    simple = with_supports(profile, loads, structure)
+    whole = with_solved(loads, structure, along) if structure and along else simple
     if whole is None:
         names = ", ".join(structure)
         return None, f"the forces of the structure's lugs {names}, which equilibrium does not give"
     table = study.table.pin[profile.name]
-    lugs = tuple(x for x in task.lugs if x.connection in table.lug)
     pin = on_structure(profile, task.lugs) if structure else profile
     factors = load_factors(study)
     made_of, clamps = task.material, task.clamps
     even = study.table.analysis.bending_moment == "formula"
     return Situation(
-        pin, made_of, whole, clamps, lugs, factors, table.replaceable,
-        joint.along if joint else None, even,
+        pin, made_of, whole, clamps, task.given, factors, table.replaceable,
+        along, even, None if simple is whole else simple,
     ), ""  # fmt: skip
 
 
 def _lugs_checked(study: Study, task: Task, pin: Pin, loads: PinLoads) -> tuple[HandCheck, ...]:
     """Of the lugs whose size is given."""
-    given = study.table.pin[pin.name].lug
-    sized = [x for x in task.lugs if x.connection in given and given[x.connection].outer_diameter]
+    sized = _sized(study, task)
     bores = {
         lug.connection: 2.0 * (pin.band(lug.connection).radius + lug.bushing.thickness)
         for lug in sized
@@ -118,16 +126,25 @@ def _lugs_checked(study: Study, task: Task, pin: Pin, loads: PinLoads) -> tuple[
     return lug_checks(pin, sized, loads, bores)
 
 
+def _sized(study: Study, task: Task) -> list[Lug]:
+    given = study.table.pin[task.pin.name].lug
+    return [lug for lug in task.given if given[lug.connection].outer_diameter]
+
+
+def _held_lugs(study: Study, task: Task) -> dict[str, str]:
+    """Checks that lugs at clamps lack, and what."""
+    clamped = {task.pin.surface(name) for name in task.clamps}
+    names = [x.connection for x in _sized(study, task) if x.connection in clamped]
+    why = "the force that a clamp takes, which contact with the lug instead of the clamp gives"
+    return {f"lug of {name}: net section, shear-out, bearing": why for name in names}
+
+
 def _arms(s: Situation, task: Task, peak: Peak, joint: JointResult | None) -> BendingArms:
-    """At the governing instant."""
-    now = s.loads.at(np.array([0]))
-    if peak.time is not None and peak.case in task.between:
-        links = task.between[peak.case](np.array([peak.time]))
-        structure = [name for name in s.loads.surfaces if name not in links.surfaces]
-        whole = with_supports(s.pin, links, structure)
-        assert whole is not None  # as for the instants of the case
-        now = whole
-    elif peak.time is not None and s.loads.times is not None:
-        now = s.loads.at(np.array([np.abs(s.loads.times - peak.time).argmin()]))
+    """At the governing instant, which is one of the joint's."""
+    now = s.by_formula.at(np.array([0]))
+    if peak.time is not None and s.joint is None and peak.case in task.between:
+        now = task.between[peak.case](np.array([peak.time]))
+    elif peak.time is not None and s.by_formula.times is not None:
+        now = s.by_formula.at(np.array([np.abs(s.by_formula.times - peak.time).argmin()]))
     moment, model = (joint.bending_moment, joint.model) if joint else (None, "")
-    return bending_arms(replace(s, loads=now), moment, model)
+    return bending_arms(replace(s, loads=now, simple=None), moment, model)

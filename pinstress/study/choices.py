@@ -27,6 +27,7 @@ class Chosen(TypedDict, total=False):
     model: Model | None
     tolerance: float | None
     memory: float | None
+    limit_load: bool
 
 
 class ChoiceError(InputError):

@@ -18,6 +18,7 @@ from pinstress.schema.tables import StudyTable
 from pinstress.schema.types import KINDS
 from pinstress.schema.units import SYSTEMS, UnitSystem
 from pinstress.study.cases_of_tables import with_cases_of_tables
+from pinstress.study.counted_twice import counted_twice
 from pinstress.study.errors import InputError, Wrong, study_error
 from pinstress.study.file_names import same_files
 from pinstress.study.limits import control_characters, texts, too_many
@@ -168,7 +169,8 @@ def parse_study(path: Path, text: str, located: bool = True) -> Study:
     ]
     table = _table(path, lines, raw, wrong)
     wrong += control_characters([*texts(raw), *((s.key, s.note) for s in provenance)])
-    doubtful = questions(table, raw, _system(raw))
+    notes = {s.key: s.note for s in provenance}
+    doubtful = questions(table, raw, _system(raw)) + counted_twice(table.analysis, notes)
     if beyond := list(too_many(table)):
         wrong += [Wrong(text, code="too-large") for text in beyond]
         wrong += [Wrong(text, code="doubtful") for text in doubtful]  # a wrong unit may be why

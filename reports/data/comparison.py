@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from reports.data.decision import FAILS, NOT_DECIDED, YIELDS
+from reports.data.decision import DEPENDS, FAILS, NOT_DECIDED, YIELDS
 
 SAME = 1e-9  # relative: what differs by less has not changed
 DECISION = "decision changed"
@@ -157,7 +157,7 @@ def _above(low: float | None, high: float | None) -> bool:
 def _place(row: RowPair) -> tuple[int, bool, float]:
     """The most important first."""
     change = row.change
-    worse = row.second is not None and row.second.outcome in (FAILS, YIELDS, NOT_DECIDED)
+    worse = row.second is not None and row.second.outcome in (FAILS, YIELDS, NOT_DECIDED, DEPENDS)
     size = 0.0 if change is None else -abs(math.log(max(1.0 + change, 1e-300)))
     return KINDS.index(row.kind), not worse, size
 

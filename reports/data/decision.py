@@ -7,30 +7,47 @@ from math import inf
 from reports.data.results import PinResult, Results
 
 SAFE, FAILS, NOT_DECIDED = "safe", "fails", "not decided"
+DEPENDS = "depends"  # safe as described, but not within a range that the study leaves open
 BELOW, YIELDS = "below yield", "yields"  # where no factor is required
-ORDER = {FAILS: 0, YIELDS: 0, NOT_DECIDED: 1, SAFE: 2, BELOW: 2}
+ORDER = {FAILS: 0, YIELDS: 0, NOT_DECIDED: 1, DEPENDS: 2, SAFE: 3, BELOW: 3}
 
 Ends = tuple[float, float]
 
 
 def outcome(pin: PinResult) -> str:
-    """Whether a pin meets its required factor: safe, fails or not decided; without a required
-    factor, whether it yields.
-
-    An unconverged row may have an error small enough to decide. A singular one can only fail or
-    yield, because the stress inside the excluded zones is unbounded.
+    """Whether a pin meets its required factor: safe, fails, not decided, or depends on what the
+    study leaves open; without a required factor, whether it yields.
     """
-    if pin.verdict in ("rigid", "failed") or (
-        pin.verdict == "unconverged" and pin.meets_required is None
-    ):
+    found = as_described(pin)
+    return DEPENDS if found in (SAFE, BELOW) and pin.depends_on else found
+
+
+def as_described(pin: PinResult) -> str:
+    """The outcome of a pin that is exactly as its study describes it."""
+    return in_words(pin.decided, pin.required)
+
+
+def in_words(decided: bool | None, required: float | None) -> str:
+    """decided: whether a maximum stays below what is permitted (fea.core.peak.decides)."""
+    if decided is None:
         return NOT_DECIDED
-    if pin.meets_required is not None:
-        found = SAFE if pin.meets_required else FAILS
-    elif pin.yields is not None:
-        found = YIELDS if pin.yields else BELOW
-    else:
-        return NOT_DECIDED
-    return NOT_DECIDED if pin.verdict == "singular" and found in (SAFE, BELOW) else found
+    if required is None:
+        return BELOW if decided else YIELDS
+    return SAFE if decided else FAILS
+
+
+def factor_ends(pin: PinResult) -> Ends:
+    """The safety factor of a row that has one, from its lower to its upper end by the error of the
+    maximum; inf where no stress may be left.
+    """
+    if pin.safety_factor_interval is not None:
+        low, high = pin.safety_factor_interval
+        return low, inf if high is None else high
+    factor, stress, error = pin.safety_factor or 0.0, pin.max_von_mises, pin.error_estimate or 0.0
+    if not stress:
+        return factor, factor
+    least = stress - error
+    return factor * stress / (stress + error), factor * stress / least if least > 0.0 else inf
 
 
 def limit(results: Results) -> float:
@@ -46,15 +63,6 @@ def utilisation(pin: PinResult, limit: float) -> Ends | None:
         return None
     low, high = pin.safety_factor_interval or (pin.safety_factor, pin.safety_factor)
     return (0.0 if high is None else limit / high), (limit / low if low else inf)
-
-
-def margin(pin: PinResult, limit: float) -> Ends | None:
-    """Margin of safety, actual over required factor less 1; ends as of `utilisation`."""
-    used = utilisation(pin, limit)
-    if used is None:
-        return None
-    low, high = used
-    return (1.0 / high - 1.0), (1.0 / low - 1.0 if low else inf)
 
 
 def worst_first(results: Results) -> list[PinResult]:

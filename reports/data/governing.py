@@ -1,8 +1,11 @@
-"""Which check governs: the one with the least margin of safety."""
+"""Which check governs beside the model's stress against yield, which has rows of its own: the one
+with the least margin of safety.
+"""
 
 from __future__ import annotations
 
 from fea.strength.margin import PinMargin
+from fea.strength.model_stress import YIELD
 from reports.data.results import Results
 
 
@@ -11,7 +14,7 @@ def governing(results: Results) -> list[PinMargin]:
     found: dict[tuple[str, str], PinMargin] = {}
     for margin in results.margins:
         key = margin.pin, margin.case
-        may = margin.margin.governs and margin.used >= 0.0
+        may = margin.margin.governs and margin.used >= 0.0 and margin.margin.method != YIELD
         if may and (key not in found or margin.used > found[key].used):
             found[key] = margin
     return sorted(found.values(), key=lambda margin: -margin.used)

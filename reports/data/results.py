@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Self
+from typing import Annotated, Literal, Self
 
 from fea.checks.opinions import Opinion
 from fea.checks.records import BeamCheck, HandCheck
@@ -56,12 +56,12 @@ from reports.data.sensitivities import PinSensitivities, Sensitivity
 from reports.data.surface import Surface
 
 __all__ = [
-    "BandLoad", "BeamCheck", "Change", "Dimensioned", "DriveEffort", "DriveTable", "DropPeak",
-    "DropRecord", "Extremes", "Fatigue", "Field", "Floats", "GoverningLoad", "GuideForces",
-    "HandCheck", "LandingRange", "LegTable", "LinkageMotion", "MotionCheck", "PeakReaction",
-    "PinResult", "PinSensitivities", "PinShape", "PitchCurve", "PointPath", "PowerLedger",
-    "Provenance", "PublishedValue", "ReactionTable", "Refinement", "Results", "Sensitivity",
-    "SingularZone", "Still", "Surface", "TitleBlock", "Units", "Volume",
+    "BandLoad", "BeamCheck", "Change", "Dependence", "Dimensioned", "DriveEffort", "DriveTable",
+    "DropPeak", "DropRecord", "Extremes", "Fatigue", "Field", "Floats", "GoverningLoad",
+    "GuideForces", "HandCheck", "LandingRange", "LegTable", "LinkageMotion", "MotionCheck",
+    "PeakReaction", "PinResult", "PinSensitivities", "PinShape", "PitchCurve", "PointPath",
+    "PowerLedger", "Provenance", "PublishedValue", "ReactionTable", "Refinement", "Results",
+    "Sensitivity", "SingularZone", "Still", "Surface", "TitleBlock", "Units", "Volume",
 ]  # fmt: skip
 
 
@@ -91,12 +91,40 @@ class GoverningLoad:
 
 
 @dataclass(frozen=True)
+class Dependence:
+    """Something that the study gives as a range, or that is seldom known, and that changes the
+    outcome of a row.
+
+    what: "clearance", "impulse time"; value: in words where it is not a number ("guided"). over:
+    whose range. factor: of safety there. given, at, flips_at: as the study has it, where the
+    outcome is another, and between them where it changes (interpolated), of `dimension`; None where
+    it is not a number.
+    """
+
+    what: str
+    value: str
+    over: Literal["joint", "landing"]
+    factor: float
+    given: Annotated[float, "own"] | None = None
+    at: Annotated[float, "own"] | None = None
+    flips_at: Annotated[float, "own"] | None = None
+    dimension: str = "1"
+
+    @property
+    def instead(self) -> dict[str, str]:
+        return {"own": self.dimension}
+
+
+@dataclass(frozen=True)
 class PinResult:
     """One pin in one case. Numbers are None for `rigid` and `failed`, time without a motion.
 
-    location: x, y, z in the pin's own axes. held: the supports of the pin, in words. left_out:
-    given forces that were not applied because their band is clamped. published_*: the publication's
-    value, in the study's units. position_unit: as a ReactionTable's.
+    decided: whether the maximum with its error stays below what the `required` factor permits (1
+    where none is required), as the study describes the pin; None where that is open. depends_on:
+    what within its range changes that. location: x, y, z in the pin's own axes. held: the supports
+    of the pin, in words. left_out: given forces that were not applied because their band is
+    clamped. published_*: the publication's value, in the study's units. position_unit: as a
+    ReactionTable's.
     why: which model answered and why it was enough. singular_at: stress singularities; where one
     governs (verdict `singular`) maximum and factor are those outside all of them, as are those of
     the history; the intervals are those over half and twice the excluded distance, and
@@ -117,7 +145,7 @@ class PinResult:
     position: DrivePosition | None
     safety_factor: float | None
     yields: bool | None
-    meets_required: bool | None
+    decided: bool | None
     dofs: int
     seconds: float
     history: tuple[Refinement, ...]
@@ -136,6 +164,17 @@ class PinResult:
     joint: JointResult | None = None
     second_opinion: Opinion | None = None
     limit_load: LimitLoad | None = None
+    required: float | None = None
+    depends_on: tuple[Dependence, ...] = ()
+
+    @property
+    def meets_required(self) -> bool | None:
+        """True exactly where the row is safe over all that is known to be uncertain; None where
+        nothing is required, or the error leaves it open.
+        """
+        if self.required is None:
+            return None
+        return False if self.decided and self.depends_on else self.decided
 
     @property
     def instead(self) -> dict[str, str]:
@@ -144,10 +183,10 @@ class PinResult:
 
 @dataclass(frozen=True)
 class LandingRange:
-    """One pin over the ranges of a landing's impulse, (P,) pairs each: impulse time, velocity
-    change, force, maximum von Mises and factor of safety (None without a yield strength). nominal:
-    the pair of the case itself. verdict: of the case, which holds for all pairs. spread: of a
-    `singular` one the ends of its interval of the factor, over the factor.
+    """One pin over the ranges of a landing's impulse, at (P,) points each: impulse time, velocity
+    change, pulse, force, maximum von Mises and factor of safety (None without a yield strength).
+    nominal, nominal_pulse: those of the case itself. verdict: of the case, which holds for all
+    points. spread: of a `singular` one the ends of its interval of the factor, over the factor.
     """
 
     pin: str
@@ -160,6 +199,9 @@ class LandingRange:
     nominal: tuple[Time, Velocity]
     verdict: str
     spread: tuple[float, float] | None = None
+    pulses: tuple[str, ...] = ()
+    nominal_pulse: str = ""
+    error: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -214,7 +256,8 @@ class Provenance:
 class Fatigue:
     """Fatigue under a spectrum, by how often each case occurs per `unit`. points: the worst first.
     probability: of failure, None for that of the S-N data. life: for which pins are designed.
-    left_out: what was not assessed, in sentences.
+    left_out: what was not assessed, in sentences. not_decided: by pin, why its damage is not known,
+    though its material has the data; points of it, if there are any, have at least their damage.
     """
 
     unit: str
@@ -224,6 +267,7 @@ class Fatigue:
     life: float | None
     points: tuple[PointFatigue, ...]
     left_out: tuple[str, ...] = ()
+    not_decided: dict[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

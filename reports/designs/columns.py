@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 META = b"pinstress"
-ROW = ("pin", "case", "verdict", "reason", "code")  # texts of every row
+ROW = ("pin", "case", "outcome", "depends_on", "verdict", "reason", "code")  # texts of every row
 TITLES = {
     "mass": "mass",
     "max_von_mises": "maximum von Mises",

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 
-from reports.data.decision import margin, utilisation
+from reports.data.decision import utilisation
 from reports.data.results import PinResult
 from reports.format.numbers import DASH, engineering
 
-END = 3  # digits of an interval's ends
+END = 3  # digits of factors and of an interval's ends
+MAX_DIGITS = 9
 PARTS = {  # of an error, in words
     "mesh": "mesh",
     "time": "time",
@@ -30,12 +32,23 @@ def error_range(pin: PinResult, to: str = " to ") -> str:
 
 
 def factor_range(pin: PinResult, to: str = " to ") -> str:
-    """The safety factor, or its interval."""
+    """The safety factor, or its interval: three digits, as many as loads and strengths deserve."""
     interval = pin.safety_factor_interval
     if interval is None:
-        return engineering(pin.safety_factor)
+        return factor_text(pin.safety_factor, pin.required or 1.0)
     low, high = interval
     return to.join([engineering(low, END), DASH if high is None else engineering(high, END)])
+
+
+def factor_text(factor: float | None, required: float) -> str:
+    """Three digits; more where these would show it on the other side of what is required."""
+    if factor is None or not math.isfinite(factor):
+        return DASH
+    for digits in range(END, MAX_DIGITS):
+        rounded = float(f"{factor:.{digits - 1}e}")
+        if (rounded >= required) == (factor >= required):
+            return engineering(factor, digits)
+    return engineering(factor, MAX_DIGITS)
 
 
 def utilisation_range(pin: PinResult, required: float, to: str = " to ") -> str:
@@ -44,16 +57,9 @@ def utilisation_range(pin: PinResult, required: float, to: str = " to ") -> str:
     return DASH if used is None else f"{_interval((100.0 * end for end in used), to)} %"
 
 
-def margin_range(pin: PinResult, required: float, to: str = " to ") -> str:
-    """The margin of safety with its sign, or its interval."""
-    spare = margin(pin, required)
-    return DASH if spare is None else _interval(spare, to, "+")
-
-
-def _interval(ends: Iterable[float], to: str, sign: str = "") -> str:
+def _interval(ends: Iterable[float], to: str) -> str:
     """Numbers as a range; one where they are equal."""
-    shown = [f"{sign if end > 0.0 else ''}{engineering(end, END)}" for end in ends]
-    return to.join(dict.fromkeys(shown))
+    return to.join(dict.fromkeys(engineering(end, END) for end in ends))
 
 
 def joint_range(pin: PinResult, to: str = " to ") -> str:

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from math import inf
+
 from reports.data.decision import (
+    BELOW,
+    DEPENDS,
     FAILS,
     NOT_DECIDED,
     SAFE,
@@ -10,11 +15,14 @@ from reports.data.decision import (
     outcome,
     worst_first,
 )
-from reports.data.results import PinResult, Results
-from reports.format.numbers import short
+from reports.data.headline import JudgedCheck, worst_checks
+from reports.data.results import Dependence, PinResult, Results, Units
+from reports.format.numbers import engineering, short
 from reports.format.ranges import factor_range
+from reports.format.units import unit_name
 
 BEYOND = "beyond yield"
+MAX_NAMED = 4  # properties of a range; of more, their number is given
 
 READING = (
     "One row per pin and case, the worst first. The maximum is the largest von Mises stress "
@@ -28,21 +36,25 @@ READING = (
 JOINT = (
     "Joint is the range of the maximum over properties of the joint that are seldom known: other "
     "clearances, lugs of half and twice the stiffness, and lugs that are guided or free to tilt. "
-    "It is not part of the ±, and the result is decided without it. For pins that are not solved "
+    "It is not part of the ±; a pin that fails within it is not safe, its result depends on the "
+    "joint. For pins that are not solved "
     "in contact, it is that of a beam on foundations in their lugs, or in assumed ones, with its "
     "error."
 )
 RESULTS = {
-    SAFE: "the pin meets its required safety factor.",
+    SAFE: "the pin meets its required safety factor, with the error of its maximum and over all "
+    "that the study leaves open.",
+    DEPENDS: "the pin meets its required safety factor as the study describes it, but not within "
+    "the range of its joint or of its landing; the value at which it fails is named.",
     FAILS: "the pin does not meet its required safety factor.",
     NOT_DECIDED: "the results do not show whether the pin meets it; the verdict gives the reason, "
-    "or the material has no yield strength.",
+    "or the factor is within its error of the required one, or the material has no yield strength.",
 }
 # What each verdict means, one sentence each.
 MEANING = {
     "converged": "the estimated error is within the requested tolerance.",
-    "unconverged": "the estimated error exceeds the requested tolerance; the result is decided "
-    "only if the whole error range lies on one side of the required factor.",
+    "unconverged": "the estimated error exceeds the requested tolerance; like any other, the "
+    "result is decided only if the whole error range lies on one side of the required factor.",
     "singular": "the largest stress grows without bound as the mesh is refined, so there is no "
     "maximum; the results are those outside the excluded zones, as ranges over half and twice the "
     "excluded distance, mesh error included, and can show that a pin fails but not that it is "
@@ -64,6 +76,9 @@ def undecided_because(pin: PinResult) -> str:
     """Why a row is not decided."""
     if pin.max_von_mises == 0.0:
         return "no stress"
+    if pin.verdict == "converged" and pin.safety_factor is not None:
+        limit = "yield" if pin.required is None else "the required factor"
+        return f"within its error of {limit}"
     reasons = {
         "unconverged": "not converged",
         "converged": "no yield strength",
@@ -75,36 +90,98 @@ def undecided_because(pin: PinResult) -> str:
 
 def result_words(pin: PinResult) -> str:
     """The outcome of a row, and what else is to be known of its factor: "not decided: singular",
-    "fails (yields)".
+    "depends: joint", "fails (yields)".
     """
     found = outcome(pin)
     if found == NOT_DECIDED:
         return f"{found}: {undecided_because(pin)}"
+    if found == DEPENDS:
+        return f"{found}: {', '.join(dict.fromkeys(d.over for d in pin.depends_on))}"
     more = [undecided_because(pin)] * (pin.verdict != "converged")
     more += [YIELDS] * bool(pin.yields and found != YIELDS)
     return f"{found} ({', '.join(more)})" if more else found
 
 
-def headline(results: Results) -> str:
-    """The worst row in one sentence: whether its pin is safe, its factor, what is required, and in
-    which case; of safe pins, that all of them are. Empty when nothing was solved.
+def depends_words(depends_on: Sequence[Dependence], units: Units) -> str:
+    """What an outcome depends on, with the values at which it changes: "the range of the joint
+    (clearance above 0.0031 in, tilt guided)".
     """
-    if not results.pins:
+    parts = []
+    for over in dict.fromkeys(d.over for d in depends_on):
+        each = list(dict.fromkeys(_dependence(d, units) for d in depends_on if d.over == over))
+        if len(each) > MAX_NAMED:
+            each = [*each[: MAX_NAMED - 1], f"and {len(each) - MAX_NAMED + 1} others"]
+        parts.append(f"the {over} ({', '.join(each)})")
+    return f"the range of {' and of '.join(parts)}"
+
+
+def _dependence(d: Dependence, units: Units) -> str:
+    if d.at is None:
+        return f"{d.what} {d.value}".strip()
+    unit = unit_name(d.dimension, units)
+    flips = d.at if d.flips_at is None else d.flips_at
+    side = "" if d.given is None else "above " if d.at > d.given else "below "
+    return f"{d.what} {side}{flips:.3g} {unit}"
+
+
+def headline(results: Results) -> str:
+    """The worst of all checks in one sentence: whether its pin is safe, its factor, what is
+    required, and in which case; of safe pins, that all of them are. Empty when nothing was solved.
+    """
+    worst = worst_checks(results)
+    if not worst:
         return ""
-    worst = worst_first(results)[0]
-    factor, required = f"FoS {factor_range(worst)}", results.required_safety_factor
+    first = min(worst.values(), key=lambda check: check.rank)
+    if first.outcome in (SAFE, BELOW):
+        return _all_safe(results, first, len(worst))
+    if first.row is None:
+        return _of_margin(first)
+    row, (factor, needed) = first.row, _factor_words(first.row, results)
+    if first.outcome == NOT_DECIDED:
+        known = f"; {factor}, {needed}" if row.safety_factor is not None else ""
+        why = undecided_because(row)
+        return f"Whether pin {row.pin} is safe is not decided: {why} ({row.case}){known}."
+    if first.outcome in (FAILS, YIELDS):
+        return f"Pin {row.pin} {first.outcome}: {factor} < {needed} ({row.case})."
+    state, fails = ("is safe", "fails") if row.required else ("stays below yield", "yields")
+    return (
+        f"Pin {row.pin} {state} as described ({factor} ≥ {needed}; {row.case}), but {fails} "
+        f"within {depends_words(row.depends_on, results.units)}."
+    )
+
+
+def _factor_words(row: PinResult, results: Results) -> tuple[str, str]:
+    """The safety factor and what is required of it."""
+    required = results.required_safety_factor
     needed = "1 at yield" if required is None else f"{short(required)} required"
-    found = outcome(worst)
-    if found == NOT_DECIDED:
-        known = f"; {factor}, {needed}" if worst.safety_factor is not None else ""
-        why = undecided_because(worst)
-        return f"Whether pin {worst.pin} is safe is not decided: {why} ({worst.case}){known}."
-    if found in (FAILS, YIELDS):
-        return f"Pin {worst.pin} {found}: {factor} < {needed} ({worst.case})."
-    names = {pin.pin for pin in results.pins}
-    if len(names) == 1:
-        state = "is safe" if found == SAFE else "stays below yield"
-        return f"Pin {worst.pin} {state}: {factor} ≥ {needed} ({worst.case})."
-    state = "are safe" if found == SAFE else "stay below yield"
-    lowest = f"lowest {factor} ≥ {needed}"
-    return f"All {len(names)} pins {state}: {lowest} (pin {worst.pin}, {worst.case})."
+    return f"FoS {factor_range(row)}", needed
+
+
+def _all_safe(results: Results, least: JudgedCheck, pins: int) -> str:
+    """least: of all checks, which may be another than that of the model's stress against yield."""
+    row = worst_first(results)[0]
+    factor, needed = _factor_words(row, results)
+    safe = outcome(row) == SAFE
+    other = "" if least.row else f"; {_margin_words(least)}, pin {least.pin}"
+    if pins == 1:
+        state = "is safe" if safe else "stays below yield"
+        return f"Pin {row.pin} {state}: {factor} ≥ {needed} ({row.case}){other}."
+    state = "are safe" if safe else "stay below yield"
+    return (
+        f"All {pins} pins {state}: lowest {factor} ≥ {needed} (pin {row.pin}, {row.case}){other}."
+    )
+
+
+def _of_margin(check: JudgedCheck) -> str:
+    """Of a check other than that of the model's stress against yield."""
+    if check.outcome == FAILS:
+        return f"Pin {check.pin} fails: {_margin_words(check)}."
+    why = f"{check.check}: {check.reason}" if check.reason else _margin_words(check)
+    return f"Whether pin {check.pin} is safe is not decided: {why}."
+
+
+def _margin_words(check: JudgedCheck) -> str:
+    case = f" ({check.case})" if check.case else ""
+    spare = inf if check.used == 0.0 else 1.0 / check.used - 1.0
+    sign = "+" if spare > 0.0 else ""
+    return f"{check.check}, margin of safety {sign}{engineering(spare, 3)}{case}"

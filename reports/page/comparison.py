@@ -9,8 +9,6 @@ from pathlib import Path
 from reports.data.comparison import RunComparison
 from reports.format.template import environment
 from reports.plots.comparison import comparison_plot
-from reports.plots.draw import svg
-from reports.plots.theme import on_paper
 from reports.text.comparison import headline, sections
 
 
@@ -31,9 +29,9 @@ class PicturePair:
 
 
 def write_comparison(
-    found: RunComparison, path: Path, pictures: tuple[PicturePair, ...] = ()
+    found: RunComparison, path: Path, drawn: str, pictures: tuple[PicturePair, ...] = ()
 ) -> None:
-    """Write the page."""
+    """Write the page. drawn: its plot as SVG, empty where it has none."""
     plot = comparison_plot(found)
     text = (
         environment()
@@ -42,8 +40,8 @@ def write_comparison(
             found=found,
             headline=headline(found),
             sections=[s for s in sections(found) if s[1].body or s[2]],
-            plot=svg({**plot.spec, "config": on_paper()}) if plot else "",
-            caption=plot.caption if plot else "",
+            plot=drawn,
+            caption=plot.caption if plot and drawn else "",
             pictures=pictures,
         )
     )

@@ -4,18 +4,26 @@ from __future__ import annotations
 
 import json
 import re
-import zlib
-from base64 import b64decode
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Mapping
+from datetime import datetime
+from typing import Annotated, Any
 
+from pydantic import AfterValidator, RootModel
+
+from loads import MB
+from reports.folder.damaged import Damaged, JsonPart, inflated, strict_json, validated
 from reports.format.packed import deflated
 from reports.format.script_json import script_json
 from reports.format.template import VENDOR
+from reports.plots.self_contained import require_no_address, require_self_contained
 from reports.plots.spec import Plot
 from reports.plots.theme import on_page
 
 LIBRARIES = ("vega.min.js", "vega-lite.min.js", "vega-interpreter.js")
+PAGE = "report.html"
+LARGEST = 512 * MB  # of what a page has packed
+PLOT_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_.~%-]*")  # as reports.format.file_names makes them
+MAX_NAME = 2000
 PACKED = r'<script type="text/plain" id="{}">([\w+/=]+)</script>'
 
 
@@ -29,27 +37,76 @@ def script_part(plots: Mapping[str, Plot], document: Mapping[str, Any]) -> dict[
     }
 
 
-def plots_of(page: str) -> Iterator[Plot]:
-    """The plots of a page. Raises: ValueError."""
-    for name, (caption, spec) in (_read(page, "plots") or {}).items():
-        yield Plot(name, caption, spec)
+def plots_of(page: str) -> list[Plot]:
+    """The plots of a page. Raises: Damaged, also for one that would be written elsewhere, or that
+    has an address in it.
+    """
+    content = _read(page, "plots")
+    if content is None:
+        return []
+    parts = validated(_Plots, content, f"{PAGE}, plots").root
+    plots = [Plot(name, caption, spec) for name, (caption, spec) in parts.items()]
+    for plot in plots:
+        if len(plot.name) > MAX_NAME or not PLOT_NAME.fullmatch(plot.name):
+            raise Damaged(f"{PAGE} is damaged: {plot.name[:80]!r} is no name of a plot")
+        require_no_address(plot.spec, f"{PAGE} is damaged: its plot {plot.name}")
+    return plots
 
 
 def document_of(page: str) -> dict[str, Any] | None:
-    """The content of a page's PDF; None in a page that has none. Raises: ValueError."""
-    return _read(page, "paper")
+    """The content of a page's PDF; None in a page that has none. Raises: Damaged."""
+    content: dict[str, Any] | None = _read(page, "paper")
+    if content is None:
+        return None
+    for k, pin in enumerate(validated(_Paper, content, f"{PAGE}, paper").pins):
+        require_self_contained(pin.drawing, f"{PAGE} is damaged: its drawing of pin {k + 1}")
+    return content
 
 
 def _packed(content: Mapping[str, Any]) -> str:
     return deflated(json.dumps(content, allow_nan=False, separators=(",", ":")).encode())
 
 
-def _read(page: str, name: str) -> dict[str, Any] | None:
+def _read(page: str, name: str) -> Any:
     found = re.search(PACKED.format(name), page)
     if found is None:
         return None
-    try:
-        content: dict[str, Any] = json.loads(zlib.decompress(b64decode(found[1])))
-    except zlib.error as error:
-        raise ValueError(error) from None
-    return content
+    where = f"{PAGE}, {name}"
+    return strict_json(inflated(found[1], LARGEST, where), where)
+
+
+def _day(text: str) -> str:
+    if text:
+        datetime.fromisoformat(text)
+    return text
+
+
+def _caption_and_spec(pair: list[Any]) -> list[Any]:
+    if len(pair) != 2 or not isinstance(pair[0], str) or not isinstance(pair[1], dict):
+        raise ValueError("a plot is a caption and a specification")
+    return pair
+
+
+class _Plots(RootModel[dict[str, Annotated[list[Any], AfterValidator(_caption_and_spec)]]]):
+    """By name, a caption and a specification."""
+
+
+class _Block(JsonPart):
+    date: Annotated[str, AfterValidator(_day)]
+
+
+class _Case(JsonPart):
+    plot: str
+
+
+class _Pin(JsonPart):
+    drawing: str
+    refinement: str
+    cases: list[_Case]
+
+
+class _Paper(JsonPart):
+    """What is read of the PDF's content before typst reads all of it."""
+
+    block: _Block
+    pins: list[_Pin]

@@ -7,9 +7,10 @@ import re
 from collections.abc import Mapping
 from datetime import UTC, datetime
 from functools import cache
-from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
+from reports.folder.damaged import Damaged
 from reports.format.template import TEMPLATES
 from reports.plots.draw import svg
 from reports.plots.spec import Plot, Spec
@@ -24,7 +25,10 @@ FAMILY = re.compile(r'font-family="[^"]*"')
 
 
 def typeset(content: Content, plots: Mapping[str, Plot]) -> bytes:
-    """The PDF, tagged for accessibility (PDF/UA-1). plots: by their names."""
+    """The PDF, tagged for accessibility (PDF/UA-1). plots: by their names.
+
+    Raises: Damaged for content that is not all that the report needs.
+    """
     import typst
 
     files = {"main": (TEMPLATES / "report.typ").read_bytes()}
@@ -44,11 +48,13 @@ def typeset(content: Content, plots: Mapping[str, Plot]) -> bytes:
         return _compiled(files, made)
     except typst.TypstError:
         missing = _without_glyph("".join(text.decode() for text in files.values()))
-        if not missing:
-            raise
     numbers = {ord(c): f"U+{ord(c):04X}" for c in missing}
     shown = {name: text.decode().translate(numbers).encode() for name, text in files.items()}
-    return _compiled(shown, made)
+    try:
+        return _compiled(shown, made)
+    except typst.TypstError as error:
+        said = str(error).splitlines()[0]
+        raise Damaged(f"report.html has content that cannot be typeset: {said}") from None
 
 
 def _compiled(files: dict[str, bytes], made: datetime) -> bytes:
@@ -56,8 +62,9 @@ def _compiled(files: dict[str, bytes], made: datetime) -> bytes:
     import typst
 
     fonts = typst.Fonts(include_system_fonts=False)  # those of a machine would change the bytes
-    compiler = typst.Compiler(files, font_paths=fonts)  # type: ignore[type-var]  # says its stub
-    found = compiler.compile(format="pdf", pdf_standards="ua-1", timestamp=made)
+    with TemporaryDirectory(prefix="pinstress-") as nothing:  # else it reads the current folder
+        compiler = typst.Compiler(files, root=nothing, font_paths=fonts)  # type: ignore[type-var]
+        found = compiler.compile(format="pdf", pdf_standards="ua-1", timestamp=made)
     assert isinstance(found, bytes)
     return found
 
@@ -83,11 +90,6 @@ def shown_plots(content: Content) -> list[str]:
     """Names of the plots that the PDF shows, if there are such."""
     cases = [case["plot"] for pin in content["pins"] for case in pin["cases"]]
     return [*(pin["refinement"] for pin in content["pins"]), *cases]
-
-
-def write_pdf(content: Content, plots: Mapping[str, Plot], path: Path) -> None:
-    """Write it into a file."""
-    path.write_bytes(typeset(content, plots))
 
 
 def _drawn(spec: Spec) -> str:

@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from reports.format.file_names import PNG, SVG
+from reports.plots.self_contained import require_no_address, require_self_contained
 from reports.plots.spec import Plot, Spec, still
 from reports.plots.theme import on_paper
 
@@ -19,32 +20,46 @@ SCALE = 2.0  # pixels of a PNG per unit
 
 def draw(plots: Iterable[Plot], directory: Path) -> list[Path]:
     """Write every plot as SVG and as PNG into `directory`; returns the files."""
+    directory.mkdir(parents=True, exist_ok=True)
+    return [path for plot in plots for path in draw_plot(plot, directory)]
+
+
+def draw_plot(plot: Plot, directory: Path) -> list[Path]:
+    """One of them. Raises: ValueError where Vega-Lite cannot, Damaged for an address in it."""
     import vl_convert
 
-    directory.mkdir(parents=True, exist_ok=True)
-    paths = []
-    for plot in plots:
-        drawn = svg({**plot.spec, "config": on_paper()})
-        paths += [directory / f"{plot.name}{end}" for end in (SVG, PNG)]
-        paths[-2].write_text(drawn, encoding="utf-8", newline="\n")
-        paths[-1].write_bytes(vl_convert.svg_to_png(drawn, scale=SCALE))
+    drawn = svg({**plot.spec, "config": on_paper()})
+    paths = [directory / f"{plot.name}{end}" for end in (SVG, PNG)]
+    paths[0].write_text(drawn, encoding="utf-8", newline="\n")
+    paths[1].write_bytes(vl_convert.svg_to_png(drawn, scale=SCALE))
     return paths
 
 
 def svg(spec: Spec) -> str:
-    """A specification with its configuration, drawn. Vega cuts long texts within characters that
-    are two UTF-16 units, such as emoji, and fails: these are then written as U+1F600.
-    """
-    import vl_convert
+    """A specification with its configuration, drawn; no address is opened.
 
+    Vega cuts long texts within characters that are two UTF-16 units, such as emoji, and fails:
+    these are then written as U+1F600.
+
+    Raises: ValueError where Vega-Lite cannot, Damaged for an address in it.
+    """
+    require_no_address(spec, "the plot")
     text = json.dumps(still(spec), ensure_ascii=False)
+    named = TWO_UNITS.sub(lambda found: f"U+{ord(found[0]):X}", text)
     try:
-        return _numbered(vl_convert.vegalite_to_svg(text, vl_version=VERSION))
+        made = _drawn(text)
     except ValueError:
-        named = TWO_UNITS.sub(lambda found: f"U+{ord(found[0]):X}", text)
         if named == text:
             raise
-    return _numbered(vl_convert.vegalite_to_svg(named, vl_version=VERSION))
+        made = _drawn(named)
+    require_self_contained(made, "the plot")
+    return _numbered(made)
+
+
+def _drawn(text: str) -> str:
+    import vl_convert
+
+    return vl_convert.vegalite_to_svg(text, vl_version=VERSION, allowed_base_urls=[])
 
 
 def _numbered(svg: str) -> str:

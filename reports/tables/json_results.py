@@ -7,8 +7,10 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from reports.data.decision import outcome
+from reports.data.decision import DEPENDS, outcome
+from reports.data.headline import headline_json
 from reports.data.results import (
+    Dependence,
     DropRecord,
     HandCheck,
     PinResult,
@@ -17,6 +19,7 @@ from reports.data.results import (
     SingularZone,
 )
 from reports.format.numbers import finite
+from reports.format.words import headline
 from reports.tables.strength.fatigue import fatigue_json
 from reports.tables.strength.limit_load import limit_load_json
 from reports.tables.strength.margins import margins_json
@@ -38,6 +41,7 @@ def to_json(results: Results) -> dict[str, Any]:
         "required_safety_factor": finite(results.required_safety_factor),
         "tolerance": finite(results.tolerance),
         "versions": {name: results.versions[name] for name in sorted(results.versions)},
+        "headline": headline_json(results, headline(results)),
         "pins": [_pin(pin) for pin in results.pins],
         "margins": margins_json(results),
         "changes": [asdict(change) for change in results.changes],
@@ -126,6 +130,8 @@ def _pin(pin: PinResult) -> dict[str, Any]:
         "yields": _truth(pin.yields),
         "meets_required": _truth(pin.meets_required),
         "outcome": outcome(pin),
+        "depends_on": [_dependence(d) for d in pin.depends_on if outcome(pin) == DEPENDS],
+        "safe_within": [_dependence(d) for d in pin.depends_on if outcome(pin) != DEPENDS],
         "dofs": int(pin.dofs),
         "seconds": finite(pin.seconds),
         "history": [
@@ -144,6 +150,18 @@ def _pin(pin: PinResult) -> dict[str, Any]:
         "limit_load": limit_load_json(pin.limit_load),
         "held": pin.held,
         "left_out": list(pin.left_out),
+    }
+
+
+def _dependence(d: Dependence) -> dict[str, Any]:
+    return {
+        "what": d.what,
+        "value": d.value,
+        "over": d.over,
+        "given": finite(d.given),
+        "at": finite(d.at),
+        "flips_at": finite(d.flips_at),
+        "safety_factor": finite(d.factor),
     }
 
 
@@ -179,6 +197,8 @@ def _check(check: HandCheck) -> dict[str, Any]:
         "factor": finite(check.factor),
         "formula": check.formula,
         "source": check.source,
+        "basis": check.basis,
+        "governs": check.governs,
     }
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from reports.data.results import Units
 from reports.format.files.csv import Cell, write_csv
 from reports.format.files.parquet import write_parquet
+from reports.format.units import unit_name
 
 MOST_IN_CSV = 1_000_000  # rows; a sheet of a spreadsheet has 1,048,576
 
@@ -58,26 +59,6 @@ DIMENSIONS = {
     "omega": "rate of turn",
     "alpha": "rate of rate of turn",
 }
-
-
-def unit_name(dimension: str, units: Units) -> str:
-    """Name of the unit of a dimension; empty where there is none."""
-    names = {
-        "time": units.time,
-        "force": units.force,
-        "length": units.length,
-        "stress": units.stress,
-        "moment": f"{units.force} {units.length}",
-        "velocity": f"{units.length}/{units.time}",
-        "acceleration": f"{units.length}/{units.time}²",
-        "power": f"{units.force} {units.length}/{units.time}",
-        "force per length": f"{units.force}/{units.length}",
-        "curvature": f"1/{units.length}",
-        "degrees": "°",
-        "rate of turn": f"rad/{units.time}",
-        "rate of rate of turn": f"rad/{units.time}²",
-    }
-    return names.get(dimension, "")
 
 
 @dataclass(frozen=True)

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from reports.data.decision import DEPENDS, outcome
 from reports.data.results import PinResult, PinShape, Units
 from reports.format.numbers import components, engineering, short
 from reports.format.ranges import error_words, factor_range
-from reports.format.words import verdict_words
+from reports.format.words import depends_words, verdict_words
 
 
 def pin_sentence(pin: PinResult, units: Units) -> str:
-    """Maximum, error, when, where, factor of safety and verdict."""
+    """Maximum, error, when, where, factor of safety, what its outcome depends on, and verdict."""
     verdict = pin.verdict.capitalize() + (f": {pin.note}" if pin.note else "") + "."
     if pin.max_von_mises is None:
         return verdict
@@ -25,7 +26,14 @@ def pin_sentence(pin: PinResult, units: Units) -> str:
         place = ", ".join(components(pin.location, max(map(abs, pin.location))))
         text += f", at x, y, z = {place} {units.length} in pin axes"
     factor = f"{factor_range(pin)} ({verdict_words(pin.verdict, pin.yields)})"
-    return f"{text}. Safety factor {factor}. {verdict}"
+    return f"{text}. Safety factor {factor}.{_depends(pin, units)} {verdict}"
+
+
+def _depends(pin: PinResult, units: Units) -> str:
+    if outcome(pin) != DEPENDS:
+        return ""
+    state, fails = ("Safe", "fails") if pin.required else ("Below yield", "yields")
+    return f" {state} as described, but {fails} within {depends_words(pin.depends_on, units)}."
 
 
 def drawing_caption(shape: PinShape, units: Units, zoned: bool = True) -> str:

@@ -12,7 +12,7 @@ from reports.data.envelope import elsewhere, in_detail
 from reports.data.results import PinResult, Results
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering, short
-from reports.format.ranges import factor_range, joint_range, margin_range, utilisation_range
+from reports.format.ranges import factor_range, joint_range, utilisation_range
 from reports.format.words import headline, result_words
 from reports.tables.published import published_maxima
 from reports.tables.strength.changes import change_notes, changes_grid
@@ -97,7 +97,6 @@ def _columns(results: Results) -> list[Column]:
         Column("Result", [result_words(pin) for pin in rows], 0, False, colours),
         column(factor, lambda pin: factor_range(pin, TO), 0),
         column("Utilisation", lambda pin: utilisation_range(pin, required, TO), 2),
-        column("Margin", lambda pin: margin_range(pin, required, " to "), 5),
         column(f"max von\nMises [{units.stress}]", lambda pin: engineering(pin.max_von_mises), 1),
         column("±", _error, 3),
         column(f"joint [{units.stress}]", lambda pin: joint_range(pin, TO), 4),

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from reports.data.decision import BELOW, FAILS, NOT_DECIDED, SAFE, YIELDS, outcome
+from reports.data.decision import BELOW, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIELDS, outcome
 from reports.data.governing import governing
-from reports.data.results import PinResult, Results
+from reports.data.headline import JudgedCheck, pins_with, worst_checks
+from reports.data.results import Results
 from reports.format.numbers import engineering, short
-from reports.format.words import BEYOND, undecided_because
+from reports.format.words import BEYOND, depends_words, undecided_because
 
 LISTED = 4  # cases of a pin; of more, their number is given
 
@@ -17,44 +18,68 @@ def summary(results: Results) -> str:
     """How many pins are safe, which are not, and the rows without a maximum."""
     if not results.pins:
         return "No pin was solved."
-    ways = (_against_required, _over_joints, _left_out, _yielding, _negative, _unknown)
+    ways = (_against_required, _depending, _left_out, _yielding, _negative, _unknown)
     return " ".join(part for part in (way(results) for way in ways) if part)
 
 
 def _against_required(results: Results) -> str:
+    """Every pin by the worst of its checks."""
     required = results.required_safety_factor
-    good, bad = (SAFE, FAILS) if required is not None else (BELOW, YIELDS)
-    outcomes: dict[str, set[str]] = {}
-    for pin in results.pins:
-        outcomes.setdefault(pin.pin, set()).add(outcome(pin))
-    safe = [pin for pin, found in outcomes.items() if found == {good}]
-    failing = [pin for pin, found in outcomes.items() if bad in found]
-    open_ = [pin for pin in outcomes if pin not in safe and pin not in failing]
+    worst = list(worst_checks(results).values())
+    good = SAFE if required is not None else BELOW
+    safe = pins_with(worst, SAFE, BELOW)
     factor = "" if required is None else f" (required factor {short(required)})"
-    total = len(outcomes)
-    text = f"{len(safe)} of {_count(total, 'pin')} {_is(total)} {good} in all cases{factor}"
-    if failing:
-        text += f"; {bad}: {', '.join(failing)}"
-    if open_:
-        text += f"; not decided: {_with_reasons(open_, results)}"
+    text = (
+        f"{len(safe)} of {_count(len(worst), 'pin')} {_is(len(worst))} {good} in all cases{factor}"
+    )
+    for state in (FAILS, YIELDS, DEPENDS, NOT_DECIDED):
+        here = [check for check in worst if check.outcome == state]
+        if here:
+            text += f"; {state}: {_with_reasons(here)}"
     return text + "."
 
 
-def _with_reasons(pins: list[str], results: Results) -> str:
-    """The pins with why they are not decided, equal reasons together."""
+def _with_reasons(checks: list[JudgedCheck]) -> str:
+    """The pins with what their outcome is due to, equal reasons together."""
     together: dict[str, list[str]] = {}
-    for pin in pins:
-        rows = [p for p in results.pins if p.pin == pin and outcome(p) == NOT_DECIDED]
-        why = ", ".join(dict.fromkeys(undecided_because(p) for p in rows))
-        together.setdefault(why, []).append(pin)
-    return ", ".join(f"{', '.join(names)} ({why})" for why, names in together.items())
+    for check in checks:
+        together.setdefault(_due_to(check), []).append(check.pin)
+    return ", ".join(
+        ", ".join(pins) + (f" ({why})" if why else "") for why, pins in together.items()
+    )
 
 
-def _over_joints(results: Results) -> str:
-    """The rows on which another joint, as likely, would decide otherwise."""
-    limit = 1.0 if results.required_safety_factor is None else results.required_safety_factor
-    rows = _listed((p.pin, p.case) for p in results.pins if _depends_on_joint(p, limit))
-    return f"The result changes within the range of the joint: {rows}." if rows else ""
+def _due_to(check: JudgedCheck) -> str:
+    """Nothing for the usual reason, a stress above what is permitted."""
+    if check.row is None:
+        return check.check
+    if check.outcome == NOT_DECIDED:
+        return undecided_because(check.row)
+    if check.outcome == DEPENDS:
+        return ", ".join(dict.fromkeys(d.over for d in check.row.depends_on))
+    return ""
+
+
+def _depending(results: Results) -> str:
+    """The rows of which a range that the study leaves open changes the outcome, both ways."""
+    text = ""
+    rows = [p for p in results.pins if outcome(p) == DEPENDS]
+    if len(rows) > 1 or (rows and pins_with(worst_checks(results).values(), FAILS, YIELDS)):
+        each = (
+            f"{p.pin} ({p.case}): {depends_words(p.depends_on, results.units)}"
+            for p in rows[:LISTED]
+        )
+        more = f"; and {len(rows) - LISTED} rows more" if len(rows) > LISTED else ""
+        text = f"Safe as described, but not within: {'; '.join(each)}{more}."
+    for over in ("joint", "landing"):
+        some = [
+            (p.pin, p.case)
+            for p in results.pins
+            if outcome(p) in (FAILS, YIELDS) and any(d.over == over for d in p.depends_on)
+        ]
+        if some:
+            text += f" Fails as described, safe within the range of the {over}: {_listed(some)}."
+    return text.strip()
 
 
 def _left_out(results: Results) -> str:
@@ -85,15 +110,6 @@ def _largest_at_edges(results: Results) -> str:
     most, p = max(edges, key=lambda edge: edge[0])
     rows = _listed([(p.pin, p.case)])
     return f" The largest is estimated at {engineering(most, 2)} {results.units.stress}: {rows}."
-
-
-def _depends_on_joint(pin: PinResult, limit: float) -> bool:
-    over = pin.joint.range if pin.joint else None
-    if over is None or outcome(pin) == NOT_DECIDED:
-        return False
-    low, high = over.max_von_mises
-    strength = (pin.safety_factor or 0.0) * (pin.max_von_mises or 0.0)
-    return (strength >= limit * low) != (strength >= limit * high)
 
 
 def _yielding(results: Results) -> str:

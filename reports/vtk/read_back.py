@@ -1,21 +1,25 @@
-"""A run's folder read back: what `view` shows."""
+"""A run's folder read back: what `view`, `compare` and `plots` show."""
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from loads import MB, FileError, read_regular
-from reports.data.results import Field, Units
+from loads import MB
+from reports.data.results import Field, Floats, Units
+from reports.folder.damaged import Damaged
+from reports.folder.inside import read_inside
+from reports.folder.results_json import read_results
 from reports.format.numbers import engineering
 from reports.format.words import verdict_words
 from reports.vtk.fields import VTK_SYMMETRIC
+from reports.vtk.vtu import Vtu, read_vtu
 
-LARGEST = 1024 * MB  # of results.json
+LARGEST_FIELD = 2048 * MB
+LARGEST = 1e15  # of coordinates; VTK computes with their squares in float32
 
 
 @dataclass(frozen=True)
@@ -28,7 +32,8 @@ class Opened:
     @property
     def units(self) -> Units:
         """Those of all its numbers."""
-        return Units(**self.content["units"])
+        names = ("length", "force", "stress", "time")
+        return Units(*(self.content["units"][name] for name in names))
 
     def row(self, pin: str | None, case: str | None) -> dict[str, Any]:
         """The row of that pin and case; of several the one with the most stress of its strength.
@@ -52,53 +57,50 @@ class Opened:
             text += f": factor of safety {engineering(row['safety_factor'])}"
         return f"{text} ({verdict_words(row['verdict'], row['yields'])})"
 
-    def field(self, row: dict[str, Any]) -> Field:
-        """The field of a row. Raises: FileNotFoundError when none was written."""
-        import meshio
+    def only(self, row: dict[str, Any]) -> Opened:
+        """The same with one row, for a process that draws it."""
+        return Opened(self.directory, {"units": self.content["units"], "pins": [row]})
 
-        path = self.directory / "vtk" / f"{row['pin']}_{row['case']}.vtu"
-        if not path.is_file():
-            raise FileNotFoundError(path)
-        mesh, u = meshio.read(path), self.units
-        data = mesh.point_data
-        (cells,) = mesh.cells
+    def field(self, row: dict[str, Any]) -> Field:
+        """The field of a row. Raises: FileNotFoundError when none was written, Damaged, OSError."""
+        name = f"vtk/{row['pin']}_{row['case']}.vtu"
+        try:
+            content = read_inside(self.directory, name, LARGEST_FIELD)
+        except FileNotFoundError:
+            raise FileNotFoundError(self.directory / name) from None
+        mesh, u = read_vtu(content, name), self.units
+        if np.abs(mesh.points).max() > LARGEST or not np.ptp(mesh.points, axis=0).any():
+            raise Damaged(f"{name} is damaged: its points are no body")
         stress = np.empty((len(mesh.points), 6))
-        stress[:, VTK_SYMMETRIC] = data[f"stress [{u.stress}]"]
+        stress[:, VTK_SYMMETRIC] = _data(mesh, f"stress [{u.stress}]", 6, name)
         place = row["location"]
-        excluded = bool(row["singular_at"]) and place is not None
+        excluded = bool(row["singular_at"]) and None not in (place, row["max_von_mises"])
         return Field(
             pin=row["pin"],
             case=row["case"],
-            points=mesh.points.astype(float),
-            cells=cells.data.astype(np.int64),
-            displacement=data[f"displacement [{u.length}]"],
+            points=mesh.points,
+            cells=mesh.cells,
+            displacement=_data(mesh, f"displacement [{u.length}]", 3, name),
             stress=stress,
-            von_mises=data[f"von Mises [{u.stress}]"],
-            envelope=data[f"von Mises envelope [{u.stress}]"],
-            cell_type=cells.type,
+            von_mises=_data(mesh, f"von Mises [{u.stress}]", 1, name),
+            envelope=_data(mesh, f"von Mises envelope [{u.stress}]", 1, name, gaps=True),
+            cell_type=mesh.cell_type,
             outside=(row["max_von_mises"], tuple(place)) if excluded else None,
             verdict=row["verdict"],
         )
 
 
+def _data(mesh: Vtu, key: str, width: int, name: str, gaps: bool = False) -> Floats:
+    """Numbers at the points. gaps: whether some may have none. Raises: Damaged."""
+    found = mesh.data.get(key)
+    if found is None or found.size != width * len(mesh.points):
+        raise Damaged(f"{name} is damaged: it has no {width} numbers {key!r} at each point")
+    known = found[~np.isnan(found)] if gaps else found
+    if not np.isfinite(known).all():
+        raise Damaged(f"{name} is damaged: {key!r} is no number at some point")
+    return found
+
+
 def open_results(directory: Path) -> Opened:
-    """Read a folder that a run wrote. Raises: FileNotFoundError, ValueError."""
-    try:
-        content = json.loads(read_regular(directory / "results.json", LARGEST))
-    except FileError as error:
-        raise ValueError(f"its results.json {error}") from None
-    schema = content.get("schema") if isinstance(content, dict) else None
-    if not str(schema).startswith("pinstress-results/"):
-        raise ValueError("its results.json was not written by pinstress")
-    return Opened(directory, _printable(content))
-
-
-def _printable(node: Any) -> Any:
-    """Without characters that steer a terminal, which another program may have written."""
-    if isinstance(node, dict):
-        return {_printable(key): _printable(value) for key, value in node.items()}
-    if isinstance(node, list):
-        return [_printable(value) for value in node]
-    if isinstance(node, str):
-        return "".join(c if c.isprintable() or c == "\n" else "\ufffd" for c in node)
-    return node
+    """Read a folder that a run wrote. Raises: FileNotFoundError, Damaged, OSError."""
+    return Opened(directory, read_results(directory))

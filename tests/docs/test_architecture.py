@@ -29,6 +29,7 @@ PLUMBING = {  # without any rule of the physics, and not named on the page
     "geometry/chords.py",
     "fea/core/sparsity.py",
     "fea/derivatives/records.py",
+    "fea/fatigue/quiet.py",
     "fea/fatigue/records.py",
     "fea/harmonic/revolve.py",
     "fea/joint/records.py",
@@ -51,6 +52,7 @@ PLUMBING = {  # without any rule of the physics, and not named on the page
     "loads/tables/csv_table.py",
     "loads/tables/force_table.py",
     "loads/tables/regular_file.py",
+    "loads/tables/sent_files.py",
 }
 
 

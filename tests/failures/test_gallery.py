@@ -59,7 +59,7 @@ def test_the_edge_of_a_pressure_is_read_from_every_direction() -> None:
     e = corners.pressure_edge()
     low = [1.0 - m.maximum / e.truth for m in e.meshes]
     assert np.all(np.diff(low) < 0.0)
-    assert min(low[:3]) > 0.02  # on meshes of the size of ours
+    assert min(low[:3]) > 0.015  # on meshes of the size of ours
     assert e.found.verdict == "converged"
     assert contains(e.found, e.truth / 1e6)
     assert e.found.history[0].max_von_mises == pytest.approx(e.truth / 1e6, rel=0.02)

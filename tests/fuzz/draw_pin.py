@@ -169,8 +169,9 @@ def given(rng: random.Random, pins: Tree, name: str) -> tuple[Tree, set[str]]:
         for connection, f in now["forces"].items():
             row: Tree = {"connection": connection}
             row |= dict(zip(("fx", "fy", "fz"), f, strict=False))
-            if couples:
-                row |= dict(zip(("mx", "my", "mz"), now["moments"][connection], strict=True))
+            if now["moments"]:
+                m = now["moments"].get(connection, [moment(0.0)] * 3)
+                row |= dict(zip(("mx", "my", "mz"), m, strict=True))
             if steps > 1:
                 row["time"] = Quantity(0.25 * i, "time")
             rows.append(row)
@@ -193,4 +194,20 @@ def instant(rng: random.Random, pins: Tree, axial: bool, couples: bool) -> dict[
             moments |= {
                 c: [moment(size * thin * rng.uniform(-1.0, 1.0)) for _ in range(3)] for c in bands
             }
+        if not pin["clamp"]:  # the last band takes the couple that the forces leave over
+            z = _middles(pin)
+            mx = sum(at * f[1] for at, f in zip(z, drawn, strict=True))
+            my = -sum(at * f[0] for at, f in zip(z, drawn, strict=True))
+            moments |= {c: [moment(0.0)] * 3 for c in bands[:-1]}
+            moments[bands[-1]] = [moment(mx), moment(my), moment(0.0)]
     return {"forces": forces, "moments": moments}
+
+
+def _middles(pin: Tree) -> list[float]:
+    """z of its bands' middles, m."""
+    z, out = 0.0, []
+    for s in pin["profile"]:
+        if "connection" in s:
+            out.append(z + s["length"].value / 2.0)
+        z += s["length"].value
+    return out

@@ -81,7 +81,9 @@ class Loaded:
 
 
 def draw(seed: int, instants: int = 3) -> Loaded:
-    """Every other one under bearing pressures, every third one with moments."""
+    """Every other one under bearing pressures; every third one, and each that nothing holds, with
+    moments.
+    """
     rng = random.Random(f"relation {seed}")
     shape = draw_pin.profile(rng, rng.choice((1, 2)))
     clamp = draw_pin.clamps(rng, shape)
@@ -89,7 +91,7 @@ def draw(seed: int, instants: int = 3) -> Loaded:
     pin = draw_pin.table(shape, clamp, names)
     drawn = [draw_pin.instant(rng, {"P": pin}, True, bool(clamp)) for _ in range(instants)]
     forces, moments = (_along(drawn, key, names) for key in ("forces", "moments"))
-    if seed % 3:
+    if seed % 3 and clamp:
         moments = np.zeros_like(forces)
     spread = ("uniform", "cosine")[seed % 2]
     return Loaded(pin, forces, moments, np.linspace(0.0, 1.0, instants), spread)

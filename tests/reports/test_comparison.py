@@ -112,7 +112,7 @@ def test_pages_escape_what_studies_say(run: dict[str, Any], tmp_path: Path) -> N
     found = compare(run, other)
     (tmp_path / "one.png").write_bytes(b"picture")
     picture = PicturePair(f"Pin {odd}", (tmp_path / "one.png", None))
-    write_comparison(found, tmp_path / "page.html", (picture,))
+    write_comparison(found, tmp_path / "page.html", "<svg></svg>", (picture,))
     write_markdown(found, tmp_path / "page.md")
     page = (tmp_path / "page.html").read_text()
     assert odd not in page

@@ -72,6 +72,9 @@ def test_every_array_has_a_dimension_or_is_known_to_need_none() -> None:
         "LinkageMotion.transmission",
         "LinkageMotion.condition",
         "LandingRange.safety_factor",
+        "LandingRange.error",
+        "Dependence.factor",
+        "PinResult.required",
         "PointFatigue.damage",  # per unit of the spectrum, in which lives are counted
         "PointFatigue.life",
         "PointFatigue.utilisation",

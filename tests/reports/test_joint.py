@@ -15,6 +15,8 @@ from rich.console import Console
 
 from fea.joint.records import JointRange, JointResult, Variation
 from pinstress.schema.units import SYSTEMS
+from reports.data.decision import outcome
+from reports.data.dependence import depends_on
 from reports.data.in_units import in_units
 from reports.data.results import Field, Results
 from reports.data.surface import Surface, SurfaceCase
@@ -176,18 +178,22 @@ def test_a_result_that_the_joint_changes_is_named(
 ) -> None:
     odd = in_lugs(
         small, CONTACT, verdict=verdict, max_von_mises=1500.0, safety_factor=factor,
-        meets_required=True, yields=False,
+        error_estimate=1.0, decided=True if verdict == "converged" else None, yields=False,
     )  # fmt: skip
-    sentence = "The result changes within the range of the joint: A (retract)."
-    assert (sentence in summary(odd)) is changes
+    first = odd.pins[0]
+    first = replace(first, depends_on=depends_on(first, None))
+    assert (outcome(first) == "depends") is changes
+    text = summary(replace(odd, pins=(first, *odd.pins[1:])))
+    assert ("depends: A (joint)" in text) is changes
 
 
 def test_without_a_required_factor_yield_is_the_limit(small: Results) -> None:
     odd = in_lugs(
         replace(small, required_safety_factor=None), CONTACT, max_von_mises=1500.0,
-        safety_factor=1.1, meets_required=None, yields=False,
+        error_estimate=1.0, safety_factor=1.1, decided=True, required=None, yields=False,
     )  # fmt: skip
-    assert "changes within the range of the joint" in summary(odd)
+    (over,) = depends_on(odd.pins[0], None)
+    assert (over.what, over.value) == ("tilt", "guided")
 
 
 def test_words_of_a_row(small: Results) -> None:

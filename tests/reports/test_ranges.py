@@ -40,7 +40,7 @@ def singular(pin: PinResult) -> PinResult:
         safety_factor=3.107,
         max_von_mises_interval=(51_500.0, 95_600.0),
         safety_factor_interval=(2.354, 4.369),
-        meets_required=False,
+        decided=False,
         singular_at=(ZONE,),
     )
 

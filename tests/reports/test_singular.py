@@ -35,7 +35,7 @@ def singular(results: Results) -> Results:
         verdict="singular",
         safety_factor=5.0,
         yields=False,
-        meets_required=None,
+        decided=None,
         singular_at=(ZONE, LOGARITHM),
         hand_checks=(CHECK,),
         why="harmonic: a beam is never known to 2.0%",
@@ -74,7 +74,7 @@ def test_a_singular_row_can_only_miss(
     singular: Results, factor: float, meets: bool | None, expected: str
 ) -> None:
     """Too little outside the zones is too little; enough there says nothing of the zones."""
-    pin: PinResult = replace(singular.pins[0], safety_factor=factor, meets_required=meets)
+    pin: PinResult = replace(singular.pins[0], safety_factor=factor, decided=meets)
     assert outcome(pin) == expected
     text = summary(replace(singular, pins=(pin,)))
     assert ("fails: A" in text) == (expected == "fails")

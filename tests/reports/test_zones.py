@@ -93,11 +93,11 @@ def test_hand_checks_agree(found: Results, written: Path) -> None:
     page = written.read_text(encoding="utf-8").split("<h3>weak")[1]
     model, shear, bending, bearing = cells(page, "Hand checks")
     assert model[0] == "harmonic model, maximum von Mises stress, outside the excluded zones"
-    assert model[5] == "1.250 (singular)"
+    assert model[5] == "1.25 (singular)"
     assert shear[:6] == ["single shear, mean", "gap", "2", "1,235", "68,130", "55.18"]
     assert bending[5] == bearing[4] == bearing[5] == "–"
     text = (written.parent / "hand_checks.md").read_text(encoding="utf-8")
-    for cell in ("## A, weak", "1.250 (singular)", "68,130", "V / A"):
+    for cell in ("## A, weak", "1.25 (singular)", "68,130", "V / A"):
         assert cell in text
 
 
@@ -105,8 +105,8 @@ def test_page_says_what_singular_is(written: Path) -> None:
     page = parse(written)
     text = " ".join(page.text.split())
     assert "Maximum von Mises stress outside the excluded zones 47,200 psi" in text
-    assert "Safety factor 2.500 (singular)." in text
-    assert "Safety factor 0.8000 (singular, beyond yield)." in text
+    assert "Safety factor 2.50 (singular)." in text
+    assert "Safety factor 0.800 (singular, beyond yield)." in text
     assert text.count("linear elasticity is not valid and") == 3  # its meaning, and two rows
     assert text.count("The stress has no maximum at the singularity.") == 3
     assert "harmonic: a beam is never known to 2.0%" in text

@@ -217,7 +217,7 @@ def _of_case(
     whole, remark = over.at(here)
     model, every = over.own.model, over.own.model.solve(case)
     joint = _joint(model.solve(here), model, whole, remark)
-    along = joint_forces(every.pin, every.mass, every.bands, every.loads)
+    along = joint_forces(every.pin, every.mass, every.bands, every.loads, every.lugs)
     joint = replace(joint, along=along)
     return LugSolution(solution, joint, lambda links: links)
 

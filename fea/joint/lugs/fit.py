@@ -13,10 +13,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from fea.core.equilibrium import Carried
 from fea.core.material import Material
 from fea.core.pin_loads import Floats
 from fea.joint.lugs.lug import Lug
-from geometry import ArgumentError, Band, Pin
+from geometry import ArgumentError, Band, Pin, PinLike
 
 MOST_CLEARANCE = 0.1  # of the pin's diameter
 MOST_INTERFERENCE = 5.0  # times what yields pin, bushing or lug
@@ -37,6 +38,15 @@ def on_structure(pin: Pin, lugs: Sequence[Lug]) -> Pin:
         for s in pin.segments
     )
     return replace(pin, segments=segments)
+
+
+def carried(pin: PinLike, lugs: Sequence[Lug], foundations: bool = False) -> Carried:
+    """What the lugs of a pin carry of what its links leave over; foundations: by a beam on these,
+    on which a structure carries what is along the axis too.
+    """
+    structure = sum(lug.connection not in pin.connections for lug in lugs)
+    tilts = any(lug.tilt > 0.0 for lug in lugs)
+    return Carried(structure > 0, tilts or structure > 1, foundations and structure > 0, bool(lugs))
 
 
 def fitted(pin: Pin, material: Material, lugs: Sequence[Lug]) -> tuple[Lug, ...]:

@@ -26,7 +26,10 @@ from pinstress.cli.shared import choices, example, read_study
 @click.option(
     "--scheduler",
     metavar="ADDRESS",
-    help="Solve on your own cluster of dask, tcp://host:8786, instead of this machine.",
+    help="Solve on your own cluster of dask, tcp://host:8786, instead of in processes of this "
+    "machine, which use no network. Unless dask is configured with TLS, whoever reaches a "
+    "scheduler or a worker can run code there: start them with --host 127.0.0.1, or on a network "
+    "that you trust.",
 )
 @click.option(
     "--resume", is_flag=True, help="Go on with a sweep that did not end, or with a larger count."

@@ -24,9 +24,12 @@ from pinstress.designs.table import read_table, table_of, write_table
 from pinstress.processes import interrupts
 from pinstress.processes.folder_lock import Release, lock
 from pinstress.processes.interrupts import Unfinished
+from pinstress.processes.pool import cores
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study
-from reports.designs.page import write_designs_page
+from reports.designs.columns import designs_of
+from reports.designs.page import render_designs
+from reports.folder.inside import write_inside
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -71,15 +74,22 @@ def sweep_and_write(
                 count = len(sweep.values)
                 click.echo(f"Continued from {before:,} designs to {count:,}.", err=True)
         try:
-            with progress(way.quiet) as report:
-                table = solved(sweep, parts, way.jobs, way.scheduler, report)
+            alone = way.scheduler is not None or (way.jobs or cores()) == 1
+            with progress(way.quiet, alone) as report:
+                table = solved(sweep, parts, way.jobs, way.scheduler, report, _warn)
         except BaseException as error:
             if parts.count and (isinstance(error, KeyboardInterrupt) or interrupts.came()):
                 raise Unfinished(_kept(parts)) from None
+            if parts.count and isinstance(error, InputError):
+                raise InputError(f"{error}\n{_kept(parts)}", code=error.code) from None
             raise
         _write(directory, table)
         parts.finish()
     return _told(directory, table, way)
+
+
+def _warn(message: str) -> None:
+    click.echo(f"Warning: {message}", err=True)
 
 
 def _told(directory: Path, table: pa.Table, way: Way) -> int:
@@ -99,9 +109,7 @@ def _write(directory: Path, table: pa.Table) -> None:
     try:
         manifest.add(directory, list(FILES))
         write_table(table, directory / TABLE)
-        partial = directory / f"{PAGE}.partial"
-        write_designs_page(table, partial)
-        partial.replace(directory / PAGE)
+        write_inside(directory, PAGE, render_designs(designs_of(table)).encode())
     except OSError as error:  # a full disk
         raise InputError(
             f"--out: cannot write to {directory} ({error.strerror})", code="cannot-write"
@@ -112,6 +120,12 @@ def _require_usable(directory: Path, parts: Parts, resume: bool) -> None:
     """Raises: InputError for a folder with other files than those of a sweep, with a sweep that did
     not end and is not to be resumed, or with none to resume.
     """
+    if directory.is_dir() and (link := manifest.first_link(directory)):
+        raise InputError(
+            f"--out: {directory}: {link} is a link, a pipe or a device, which pinstress did not "
+            "make; remove it or choose another folder",
+            code="not-ours",
+        )
     if directory.exists() and (not directory.is_dir() or manifest.entries(directory)):
         begun = directory.is_dir() and (parts.folder / STATED).is_file()
         mark = f"{FOLDER}/{STATED}" if begun else TABLE
@@ -175,8 +189,10 @@ def _kept(parts: Parts) -> str:
 
 
 @contextmanager
-def progress(quiet: bool) -> Iterator[Report]:
-    """A progress bar on stderr if it is a terminal, otherwise a line now and then."""
+def progress(quiet: bool, alone: bool = True) -> Iterator[Report]:
+    """A progress bar on stderr if it is a terminal, otherwise a line now and then. alone: whether
+    no process is forked meanwhile, so that a thread may refresh the bar; otherwise every call does.
+    """
     from rich import progress as rich
 
     shown = Console(stderr=True)
@@ -190,12 +206,16 @@ def progress(quiet: bool) -> Iterator[Report]:
     )
     lines = _Lines(quiet or shown.is_terminal)
     with rich.Progress(
-        *columns, console=shown, transient=True, disable=quiet or not shown.is_terminal
+        *columns,
+        console=shown,
+        transient=True,
+        disable=quiet or not shown.is_terminal,
+        auto_refresh=alone,
     ) as bar:
         task = bar.add_task("designs", total=None)
 
         def report(count: int, total: int) -> None:
-            bar.update(task, completed=count, total=total)
+            bar.update(task, completed=count, total=total, refresh=not alone)
             lines.tell(count, total)
 
         yield report

@@ -23,6 +23,7 @@ from pinstress.sizing.size_pin import Sized, Wish, size_pin
 from pinstress.study.choices import require_positive
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study
+from reports.data.decision import DEPENDS, FAILS, NOT_DECIDED, factor_ends, outcome
 from reports.data.results import PinResult, Results
 from reports.format.numbers import DASH, engineering, short
 from reports.format.ranges import factor_range
@@ -108,7 +109,12 @@ def _agree(sized: list[Sized], results: Results, required: float) -> bool:
 
 
 def _factors(results: Results, pin: str) -> list[float]:
-    return [p.safety_factor for p in results.pins if p.pin == pin and p.safety_factor is not None]
+    """As size_pin counts them: with the error, but for singular rows."""
+    return [
+        p.safety_factor if p.verdict == "singular" else factor_ends(p)[0]
+        for p in results.pins
+        if p.pin == pin and p.safety_factor is not None
+    ]
 
 
 def _all(
@@ -181,7 +187,7 @@ def _weight(study: Study, name: str) -> float | None:
 
 def _stricter(worst: PinResult) -> str:
     """A hand check with a smaller factor than that of the largest stress, if any."""
-    checks = [c for c in worst.hand_checks if c.factor is not None]
+    checks = [c for c in worst.hand_checks if c.factor is not None and c.governs]
     least = min(checks, key=lambda c: c.factor or 0.0, default=None)
     if least is None or (least.factor or 0.0) >= (worst.safety_factor or 0.0):
         return ""
@@ -198,8 +204,9 @@ def why_missed(found: list[PinResult]) -> str:
     singular = [p.case for p in found if p.verdict == "singular"]
     if not found:
         return "the run of the new study gives no safety factor"
-    missing = [p.case for p in found if p.meets_required is False]
-    loose = [p.case for p in found if p.verdict == "unconverged" and p.meets_required is None]
+    missing = [p.case for p in found if outcome(p) == FAILS]
+    depends = [p.case for p in found if outcome(p) == DEPENDS]
+    loose = [p.case for p in found if p.verdict != "singular" and outcome(p) == NOT_DECIDED]
     if missing:
         return f"it fails in the run of the new study, case {', '.join(missing)}"
     if singular:
@@ -213,5 +220,11 @@ def why_missed(found: list[PinResult]) -> str:
             "remedies"
         )
     if loose:
-        return f"in {', '.join(loose)} the stress has not converged to the tolerance"
+        return f"in {', '.join(loose)} the error of the stress leaves it open"
+    if depends:
+        over = ", ".join(dict.fromkeys(d.over for p in found for d in p.depends_on))
+        return (
+            f"the factor is reached as described, but not within the range of the {over} "
+            f"({', '.join(depends)})"
+        )
     return ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import inf
 from typing import Any
 
 from fea.fatigue.records import PointFatigue
@@ -23,6 +24,7 @@ POINTS = ("pin", "point", "x", "y", "z", "chosen")
 COLUMNS = (
     *("pin", "point", "x", "y", "z", "method", "damage", "life", "life_10", "life_50", "life_90"),
     *("utilisation", "amplitude", "mean_stress", "note", "normal_x", "normal_y", "normal_z"),
+    "not_decided",
 )
 
 
@@ -50,13 +52,20 @@ def _points(results: Results) -> Iterator[list[Cell]]:
 
 
 def _rows(fatigue: Fatigue | None) -> Iterator[list[Cell]]:
-    for p in fatigue.points if fatigue else ():
+    if fatigue is None:
+        return
+    for p in fatigue.points:
         lives = p.lives or (None,) * len(PROBABILITIES)
         yield [
             *(p.pin, p.point, *p.location, p.method, p.damage, p.life, *lives),
             *(p.utilisation, p.amplitude, p.mean, p.note),
             *(p.normal or (None,) * 3),
+            fatigue.not_decided.get(p.pin, ""),
         ]
+    shown = {p.pin for p in fatigue.points}
+    for pin, reason in fatigue.not_decided.items():
+        if pin not in shown:
+            yield [pin, *(None,) * (len(COLUMNS) - 2), reason]
 
 
 def worst_points(fatigue: Fatigue) -> list[PointFatigue]:
@@ -71,24 +80,31 @@ def fatigue_grid(results: Results) -> Grid | None:
         return None
     unit, stress = fatigue.unit, results.units.stress
     head = ["Pin", "point", f"z [{results.units.length}]", f"damage per {unit}", f"life [{unit}s]"]
+    worst = worst_points(fatigue)
     scattered = any(p.lives for p in fatigue.points)
+    instead = any(p.method != fatigue.method for p in worst)
     head += [f"at {p}" for p in PROBABILITIES] if scattered else []
     head += ["utilisation"] if fatigue.life is not None else []
     head += [f"amplitude [{stress}]", f"mean [{stress}]"]
-    head += ["normal of the plane"] if fatigue.method == "critical-plane" else []
+    head += ["method"] if instead else []
+    head += ["normal of the plane"] if any(p.normal for p in worst) else []
     body = []
-    for p in worst_points(fatigue):
-        lives = [life_words(x) for x in p.lives] or [DASH] * len(PROBABILITIES)
+    for p in worst:
+        least, most = ("≥ ", "≤ ") if p.pin in fatigue.not_decided else ("", "")
+        lives = [most + life_words(x) for x in p.lives] or [DASH] * len(PROBABILITIES)
+        damage = least + _or_infinite(p.damage) if p.damage or least else "none"
         body.append(
             [
                 *(p.pin, str(p.point), engineering(p.location[2], 3)),
-                *(engineering(p.damage, 3) if p.damage else "none", life_words(p.life)),
+                *(damage, DASH if most and p.life is None else most + life_words(p.life)),
                 *(lives if scattered else []),
-                *([_per_cent(p.utilisation)] if fatigue.life is not None else []),
+                *([least + _per_cent(p.utilisation)] if fatigue.life is not None else []),
                 *(engineering(p.amplitude, 3), engineering(p.mean, 3)),
-                *([", ".join(f"{x:.2f}" for x in p.normal)] if p.normal else []),
+                *([p.method] if instead else []),
+                *([", ".join(f"{x:.2f}" for x in p.normal) if p.normal else DASH]
+                  if head[-1] == "normal of the plane" else []),
             ]
-        )
+        )  # fmt: skip
     return Grid(head, body, [False, *[True] * (len(head) - 1)])
 
 
@@ -98,23 +114,56 @@ def life_words(life: float | None) -> str:
 
 
 def _per_cent(part: float | None) -> str:
-    return DASH if part is None else f"{engineering(100.0 * part, 3)} %"
+    return DASH if part is None else f"{_or_infinite(100.0 * part)} %"
+
+
+def _or_infinite(value: float) -> str:
+    return "∞" if value == inf else engineering(value, 3)
 
 
 def fatigue_sentence(fatigue: Fatigue) -> str:
-    """The worst point in a line."""
-    if not fatigue.points:
-        return "Fatigue is not assessed."
-    worst, unit = fatigue.points[0], fatigue.unit
+    """The worst point in a line, with the pins that are not decided and those that another method
+    than the asked one was taken for.
+    """
+    known = [p for p in fatigue.points if p.pin not in fatigue.not_decided]
+    sentences = [_worst(known[0], fatigue)] if known else []
+    sentences += [
+        f"Fatigue of pin {pin} is not decided: {reason}{_so_far(pin, fatigue)}."
+        for pin, reason in fatigue.not_decided.items()
+    ]
+    sentences += [
+        f"Pin {p.pin}, point {p.point}: {p.note.partition('; ')[2]}."
+        for p in worst_points(fatigue)
+        if p.method != fatigue.method
+    ]
+    return " ".join(sentences) or "Fatigue is not assessed."
+
+
+def _worst(worst: PointFatigue, fatigue: Fatigue) -> str:
+    unit, method = fatigue.unit, METHODS[worst.method]
     if not worst.damage:
-        return f"Fatigue: no damage at any critical point ({METHODS[fatigue.method]})."
+        return f"Fatigue: no damage at any critical point{_elsewhere(fatigue)} ({method})."
     text = f"Fatigue: pin {worst.pin} reaches damage 1 after {life_words(worst.life)} {unit}s"
     if worst.lives:
         few, many = life_words(worst.lives[0]), life_words(worst.lives[2])
         text += f" ({few} at 10 %, {many} at 90 % failure probability)"
     if worst.utilisation is not None:
         text += f"; the design life uses {_per_cent(worst.utilisation)} of it"
-    return f"{text} ({METHODS[fatigue.method]})."
+    return f"{text} ({method})."
+
+
+def _elsewhere(fatigue: Fatigue) -> str:
+    return " of the other pins" if fatigue.not_decided else ""
+
+
+def _so_far(pin: str, fatigue: Fatigue) -> str:
+    """What the damage is at least."""
+    worst = next((p for p in fatigue.points if p.pin == pin and p.damage), None)
+    if worst is None:
+        return ""
+    if worst.utilisation is None:
+        return f"; damage is at least {_or_infinite(worst.damage)} per {fatigue.unit}"
+    return f"; the design life uses at least {_per_cent(worst.utilisation)}"
 
 
 def fatigue_json(fatigue: Fatigue | None) -> dict[str, Any] | None:
@@ -129,6 +178,7 @@ def fatigue_json(fatigue: Fatigue | None) -> dict[str, Any] | None:
         "design_life": finite(fatigue.life),
         "points": [_point(p) for p in fatigue.points],
         "left_out": list(fatigue.left_out),
+        "not_decided": dict(fatigue.not_decided),
     }
 
 
@@ -139,6 +189,7 @@ def _point(p: PointFatigue) -> dict[str, Any]:
         "point": p.point,
         "location": [finite(x) for x in p.location],
         "cases": list(p.cases),
+        "method": p.method,
         "damage": finite(p.damage),
         "life": finite(p.life),
         "life_at_probability": lives,

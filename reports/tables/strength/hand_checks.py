@@ -21,12 +21,15 @@ HAND_CHECKS = (
     "Hand checks use nominal stresses: from beam theory or averaged over a section, without stress "
     "concentration at corners and edges. They cover the whole pin, including excluded zones such "
     "as "
-    "at a clamp, so their factor may be smaller than the model's."
+    "at a clamp, so their factor may be smaller than the model's. Bending and shear of a pin whose "
+    "joint was solved take the moments and forces of the joint model; checks for comparison govern "
+    "nothing."
 )
 
 
 ENDS = ("safety_factor_low", "safety_factor_high")  # of a singular row's factor
-COLUMNS = ("pin", "case", "check", *CHECK[1:], *MODEL, "stress_unit", "time_unit", *ENDS)
+ADDED = ("basis", "governs")  # later than the others, so last
+COLUMNS = ("pin", "case", "check", *CHECK[1:], *MODEL, "stress_unit", "time_unit", *ENDS, *ADDED)
 
 
 def hand_check_rows(results: Results) -> Table:
@@ -92,7 +95,7 @@ def _model(pin: PinResult, units: Units) -> dict[str, str]:
 
 def _check(check: HandCheck) -> dict[str, str]:
     return {
-        "name": check.name,
+        "name": check.shown,
         "at": check.at,
         "time": DASH if check.time is None else short(check.time),
         "stress": engineering(check.stress),
@@ -109,4 +112,5 @@ def _rows(checked: list[PinResult], units: Units) -> Iterator[list[Cell]]:
         for check in pin.hand_checks:
             own = [getattr(check, name) for name in CHECK]
             ends = pin.safety_factor_interval or (None, None)
-            yield [pin.pin, pin.case, *own, *model, units.stress, units.time, *ends]
+            added = [getattr(check, name) for name in ADDED]
+            yield [pin.pin, pin.case, *own, *model, units.stress, units.time, *ends, *added]

@@ -29,6 +29,8 @@ def limit_rows(results: Results) -> list[tuple[PinResult, LimitLoad]]:
 
 def limit_word(limit: LimitLoad) -> str:
     """Whether the pin collapses under its loads, in a word or two."""
+    if limit.stopped:
+        return "not computed: --limit-load computes it"
     if limit.method == "none":
         return "not computed"
     if limit.carries is None:

@@ -10,7 +10,8 @@ from reports.data.governing import governing, not_made
 from reports.data.results import Results
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering, finite, short
-from reports.tables.table import Table, unit_name
+from reports.format.units import unit_name
+from reports.tables.table import Table
 
 COLUMNS = ("pin", "case", "method", "clause", "at", "level", "demand", "allowable", "factor",
            "utilisation", "margin", "unit", "time", "basis", "not_made", "governs")  # fmt: skip
@@ -20,7 +21,8 @@ SHOWN = {name: name for name in ("pin", "case", "check", "margin", "utilisation"
 NUMERIC = ("time", "demand", "allowable", "utilisation", "margin")
 READING_MARGINS = (
     "Margin of safety = allowable / (factor × demand) − 1, of the check that governs each pin in "
-    "each case. Checks against yield are made at limit load, those against rupture and collapse at "
+    "each case beside the von Mises stress against yield, which the safety factors above judge. "
+    "Checks against yield are made at limit load, those against rupture and collapse at "
     "ultimate load; all checks of a pin are with the pin, and in margins.csv. Bending and shear of "
     "a pin whose joint was solved take the moments and forces of the joint model, unless the study "
     "asks for those of the formulas; checks for comparison govern nothing."

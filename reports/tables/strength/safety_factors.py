@@ -5,19 +5,26 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from reports.data.decision import limit, outcome, worst_first
+from reports.data.decision import DEPENDS, limit, outcome, worst_first
 from reports.data.envelope import elsewhere, in_detail
-from reports.data.results import PinResult, Results
+from reports.data.results import PinResult, Results, Units
 from reports.format.files import markdown
 from reports.format.numbers import DASH, engineering, finite, ratio, short
 from reports.format.ranges import (
     error_range,
     factor_range,
     joint_range,
-    margin_range,
     utilisation_range,
 )
-from reports.format.words import JOINT, MEANING, READING, headline, result_words, verdict_words
+from reports.format.words import (
+    JOINT,
+    MEANING,
+    READING,
+    depends_words,
+    headline,
+    result_words,
+    verdict_words,
+)
 from reports.tables.published import published_maxima
 from reports.tables.stress.joint import lugs_word
 from reports.tables.table import Table
@@ -47,6 +54,7 @@ LATER = (
     *("error_cells", "joint_low", "joint_high", "joint_model", "joint_lugs"),
     *("outcome", "utilisation", "margin_of_safety"),
     "error_truncation",
+    "depends_on",
 )
 TEXTS = ("pin", "case", "result", "verdict", "model")
 OVER_JOINT = "joint_high"  # in whose place the whole range is shown
@@ -55,7 +63,14 @@ OVER_JOINT = "joint_high"  # in whose place the whole range is shown
 def safety_factor_rows(results: Results) -> list[Row]:
     """A row per pin and case; numbers in the study's units, None where there is none."""
     required = finite(results.required_safety_factor)
-    return [safety_factor_row(pin, required) for pin in results.pins]
+    return [
+        {**safety_factor_row(pin, required), "depends_on": _depends(pin, results.units)}
+        for pin in results.pins
+    ]
+
+
+def _depends(pin: PinResult, units: Units) -> str | None:
+    return depends_words(pin.depends_on, units) if outcome(pin) == DEPENDS else None
 
 
 def shown_rows(results: Results) -> list[Row]:
@@ -68,7 +83,6 @@ def shown_rows(results: Results) -> list[Row]:
             "error_estimate": error_range(pin),
             "safety_factor": factor_range(pin),
             "utilisation": utilisation_range(pin, required),
-            "margin_of_safety": margin_range(pin, required),
             OVER_JOINT: joint_range(pin),
         }
         for pin in worst_first(results)
@@ -141,7 +155,6 @@ def shown_columns(rows: list[Row], results: Results) -> dict[str, str]:
         "result": "result",
         "safety_factor": f"safety factor{needed}",
         "utilisation": "utilisation",
-        "margin_of_safety": "margin of safety",
         "max_von_mises": f"max von Mises [{units.stress}]",
         "error_estimate": f"± [{units.stress}]",
         OVER_JOINT: f"joint [{units.stress}]",

@@ -7,7 +7,8 @@ from typing import Any
 from reports.data.results import PinSensitivities, Results, Sensitivity, Units
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering, finite, short
-from reports.tables.table import Table, unit_name
+from reports.format.units import unit_name
+from reports.tables.table import Table
 
 COLUMNS = ("pin", "case", "key", "value", "unit", "max_von_mises", "stress_per_unit",
            "safety_factor", "factor_per_unit", "step", "factor_with_step", "one_sided")  # fmt: skip

@@ -78,7 +78,7 @@ def test_the_solid_is_between_the_beams_bounds(length: float) -> None:
     pin, loads = _pushed(length, 0.5)
     beam = beam_bounds(pin, STEEL, ("start",), loads)
     solid = limit(pin, loads, HexSize(2, 0.5), ("start",))
-    assert beam.lower[0] < solid.lower < 1.02 * beam.upper[0]
+    assert beam.lower[0] < solid.reached < 1.02 * beam.upper[0]
 
 
 def test_the_beam_answers_where_it_leaves_no_doubt_and_the_solid_elsewhere() -> None:

@@ -103,8 +103,10 @@ def test_a_converged_row_has_no_interval(steel: Material) -> None:
             150.0,
             None,
         ),  # nor is all of it: the places themselves are open
-        ("converged", None, 99.0, False),
-        ("converged", None, 100.0, True),
+        ("converged", None, 89.0, False),
+        ("converged", None, 95.0, None),  # its error reaches the limit
+        ("converged", None, 105.0, None),
+        ("converged", None, 110.0, True),
         ("unconverged", None, 80.0, False),
         ("unconverged", None, 95.0, None),
         ("unconverged", None, 130.0, True),

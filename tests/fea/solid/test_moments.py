@@ -209,8 +209,9 @@ def test_a_load_without_a_field_is_not_dropped(bar: UnitFields) -> None:
 
 
 def test_a_floating_pin_in_balance_by_a_moment(steel: Material) -> None:
-    """A couple of forces and the moment that answers it is solved; so is less of it, because bands
-    carry couples, which is reported; a torque about the axis that nothing answers is refused.
+    """A couple of forces and the moment that answers it is solved; so is a little less of it,
+    because bands carry small couples, which is reported; a couple, or a torque about the axis, that
+    nothing answers is refused.
     """
     pin = double_shear(0.02, 0.04, 0.02, 0.02)
     forces = np.array([[[0.0, -500.0, 0.0], [0.0, 0.0, 0.0], [0.0, 500.0, 0.0]]])
@@ -235,6 +236,8 @@ def test_a_floating_pin_in_balance_by_a_moment(steel: Material) -> None:
     assert ok.peak.imbalance is None
     assert less.peak.imbalance == pytest.approx((0.0, 6.0 / 500.0 / 0.14))
     assert none.peak.imbalance == pytest.approx((0.0, 60.0 / 500.0 / 0.14))
+    assert none.peak.verdict == "rigid"
+    assert none.peak.reasons == ("couple-imbalance",)
     assert refused.peak.verdict == "rigid"
     assert refused.peak.reasons == ("torque-imbalance",)
     assert isinstance(ok.answer, SolidAnswer)

@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 from scipy.integrate import dblquad
 
 from fea.beam.round_section import Circle
-from fea.checks.hand_checks import hand_checks
 from fea.checks.lug_checks import lug_checks
 from fea.core.material import Material
 from fea.core.peak import Peak
@@ -21,7 +20,6 @@ from fea.joint.lugs.lug import Lug
 from fea.joint.records import JointForces
 from fea.plastic.records import LimitLoad
 from fea.strength.bending_arms import bending_arms, layout
-from fea.strength.bending_stress import OF_JOINT, bending_margin
 from fea.strength.collapse import collapse_margin
 from fea.strength.eurocode_pins import (
     PinInHole,
@@ -33,9 +31,10 @@ from fea.strength.eurocode_pins import (
 )
 from fea.strength.margin import Margin
 from fea.strength.model_stress import model_margins
-from fea.strength.pin_checks import formula_margins
+from fea.strength.pin_checks import formula_margins, pin_checks
 from fea.strength.plastic_bending import plastic_shear
 from fea.strength.section_forces import of_joint, section_forces
+from fea.strength.section_stress import OF_JOINT, bending_check
 from fea.strength.situation import LoadFactors, Situation, with_supports
 from geometry import Pin, Segment
 from tests.support.pins.plain_pins import double_shear
@@ -53,8 +52,7 @@ def in_double_shear(
 
 
 def margins(s: Situation) -> dict[tuple[str, str], Margin]:
-    checks = hand_checks(s.pin, s.material, s.loads, s.clamps)
-    checks += lug_checks(s.pin, s.lugs, s.loads)
+    checks = pin_checks(s) + lug_checks(s.pin, s.lugs, s.loads)
     return {(m.method, m.level): m for m in formula_margins(s, checks)}
 
 
@@ -280,7 +278,8 @@ def test_bending_and_shear_of_a_solved_joint_take_its_section_forces() -> None:
     moment = np.interp(z, even.z, even.moment[0])
     shear = np.full_like(z, 2500.0)
     course = np.array([0.1, 0.5])[:, None]
-    along = JointForces(z, np.array([1.0, 2.0]), 2 * course * shear, course * moment)
+    times, none = np.array([1.0, 2.0]), np.zeros((2, 0, 2))
+    along = JointForces(z, times, 2 * course * shear, course * moment, (), none)
     plain = margins(s)
     found = margins(replace(s, joint=along, replaceable=True))
     bent = found["EN 1993 bending", "ultimate"]
@@ -314,10 +313,11 @@ def test_a_shoulder_is_checked_on_both_sides() -> None:
     """The moment of the joint at a step loads the thinner section there."""
     pin = Pin("P", (Segment(0.02, 0.03, connection="A"), Segment(0.02, 0.02, connection="B")))
     z = np.array([0.0, 0.02, 0.04])
-    along = JointForces(z, None, np.zeros((1, 3)), np.array([[0.0, 100.0, 0.0]]))
+    moment, none = np.array([[0.0, 100.0, 0.0]]), np.zeros((1, 0, 2))
+    along = JointForces(z, None, np.zeros((1, 3)), moment, (), none)
     s = replace(in_double_shear(0.008, 0.001, 0.015, 0.016, 5000.0), pin=pin)
-    found = bending_margin(s, OF_JOINT, of_joint(s, along))
-    assert found.demand == pytest.approx(100.0 / (math.pi / 32.0 * 0.02**3))
+    found = bending_check(s, of_joint(s, along), OF_JOINT)
+    assert found.stress == pytest.approx(100.0 / (math.pi / 32.0 * 0.02**3))
     assert found.at == "B"
 
 

@@ -15,7 +15,7 @@ import pytest
 
 import pinstress
 from pinstress.analysis.results import Found
-from reports.format.numbers import engineering
+from reports.format.ranges import factor_range
 from tests.conftest import ROOT
 
 
@@ -58,7 +58,7 @@ def test_a_notebook_shows_the_factor_with_its_verdict(found: Found) -> None:
     cells = Cells(found._repr_html_()).found
     assert "max von Mises [psi]" in cells
     factor = cells[len(cells) // 2 :]
-    shown = engineering(found.pins[0].safety_factor)
+    shown = factor_range(found.pins[0])
     assert {"B", "landing", shown, "converged"} <= set(factor)
     assert f"FoS {shown} ≥ 10 required" in repr(found)
 

@@ -229,7 +229,7 @@ def test_view_of_no_results(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     (tmp_path / "results.json").unlink()
     os.mkfifo(tmp_path / "results.json")
     assert run_command_line(["view", str(tmp_path)]) == 2
-    assert "its results.json is a pipe or a device" in capsys.readouterr().err
+    assert "results.json is a pipe or a device" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

@@ -8,13 +8,11 @@ from functools import partial
 from itertools import pairwise
 from multiprocessing import resource_tracker
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas
 import pyarrow as pa
 import pytest
-from distributed import KilledWorker
 from pyarrow import parquet
 from rich.console import Console
 
@@ -39,7 +37,7 @@ from pinstress.designs.parts import Identity, Parts, identity, is_ours
 from pinstress.designs.summary import summary
 from pinstress.designs.sweep import Kept, planned, solved
 from pinstress.designs.table import assembled, facts, write_table
-from pinstress.designs.workers import failed_rows, local, remote, solve_on
+from pinstress.designs.workers import BatchQueue, failed_rows
 from tests.support.programs.command_line import QUICK
 from tests.support.programs.swept import DEADLY, DIAMETER, FORCE, STRENGTH, swept
 from tests.support.results.made_up_designs import made_up_designs
@@ -63,7 +61,8 @@ def test_a_row_for_each_design_pin_and_case(table: pa.Table) -> None:
     assert set(table["pin"].to_pylist()) == {"B"}
     assert table.column_names == [
         "design", "pin", "case", DIAMETER, FORCE, STRENGTH, "max_von_mises", "error_estimate",
-        "safety_factor", "verdict", "governing_time", "mass", "reason", "code",
+        "safety_factor", "outcome", "depends_on", "verdict", "governing_time", "mass", "reason",
+        "code",
     ]  # fmt: skip
     np.testing.assert_allclose(np.unique(table[DIAMETER]), [1.5, 3.0, 4.5])
     factor = np.array(table["safety_factor"].to_pylist()[:8], float)
@@ -264,68 +263,32 @@ def test_designs_whose_process_died_are_rows() -> None:
 
 
 def test_a_scheduler_that_does_not_answer_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    import pinstress.designs.workers as module
+    import pinstress.designs.cluster as module
 
     monkeypatch.setattr(module, "ANSWERS", 0.5)
     for address in ("tcp://127.0.0.1:1", "nonsense://"):
         with pytest.raises(InputError, match="no scheduler of dask answers at") as raised:
-            remote(address).__enter__()
+            module.connected(address, (), print).__enter__()
         assert raised.value.code == "no-scheduler"
 
 
-@pytest.mark.slow
-def test_the_users_own_cluster_has_the_same_table(table: pa.Table) -> None:
-    with local(1) as client:
-        address = client.scheduler_info()["address"]
-        again = pinstress.sweep(swept(VARIED, "", QUICK), scheduler=address)
-    assert again.equals(table, check_metadata=True)
-
-
-class _Cluster:
-    """Of one process that a design ends each time."""
-
-    def nthreads(self) -> dict[str, int]:
-        return {"one": 1}
-
-    def submit(self, _: object, problem: DesignProblem, batch: Batch, pure: bool) -> _Future:
-        assert not pure
-        worker: Any = None
-        if DEADLY in batch.designs:
-            return _Future(KilledWorker("a batch", worker, 1))
-        return _Future(solve_batch(problem, batch))
-
-
-class _Future:
-    def __init__(self, outcome: Done | Exception) -> None:
-        self.outcome = outcome
-        self.status = "finished" if isinstance(outcome, Done) else "error"
-
-    def result(self, timeout: float) -> Done | Exception:
-        return self.outcome
-
-    exception = result
-
-
-def test_a_design_that_ends_its_process_is_a_row_and_the_others_go_on(
-    table: pa.Table, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Also in a batch with others."""
-    sweep = planned(swept(VARIED, "", QUICK))
-    found: dict[int, str] = {}
-
-    def keep(done: Done) -> None:
-        found.update(
-            (i, rows[0].code) for i, rows in zip(done.batch.designs, done.rows, strict=True)
-        )
-
-    monkeypatch.setattr("pinstress.designs.workers._ended", lambda _, running: running[0])
-    batches = Batches(sweep.problem.numbers, sweep.values, set(), 1)
+def test_a_batch_whose_process_died_is_halved_and_its_last_design_solved_alone() -> None:
+    """The design that does it is given up when it does it alone, and no other one."""
+    numbers = [number_at(swept(VARIED), FORCE)]
+    batches = Batches(numbers, np.zeros((9, 1)), set(), 1)
     batches.learn(Done(Batch((0,), ((0.0,),)), [], 1e-3))
+    kept: list[tuple[int, ...]] = []
     lost = partial(failed_rows, (("B", "landing"),))
-    cluster: Any = _Cluster()
-    solve_on(cluster, sweep.problem, batches, keep, lost)
-    expected = dict(enumerate(table["code"].to_pylist())) | {DEADLY: "process-died"}
-    assert found == expected
+    work = BatchQueue(batches, lambda done: kept.append(done.batch.designs), lost)
+    killed = {3}  # beside others by another one's need of memory, and then by its own
+    together = [work.take(), work.take()]
+    while (batch := together.pop() if together else work.take()) is not None:
+        if {DEADLY} & set(batch.designs) or killed & set(batch.designs):
+            killed -= set(batch.designs) if len(batch.designs) == 1 else set()
+            work.died(batch)
+        else:
+            work.done(Done(batch, [], 0.0))
+    assert sorted(i for designs in kept for i in designs) == list(range(9))
 
 
 def test_rows_that_are_not_converged_are_counted(capsys: pytest.CaptureFixture[str]) -> None:

@@ -303,7 +303,7 @@ bushing = { thickness = 2, material = "bronze" }
         ("lug, net section", "L"), ("lug, shear-out", "L"), ("lug, bearing", "L"),
     }  # fmt: skip
     assert checks["lug, net section", "L"] == pytest.approx(25000.0 / ((60.0 - 24.0) * 10.0))
-    assert "bending" in {c.name for c in found.hand_checks}
+    assert "bending, joint model" in {c.name for c in found.hand_checks}
 
 
 def test_cases_in_contact_share_a_surface(tmp_path: Path) -> None:
@@ -327,11 +327,16 @@ def test_cases_in_contact_share_a_surface(tmp_path: Path) -> None:
         assert stress == pytest.approx(case.largest, rel=1e-3)
 
 
-def test_a_pin_on_a_structure_has_hand_checks_of_its_lugs_alone(tmp_path: Path) -> None:
-    """What the structure takes, and so the pin's bending, is not known to a formula."""
+def test_a_pin_on_a_structure_has_the_hand_checks_of_its_joint(tmp_path: Path) -> None:
+    """What the structure takes, and so the pin's bending, is known to the joint alone."""
     path = study(tmp_path, "lug.gap = {}\nlug.M = { outer_diameter = 50 }")
     found = run(load_study(path))["P", "pull"]
-    assert {c.name for c in found.hand_checks} == {
-        "lug, net section", "lug, shear-out", "lug, bearing",
-    }  # fmt: skip
+    assert {
+        c.name: c.basis for c in found.hand_checks if c.governs and "shear, mean" not in c.name
+    } == {
+        **dict.fromkeys(("lug, net section", "lug, shear-out", "lug, bearing", "bearing"), ""),
+        **dict.fromkeys(
+            ("single shear, at the neutral axis", "bending, joint model"), "joint model"
+        ),
+    }
     assert found.held == "its lugs (contact)"

@@ -166,10 +166,13 @@ def test_an_eye_that_becomes_too_narrow_grows() -> None:
 def test_a_floating_pin_of_a_linkage_is_sized_and_a_run_confirms_it(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Its weight is in the loads of every trial; from another folder the study still runs."""
+    """Its weight is in the loads of every trial; from another folder the study still runs. J is in
+    its lugs, which carry its couple.
+    """
     path = ROOT / "studies" / "grenier2008.toml"
-    balanced = {"pin.J.clamp": [], "pin.J.fillet": 0.15}
-    balanced |= {f"case.{case}.distribution": "cosine" for case in ("retract", "landing")}
+    lugs = {name: {"edge_radius": 0.02} for name in ("J1", "J2", "J3")}
+    balanced = {"pin.J.clamp": [], "pin.J.fillet": 0.15, "pin.J.lug": lugs}
+    balanced |= {"analysis.lug_edges": "excluded"}
     gear, target = tmp_path / "gear.toml", tmp_path / "deep" / "sized.toml"
     target.parent.mkdir()
     text = changed_study(load_study(path), balanced).text

@@ -35,7 +35,7 @@ def of_cases(results: Results, count: int) -> Results:
                 pin=pin,
                 case=f"gust {k}",
                 safety_factor=factor,
-                meets_required=factor >= 1.5,
+                decided=factor >= 1.5,
                 joint=None,
                 second_opinion=None,
             )
@@ -120,7 +120,7 @@ def test_few_cases_are_shown_in_full(results: Results) -> None:
 
 def test_a_cell_without_a_number_is_a_dash_and_an_endless_one_is_full(results: Results) -> None:
     made = of_cases(results, 2)
-    one = replace(made.pins[0], safety_factor=None, verdict="rigid", meets_required=None)
+    one = replace(made.pins[0], safety_factor=None, verdict="rigid", decided=None)
     two = replace(made.pins[1], safety_factor_interval=(0.0, 3.0))
     found = matrix(replace(made, pins=(one, two, *made.pins[2:])))
     assert found is not None

@@ -100,6 +100,8 @@ def test_json_holds_the_contract(results: Results) -> None:
         "yields",
         "meets_required",
         "outcome",
+        "depends_on",
+        "safe_within",
         "dofs",
         "seconds",
         "history",
@@ -116,7 +118,7 @@ def test_json_holds_the_contract(results: Results) -> None:
 
 
 def test_json_takes_numpy_truths(results: Results) -> None:
-    odd = with_first_pin(results, meets_required=np.bool_(True), dofs=np.int64(7))
+    odd = with_first_pin(results, decided=np.bool_(True), dofs=np.int64(7))
     assert json.loads(json.dumps(to_json(odd)))["pins"][0]["meets_required"] is True
 
 

@@ -86,7 +86,8 @@ def pin(name: str, case: str) -> PinResult:
         position=0.1 * i if case == "retract" else None,
         safety_factor=factor,
         yields=factor < 1.0,
-        meets_required=None if loose else factor >= 1.5,
+        decided=None if loose else factor >= 1.5,
+        required=1.5,
         dofs=4200 * (i + 1),
         seconds=0.05,
         history=tuple(
@@ -283,4 +284,6 @@ def ranged(pin: str, verdict: str = "converged", factor: float = 4.0) -> Landing
         safety_factor=factor * 100.0 / force,
         nominal=(0.1, 10.0),
         verdict=verdict,
+        pulses=("rectangular",) * len(force),
+        nominal_pulse="rectangular",
     )

@@ -1,0 +1,18 @@
+"""Calls of pyLife without what it prints and warns of: what matters of it is in the results."""
+
+from __future__ import annotations
+
+import io
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager, redirect_stdout
+
+
+@contextmanager
+def quiet() -> Iterator[None]:
+    """No warning and nothing printed: pyLife 2.3 uses what pandas 3 deprecates, takes roots of
+    negative numbers for cycles in compression, and prints hints on P_RAJ.
+    """
+    with warnings.catch_warnings(), redirect_stdout(io.StringIO()):
+        warnings.simplefilter("ignore")
+        yield

@@ -1,0 +1,73 @@
+"""Whether a pin of a design meets its factor, judged as a run judges it.
+
+One thing is left to a run: the range over the joint of a pin with prescribed loads, a beam in
+assumed lugs that takes longer than the pin itself. Such a pin is at most "safe as described".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from fea.core.peak import Peak, decides
+from fea.joint.records import JointResult
+from fea.joint.solve_in_lugs import LugSolution
+from fea.solve_pin import Solution
+from pinstress.analysis.gather import landing_range
+from pinstress.model.cases import CaseLoads
+from pinstress.model.tasks import Task
+from pinstress.schema.units import UnitSystem
+from reports.data.decision import BELOW, DEPENDS, NOT_DECIDED, SAFE, in_words
+from reports.data.dependence import Judged, dependences
+from reports.data.in_units import in_units
+from reports.data.results import LandingRange, Units
+from reports.format.words import depends_words
+
+AS_DESCRIBED = "as described"
+
+
+@dataclass(frozen=True)
+class DesignAnswer:
+    """What is kept of a solved pin in a case: no meshes, no zones."""
+
+    peak: Peak
+    joint: JointResult | None
+    landing: LandingRange | None
+
+
+def bare_answer(
+    task: Task, found: Solution | LugSolution, loads: Mapping[str, CaseLoads]
+) -> DesignAnswer:
+    """Of one solution of a task."""
+    joint = None
+    if isinstance(found, LugSolution):
+        solution, pressed = found.solution, found.pressed
+        joint = found.joint and replace(found.joint, along=None, bending_moments=())
+    else:
+        solution, pressed = found, lambda given: given
+    peak = replace(solution.peak, history=(), singular_at=())
+    return DesignAnswer(peak, joint, landing_range(loads, task, solution, pressed))
+
+
+def outcome_of(
+    answer: DesignAnswer, task: Task, required: float | None, system: UnitSystem
+) -> tuple[str, str]:
+    """The outcome, and in words, in the units of a study, what it depends on."""
+    strength, around = task.material.yield_strength, task.surroundings
+    peak, permitted = answer.peak, None if strength is None else strength / (required or 1.0)
+    decided = None if permitted is None else decides(peak, permitted)
+    found = in_words(decided, required)
+    if found == NOT_DECIDED or strength is None or permitted is None or not peak.max_von_mises:
+        return found, ""
+    judged = Judged(
+        peak.lower_end, peak.max_von_mises, peak.upper_end, strength, permitted, bool(decided)
+    )
+    on = dependences(judged, answer.joint, answer.landing)
+    if found not in (SAFE, BELOW):
+        return found, ""
+    if on:
+        units = Units(system.length, system.force, system.stress, system.time)
+        own = [in_units(d, system.factor) for d in on]
+        return DEPENDS, depends_words(own, units)
+    joint_open = around is not None and around.pin is not None
+    return (f"{found} {AS_DESCRIBED}" if joint_open else found), ""

@@ -1,0 +1,157 @@
+"""What the outcome of a row depends on: values within the study's own ranges at which it changes.
+
+A row is judged as its study describes it. What the study gives as a range (the impulse of a
+landing), or what is seldom known of a joint, may still turn "safe" into "fails"; then a factor that
+is met is met on a condition, and this names it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea.joint.records import JointResult, Variation
+from reports.data.decision import BELOW, NOT_DECIDED, SAFE, as_described, factor_ends
+from reports.data.results import Dependence, Floats, LandingRange, PinResult
+
+TOGETHER = "impulse time, velocity change and pulse together"
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A maximum with the lower and upper end of its error, the yield strength, and the stress that
+    the required factor permits, all of one unit; safe: as described.
+    """
+
+    low: float
+    maximum: float
+    high: float
+    strength: float
+    permitted: float
+    safe: bool
+
+    def turns(self, stress: float, ends: tuple[float, float] | None = None) -> bool:
+        """Whether another maximum, with the same relative error or with its own ends, is judged
+        otherwise for certain (fails to safe), or possibly (safe to fails).
+        """
+        low, high = ends or (stress * self.low / self.maximum, stress * self.high / self.maximum)
+        return (high > self.permitted) if self.safe else (max(low, high) <= self.permitted)
+
+
+def dependences(
+    judged: Judged, joint: JointResult | None, landing: LandingRange | None
+) -> tuple[Dependence, ...]:
+    """Everything whose range changes the outcome, that of the joint first; empty where nothing
+    does.
+    """
+    if judged.maximum <= 0.0:
+        return ()
+    found = [*_over_joint(judged, joint)]
+    if landing is not None:
+        found += _over_landing(judged, landing)
+    return tuple(found)
+
+
+def depends_on(pin: PinResult, landing: LandingRange | None) -> tuple[Dependence, ...]:
+    """What the outcome of a row depends on; empty where it is not decided as described."""
+    found = as_described(pin)
+    if found == NOT_DECIDED or not pin.max_von_mises or not pin.safety_factor:
+        return ()
+    strength = pin.safety_factor * pin.max_von_mises
+    high, low = (strength / end for end in factor_ends(pin))
+    permitted = strength / (pin.required or 1.0)
+    judged = Judged(low, pin.max_von_mises, high, strength, permitted, found in (SAFE, BELOW))
+    return dependences(judged, pin.joint, landing)
+
+
+def _over_joint(judged: Judged, joint: JointResult | None) -> Iterator[Dependence]:
+    over = joint.range if joint else None
+    if joint is None or over is None:
+        return
+    given = max((band.clearance for band in joint.bands), default=None)
+    found = [v for v in over.variations if judged.turns(v.max_von_mises, v.interval)]
+    for v in found:
+        yield Dependence(
+            v.what, v.value, "joint", judged.strength / _counted(judged, v),
+            given=given if v.length is not None else None, at=v.length,
+            flips_at=_crossing(judged, v, given), dimension="length",
+        )  # fmt: skip
+    if not found and judged.safe and over.max_von_mises[1] > judged.permitted:
+        lugs = "assumed lugs" if over.assumed else "its lugs"
+        factor = judged.strength / over.max_von_mises[1]
+        yield Dependence("joint", f"contact with {lugs}", "joint", factor)
+
+
+def _counted(judged: Judged, v: Variation) -> float:
+    """The stress that turns a safe row is the upper end of a variation's own interval."""
+    return v.interval[1] if judged.safe and v.interval else v.max_von_mises
+
+
+def _crossing(judged: Judged, v: Variation, given: float | None) -> float | None:
+    """Where between the given length and the varied one the permitted stress is reached, linearly;
+    the varied one where the maximum as given is not of the same model.
+    """
+    if v.length is None or given is None or v.interval is not None:
+        return v.length
+    end = judged.high if judged.safe else judged.low
+    first, last = end, v.max_von_mises * end / judged.maximum
+    if first == last:
+        return v.length
+    part = (judged.permitted - first) / (last - first)
+    return given + min(max(part, 0.0), 1.0) * (v.length - given)
+
+
+def _over_landing(judged: Judged, r: LandingRange) -> Iterator[Dependence]:
+    """One range alone, all else as the case has it; else all together."""
+    time, velocity = (
+        np.isclose(x, given)
+        for x, given in zip((r.impulse_time, r.velocity_change), r.nominal, strict=True)
+    )
+    pulse = np.array([name == r.nominal_pulse for name in r.pulses])
+    turned = np.array([judged.turns(float(stress)) for stress in r.max_von_mises])
+    found = False
+    axes = (
+        ("impulse time", "time", r.impulse_time, r.nominal[0], velocity & pulse),
+        ("velocity change", "velocity", r.velocity_change, r.nominal[1], time & pulse),
+    )
+    for what, dimension, values, given, alone in axes:
+        here = _nearest(values, given, alone & turned)
+        if here is not None:
+            found = True
+            at, stress = float(values[here]), float(r.max_von_mises[here])
+            flips = _between(judged, (given, judged.maximum), (at, stress))
+            yield Dependence(
+                what, "", "landing", judged.strength / stress,
+                given=given, at=at, flips_at=flips, dimension=dimension,
+            )  # fmt: skip
+    for k in np.flatnonzero(time & velocity & ~pulse & turned):
+        found = True
+        factor = judged.strength / float(r.max_von_mises[k])
+        yield Dependence("pulse", r.pulses[int(k)], "landing", factor)
+    if not found and turned.any():
+        extreme = np.max if judged.safe else np.min
+        factor = judged.strength / float(extreme(r.max_von_mises))
+        yield Dependence(TOGETHER, "", "landing", factor)
+
+
+def _nearest(values: Floats, given: float, which: Sequence[bool] | Floats) -> int | None:
+    """Of those, the one that is nearest to what the case has, in ratio."""
+    places = np.flatnonzero(which)
+    if not len(places):
+        return None
+    away = np.abs(np.log(values[places] / given))
+    return int(places[np.argmin(away)])
+
+
+def _between(judged: Judged, one: tuple[float, float], other: tuple[float, float]) -> float:
+    """Where stress, a power of the value between two points, reaches what is permitted."""
+    end = judged.high if judged.safe else judged.low
+    wanted = judged.permitted * judged.maximum / end
+    (x, a), (y, b) = one, other
+    if not (a > 0.0 and b > 0.0 and a != b):
+        return y
+    part = min(max(math.log(wanted / a) / math.log(b / a), 0.0), 1.0)
+    return float(x * (y / x) ** part)

@@ -1,0 +1,124 @@
+"""What a run decides about its pins: the worst of all checks that count, of each pin and of all.
+
+A pin is as safe as the worst of its checks: the von Mises stress of the model against yield with
+the required factor, and every margin of safety that governs (fatigue, rupture, collapse, clauses).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from math import inf
+
+from fea.strength.margin import PinMargin
+from fea.strength.model_stress import RUPTURE, YIELD
+from reports.data.decision import (
+    DEPENDS,
+    FAILS,
+    NOT_DECIDED,
+    ORDER,
+    SAFE,
+    YIELDS,
+    factor_ends,
+    limit,
+    outcome,
+    utilisation,
+)
+from reports.data.results import PinResult, Results
+
+FATIGUE = "fatigue life"
+
+
+@dataclass(frozen=True)
+class JudgedCheck:
+    """One check of a pin in a case (empty: over several). check: its name. outcome: one of
+    reports.data.decision. factor: allowable over demand, `required`: of it. used: required over
+    factor, the upper end of a range, by which checks are compared. row: of the model's maximum,
+    None for a margin. reason: why a check other than that is not decided.
+    """
+
+    pin: str
+    case: str
+    check: str
+    outcome: str
+    factor: float | None
+    required: float
+    used: float
+    row: PinResult | None = None
+    reason: str = ""
+
+    @property
+    def rank(self) -> tuple[int, float]:
+        """The worst first."""
+        return ORDER[self.outcome], -self.used
+
+
+def judged_checks(results: Results) -> list[JudgedCheck]:
+    """All checks that count, the worst first."""
+    rows = {(row.pin, row.case): row for row in results.pins}
+    found = [_of_row(row, limit(results)) for row in results.pins]
+    found += (
+        _of_margin(m, rows.get((m.pin, m.case)))
+        for m in results.margins
+        if m.margin.governs and m.margin.method != YIELD and m.used >= 0.0
+    )
+    open_ = results.fatigue.not_decided if results.fatigue else {}
+    found += (
+        JudgedCheck(pin, "", FATIGUE, NOT_DECIDED, None, 1.0, -inf, reason=reason)
+        for pin, reason in open_.items()
+    )
+    return sorted(found, key=lambda check: check.rank)
+
+
+def worst_checks(results: Results) -> dict[str, JudgedCheck]:
+    """Of every pin, in the order of the results."""
+    found: dict[str, JudgedCheck] = {}
+    for check in judged_checks(results):
+        found.setdefault(check.pin, check)
+    return {row.pin: found[row.pin] for row in results.pins}
+
+
+def pins_with(worst: Iterable[JudgedCheck], *outcomes: str) -> list[str]:
+    """The pins whose worst check has one of some outcomes."""
+    return [check.pin for check in worst if check.outcome in outcomes]
+
+
+def headline_json(results: Results, sentence: str) -> dict[str, object] | None:
+    """For results.json; None where nothing was solved."""
+    worst = worst_checks(results)
+    if not worst:
+        return None
+    first = min(worst.values(), key=lambda check: check.rank)
+    return {
+        "sentence": sentence,
+        "failing": pins_with(worst.values(), FAILS, YIELDS),
+        "depends": pins_with(worst.values(), DEPENDS),
+        "not_decided": pins_with(worst.values(), NOT_DECIDED),
+        "worst": {
+            "pin": first.pin,
+            "case": first.case,
+            "check": first.check,
+            "factor": first.factor,
+            "required": first.required,
+            "outcome": first.outcome,
+        },
+    }
+
+
+def _of_row(row: PinResult, required: float) -> JudgedCheck:
+    used = utilisation(row, required)
+    high = -inf if used is None else used[1]
+    return JudgedCheck(
+        row.pin, row.case, YIELD, outcome(row), row.safety_factor, required, high, row
+    )
+
+
+def _of_margin(found: PinMargin, row: PinResult | None) -> JudgedCheck:
+    """A margin is of the upper end of a demand; the model's stress has a lower one, too."""
+    m = found.margin
+    factor = m.allowable / m.demand if m.demand and m.allowable is not None else None
+    state = SAFE if found.used <= 1.0 else FAILS
+    if m.method == RUPTURE and row is not None and row.safety_factor and state == FAILS:
+        low, high = factor_ends(row)
+        state = FAILS if found.used * low / high > 1.0 else NOT_DECIDED
+    return JudgedCheck(found.pin, found.case, m.method, state, factor, m.factor, found.used)

@@ -1,0 +1,116 @@
+"""JSON and compressed texts of files that may be damaged: errors say what is wrong, and where."""
+
+from __future__ import annotations
+
+import json
+import re
+import zlib
+from base64 import b64decode
+from typing import Any, NoReturn, TypeVar
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from loads import MB
+
+Model = TypeVar("Model", bound=BaseModel)
+HALF = re.compile(r"\\u[dD][89a-fA-F]")  # of a character beyond the first 65,536
+
+DEEPEST = 100  # parts in parts; pinstress writes no more than twenty
+WORDS = {  # of pydantic's errors, which speak of Python
+    "missing": "is missing",
+    "model_type": "is no object",
+    "dict_type": "is no object",
+    "list_type": "is no list",
+    "string_type": "is no text",
+    "float_type": "is no number",
+    "bool_type": "is neither true nor false",
+    "finite_number": "is no finite number",
+}
+
+
+class Damaged(ValueError):
+    """A file whose content cannot be what pinstress wrote; the message names the file."""
+
+
+class JsonPart(BaseModel):
+    """What is read of an object of JSON; other keys may stand beside it."""
+
+    model_config = ConfigDict(strict=True, frozen=True, extra="ignore")
+
+
+def strict_json(content: bytes, name: str) -> Any:
+    """The values of a JSON text. Raises: Damaged."""
+    try:
+        text = content.decode("utf-8")
+        found = json.loads(text, parse_constant=_no_number)
+        _require_shallow(found)
+        if HALF.search(text):  # may be lone, which no file can be written with
+            json.dumps(found, ensure_ascii=False).encode()
+    except UnicodeDecodeError as error:
+        raise Damaged(f"{name} is damaged: no UTF-8 from byte {error.start:,} on") from None
+    except UnicodeEncodeError:
+        raise Damaged(f"{name} is damaged: it has half a character (a lone surrogate)") from None
+    except json.JSONDecodeError as error:
+        where = f"line {error.lineno:,}, column {error.colno:,}: {error.msg}"
+        raise Damaged(f"{name} is {'damaged: ' + where if content else 'empty'}") from None
+    except RecursionError:
+        raise Damaged(f"{name} is damaged: it is nested too deeply") from None
+    except _NoNumber as error:
+        raise Damaged(f"{name} is damaged: it has {error}, which is no number") from None
+    except ValueError:  # of int()
+        raise Damaged(f"{name} is damaged: it has a number of thousands of digits") from None
+    return found
+
+
+def _require_shallow(found: Any) -> None:
+    """Raises: RecursionError, as what walks or copies it later would."""
+    level = [found]
+    for _ in range(DEEPEST):
+        holders = [x.values() if isinstance(x, dict) else x for x in level if x and _holds(x)]
+        level = [below for holder in holders for below in holder if _holds(below)]
+        if not level:
+            return
+    raise RecursionError
+
+
+def _holds(node: Any) -> bool:
+    return isinstance(node, dict | list)
+
+
+class _NoNumber(ValueError):
+    pass
+
+
+def _no_number(text: str) -> NoReturn:
+    raise _NoNumber(text)
+
+
+def validated(kind: type[Model], content: Any, name: str) -> Model:
+    """The parts of a JSON text that are used. Raises: Damaged, saying which is wrong."""
+    try:
+        return kind.model_validate(content)
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_context=False)[0]
+        where = "".join(f"[{k}]" if isinstance(k, int) else f".{k}" for k in first["loc"])
+        said = first["msg"].removeprefix("Value error, ")
+        what = WORDS.get(first["type"], f"is wrong: {said[:1].lower()}{said[1:]}")
+        more = error.error_count() - 1
+        also = f", and {more:,} more" if more else ""
+        where = where.lstrip(".") or "its content"
+        raise Damaged(f"{name} is damaged: {where} {what}{also}") from None
+
+
+def inflated(packed: bytes | str, most: int, name: str) -> bytes:
+    """What base64 and zlib have packed. Raises: Damaged, also where it is more than `most` bytes,
+    which are never made.
+    """
+    unpack = zlib.decompressobj()
+    try:
+        content = unpack.decompress(b64decode(packed, validate=True), most + 1)
+    except (ValueError, zlib.error):
+        raise Damaged(f"{name} is damaged: it cannot be unpacked") from None
+    if len(content) > most:
+        raise Damaged(f"{name} is damaged: it unpacks to more than {most // MB:,} MB")
+    if not unpack.eof:
+        raise Damaged(f"{name} is damaged: it ends too early")
+    return content

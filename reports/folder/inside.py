@@ -1,0 +1,167 @@
+"""Files of a folder read and written without leaving it: no link inside it is followed, wherever
+it leads, and nothing but regular files is opened. The path to the folder is the user's own.
+
+Where the system can open a file relative to an open folder, nobody can exchange a part of the way
+between the look and the opening.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from loads import MB
+
+PARTIAL = ".partial"  # of a file that is being written
+RELATIVE = {os.open, os.stat, os.unlink, os.mkdir, os.rename} <= os.supports_dir_fd
+
+
+def _flags(*names: str) -> int:
+    return sum(getattr(os, name, 0) for name in names)
+
+
+READ = os.O_RDONLY | _flags("O_NOFOLLOW", "O_NONBLOCK", "O_NOCTTY", "O_CLOEXEC", "O_BINARY")
+MAKE = os.O_WRONLY | os.O_CREAT | os.O_EXCL | _flags("O_NOFOLLOW", "O_CLOEXEC", "O_BINARY")
+ENTER = os.O_RDONLY | _flags("O_DIRECTORY", "O_CLOEXEC")
+
+
+class NotPlain(OSError):
+    """An entry of a folder that is neither a regular file nor a folder; the text names it."""
+
+    def __str__(self) -> str:
+        return str(self.strerror)
+
+
+@dataclass(frozen=True)
+class _Place:
+    """A folder that was reached: by its open descriptor, or where there is no such thing by its
+    path.
+    """
+
+    path: Path
+    descriptor: int | None
+
+    def of(self, name: str) -> str | Path:
+        return self.path / name if self.descriptor is None else name
+
+
+def read_inside(folder: Path, name: str, most: int) -> bytes:
+    """The content of a file, by its path in the folder, with slashes.
+
+    Raises: NotPlain, FileNotFoundError, OSError; also for one of more than `most` bytes.
+    """
+    with _place(folder, name) as (place, last):
+        _require_file(place, last, name, most)
+        descriptor = os.open(place.of(last), READ, dir_fd=place.descriptor)
+        with open(descriptor, "rb") as file:
+            found = os.fstat(descriptor)
+            if not stat.S_ISREG(found.st_mode):
+                raise _not_plain(name, found.st_mode)
+            content = file.read(most + 1)
+    if len(content) > most:  # it is growing
+        raise _too_large(name, most)
+    return content
+
+
+def write_inside(folder: Path, name: str, content: bytes | memoryview) -> None:
+    """Write a file so that it is complete or as it was, by way of NAME.partial; its own folder is
+    made. One of that name that is no regular file is left alone. Raises: NotPlain, OSError.
+    """
+    with _place(folder, name, make=True) as (place, last):
+        for there in (last, last + PARTIAL):
+            with suppress(FileNotFoundError):
+                _require_file(place, there, name + there[len(last) :])
+        at, partial = place.descriptor, place.of(last + PARTIAL)
+        with suppress(FileNotFoundError):  # of a process that was killed
+            os.unlink(partial, dir_fd=at)
+        try:
+            with open(os.open(partial, MAKE, 0o666, dir_fd=at), "wb") as file:
+                file.write(content)
+            os.replace(partial, place.of(last), src_dir_fd=at, dst_dir_fd=at)
+        except BaseException:
+            with suppress(OSError):
+                os.unlink(partial, dir_fd=at)
+            raise
+
+
+def is_inside(folder: Path, name: str) -> bool:
+    """Whether a folder has such a file or folder. Raises: NotPlain where it is something else."""
+    with suppress(FileNotFoundError), _place(folder, name) as (place, last):
+        found = os.stat(place.of(last), dir_fd=place.descriptor, follow_symlinks=False)
+        if not (stat.S_ISREG(found.st_mode) or stat.S_ISDIR(found.st_mode)):
+            raise _not_plain(name, found.st_mode)
+        return True
+    return False
+
+
+@contextmanager
+def _place(folder: Path, name: str, make: bool = False) -> Iterator[tuple[_Place, str]]:
+    """The folder that a file is in, and the file's own name. make: folders that are missing."""
+    *between, last = name.split("/")
+    if any(not part or part in (".", "..") or "\0" in part for part in (*between, last)):
+        raise NotPlain(errno.EINVAL, f"{name!r} is no name of a file in a folder")
+    if not RELATIVE:
+        yield _by_path(folder, between, make), last
+        return
+    descriptor = os.open(folder, ENTER)
+    try:
+        place = _Place(folder, descriptor)
+        for k, part in enumerate(between):
+            if make:
+                with suppress(FileExistsError):
+                    os.mkdir(part, dir_fd=descriptor)
+            _require_folder(place, part, "/".join(between[: k + 1]))
+            below = os.open(part, ENTER | os.O_NOFOLLOW, dir_fd=descriptor)
+            os.close(descriptor)
+            descriptor = below
+            place = _Place(place.path / part, descriptor)
+        yield place, last
+    finally:
+        os.close(descriptor)
+
+
+def _by_path(folder: Path, between: list[str], make: bool) -> _Place:
+    place = _Place(folder, None)
+    for k, part in enumerate(between):
+        if make:
+            (place.path / part).mkdir(exist_ok=True)
+        _require_folder(place, part, "/".join(between[: k + 1]))
+        place = _Place(place.path / part, None)
+    return place
+
+
+def _require_folder(place: _Place, name: str, shown: str) -> None:
+    found = os.stat(place.of(name), dir_fd=place.descriptor, follow_symlinks=False)
+    if not stat.S_ISDIR(found.st_mode):
+        raise _not_plain(shown, found.st_mode)
+
+
+def _require_file(place: _Place, name: str, shown: str, most: int | None = None) -> None:
+    found = os.stat(place.of(name), dir_fd=place.descriptor, follow_symlinks=False)
+    if not stat.S_ISREG(found.st_mode):
+        raise _not_plain(shown, found.st_mode)
+    if most is not None and found.st_size > most:
+        raise _too_large(shown, most)
+
+
+def _not_plain(name: str, mode: int) -> NotPlain:
+    if stat.S_ISLNK(mode):
+        return NotPlain(
+            errno.ELOOP, f"{name} is a link, and inside a results folder none is followed"
+        )
+    if stat.S_ISDIR(mode):
+        return NotPlain(errno.EISDIR, f"{name} is a folder where a file belongs")
+    if stat.S_ISREG(mode):
+        return NotPlain(errno.ENOTDIR, f"{name} is a file where a folder belongs")
+    return NotPlain(errno.EINVAL, f"{name} is a pipe or a device where a file belongs")
+
+
+def _too_large(name: str, most: int) -> NotPlain:
+    return NotPlain(
+        errno.EFBIG, f"{name} is larger than {most // MB:,} MB, the limit for such a file"
+    )

@@ -1,0 +1,126 @@
+"""results.json read back and checked: those parts of it that commands use."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, Field
+
+from loads import MB
+from reports.folder.damaged import Damaged, JsonPart, strict_json, validated
+from reports.folder.inside import read_inside
+from reports.tables.json_results import SCHEMA
+
+NAME = "results.json"
+LARGEST = 1024 * MB
+EXTREME = 1e60  # in any unit; products of larger ones would not be numbers
+KIND, _, VERSION = SCHEMA.partition("/")
+SEPARATORS = "/\\\0"
+
+Number = Annotated[float, Field(ge=-EXTREME, le=EXTREME, allow_inf_nan=False)]
+Positive = Annotated[float, Field(ge=0.0, le=EXTREME, allow_inf_nan=False)]
+
+
+def _of_one_file(name: str) -> str:
+    if not name or any(c in name for c in SEPARATORS):
+        raise ValueError(f"{name!r} is no name of a pin or a case")
+    return name
+
+
+Name = Annotated[str, AfterValidator(_of_one_file)]
+# Lists: strict validation takes a list of JSON for no tuple.
+Ends = Annotated[list[Number | None], Field(min_length=2, max_length=2)]
+Place = Annotated[list[Number], Field(min_length=3, max_length=3)]
+
+
+class _Units(JsonPart):
+    length: str
+    force: str
+    stress: str
+    time: str
+
+
+class _Row(JsonPart):
+    pin: Name
+    case: Name
+    model: str
+    max_von_mises: Positive | None
+    max_von_mises_interval: Ends | None = None
+    error_estimate: Positive | None
+    verdict: str
+    location: Place | None
+    safety_factor: Positive | None
+    yields: bool | None
+    outcome: str
+    singular_at: list[dict[str, Any]]
+
+
+class _Margin(JsonPart):
+    pin: str
+    case: str
+    method: str
+    margin: Number | None
+
+
+class _Force(JsonPart):
+    connection: str
+    force: Number | None
+
+
+class _Loads(JsonPart):
+    case: str
+    largest_forces: list[_Force]
+
+
+class _Results(JsonPart):
+    title: str
+    units: _Units
+    versions: dict[str, str]
+    pins: list[_Row]
+    loads: list[_Loads]
+    margins: list[_Margin] = Field(default_factory=list)
+    inputs: dict[str, str] = Field(default_factory=dict)
+
+
+def read_results(directory: Path) -> dict[str, Any]:
+    """What results.json says, all of it, without characters that steer a terminal.
+
+    Raises: Damaged, FileNotFoundError, NotADirectoryError, OSError.
+    """
+    content = strict_json(read_inside(directory, NAME, LARGEST), NAME)
+    _require_schema(content)
+    found = validated(_Results, content, NAME)
+    rows = Counter((row.pin, row.case) for row in found.pins)
+    if twice := next((row for row, count in rows.items() if count > 1), None):
+        raise Damaged(f"{NAME} is damaged: pin {twice[0]} in {twice[1]} is there more than once")
+    printable: dict[str, Any] = _printable(content)
+    return printable
+
+
+def _require_schema(content: Any) -> None:
+    schema = content.get("schema") if isinstance(content, dict) else None
+    if schema == SCHEMA:
+        return
+    found = re.fullmatch(rf"{KIND}/(\d{{1,9}})", str(schema))
+    if found is None:
+        raise Damaged(f"{NAME} was not written by pinstress (it has no schema {SCHEMA})")
+    newer = int(found[1]) > int(VERSION)
+    remedy = "use that version, or run the study again" if newer else "run the study again"
+    raise Damaged(
+        f"{NAME} was written by {'a newer' if newer else 'an older'} version of pinstress (schema "
+        f"{schema}; this version reads {SCHEMA}): {remedy}"
+    )
+
+
+def _printable(node: Any) -> Any:
+    """Without characters that steer a terminal, which another program may have written."""
+    if isinstance(node, dict):
+        return {_printable(key): _printable(value) for key, value in node.items()}
+    if isinstance(node, list):
+        return [_printable(value) for value in node]
+    if isinstance(node, str):
+        return "".join(c if c.isprintable() or c == "\n" else "\ufffd" for c in node)
+    return node

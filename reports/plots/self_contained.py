@@ -1,0 +1,69 @@
+"""Plots and drawings that bring all they show: no address in them is opened, and no file.
+
+Of a report.html that another may have written. Vega-Lite is besides not allowed any address
+(reports.plots.draw); what draws SVG as PNG has no such switch and opens links of pictures.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+from xml.parsers import expat
+
+from reports.folder.damaged import Damaged
+
+ADDRESSES = {"url", "href"}  # keys of Vega-Lite: of data, of pictures, of links
+PICTURE = "image"
+ELSEWHERE = re.compile(r"url\(\s*['\"]?\s*(?!#)[^\s'\"]|@import|image-set\(|src\(", re.IGNORECASE)
+FOREIGN = {"image", "feimage", "script", "foreignobject", "iframe", "audio", "video"}
+
+
+def require_no_address(spec: Any, name: str) -> None:
+    """Raises: Damaged for a specification of Vega-Lite with an address or a picture."""
+    waiting = [spec]
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, dict):
+            if found := sorted(ADDRESSES & {str(key).lower() for key in node}):
+                raise Damaged(f"{name} has an address ({found[0]}), which no plot of pinstress has")
+            mark = node.get("mark")
+            if PICTURE in (mark, mark.get("type") if isinstance(mark, dict) else None):
+                raise Damaged(f"{name} has a picture in it, which no plot of pinstress has")
+            waiting += node.values()
+        elif isinstance(node, list):
+            waiting += node
+
+
+def require_self_contained(svg: str, name: str) -> None:
+    """Raises: Damaged for an SVG that is none, or refers to anything but its own parts."""
+    inside: list[str] = []
+
+    def start(element: str, attributes: dict[str, str]) -> None:
+        inside.append(element.rpartition(":")[2].lower())
+        if inside[-1] in FOREIGN:
+            raise Damaged(f"{name} has an element {element}, which no drawing of pinstress has")
+        for key, value in attributes.items():
+            link = key.rpartition(":")[2].lower() in ("href", "src")
+            styled = not key.lower().startswith("aria-")  # which are words
+            if (link and not value.startswith("#")) or (styled and ELSEWHERE.search(value)):
+                raise Damaged(f"{name} refers to {value[:60]!r}, outside of itself")
+
+    def text(found: str) -> None:
+        if inside[-1] == "style" and ELSEWHERE.search(found):
+            raise Damaged(f"{name} refers to something outside of itself")
+
+    def doctype(*_: object) -> None:
+        raise Damaged(f"{name} declares a document type, as no drawing of pinstress does")
+
+    def instruction(target: str, _: str) -> None:
+        raise Damaged(f"{name} has an instruction {target[:60]!r}, as no drawing of pinstress has")
+
+    parser = expat.ParserCreate()
+    parser.buffer_text = True
+    parser.StartElementHandler, parser.CharacterDataHandler = start, text
+    parser.EndElementHandler = lambda _: inside.pop()
+    parser.StartDoctypeDeclHandler, parser.ProcessingInstructionHandler = doctype, instruction
+    try:
+        parser.Parse(svg.encode(), True)
+    except (expat.ExpatError, UnicodeEncodeError) as error:
+        raise Damaged(f"{name} is no drawing ({error})") from None
