@@ -272,8 +272,8 @@ def _notes(nominal: Results) -> Iterable[str]:
     )
     if any(p.verdict == "singular" for p in nominal.pins):
         yield (
-            "Rows marked singular have unbounded stress at a sharp corner or the edge of a clamp; "
-            "their factors are those outside the excluded zones."
+            "Rows marked singular have unbounded stress at a corner or an edge (singular_zones.csv "
+            "of a run says which); their factors are those outside the excluded zones."
         )
     if any(p.joint and p.joint.range for p in nominal.pins):
         yield (

@@ -16,7 +16,7 @@ from pinstress.sizing.other_dimensions import written_study
 from pinstress.sizing.pin_shape import VariedShape
 from pinstress.sizing.scaled_study import resized_study
 from pinstress.study.file import Study
-from reports.data.decision import ORDER, SAFE, factor_ends, outcome
+from reports.data.decision import ORDER, SAFE, as_described, factor_ends
 from reports.data.results import PinResult, Results
 
 PASSES = 5
@@ -80,17 +80,18 @@ def _worse(
     study: Study, aim: Aim, found: tuple[Lightest, ...], results: Results, jobs: int
 ) -> dict[str, str]:
     """By pin, why what was found is decided worse than the pin as it is: a row that is safe is
-    better than one that is not decided, this better than one that fails.
+    better than one that is not decided, this better than one that fails. Of pins as described: one
+    that just reaches a factor does not over a range of its joint.
     """
     changed = {x.pin for x in found if not x.kept and (x.values or x.scale is not None)}
-    doubtful = {p.pin for p in results.pins if ORDER[outcome(p)] < ORDER[SAFE]} & changed
+    doubtful = {p.pin for p in results.pins if ORDER[as_described(p)] < ORDER[SAFE]} & changed
     if not doubtful:
         return {}
     start = run(_written(study, aim, []), pins=sorted(doubtful), jobs=jobs)
-    before = {(p.pin, p.case): outcome(p) for p in start.pins}
+    before = {(p.pin, p.case): as_described(p) for p in start.pins}
     out: dict[str, str] = {}
     for p in results.pins:
-        was, now = before.get((p.pin, p.case)), outcome(p)
+        was, now = before.get((p.pin, p.case)), as_described(p)
         if p.pin in doubtful and was is not None and ORDER[now] < ORDER[was]:
             out[p.pin] = f"the lightest pin that was found is {now} in {p.case}, this one {was}"
     return out
