@@ -72,20 +72,25 @@ def test_a_pin_as_wide_as_long_is_no_remedy(weak: pinstress.Study) -> None:
 
 @pytest.mark.slow
 def test_a_longer_impulse_is_enough() -> None:
-    """With the weights of the linkage, which act as well; J in its lugs, which carry its couple."""
+    """With the weights of the linkage, which act as well; J in its lugs, which carry its couple.
+
+    The time is for the maximum with the error of this run; a run of its own has another error, so
+    what is compared is the factor with the error that the time allows for.
+    """
     lugs = {name: {"edge_radius": 0.02} for name in ("J1", "J2", "J3")}
     held = {"pin.J.clamp": [], "pin.J.fillet": 0.15, "pin.J.lug": lugs}
     gear = pinstress.changed_study(
         pinstress.load_study(GEAR), {**held, "analysis.lug_edges": "excluded"}
     )
-    found = only(pinstress.run(gear, pins=["J"], cases=["landing"]))
+    before = pinstress.run(gear, pins=["J"], cases=["landing"])
+    found = only(before)
     assert found.given_time == 0.15
     assert found.impulse_time is not None
     key = "case.landing.apply[1].impulse.impulse_time"
     longer = pinstress.changed_study(gear, {key: found.impulse_time})
-    assert least(pinstress.run(longer, pins=["J"], cases=["landing"])) == pytest.approx(
-        10.0, rel=5e-3
-    )
+    after = pinstress.run(longer, pins=["J"], cases=["landing"])
+    allowed = least(before) / (before.pins[0].safety_factor or 0.0)
+    assert (after.pins[0].safety_factor or 0.0) * allowed == pytest.approx(10.0, rel=5e-3)
 
 
 def test_the_command_and_the_files_say_it(
