@@ -132,10 +132,10 @@ def with_linkage(rng: random.Random) -> Study:
     drawn = draw_mechanism.mechanism(rng)
     classes, pins = {"linkage", *drawn.classes}, {}
     for joint in rng.sample(sorted(drawn.joints), rng.choice((1, 1, 2))):
-        connections, floats = drawn.joints[joint]
+        connections, _ = drawn.joints[joint]
         shape = draw_pin.profile(rng, len(connections))
         classes |= shape.classes
-        clamp = [] if floats else [rng.choice(("start", "end"))]
+        clamp = [rng.choice(("start", "end"))]  # links beside each other leave a couple
         pins[joint] = draw_pin.table(shape, clamp, list(connections))
     parts: Tree = {"mechanism": drawn.mechanism, "pin": pins, "case": drawn.cases}
     return Study(0, _head(rng) | parts, frozenset(classes))

@@ -12,7 +12,7 @@ import pytest
 
 from tests.conftest import ROOT
 
-# three pins: of revolution, with a hole (tetrahedra), and between two lugs (held by nothing)
+# three pins: of revolution, with a hole (tetrahedra), and in double shear (held by nothing)
 STUDY = """
 title = "Three pins"
 units = "mm-N-s"
@@ -33,15 +33,16 @@ profile = [{ length = 10, diameter = 30 }, { length = 20, diameter = 30, connect
 hole = [{ z = 15, diameter = 15, angle = "20 deg" }]
 [pin.C]
 material = "steel"
-profile = [{ length = 10, diameter = 10, connection = "C1" }, { length = 20, diameter = 10 },
-           { length = 10, diameter = 10, connection = "C2" }]
+profile = [{ length = 10, diameter = 10, connection = "C1" },
+           { length = 20, diameter = 10, connection = "C2" },
+           { length = 10, diameter = 10, connection = "C3" }]
 [case.pull]
 kind = "given"
 table = "pull.csv"
 [case.press]
 kind = "given"
 distribution = "cosine"
-forces = { A = [30.0, 40.0], C1 = [0.0, 100.0], C2 = [0.0, -100.0] }
+forces = { A = [30.0, 40.0], C1 = [0.0, 50.0], C2 = [0.0, -100.0], C3 = [0.0, 50.0] }
 [analysis]
 tolerance = 0.1
 """

@@ -105,7 +105,7 @@ def test_whatever_ends_an_engine_is_told_of_that_work_alone() -> None:
 @pytest.mark.slow
 def test_the_same_where_processes_are_started_anew(monkeypatch: pytest.MonkeyPatch) -> None:
     """As they are where other threads run."""
-    monkeypatch.setattr(apart_module, "threaded", lambda: True)
+    monkeypatch.setattr(apart_module, "can_fork", lambda: False)
     require_alone()
 
 
