@@ -31,6 +31,7 @@ from pinstress.designs.number import Number, put
 from pinstress.designs.outcomes import DesignAnswer, bare_answer, outcome_of
 from pinstress.designs.parameters import Parameter
 from pinstress.model.cases import CaseLoads, case_loads
+from pinstress.model.impulses import ImpulseLoads
 from pinstress.model.mechanism.linkage import determined, linkage
 from pinstress.model.pins import pin as pin_of
 from pinstress.model.tasks import Task, tasks
@@ -245,7 +246,7 @@ class Evaluator:
     def _answers_of(
         self, study: Study, task: Task, asked: Asked, loads: Mapping[str, CaseLoads]
     ) -> tuple[DesignAnswer, ...]:
-        key = _question(study, task, asked)
+        key = _question(study, task, asked, [loads[x.case].range for x in task.loads])
         known = self._answers.get(key)
         if known is None:
             found = solutions(study, task, asked, lambda _: None, self.meshes)
@@ -269,8 +270,10 @@ def elastic(material: Material) -> Material:
     )
 
 
-def _question(study: Study, task: Task, asked: Asked) -> str:
-    """Hash of all on which a pin's peaks depend in a study whose mechanism does not change."""
+def _question(study: Study, task: Task, asked: Asked, ranges: Sequence[ImpulseLoads | None]) -> str:
+    """Hash of all on which a pin's answers depend in a study whose mechanism does not change.
+    ranges: of impulses by case, as other ones may have the same forces.
+    """
     decides = asked.goal == "decide"
     asks = (
         shape_of(task.pin),
@@ -280,6 +283,7 @@ def _question(study: Study, task: Task, asked: Asked) -> str:
         study.table.fatigue is not None,
         task.loads,
         task.ranges,
+        ranges,
         task.material if decides else elastic(task.material),
         replace(asked, memory=None),
     )

@@ -279,3 +279,24 @@ def test_a_sweep_says_what_a_run_says(clevis: Results) -> None:
     (pin,) = results.pins
     assert row_.outcome == outcome(pin) == "depends"
     assert row_.depends_on == safety_factor_rows(results)[0]["depends_on"]
+
+
+def test_designs_of_equal_forces_are_judged_each_by_its_own_impulse() -> None:
+    """Twice the velocity in twice the time is the same force, and not the same place in the range:
+    a row does not depend on which designs the process has solved before.
+    """
+    from pinstress.designs.evaluate import Evaluator
+    from pinstress.designs.number import number_at
+
+    gear = load_study(ROOT / "studies" / "landing_gear.toml")
+    weak = changed_study(gear, {"material.AISI 4340.yield_strength": "37.5 ksi"})
+    impulse = "case.landing.apply.impulse"
+    numbers = [number_at(weak, f"{impulse}.{key}") for key in ("impulse_time", "velocity_change")]
+    first = [number.nominal for number in numbers]
+    second = [2.0 * value for value in first]
+    one = Evaluator(weak, numbers, ["B"], ["landing"])
+    (stated,), (slower,) = one.rows(first), one.rows(second)
+    assert stated.max_von_mises == pytest.approx(slower.max_von_mises, rel=1e-9)
+    assert stated.outcome == slower.outcome == "depends"
+    assert stated.depends_on != slower.depends_on
+    assert Evaluator(weak, numbers, ["B"], ["landing"]).rows(second) == [slower]
