@@ -18,9 +18,9 @@ from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import Solved
 from pinstress.model.fatigue import fatigue_material, spectrum
 from pinstress.schema.fatigue import FatigueTable
+from reports.data.headline import FATIGUE
 from reports.data.results import Fatigue
 
-CHECK = "fatigue life"
 FACTORS = (
     "Factors for surface, size, temperature, corrosion and surface treatment are not applied: the "
     "S-N data must include them."
@@ -95,7 +95,7 @@ def _margins(found: Fatigue, needs: dict[str, str]) -> Iterator[PinMargin]:
             continue
         allowed = 1.0 / found.life
         margin = Margin(
-            CHECK,
+            FATIGUE,
             point.method,
             "limit",
             point.damage,
@@ -107,7 +107,7 @@ def _margins(found: Fatigue, needs: dict[str, str]) -> Iterator[PinMargin]:
         )
         yield PinMargin(pin, "", margin)
     for pin, what in needs.items():
-        none = not_made(CHECK, found.method, "limit", 1.0, what)
+        none = not_made(FATIGUE, found.method, "limit", 1.0, what)
         yield PinMargin(pin, "", replace(none, dimension=RATIO))
 
 

@@ -58,11 +58,9 @@ class DesignProblem:
         cases: Sequence[str] | None = None,
     ) -> DesignProblem:
         """The problem of a study, whose files are named by absolute paths."""
-        path, named = (
-            study.path.absolute(),
-            [None if x is None else tuple(x) for x in (pins, cases)],
-        )
-        return cls(path, study.text, study.located, tuple(numbers), named[0], named[1])
+        some, those = (None if x is None else tuple(x) for x in (pins, cases))
+        path = study.path.absolute()
+        return cls(path, study.text, study.located, tuple(numbers), some, those)
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from pinstress.analysis.gather import landing_range
 from pinstress.model.cases import CaseLoads
 from pinstress.model.tasks import Task
 from pinstress.schema.units import UnitSystem
-from reports.data.decision import BELOW, DEPENDS, NOT_DECIDED, SAFE, in_words
+from reports.data.decision import DEPENDS, in_words
 from reports.data.dependence import Judged, dependences
 from reports.data.in_units import in_units
 from reports.data.results import LandingRange, Units
@@ -57,15 +57,10 @@ def outcome_of(
     peak, permitted = answer.peak, None if strength is None else strength / (required or 1.0)
     decided = None if permitted is None else decides(peak, permitted)
     found = in_words(decided, required)
-    if found == NOT_DECIDED or strength is None or permitted is None or not peak.max_von_mises:
+    if not decided or strength is None or permitted is None or not peak.max_von_mises:
         return found, ""
-    judged = Judged(
-        peak.lower_end, peak.max_von_mises, peak.upper_end, strength, permitted, bool(decided)
-    )
-    on = dependences(judged, answer.joint, answer.landing)
-    if found not in (SAFE, BELOW):
-        return found, ""
-    if on:
+    judged = Judged(peak.lower_end, peak.max_von_mises, peak.upper_end, strength, permitted, True)
+    if on := dependences(judged, answer.joint, answer.landing):
         units = Units(system.length, system.force, system.stress, system.time)
         own = [in_units(d, system.factor) for d in on]
         return DEPENDS, depends_words(own, units)
