@@ -111,7 +111,7 @@ def _total(rows: Sequence[LightRow], required: float, what: str, unit: str) -> I
     yield (
         f"{count} of {len(rows)} pin{'s' if len(rows) != 1 else ''} "
         f"reach{'es' if len(rows) == 1 else ''} the safety factor {short(required)} in a run of "
-        "the new study; one that has not converged counts by the lower end of its range."
+        "the new study, with the error of its stress."
     )
     known = [row for row in rows if row.saved is not None]
     if len(known) > 1:
