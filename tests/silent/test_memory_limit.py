@@ -10,6 +10,7 @@ has is found by the same run without pictures, under the same limit.
 
 from __future__ import annotations
 
+import faulthandler
 import os
 import signal
 import subprocess
@@ -70,6 +71,7 @@ def test_a_memory_limit_costs_pictures_alone(kilobytes: int, tmp_path: Path) -> 
 
 
 def ends(how: int) -> int:
+    faulthandler.disable()  # of pytest, which would print what is meant to happen
     os.kill(os.getpid(), how)
     raise AssertionError
 
