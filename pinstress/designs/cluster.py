@@ -103,6 +103,8 @@ class Cluster:
             asked: Any = self.client.scheduler
             said: dict[str, Any] = self.client.sync(asked.identity, callback_timeout=ANSWERS)
         except TimeoutError:
+            if self.client.status != "running":  # it tries to connect again
+                raise lost_connection(self.address) from None
             raise InputError(
                 f"--scheduler: the scheduler at {self.address} has not answered for {ANSWERS:g} s",
                 code="no-scheduler",

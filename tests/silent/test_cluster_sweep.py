@@ -22,6 +22,8 @@ from pathlib import Path
 
 import pytest
 
+from pinstress.designs.cluster import connected
+from pinstress.study.errors import InputError
 from tests.conftest import ROOT
 from tests.support.programs.command_line import ONE_PIN, QUICK, pinstress
 from tests.support.programs.dask_cluster import DaskCluster, dask_cluster, wait_for
@@ -105,6 +107,17 @@ def test_a_worker_and_the_scheduler_are_killed_and_the_bytes_are_the_same(tmp_pa
     assert made.returncode == 0, made.stderr
     assert "Warning" not in made.stderr
     assert _bytes(tmp_path / "out") == _alone(tmp_path)
+
+
+def test_a_scheduler_that_died_before_it_was_asked_is_lost_and_not_slow(tmp_path: Path) -> None:
+    """dask then tries to connect again for as long as we wait, which is no scheduler's silence."""
+    with dask_cluster(tmp_path) as cluster:
+        cluster.worker()
+        with connected(cluster.address, ["numpy"], print) as connection:
+            cluster.scheduler.kill()
+            wait_for(lambda: connection.client.status != "running")
+            with pytest.raises(InputError, match="the connection to the scheduler"):
+                connection.look(now=True)
 
 
 def test_tables_are_sent_and_not_read_on_workers(tmp_path: Path) -> None:
