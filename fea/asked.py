@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Literal
 
 from fea.beam.error_model import PLAIN
 from fea.core.material import Material
 from fea.core.peak import Note
-from fea.singular.singularities import Edges
-from fea.verdict import FEWEST, Seen
+from fea.verdict import Seen
 
 Model = Literal["auto", "beam", "harmonic", "solid"]
 Goal = Literal["value", "decide"]
 
-MARGIN = 2.0  # times the error of two meshes, beyond it, by which they must decide
 DECIDED = "its error does not affect whether the required factor is reached"
 
 
@@ -23,12 +21,12 @@ DECIDED = "its error does not affect whether the required factor is reached"
 class Asked:
     """Requirements on a solution: the maximum to a `tolerance`, or (goal "decide") only whether the
     `required` safety factor is met. distance: excluded distance around singularities, as a fraction
-    of the local diameter; lug_edges: whether it is varied at rounded edges of lugs, or stress
-    within it excluded there. meshes: maximum number of meshes, by default that of the model.
+    of the local diameter. meshes: maximum number of meshes, by default that of the model.
     memory: limit for a mesh in MB, by default most of the free memory. because: reason for the
     model, where this package does not choose it. near: whether sections have the meshes of near
     shapes with their nodes moved. cells: of contact with lugs, these alone; None: until they are
-    fine enough.
+    fine enough. elsewhere: by case, stress (Pa) that sections have: a surface that surely has less
+    needs no finer mesh.
     """
 
     tolerance: float = 0.02
@@ -36,24 +34,18 @@ class Asked:
     goal: Goal = "value"
     required: float | None = None
     distance: float = 0.1
-    lug_edges: Edges = "varied"
     meshes: int | None = None
     memory: float | None = None
     because: Note | None = None
     near: bool = False
     cells: Literal["rough", "usual"] | None = None
+    elsewhere: Mapping[str, float] = field(default_factory=dict)
 
 
 def decided(asked: Asked, material: Material, low: float, high: float) -> bool:
     """Whether a maximum between two stresses (Pa) decides if the required factor is reached."""
     limit = _limit(asked, material)
     return limit is not None and (high < limit or low > limit)
-
-
-def left_open(asked: Asked, material: Material, low: float, high: float) -> bool:
-    """Whether the maximum of which the required factor asks lies between two stresses (Pa)."""
-    limit = _limit(asked, material)
-    return limit is not None and low <= limit <= high
 
 
 def _limit(asked: Asked, material: Material) -> float | None:
@@ -65,21 +57,21 @@ def _limit(asked: Asked, material: Material) -> float | None:
 
 
 def enough(asked: Asked, material: Material, seen: Seen) -> bool:
-    """Whether these meshes are accurate enough, or decide the required factor.
-
-    Two meshes never tell how large a maximum is, for they can agree by chance. Where stress is
-    larger at rounded edges of lugs, they may decide, by a margin: what is excluded there, or the
-    cells of contact, make it more uncertain anyway.
+    """Whether these meshes are accurate enough, or decide the required factor. Fewer never tell
+    how large a maximum is, for they can agree by chance.
     """
-    if len(seen.results) < FEWEST - 1:
+    if len(seen.results) < seen.fewest:
         return False
-    if len(seen.results) < FEWEST:
-        low, high = seen.range
-        apart = MARGIN * seen.relative
-        clear = decided(asked, material, low * (1.0 - apart), high * (1.0 + apart))
-        last = seen.results[-1]
-        return clear and bool(last.larger) and not last.singular
-    return seen.known(asked.tolerance) or decided(asked, material, *seen.range)
+    return (
+        seen.known(asked.tolerance)
+        or decided(asked, material, *seen.range)
+        or below_sections(asked, seen)
+    )
+
+
+def below_sections(asked: Asked, seen: Seen) -> bool:
+    """Whether sections have more stress than the surface may have."""
+    return bool(seen.range[1] <= asked.elsewhere.get(seen.case, 0.0))
 
 
 def reasons(asked: Asked, material: Material, model: str) -> Callable[[Seen], Note]:
@@ -91,6 +83,9 @@ def reasons(asked: Asked, material: Material, model: str) -> Callable[[Seen], No
             return chosen + Note(f"; {meshes}", ("mesh-converged",))
         if decided(asked, material, *seen.range):
             return chosen + Note(f"; {DECIDED}", ("mesh-decides",))
+        if below_sections(asked, seen):
+            below = "stress of the surface is surely below that of sections"
+            return chosen + Note(f"; {below}", ("surface-below-sections",))
         limit = "the tolerance is not reached on the finest mesh allowed"
         return chosen + Note(f"; {limit}", ("mesh-limit",))
 

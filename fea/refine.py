@@ -29,9 +29,9 @@ from fea.harmonic.evaluate import (
     harmonic_result,
     harmonic_solution,
 )
-from fea.singular.singularities import Edges, Singularity, find_singularities, lug_edges
+from fea.singular.singularities import Singularity, find_singularities
 from fea.solid.evaluate import SolidAnswer, solid_result, solid_solution
-from fea.verdict import Seen, judge
+from fea.verdict import FEWEST, Seen, judge
 from geometry import CutPin, Pin, PinLike
 from geometry.mesh.cut_piece import Piece
 from geometry.mesh.solid_mesh import MeshSize
@@ -40,7 +40,8 @@ Progress = Callable[[str], None]
 MeshedModel = Literal["harmonic", "harmonic+local", "solid"]
 
 STEP = 2.0**0.5  # from one mesh to the next
-HALF = 2.0  # the same where the mesh is given
+HALF = 2.0  # the same where the mesh is given, or as fine as the rings of contact pressure are
+FEWEST_PRESSED = 2  # meshes of a pin in contact: its first one resolves all that is on its surface
 LOCAL: Literal["harmonic+local"] = "harmonic+local"
 MESHES = {"harmonic": 7, LOCAL: 5, "solid": 4}
 MOST_UNKNOWNS = {"harmonic": 400_000, LOCAL: 600_000, "solid": 300_000}
@@ -115,11 +116,8 @@ def singularities_of(
     clamps: tuple[str, ...],
     cases: tuple[PinLoads, ...],
     distance: float = 0.1,
-    rounded: Edges = "varied",
 ) -> tuple[Singularity, ...]:
-    """Zones of unbounded stress in any of the cases; for bodies of revolution only. rounded: of
-    rounded edges of lugs (fea.singular.singularities.lug_edges).
-    """
+    """Zones of unbounded stress in any of the cases; for bodies of revolution only."""
     if not isinstance(pin, Pin):
         return ()
     acting = {load for case in cases for load in case.coefficients() if load.shears}
@@ -127,17 +125,12 @@ def singularities_of(
     if acting and not clamps:  # all bands react the imbalance
         loaded |= set(pin.connections)
     nu = material.poisson_ratio
-    found = find_singularities(pin, clamps, tuple(sorted(loaded)), nu, distance)
-    edges = dict.fromkeys(edge for case in cases for edge in case.lug_edges)
-    return (*found, *lug_edges(pin, edges, distance, rounded))
+    return find_singularities(pin, clamps, tuple(sorted(loaded)), nu, distance)
 
 
 def job_singularities(job: PinJob, cases: tuple[PinLoads, ...]) -> tuple[Singularity, ...]:
     """Zones of unbounded stress in any of the cases of a job."""
-    asked = job.asked
-    return singularities_of(
-        job.pin, job.material, job.constrained, cases, asked.distance, asked.lug_edges
-    )
+    return singularities_of(job.pin, job.material, job.constrained, cases, job.asked.distance)
 
 
 def refined(
@@ -148,15 +141,16 @@ def refined(
 ) -> dict[str, Solution]:
     """Finer and finer meshes until every case is converged or decided, or a limit is reached."""
     pin, asked = job.pin, job.asked
-    ratio = ratio_of(pin, model)
+    pressed = model == "harmonic" and any(case.pressed is not None for case in cases)
+    ratio, fewest = (HALF, FEWEST_PRESSED) if pressed else (ratio_of(pin, model), FEWEST)
     singularities = job_singularities(job, cases)
     own = {case.case: job_singularities(job, (case,)) for case in cases}
-    seen = {case.case: Seen(pin.name, case.case, model, (), (), ratio) for case in cases}
+    seen = {c.case: Seen(pin.name, c.case, model, (), (), ratio, fewest=fewest) for c in cases}
     kept: tuple[LocalFields, ...] = ()
     for level in range(asked.meshes or MESHES[model]):
         before = {case: s.results[-1] for case, s in seen.items() if s.results}
         largest = max((r.at_once or r.unknowns for r in before.values()), default=0)
-        finer = unknowns_after(pin, model, largest)
+        finer = largest * ratio ** GROWTH[model]
         if level and finer > MOST_UNKNOWNS[model]:
             break
         unit_loads = count_loads(cases)
@@ -168,7 +162,7 @@ def refined(
             break
         job.progress(f"pin {pin.name}, {model} model, mesh {level + 1}")
         start = time.perf_counter()
-        mesh = _mesh(job, model, cases, singularities, own, level, before, kept)
+        mesh = _mesh(job, (model, ratio), cases, singularities, own, level, before, kept)
         if not level:
             cases = tuple(_through_time(job, mesh, case) for case in cases)
         for case in cases:
@@ -222,7 +216,7 @@ class _Mesh:
 
 def _mesh(
     job: PinJob,
-    model: MeshedModel,
+    made: tuple[MeshedModel, float],
     cases: tuple[PinLoads, ...],
     singularities: tuple[Singularity, ...],
     own: dict[str, tuple[Singularity, ...]],
@@ -230,7 +224,7 @@ def _mesh(
     before: dict[str, MeshResult],
     kept: tuple[LocalFields, ...],
 ) -> _Mesh:
-    ratio = ratio_of(job.pin, model)
+    model, ratio = made
     if model != "solid":
         assert isinstance(job.pin, Pin)
         problem = SectionProblem(

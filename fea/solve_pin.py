@@ -41,6 +41,9 @@ from fea.refine import (
     singularities_of,
     unknowns_after,
 )
+from fea.row import row_of
+from fea.section.answer import SectionAnswer
+from fea.section.place import found_section
 from geometry import ArgumentError, CutPin, GeometryError, Pin, PinLike
 from geometry.mesh.solid_mesh import MeshError
 
@@ -108,7 +111,26 @@ def solve_pin(
             out |= _instead(job, pin, live, notes, str(error))
     for name, share in shares.items():
         out[name] = replace(out[name], peak=replace(out[name].peak, imbalance=share))
-    return tuple(out[c.case] for c in cases)
+    return tuple(_with_section(job, pin, c, out[c.case]) for c in cases)
+
+
+def _with_section(job: PinJob, pin: PinLike, case: PinLoads, found: Solution) -> Solution:
+    """With the places of the row, of loads that are given; contact has its own."""
+    if found.answer is None or case.pressed is not None:
+        return found
+    section, loads = None, found.loads
+    if isinstance(pin, Pin):
+        answer = SectionAnswer(pin, job.material, job.constrained, (case,))
+        between = job.between.get(case.case)
+        section = found_section(answer, case, between, job.asked.tolerance)
+    peak = row_of(found.peak, section, job.material, job.asked.tolerance)
+    if peak.places is None or peak.places.governs == "surface" or loads.times is None:
+        return replace(found, peak=peak)
+    assert section is not None
+    loads = loads.merged(section.loads)
+    assert loads.times is not None
+    instant = int(np.searchsorted(loads.times, section.time or 0.0))
+    return replace(found, peak=peak, loads=loads, instant=instant)
 
 
 def _beam(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -30,17 +29,15 @@ NOISE = {"harmonic": 0.026, "solid": 0.13, "harmonic+local": 0.05}
 FEWEST = 3  # meshes before a maximum can be converged: two can agree by chance
 
 ARTICLES = {
-    "sharp corner": "a", "edge of a clamp": "the", "edge of a load": "the", "edge of a lug": "the",
-    "rounded edge of a lug": "the",
+    "sharp corner": "a", "edge of a clamp": "the", "edge of a load": "the"
 }  # fmt: skip
-_LARGER = "at least {:.1f} times as large, not resolved"
-UNRESOLVED = ", not resolved closer than the first ring of the contact pressure"
 
 
 @dataclass(frozen=True)
 class Seen:
     """The meshes of one case so far, coarse to fine, each `ratio` times finer than the one before;
     seconds: the time of each. first: how many meshes of a run are coarser than the first of these.
+    fewest: before the maximum can be converged.
     """
 
     pin: str
@@ -50,6 +47,7 @@ class Seen:
     seconds: tuple[float, ...]
     ratio: float
     first: int = 0
+    fewest: int = FEWEST
 
     def then(self, result: MeshResult, spent: float) -> Seen:
         """With one more mesh, on which s were spent."""
@@ -117,7 +115,7 @@ class Seen:
 
     def known(self, tolerance: float) -> bool:
         """Whether the error is within `tolerance`."""
-        return len(self.results) >= FEWEST and self.relative <= tolerance
+        return len(self.results) >= self.fewest and self.relative <= tolerance
 
 
 def zones(result: MeshResult, singularities: Sequence[Singularity]) -> tuple[SingularZone, ...]:
@@ -130,7 +128,7 @@ def zones(result: MeshResult, singularities: Sequence[Singularity]) -> tuple[Sin
             exponent=inside.exponent,
             exponent_theory=singularity.theory,
             excluded=singularity.radius,
-            governs=inside.felt > result.maximum and not inside.bounded,
+            governs=inside.felt > result.maximum,
             max_von_mises=inside.maximum,
             advice=singularity.advice,
             strength=inside.strength,
@@ -158,11 +156,9 @@ def judge(
     known = seen.known(tolerance)
     verdict: Verdict = "converged" if known else "unconverged"
     own = accuracy(seen.relative, tolerance, known)
-    if len(seen.results) < FEWEST and not known:
+    if len(seen.results) < seen.fewest and not known:
         meshes = "one mesh was" if len(seen.results) == 1 else f"{len(seen.results)} meshes were"
         text = f"only {meshes} solved, too few to estimate the error"
-        if len(seen.results) == FEWEST - 1 and last.larger:
-            text = f"estimated error {seen.relative:.1%}, from two meshes only"
         own = Note(text, ("too-few-meshes",))
     error, interval = seen.error, None
     if governing:
@@ -174,15 +170,6 @@ def judge(
         outside = "" if known else f"; outside, {own.text}"
         text = f"{_nowhere(worst)}; half and twice the excluded distance give {ends}{outside}"
         own = Note(text, own.codes)
-    elif last.governed:
-        interval = seen.range
-        error = max(last.maximum - interval[0], interval[1] - last.maximum)
-        if error > tolerance * last.maximum:
-            verdict = "unconverged"
-        ends = " to ".join(f"{end / last.maximum - 1.0:+.0%}" for end in interval)
-        own = _local(last, f"half and twice the excluded distance give {ends}") + own
-    elif last.larger:
-        own = _local(last, "left to bearing checks") + own
     own = own + note
     return Peak(
         pin=seen.pin,
@@ -199,28 +186,6 @@ def judge(
         parts=seen.parts,
         reasons=own.codes,
     )
-
-
-def _local(last: MeshResult, what: str) -> Note:
-    """Of stress at rounded edges that is larger than outside, and what it means for the maximum."""
-    worst = max(inside.felt for inside in last.larger)
-    return Note(
-        "away from the rounded edges of lugs, where contact stress is local "
-        f"({_LARGER.format(worst / last.maximum)}); {what}; ",
-        ("local-contact",),
-    )
-
-
-def with_estimate(note: str, times: float) -> str:
-    """A note with what contact stress at rounded edges is, over the maximum, if that is more than
-    rings and meshes show.
-    """
-
-    def larger(found: re.Match[str]) -> str:
-        shown = float(found[1])
-        return f"about {times:.1f} times as large, estimated" if times > shown else found[0]
-
-    return re.sub(_LARGER.format(0.0).replace("0.0", r"([\d.]+)"), larger, note)
 
 
 def accuracy(relative: float, tolerance: float, known: bool) -> Note:
@@ -240,5 +205,4 @@ def _nowhere(zone: SingularZone) -> str:
     found = ", ".join(f"{s:.2f} {how}" for s, how in exponents if s is not None)
     if not found:
         return f"no maximum exists: at {where} stress grows without bound"
-    how = UNRESOLVED if zone.kind == "the edge of a lug" else ""
-    return f"no maximum exists: at {where} stress grows as distance^-s, s = {found}{how}"
+    return f"no maximum exists: at {where} stress grows as distance^-s, s = {found}"

@@ -14,7 +14,7 @@ import numpy as np
 from fea.beam.round_section import Circle
 from fea.core.material import Material
 from fea.core.pin_loads import AnyLoads, UnitLoad, require_solved
-from fea.core.tractions import Traction, closing_tractions, traction
+from fea.core.tractions import Traction, closing_tractions, tractions_of
 from geometry import ArgumentError, Pin
 from geometry.arrays import Floats
 
@@ -67,7 +67,7 @@ def line_loads(
                 )
             out[:, 0, k] = [material.density * section.area for section in sections]
         elif loads_sections(load):
-            out[..., k] = _spread(pin, stations, (traction(pin, load),), load.n, load.phases[0])
+            out[..., k] = _spread(pin, stations, tractions_of(pin, load), load.n, load.phases[0])
     if closed:
         _close(pin, stations, loads, out)
     return out

@@ -35,8 +35,7 @@ class AtSingularity:
     mesh is, where (x, y, z in m); felt: the largest farther away than FELT of its feature; and the
     exponent with which stress was seen to grow, None where that could not be measured. acts: false
     where only other cases of the pin load the singularity, so that stress has a bound there.
-    bounded: true where it has one that is not resolved, at a rounded edge of a lug; excluded: true
-    where that is judged otherwise. strength: of the singularity, where the exponent was measured.
+    strength: of the singularity, where the exponent was measured.
     """
 
     maximum: float
@@ -45,8 +44,6 @@ class AtSingularity:
     exponent: float | None = None
     acts: bool = True
     strength: Strength | None = None
-    bounded: bool = False
-    excluded: bool = False
 
 
 @dataclass(frozen=True)
@@ -87,14 +84,4 @@ class MeshResult:
         """Those in which stress is felt to be larger than outside, so that the maximum depends on
         the distance that is left out.
         """
-        return tuple(s for s in self.larger if not s.excluded)
-
-    @property
-    def larger(self) -> tuple[AtSingularity, ...]:
-        """Those in which stress is felt to be larger than outside."""
         return tuple(s for s in self.singularities if s.acts and s.felt > self.maximum)
-
-    @property
-    def singular(self) -> bool:
-        """Whether there is one in which it has no bound."""
-        return any(not inside.bounded for inside in self.governed)

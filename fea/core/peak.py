@@ -9,6 +9,7 @@ from typing import Literal
 from fea.core.dimensions import Energy, Length, Point, Stress
 from fea.core.mesh_result import Strength
 from fea.core.pin_loads import PinLoads
+from fea.core.places import Places
 
 Verdict = Literal["converged", "unconverged", "singular", "rigid", "failed"]
 
@@ -99,7 +100,8 @@ class Peak:
     error, Pa, and error_estimate covers both of its ends. parts: of the error on the meshes and
     instants. imbalance: of an unconstrained pin, what its bands react: the force over the largest
     load, and the couple over that load times the length. solids: between which z (m) local solids
-    are, of a pin with cuts.
+    are, of a pin with cuts. places: surface, section and contact, of which the maximum is the
+    larger of the first two.
     """
 
     pin: str
@@ -119,6 +121,7 @@ class Peak:
     reasons: tuple[str, ...] = ()
     imbalance: tuple[float, float] | None = None
     solids: tuple[tuple[float, float], ...] = ()
+    places: Places | None = None
 
     @property
     def time(self) -> float | None:

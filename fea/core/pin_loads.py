@@ -16,7 +16,6 @@ So a unit load of harmonic n serves all directions: phases differ by a turn abou
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -26,6 +25,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.core.pressed import PressedArcs
 from geometry import ArgumentError
 
 Floats = NDArray[np.float64]
@@ -77,21 +77,6 @@ class UnitLoad(NamedTuple):
         return (1,) if self.kind in ("moment", "turn") else (0,)
 
 
-class LugEdge(NamedTuple):
-    """The edge of a lug on a band (`surface`, by name) of a pin: a circle at (r, z), m, near which
-    pressure grows like distance^-exponent (fea.singular.lug_edge), or does so until close to it
-    where it is `rounded`. feature: how far (m) that reaches at most: the length of the lug, or of
-    the gap to the next one if that is shorter.
-    """
-
-    surface: str
-    r: float
-    z: float
-    exponent: float
-    feature: float = math.inf
-    rounded: bool = False
-
-
 @dataclass(frozen=True)
 class PinLoads:
     """Loads on one pin in one case, in the pin's axes: at each surface (by name) a force at its
@@ -100,7 +85,7 @@ class PinLoads:
     distribution: of transverse forces over their bands: "uniform" (a traction of constant
     direction) or "cosine" (a bearing pressure on the loaded half, of which harmonics up to
     `terms` are taken). body: (T, 3) m/s^2 or what broadcasts to it, gravity less the pin's own
-    acceleration. times: (T,) s, rising, of a motion. lug_edges: of the lugs that press on it.
+    acceleration. times: (T,) s, rising, of a motion. pressed: where lugs press on it.
     """
 
     case: str
@@ -111,7 +96,7 @@ class PinLoads:
     body: Floats = field(default_factory=lambda: np.zeros(3))
     terms: int = 6
     times: Floats | None = None
-    lug_edges: tuple[LugEdge, ...] = ()
+    pressed: PressedArcs | None = None
 
     def __post_init__(self) -> None:
         moments = np.broadcast_to(self.moments, self.forces.shape)
@@ -180,7 +165,10 @@ class PinLoads:
         """The loads at some of the instants, by their numbers."""
         times = None if self.times is None else self.times[instants]
         forces, moments, body = (x[instants] for x in self._vectors)
-        return replace(self, forces=forces, moments=moments, body=body, times=times)
+        pressed = self.pressed and self.pressed.at(instants)
+        return replace(
+            self, forces=forces, moments=moments, body=body, times=times, pressed=pressed
+        )
 
     def merged(self, other: PinLoads) -> PinLoads:
         """With the instants of other loads of the same motion, in the order of time."""
@@ -189,16 +177,24 @@ class PinLoads:
         times, first = np.unique(np.concatenate([self.times, other.times]), return_index=True)
         both = zip(self._vectors, other._vectors, strict=True)
         forces, moments, body = (np.concatenate(pair)[first] for pair in both)
-        return replace(self, forces=forces, moments=moments, body=body, times=times)
+        pressed = None
+        if self.pressed is not None and other.pressed is not None:
+            pressed = self.pressed.joined(other.pressed).at(first)
+        return replace(
+            self, forces=forces, moments=moments, body=body, times=times, pressed=pressed
+        )
 
 
 @dataclass(frozen=True)
 class Amounts:
-    """Amounts (T, 2) of unit loads, by phase, that need not be those of any forces."""
+    """Amounts (T, 2) of unit loads, by phase, that need not be those of any forces. pressed: where
+    lugs press on the pin meanwhile.
+    """
 
     case: str
     acting: Mapping[UnitLoad, Floats]
     count: int
+    pressed: PressedArcs | None = None
 
     def __len__(self) -> int:
         return self.count
@@ -210,7 +206,8 @@ class Amounts:
     def at(self, instants: NDArray[np.int64]) -> Amounts:
         """Those of some instants, by their numbers."""
         acting = {load: both[instants] for load, both in self.acting.items()}
-        return Amounts(self.case, acting, len(instants))
+        pressed = self.pressed and self.pressed.at(instants)
+        return Amounts(self.case, acting, len(instants), pressed)
 
     def turned(self, angle: float) -> Amounts:
         """The same, all turned about the pin's axis by `angle` (rad)."""
@@ -240,4 +237,4 @@ def off_chord(loads: PinLoads, middle: PinLoads) -> Amounts:
     for load in dict.fromkeys([*ends, *amid]):
         c = ends.get(load, none)
         acting[load] = amid.get(load, none[1:]) - 0.5 * (c[1:] + c[:-1])
-    return Amounts(loads.case, acting, len(loads) - 1)
+    return Amounts(loads.case, acting, len(loads) - 1, loads.pressed and loads.pressed.amid())

@@ -75,10 +75,10 @@ class ClampMotions:
             both = acting.setdefault(unit, np.zeros((len(loads), 2)))
             both[:, phase] += amount
         if isinstance(loads, Amounts):
-            return Amounts(loads.case, acting, len(loads))
+            return Amounts(loads.case, acting, len(loads), loads.pressed)
         return HeldLoads(
             loads.case, loads.surfaces, loads.forces, loads.moments, loads.distribution,
-            loads.body, loads.terms, loads.times, loads.lug_edges, acting,
+            loads.body, loads.terms, loads.times, loads.pressed, acting,
         )  # fmt: skip
 
 

@@ -14,7 +14,9 @@ from fea.core.material import Material
 from fea.core.mesh_result import FELT, MeshResult, Point
 from fea.core.pin_loads import AnyLoads, PinLoads, UnitLoad
 from fea.core.solution import Picture
+from fea.harmonic.beneath import just_beneath
 from fea.harmonic.fields import MeridianFields
+from fea.harmonic.free_surface import reader
 from fea.harmonic.model import HarmonicModel
 from fea.harmonic.near_singularities import CLOSE, felt_beyond, inside, interval
 from fea.harmonic.quiet_corners import crowd, quiet_corners
@@ -36,6 +38,7 @@ MATTERS = 0.5  # of the maximum elsewhere
 REST = 0.6  # of a pressure's last harmonic, at most what follows it: terms go as +-1/(n^2 - 1)
 ELSEWHERE = 0.5  # power of the refinement where stresses are low
 HIGH, APART, MOST_HIGH = 0.95, 0.1, 3  # places where they are: of the maximum, of r apart, so many
+QUARTER = 0.25  # of a ring of contact pressure: the elements at its ends
 PATCH = 2.0  # elements of the first mesh about such a place, in which all are refined
 
 
@@ -179,10 +182,13 @@ def harmonic_solution(
     factor = ratio ** (level * ELSEWHERE if high else level)
 
     loads = _unit_loads(cases) + problem.besides
+    rings = tuple(dict.fromkeys(name for load in loads for name, _ in load.parts))
+    finer += _at_rings(pin, rings)
     ends = _ends(pin, problem.clamps, loads)
 
     def solved(size: SectionSize, grades: list[Grade], quiet: tuple[int, ...]) -> MeridianFields:
-        places, read = spots(factor), np.concatenate([elsewhere, _rims(pin, singularities)])
+        places = spots(factor)
+        read = np.concatenate([elsewhere, _rims(pin, singularities), just_beneath(pin, rings)])
 
         def model() -> HarmonicModel:
             made = near_mesh if problem.near else meridian_mesh
@@ -198,7 +204,11 @@ def harmonic_solution(
     if quiet:
         known = [result.quiet for result in before]
         quiet = (
-            known[0] if known else quiet_corners(pin, solved(SIZE, [], quiet), cases, singularities)
+            known[0]
+            if known
+            else quiet_corners(
+                pin, solved(SIZE, [], quiet), cases, singularities, material.poisson_ratio
+            )
         )
     fields, more = _apart(solved(SIZE.finer(factor), finer, quiet), len(elsewhere))
     return HarmonicSolution(fields, close, material.poisson_ratio, ends, quiet, more)
@@ -213,6 +223,17 @@ def _apart(fields: MeridianFields, count: int) -> tuple[MeridianFields, Floats]:
     unread = np.flatnonzero(np.isin(rest, fields.unread))
     kept = replace(fields, points=fields.points[rest], stress=fields.stress[rest], unread=unread)
     return kept, fields.stress[here]
+
+
+def _at_rings(pin: Pin, rings: tuple[str, ...]) -> list[Grade]:
+    """How fine the mesh is at the ends of rings of contact pressure, so that the elements that feel
+    its steps (fea.core.pressed) are beside them.
+    """
+    bands = (pin.band(name) for name in rings)
+    return [
+        Grade(((b.radius, b.z0), (b.radius, b.z1)), QUARTER * b.length, 0.0, SIZE.growth)
+        for b in bands
+    ]
 
 
 def _unit_loads(cases: tuple[PinLoads, ...]) -> tuple[UnitLoad, ...]:
@@ -297,13 +318,18 @@ class HarmonicAnswer:
         """Largest von Mises stress (T,) Pa at every instant outside the singularities; `least`
         where it does not exceed that.
         """
-        among = self.fields.outside(self.singularities)
-        return Circumference(self.fields, loads).maxima(among, least)
+        around = self.reader(loads)
+        return around.maxima(around.fields.outside(self.singularities), least)
 
     def largest(self, loads: AnyLoads) -> tuple[float, int]:
         """The largest of these (Pa), and the number of its instant."""
-        top = Circumference(self.fields, loads).top(self.fields.outside(self.singularities))
+        around = self.reader(loads)
+        top = around.top(around.fields.outside(self.singularities))
         return top.value, top.instant
+
+    def reader(self, loads: AnyLoads) -> Circumference:
+        """Where their largest stress is looked for (fea.harmonic.free_surface)."""
+        return reader(self.fields, loads, self.solution.nu)
 
     def picture(self, loads: PinLoads, instant: int) -> Picture:
         """The surface at one instant, with its envelope over all."""
@@ -319,8 +345,8 @@ def harmonic_result(
     """Maximum outside the singularities, and what is inside them. own: those of this case, where
     others have more; all by default.
     """
-    fields = solution.fields
-    around = Circumference(fields, loads)
+    around = reader(solution.fields, loads, solution.nu)
+    fields = around.fields
     mine = singularities if own is None else own
     among = fields.outside(mine)
     top = around.top(among)
@@ -348,10 +374,10 @@ def around_governing(
     maximum: float,
 ) -> tuple[float, float] | None:
     """The interval of a mesh result without the rest of it, of which the maximum (Pa) is known."""
-    around = Circumference(solution.fields, loads)
-    if not felt_beyond(solution.fields, around, singularities, maximum):
+    around = reader(solution.fields, loads, solution.nu)
+    if not felt_beyond(around.fields, around, singularities, maximum):
         return None
-    return interval(solution.fields, around, singularities)
+    return interval(around.fields, around, singularities)
 
 
 def high_places(

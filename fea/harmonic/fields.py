@@ -67,8 +67,10 @@ class MeridianFields:
         return StrainEnergy(units, np.asarray(np.kron(np.eye(2), work), np.float64))
 
     @cached_property
-    def found(self) -> dict[tuple[int, ...], Any]:
-        """What was found of some of the loads, by their numbers (fea.harmonic.superposition)."""
+    def found(self) -> dict[tuple[object, ...], Any]:
+        """What was found of some of the loads, by their numbers (fea.harmonic.superposition), and
+        of the surface (fea.harmonic.free_surface).
+        """
         return {}
 
     def outside(self, singularities: Iterable[Singularity]) -> Mask:

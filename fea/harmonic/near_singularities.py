@@ -34,8 +34,7 @@ def inside(
     top = near if near.value > far.value else far
     c, s = math.cos(top.angle), math.sin(top.angle)
     at = (singularity.r * c, singularity.r * s, singularity.z)
-    bounded, excluded = singularity.bounded, singularity.excluded
-    found = AtSingularity(top.value, far.value, at, bounded=bounded, excluded=excluded)
+    found = AtSingularity(top.value, far.value, at)
     if not singularity.measured or close != CLOSE[-1]:
         return found
     exponent, how_strong = _growth(fields, around, singularity, distance, top.instant, nu)
@@ -58,10 +57,8 @@ def felt_beyond(
     singularities: Iterable[Singularity],
     maximum: float,
 ) -> bool:
-    """Whether stress in one of them that is not excluded is felt to exceed a maximum, Pa."""
-    return any(
-        around.exceeds(_places(fields, p)[2], maximum) for p in singularities if not p.excluded
-    )
+    """Whether stress in one of them is felt to exceed a maximum, Pa."""
+    return any(around.exceeds(_places(fields, p)[2], maximum) for p in singularities)
 
 
 def _growth(
@@ -103,6 +100,6 @@ def interval(
     """
     found = []
     for times in VARIED:
-        varied = [p if p.excluded else replace(p, radius=times * p.radius) for p in singularities]
+        varied = [replace(p, radius=times * p.radius) for p in singularities]
         found.append(around.top(fields.outside(varied)).value)
     return min(found), max(found)

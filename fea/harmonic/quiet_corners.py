@@ -10,7 +10,7 @@ import numpy as np
 
 from fea.core.pin_loads import PinLoads
 from fea.harmonic.fields import MeridianFields
-from fea.harmonic.superposition import Circumference
+from fea.harmonic.free_surface import reader
 from fea.singular.singularities import Singularity
 from geometry import Pin
 from geometry.shape.polygon import Rounding
@@ -40,13 +40,14 @@ def quiet_corners(
     fields: MeridianFields,
     cases: tuple[PinLoads, ...],
     singularities: tuple[Singularity, ...],
+    nu: float,
 ) -> tuple[int, ...]:
     """Fillets where no case has nearly as much stress as elsewhere outside the singularities."""
     quiet, fillets = set(crowd(pin)), _fillets(pin)
-    among = fields.outside(singularities)
-    r, z = fields.points.T
     for case in cases:
-        around = Circumference(fields, case)
+        around = reader(fields, case, nu)
+        among = around.fields.outside(singularities)
+        r, z = around.fields.points.T
         top = around.top(among).value
         for i in tuple(quiet):
             distance = np.hypot(r - fillets[i].at[0], z - fillets[i].at[1])

@@ -21,12 +21,20 @@ import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 
 from fea.core.pin_loads import AnyLoads, require_solved
+from fea.core.pressed import ANGLES
 from fea.harmonic.fields import MeridianFields
-from fea.harmonic.trigonometric_maximum import at_most, closed, highest_crest, one_wave
+from fea.harmonic.trigonometric_maximum import (
+    at_most,
+    closed,
+    crest_of_samples,
+    highest_crest,
+    one_wave,
+)
 from geometry.arrays import Floats, Ints, Mask
 
 Instants = slice | Ints
@@ -78,10 +86,25 @@ def _numbers(fields: MeridianFields, at: tuple[int, ...]) -> _Numbers:
     return found
 
 
-class Circumference:
-    """A case on the section's points."""
+class Region(Protocol):
+    """Where on the circumference points are read, at the instants of a case."""
 
-    def __init__(self, fields: MeridianFields, loads: AnyLoads) -> None:
+    def masked(self, points: Ints) -> Mask:
+        """Which of some points (J,) are read on a part of it only."""
+        ...
+
+    def read(self, points: Ints, instants: Ints) -> Mask:
+        """On which arcs (J, BINS) pairs of points and instants are read (fea.core.pressed)."""
+        ...
+
+
+class Circumference:
+    """A case on the section's points; region: where these are read, all round by default."""
+
+    def __init__(
+        self, fields: MeridianFields, loads: AnyLoads, region: Region | None = None
+    ) -> None:
+        self.region = region
         acting = loads.coefficients()
         require_solved(loads.case, acting, fields.loads)
         units = sorted(acting, key=lambda load: load.n)
@@ -93,7 +116,7 @@ class Circumference:
         self._first, self._second = by_phase[..., 0], by_phase[..., 1]  # (T, K)
         self._at = tuple(fields.loads.index(load) for load in units)
         found = _numbers(fields, self._at)
-        self._fields, self._five, self._each = fields, found.five, found.each
+        self.fields, self._five, self._each = fields, found.five, found.each
         self._n = np.array([load.n for load in units], dtype=np.int64)
         starts = np.flatnonzero(np.diff(self._n, prepend=-1))
         self._kept: dict[int, tuple[Floats, Floats, Floats]] = {}
@@ -211,7 +234,7 @@ class Circumference:
                 continue
             bound = np.full((len(here), self.count), -1.0)
             bound[:, hopeful] = self._closer(here, hopeful, best.max() if together else best)
-            if len(self._waves) < 2:  # the bound is the maximum
+            if len(self._waves) < 2 and self.region is None:  # the bound is the maximum
                 highest = bound.argmax(axis=0)
                 value = bound[highest, np.arange(self.count)]
                 more = value > best
@@ -302,9 +325,23 @@ class Circumference:
         beat = np.zeros(len(points)) if beat is None else beat
         value, angle = np.zeros(len(points)), np.zeros(len(points))
         for k in range(0, len(points), CHUNK):
-            here = slice(k, k + CHUNK)
-            value[here], angle[here] = self._round(points[here], instants[here], beat[here])
+            here = np.arange(k, min(k + CHUNK, len(points)))
+            some = np.zeros(len(here), dtype=bool)
+            if self.region is not None:
+                some = self.region.masked(points[here])
+            for find, rows in ((self._round, here[~some]), (self._round_partly, here[some])):
+                if len(rows):
+                    value[rows], angle[rows] = find(points[rows], instants[rows], beat[rows])
         return value, angle
+
+    def _round_partly(self, points: Ints, instants: Ints, beat: Floats) -> tuple[Floats, Floats]:
+        """The same of points that are read on a part of the circumference."""
+        assert self.region is not None
+        n = self._n[[wave.start for wave in self._waves]]
+        read = self.region.read(points, instants)
+        square = at_angles(n, *self._parts(points, instants, self._waves), ANGLES)
+        square[~read] = -1.0
+        return crest_of_samples(square)
 
     def _round(self, points: Ints, instants: Ints, beat: Floats) -> tuple[Floats, Floats]:
         n = self._n[[wave.start for wave in self._waves]]
@@ -363,7 +400,7 @@ class Circumference:
     def stress(self, points: Ints, instant: int, angles: Floats) -> Floats:
         """Stress (J, A, 6) in Pa at points and angles (A,): rr, tt, zz, tz, rz, rt."""
         out = np.zeros((len(points), len(angles), 6))
-        here = self._fields.stress[points]
+        here = self.fields.stress[points]
         for wave in self._waves:
             unit = here[:, :, self._at[wave]]
             first, second = (unit @ x[instant, wave] for x in (self._first, self._second))
@@ -385,6 +422,11 @@ def _raise(best: Floats, point: Ints, t: Ints, value: Floats, at: Ints) -> None:
 def _sampled(n: Ints, back: Floats, forth: Floats, degree: int) -> Floats:
     """Von Mises squared (J, A) at even angles, of what goes as cos and sin n theta (J, 5, W)."""
     angles = np.linspace(0.0, 2.0 * np.pi, SAMPLES_PER_WAVE * degree, endpoint=False)
+    return at_angles(n, back, forth, angles)
+
+
+def at_angles(n: Ints, back: Floats, forth: Floats, angles: Floats) -> Floats:
+    """The same at any angles (A,), rad."""
     turns = n[:, None] * angles
     found = np.concatenate([back, forth], axis=2) @ np.concatenate([np.cos(turns), np.sin(turns)])
     return np.asarray(np.square(found, out=found).sum(axis=1))

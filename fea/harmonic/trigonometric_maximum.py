@@ -54,6 +54,24 @@ def at_most(samples: Floats, degree: int) -> Floats:
     return np.asarray(top + arch**2 / 4.0 * (top - samples.min(axis=1)) / np.cos(arch))
 
 
+def crest_of_samples(square: Floats) -> tuple[Floats, Floats]:
+    """The root of the largest of samples (J, A) at the angles 2 pi k / A, by a parabola through its
+    neighbours, and its angle, rad; a negative sample is none, and next to one there is no crest.
+    Zero where there are no samples.
+    """
+    count, row = square.shape[1], np.arange(len(square))
+    top = square.argmax(axis=1)
+    value = square[row, top]
+    before, after = square[row, (top - 1) % count], square[row, (top + 1) % count]
+    bend = 2.0 * value - before - after
+    crest = (before >= 0.0) & (after >= 0.0) & (bend > 0.0)
+    bend = np.where(crest, bend, 1.0)
+    shift = np.where(crest, 0.5 * (after - before) / bend, 0.0)
+    value = value + np.where(crest, (after - before) ** 2 / (8.0 * bend), 0.0)
+    angle = (top + shift) * (2.0 * np.pi / count)
+    return np.sqrt(np.maximum(value, 0.0)), np.asarray(angle)
+
+
 def _crests(c: Floats, low: Floats, angle: Floats, high: Floats) -> Floats:
     """Angles (C,) at which polynomials of coefficients (C, D + 1) have no slope, between two at
     which it goes up and down, from a guess.

@@ -23,15 +23,19 @@ integrating Flamant's solution.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
 from fea.core.material import Material
 from fea.core.pin_loads import Floats
+from fea.core.places import ContactEdge
 from fea.joint.lugs.lug import Lug
 from fea.joint.solve_joint import JointContact
 from fea.singular.lug_edge import lug_edge_exponent
+
+End = Literal["start", "end"]
 
 EXPONENTS = 0.11, 0.226, 0.5  # aluminium on steel, like on like, rigid
 C = 0.99, 1.07, 1.073
@@ -44,8 +48,8 @@ BELOW = 0.5730, 0.5399, 0.5157, 0.4979, 0.4858, 0.4787, 0.4763
 
 @dataclass(frozen=True)
 class EdgePeak:
-    """At the more loaded edge of a band. pressure: the largest, Pa; von_mises: of the pin under it,
-    Pa, by contact alone; reach: length of contact in the rounding, m.
+    """At a rounded edge. pressure: the largest, Pa; von_mises: of the pin under it, Pa, by contact
+    alone; reach: length of contact in the rounding, m.
     """
 
     pressure: float
@@ -53,26 +57,39 @@ class EdgePeak:
     reach: float
 
 
-def edge_peaks(contact: JointContact, material: Material) -> tuple[EdgePeak | None, ...]:
-    """By band, of contact at a single instant; None where edges are sharp or carry nothing.
+def contact_edges(contact: JointContact, material: Material) -> tuple[ContactEdge, ...]:
+    """Of contact at a single instant, both edges of each band that carries anything there.
     material: the pin's.
     """
-    return tuple(_of_band(contact, b, material) for b in range(len(contact.lugs)))
+    out = []
+    for b, lug in enumerate(contact.lugs):
+        own = contact.bands.band == b
+        pressure, length = contact.contact[0].pressure[own], contact.bands.length[own]
+        exponent = lug_edge_exponent(material, lug.bearing)
+        ends: tuple[tuple[End, slice], ...] = ("start", slice(None)), ("end", slice(None, None, -1))
+        for end, way in ends:
+            K = strength_at_edge(pressure[way], length[way], lug.edge_radius, exponent)
+            if K > 0.0:
+                out.append(_edge(lug, end, K, exponent, material))
+    return tuple(out)
 
 
-def _of_band(contact: JointContact, b: int, material: Material) -> EdgePeak | None:
-    lug, bands = contact.lugs[b], contact.bands
-    if not lug.edge_radius:
-        return None
-    own = bands.band == b
-    pressure, length = contact.contact[0].pressure[own], bands.length[own]
-    exponent = lug_edge_exponent(material, lug.bearing)
-    ends = ((pressure, length), (pressure[::-1], length[::-1]))
-    K = max(_strength(p, lengths, lug.edge_radius, exponent) for p, lengths in ends)
-    return _peak(K, exponent, lug, material) if K > 0.0 else None
+def _edge(lug: Lug, end: End, K: float, exponent: float, material: Material) -> ContactEdge:
+    peak = edge_peak(K, exponent, lug, material) if lug.edge_radius else None
+    strength = material.yield_strength
+    edge = ContactEdge(
+        lug.connection, end, K, exponent,
+        (K / strength) ** (1.0 / exponent) if strength and exponent else None, None, None, None,
+    )  # fmt: skip
+    if peak is None:
+        return edge
+    return replace(
+        edge, max_pressure=peak.pressure, max_von_mises=peak.von_mises,
+        error_estimate=WITHIN * peak.pressure,
+    )  # fmt: skip
 
 
-def _strength(pressure: Floats, length: Floats, radius: float, exponent: float) -> float:
+def strength_at_edge(pressure: Floats, length: Floats, radius: float, exponent: float) -> float:
     """K, Pa m^s, where it is largest round the pin, of rings (R, M) from a face on."""
     stations = np.concatenate([[0.0], np.cumsum(length)])
     flat = int(np.searchsorted(stations, radius * (1.0 - 1e-9)))  # where the first flat ring begins
@@ -83,7 +100,8 @@ def _strength(pressure: Floats, length: Floats, radius: float, exponent: float) 
     return float((1.0 - exponent) * carried * far ** (exponent - 1.0))
 
 
-def _peak(K: float, exponent: float, lug: Lug, material: Material) -> EdgePeak:
+def edge_peak(K: float, exponent: float, lug: Lug, material: Material) -> EdgePeak:
+    """Of a rounded edge."""
     r, soft = lug.edge_radius, material.plane_compliance + lug.bearing.plane_compliance
     pressure = float(np.interp(exponent, EXPONENTS, C)) * (
         K * K * r ** (-2.0 * exponent) / soft

@@ -13,7 +13,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.core.pin_loads import Floats, LugEdge, PinLoads, UnitLoad
+from fea.core.pin_loads import Floats, PinLoads, UnitLoad
+from fea.core.pressed import PressedArcs
 from geometry import Pin
 
 NEGLIGIBLE = 2e-3  # of the largest amplitude: what a pattern must add to any instant's
@@ -35,6 +36,13 @@ class PressureLoads(PinLoads):
         """What the links do to the pin."""
         assert self.of_links is not None
         return self.of_links
+
+    @property
+    def on_rings(self) -> PinLoads:
+        """The resultants on the rings, which are what sections feel."""
+        return PinLoads(
+            self.case, self.surfaces, self.forces, self.moments, body=self.body, times=self.times
+        )
 
     def coefficients(self) -> Mapping[UnitLoad, Floats]:
         """How much of each unit load acts, (T, 2) by phase."""
@@ -62,30 +70,27 @@ class PressureLoads(PinLoads):
 
 @dataclass(frozen=True)
 class Patterns:
-    """Patterns (K, R) in Pa over the rings of a pin, one array for each harmonic from 0 on. edges:
-    of its lugs.
-    """
+    """Patterns (K, R) in Pa over the rings of a pin, one array for each harmonic from 0 on."""
 
     pin: Pin
     rings: tuple[str, ...]
     by_harmonic: tuple[Floats, ...]
-    edges: tuple[LugEdge, ...] = ()
 
-    def loads(self, waves: Floats, links: PinLoads) -> PressureLoads:
+    def loads(
+        self, waves: Floats, links: PinLoads, pressed: PressedArcs | None = None
+    ) -> PressureLoads:
         """Of pressures on the rings with harmonics (N + 1, T, R, 2) Pa, made of these patterns, and
         of what else is in the loads of the links, whose surfaces are the bands that the rings cut:
-        forces along the axis and torques, even over a band's rings, and the body force.
+        forces along the axis and torques, even over a band's rings, and the body force. pressed:
+        where the pressures are.
         """
-        made = others_along(self.pin, self.rings, links)
-        acting = dict(PinLoads.coefficients(made))
+        made = resultants(self.pin, self.rings, waves, links)
+        acting = dict(others_along(self.pin, self.rings, links).coefficients())
         for n, (wave, patterns) in enumerate(zip(waves, self.by_harmonic, strict=True)):
             amounts = np.einsum("trp,kr->ktp", wave, patterns)
             for pattern, amount in zip(patterns.tolist(), amounts, strict=True):
                 parts = tuple(zip(self.rings, pattern, strict=True))
                 acting[UnitLoad("", "pressure", n, parts)] = amount
-        area = np.array([self.pin.band(name).area for name in self.rings])
-        if len(waves) > 1:
-            made.forces[:, :, :2] = -0.5 * waves[1] * area[:, None]
         return PressureLoads(
             links.case,
             self.rings,
@@ -95,7 +100,7 @@ class Patterns:
             times=links.times,
             acting=acting,
             of_links=links,
-            lug_edges=self.edges,
+            pressed=pressed,
         )
 
     def left_out(self, waves: Floats) -> float:
@@ -105,6 +110,14 @@ class Patterns:
             rest = wave - (wave.swapaxes(1, 2) @ patterns.T @ patterns).swapaxes(1, 2)
             missed = max(missed, float(np.abs(rest).max()))
         return missed / largest if largest else 0.0
+
+
+def resultants(pin: Pin, rings: tuple[str, ...], waves: Floats, links: PinLoads) -> PinLoads:
+    """Of pressures with harmonics (N + 1, T, R, 2) Pa, and what links do along the axis."""
+    made = others_along(pin, rings, links)
+    area = np.array([pin.band(name).area for name in rings])
+    made.forces[:, :, :2] = -0.5 * waves[1] * area[:, None]
+    return made
 
 
 def patterns_of(
@@ -138,7 +151,13 @@ def stacked(loads: Sequence[PressureLoads]) -> PressureLoads:
         np.concatenate([getattr(one, name) for one in loads])
         for name in ("forces", "moments", "body")
     )
-    return replace(loads[0], forces=forces, moments=moments, body=body, times=None, acting=acting)
+    pressed = loads[0].pressed
+    for one in loads[1:]:
+        pressed = None if pressed is None or one.pressed is None else pressed.joined(one.pressed)
+    return replace(
+        loads[0], forces=forces, moments=moments, body=body, times=None, acting=acting,
+        pressed=pressed,
+    )  # fmt: skip
 
 
 def _after_each_other(loads: Sequence[PressureLoads]) -> dict[UnitLoad, Floats]:

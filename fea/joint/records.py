@@ -18,21 +18,18 @@ class BandContact:
     ring) in the direction of the force; negative: the other side of the bore carries. couple: what
     the lug's tilt reacts, a moment on the link. clearance, outer_diameter: of the lug. ends: z of
     the rings' ends, one more than there are rings; none where load is not given by rings.
-    edge_pressure, edge_von_mises: at the more loaded of its rounded edges, where rings do not
-    resolve them, estimated (fea.joint.edge_peak).
+    mean_pressure: the force over diameter and length.
     """
 
     name: str
     force: Force
     contact_angle: float
-    largest_pressure: Stress
+    mean_pressure: Stress
     line_load: tuple[tuple[Length, LineLoad], ...]
     couple: Couple
     clearance: Length
     outer_diameter: Length
     ends: tuple[Length, ...] = ()
-    edge_pressure: Stress | None = None
-    edge_von_mises: Stress | None = None
 
 
 @dataclass(frozen=True)

@@ -29,23 +29,25 @@ from fea.cut.region import RingedCutPin
 from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
 from fea.joint.cell_pressure import CellPressure
 from fea.joint.contact import Pressed
+from fea.joint.contact_place import contact_place
 from fea.joint.cut_in_lugs import neglected, with_neglected
 from fea.joint.error_parts import with_cells
 from fea.joint.lugs.fit import fitted, on_structure
 from fea.joint.lugs.links import link_forces
 from fea.joint.lugs.lug import Lug
 from fea.joint.lugs.rings import whole_names
-from fea.joint.pressure_loads import NEGLIGIBLE, ROUGH, Patterns, PressureLoads
+from fea.joint.pressure_loads import NEGLIGIBLE, ROUGH, Patterns, PressureLoads, resultants
 from fea.joint.records import JointResult
 from fea.joint.solve_joint import Cells, JointContact, JointModel
-from fea.joint.variations import Comparison, compare
+from fea.joint.variations import CELLS, Comparison, compare
 from fea.joint.what_contact_says import joint_result
+from fea.row import row_of, with_contact
+from fea.section.answer import SectionAnswer
+from fea.section.place import FoundSection, found_section
 from fea.solve_pin import Progress, Solution, imbalance, singularities_of, solve_pin
-from fea.verdict import with_estimate
 from geometry import ArgumentError, CutPin, Pin, PinLike
 
-SETS = Cells(), Cells(12, 48, 16)  # until one is fine enough
-FINEST = Cells(16, 64, 20)  # after these, where cells are most of the error
+SETS = Cells(), Cells(12, 48, 16), Cells(16, 64, 20)  # until one is fine enough
 ROUGH_CELLS = Cells(4, 24, 8)  # may decide a required factor
 MAY = 0.8  # of the largest on the first mesh: from there on an instant may govern on finer ones
 STRAIGHT = 0.01  # of the largest load: what an instant left out to begin with may be off its chord
@@ -112,7 +114,7 @@ def solve_in_lugs(
         contact.follow(near)
         compared = contact.compared(near, asked)
         last = finer is None or _count(model, finer) > MOST_CELLS
-        fine = {c: x for c, x in compared.items() if last or x.fine(given.material, asked)}
+        fine = {c: x for c, x in compared.items() if last or x.fine(asked)}
         for case, found in contact.solved(fine, asked, progress).items():
             if last or _enough(found.solution.peak, given.material, asked):
                 done[case] = found
@@ -142,8 +144,7 @@ def _sets(asked: Asked) -> tuple[Cells, ...]:
     """Cells, one after the other."""
     if asked.cells is not None:
         return (ROUGH_CELLS if asked.cells == "rough" else SETS[0],)
-    sets = SETS if asked.lug_edges == "varied" else (*SETS, FINEST)
-    return (ROUGH_CELLS, *sets) if asked.goal == "decide" else sets
+    return (ROUGH_CELLS, *SETS) if asked.goal == "decide" else SETS
 
 
 def _enough(peak: Peak, material: Material, asked: Asked) -> bool:
@@ -156,9 +157,9 @@ def _enough(peak: Peak, material: Material, asked: Asked) -> bool:
 
 def _cells_matter(peak: Peak, limit: float) -> bool:
     """Whether a limit (Pa) is within the error, and would not be if cells had none."""
-    if peak.interval is None or peak.parts is None or decides(peak, limit) is not None:
+    if peak.parts is None or decides(peak, limit) is not None:
         return decides(peak, limit) is None
-    low, high = peak.interval
+    low, high = peak.lower_end, peak.upper_end
     return not low + peak.parts.cells <= limit < high - peak.parts.cells
 
 
@@ -183,6 +184,37 @@ class Near:
     may: NDArray[np.bool_]
 
 
+@dataclass(frozen=True)
+class Compared:
+    """Of a case, at the instants of the surface's largest stress and of the sections'."""
+
+    surface: Comparison
+    section: Comparison
+
+    @property
+    def row(self) -> Comparison:
+        """That of the larger one."""
+        return max(self.surface, self.section, key=lambda x: x.stress.row)
+
+    def fine(self, asked: Asked) -> bool:
+        """Whether finer cells would not help."""
+        both = (self.surface, "surface"), (self.section, "section")
+        stress = {name: float(getattr(x.stress, name)) for x, name in both}
+        cells = {name: float(getattr(x.cells, name)) for x, name in both}
+        largest = max(stress.values()) or 1.0
+        own = cells[max(stress, key=lambda name: stress[name])]
+        most = max(stress[name] * (1.0 + cells[name]) for name in stress) / largest - 1.0
+        return max(own, most) <= CELLS * asked.tolerance
+
+    def near(
+        self, contact: JointContact, case: PinLoads, anew: Callable[[JointContact], Comparison]
+    ) -> Compared:
+        """With the surface at another instant, if that is not near."""
+        if self.surface.is_at(contact.loads.links, case):
+            return self
+        return replace(self, surface=anew(contact))
+
+
 class _Contact:
     """The pressures of all cases at any time, each found once; those made of the same patterns act
     on one mesh. instants: by case, those of which the patterns are made; failed: why a case has no
@@ -196,6 +228,7 @@ class _Contact:
         self._known: dict[tuple[str, float], Pressed] = {}
         self._besides: dict[str, Floats] = {}
         self._patterns: Patterns | None = None
+        self.sections: dict[str, SectionAnswer] = {}
         for case in given.cases:
             instants = _instants(case, given.between.get(case.case))
             try:
@@ -207,6 +240,8 @@ class _Contact:
                 self.failed[case.case] = str(error)
                 continue
             self.instants[case.case] = instants
+            rings = [self.on_rings(instants)]
+            self.sections[case.case] = SectionAnswer(model.pin, given.material, (), rings)
 
     def near(self, asked: Asked) -> dict[str, Near]:
         """By the stress of all instants, roughly, on the first mesh."""
@@ -251,19 +286,34 @@ class _Contact:
     def press(self, links: PinLoads) -> PressureLoads:
         """What presses on the pin under loads of its links."""
         assert self._patterns is not None
-        return self._patterns.loads(self.model.waves(self._at(links)), links)
+        found = self._at(links)
+        return self._patterns.loads(self.model.waves(found), links, self.model.arcs(found))
+
+    def on_rings(self, links: PinLoads) -> PinLoads:
+        """The resultants of what presses on the rings under loads of the links."""
+        found = self._at(links)
+        return resultants(self.model.pin, self.model.rings, self.model.waves(found), links)
 
     def _joined(self, links: PinLoads, instant: int) -> JointContact:
         here = links.at(np.array([instant]))
         return self.model.joined(self._at(here), self.press(here))
 
-    def compared(self, near: Mapping[str, Near], asked: Asked) -> dict[str, Comparison]:
-        """By case, at the instant that governs on the first mesh."""
-        at = [self._joined(links, near[case].instant) for case, links in self.instants.items()]
-        return dict(zip(self.instants, compare(self.model, at, asked, self._patterns), strict=True))
+    def compared(self, near: Mapping[str, Near], asked: Asked) -> dict[str, Compared]:
+        """By case, at the instants of the largest stress of the surface on the first mesh and of
+        sections.
+        """
+        at, which = list[JointContact](), dict[str, tuple[int, int]]()
+        for case, links in self.instants.items():
+            both = near[case].instant, self.sections[case].largest(self.on_rings(links))[1]
+            each = dict.fromkeys(both)
+            first, second = (len(at) + list(each).index(t) for t in both)
+            which[case] = first, second
+            at += [self._joined(links, t) for t in each]
+        found = compare(self.model, at, asked, self._patterns)
+        return {case: Compared(found[a], found[b]) for case, (a, b) in which.items()}
 
     def solved(
-        self, compared: dict[str, Comparison], asked: Asked, progress: Progress
+        self, compared: dict[str, Compared], asked: Asked, progress: Progress
     ) -> dict[str, LugSolution]:
         """Stress of the cases that were compared, on the same meshes."""
         live = [case for case in self.given.cases if case.case in compared]
@@ -280,7 +330,7 @@ class _Contact:
                 self.given.material,
                 (),
                 tuple(self.press(self.instants[case.case]) for case in live),
-                replace(asked, model="harmonic", because=why),
+                replace(asked, model="harmonic", because=why, elsewhere=self._in_sections()),
                 progress,
                 {case: between(links) for case, links in self.given.between.items()},
                 self.model.first,
@@ -290,6 +340,15 @@ class _Contact:
         return {
             case.case: self._solution(case, solution, compared[case.case], asked)
             for case, solution in zip(live, found, strict=True)
+        }
+
+    def _in_sections(self) -> dict[str, float]:
+        """By case, the largest stress of sections, Pa; none of pins with cuts."""
+        if self.given.cut is not None:
+            return {}
+        return {
+            case: self.sections[case].largest(self.on_rings(links))[0]
+            for case, links in self.instants.items()
         }
 
     @property
@@ -305,30 +364,72 @@ class _Contact:
         )
 
     def _solution(
-        self, case: PinLoads, solution: Solution, known: Comparison, asked: Asked
+        self, case: PinLoads, solution: Solution, known: Compared, asked: Asked
     ) -> LugSolution:
+        model, material = self.model, self.given.material
         if solution.answer is None:
             return LugSolution(solution, None, self.press)
-        contact = self._joined(solution.loads.links, solution.instant)
-        links = contact.loads.links
-        if not known.is_at(links, case):
-            (known,) = compare(self.model, [contact], asked, self._patterns)
         assert self._patterns is not None
-        missed = self._patterns.left_out(self.model.waves(contact.contact))
-        peak = with_cells(_named(self.model, solution.peak), known.cells + missed, asked)
-        peak = replace(peak, governing=links, imbalance=_imbalance(self.model, case))
-        over = known.range(peak.max_von_mises or 0.0)
-        found = replace(_at_all_samples(solution, self.press(case)), peak=peak)
-        joint = joint_result(contact, self.given.material, over, found.loads, known.left_out)
-        found = replace(found, peak=_with_edges(found.peak, joint))
+        at_surface = self._joined(solution.loads.links, solution.instant)
+        known = known.near(at_surface, case, self._compared_anew(asked))
+        missed = self._patterns.left_out(model.waves(at_surface.contact))
+        peak = with_cells(_named(model, solution.peak), known.surface.cells.surface + missed, asked)
+        peak = replace(peak, governing=at_surface.loads.links, imbalance=_imbalance(model, case))
+        section = None
+        if self.given.cut is None:
+            section = self._section(case, known.section.cells.section, asked)
+        links = None if section is None else links_at(self.given, case, section)
+        peak = row_of(peak, section, material, asked.tolerance, links)
+        solved = solution.loads
+        solution = self._at_row(solution, peak, case)
+        contact = self._joined(solution.loads.links, solution.instant)
+        over = known.row.range(peak.max_von_mises or 0.0)
+        joint = joint_result(contact, over, solution.loads, known.row.left_out)
         (pressed,) = contact.contact
         pressure = CellPressure(contact.bands, pressed.pressure, pressed.angle)
-        cut, rings = self.given.cut, self.model.pin
-        if cut is None or not isinstance(found.answer, CutAnswer):
-            return LugSolution(found, joint, self.press, pressure, rings, self.model)
-        left = neglected(cut, self.given.material, contact, pressure, found.answer)
-        peak = with_neglected(peak, left, found.answer, over.variations, asked)
-        return LugSolution(replace(found, peak=peak), joint, self.press, pressure)
+        cut, answer = self.given.cut, solution.answer
+        if isinstance(answer, HarmonicAnswer):
+            error = known.surface.cells.beneath
+            place = contact_place(contact, material, answer, solved, asked.required, error)
+            solution = replace(solution, peak=with_contact(peak, place))
+        if cut is None or not isinstance(answer, CutAnswer):
+            return LugSolution(solution, joint, self.press, pressure, model.pin, model)
+        left = neglected(cut, material, contact, pressure, answer)
+        peak = with_neglected(peak, left, answer, over.variations, asked)
+        return LugSolution(replace(solution, peak=peak), joint, self.press, pressure)
+
+    def _compared_anew(self, asked: Asked) -> Callable[[JointContact], Comparison]:
+        return lambda contact: compare(self.model, [contact], asked, self._patterns)[0]
+
+    def _section(self, case: PinLoads, cells: float, asked: Asked) -> FoundSection:
+        """The largest stress of sections of a case; cells: its error by these, relative."""
+        between, loads = self.given.between.get(case.case), self.instants[case.case]
+        on_rings = None if between is None else lambda times: self.on_rings(between(times))
+        return found_section(
+            self.sections[case.case], self.on_rings(loads), on_rings, asked.tolerance, cells
+        )
+
+    def _at_row(self, solution: Solution, peak: Peak, case: PinLoads) -> Solution:
+        """With the loads at all samples of a case, at the instant of its row."""
+        loads, links = solution.loads, self.press(case)
+        if loads.times is None:
+            return replace(solution, peak=peak)
+        assert peak.governing is not None
+        assert peak.time is not None
+        loads = links.merged(loads).merged(self.press(peak.governing))
+        assert loads.times is not None
+        instant = int(np.searchsorted(loads.times, peak.time))
+        return replace(solution, peak=peak, loads=loads, instant=instant)
+
+
+def links_at(given: InLugs, case: PinLoads, section: FoundSection) -> PinLoads:
+    """The loads of the links at the instant of a section."""
+    time, between = section.time, given.between.get(case.case)
+    if time is None or case.times is None:
+        return case
+    if between is not None:
+        return between(np.array([time]))
+    return case.at(np.flatnonzero(case.times == time)[:1])
 
 
 def _instants(case: PinLoads, between: Between | None) -> PinLoads:
@@ -342,17 +443,6 @@ def _instants(case: PinLoads, between: Between | None) -> PinLoads:
     return case.merged(between(0.5 * (case.times[1:] + case.times[:-1])))
 
 
-def _at_all_samples(solution: Solution, samples: PinLoads) -> Solution:
-    """With the loads at the instants of a case among those that were solved."""
-    if samples.times is None:
-        return solution
-    loads = samples.merged(solution.loads)
-    assert loads.times is not None
-    assert solution.loads.times is not None
-    instant = int(np.searchsorted(loads.times, solution.loads.times[solution.instant]))
-    return replace(solution, loads=loads, instant=instant)
-
-
 def _named(model: JointModel, peak: Peak) -> Peak:
     """With the names of the whole pin's surfaces, for those of its rings."""
     names, note, zones = whole_names(model.whole, model.ends), peak.note, []
@@ -361,14 +451,6 @@ def _named(model: JointModel, peak: Peak) -> Peak:
         note = note.replace(" / ".join(zone.between), f"{first} / {second}")
         zones.append(replace(zone, between=(first, second)))
     return replace(peak, note=note, singular_at=tuple(zones))
-
-
-def _with_edges(peak: Peak, joint: JointResult) -> Peak:
-    """With what its contact at rounded edges of lugs is estimated to be."""
-    edge = max((band.edge_von_mises or 0.0 for band in joint.bands), default=0.0)
-    if not edge or not peak.max_von_mises:
-        return peak
-    return replace(peak, note=with_estimate(peak.note, edge / peak.max_von_mises))
 
 
 def _imbalance(model: JointModel, case: PinLoads) -> tuple[float, float] | None:

@@ -9,14 +9,15 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from fea.core.equilibrium import centre_of_volume
 from fea.core.material import Material
-from fea.core.pin_loads import Floats, LugEdge, PinLoads
+from fea.core.pin_loads import Floats, PinLoads
+from fea.core.pressed import PressedArcs, Rings
 from fea.harmonic.evaluate import FirstMesh
 from fea.joint.bending import bending_moment, mass_per_length
 from fea.joint.contact import Bands, ContactProblem, Pressed, rotation
@@ -95,7 +96,7 @@ class JointContact:
 
     @property
     def largest_pressure(self) -> Floats:
-        """By band, (T, B) Pa."""
+        """By band, (T, B) Pa, on any cell: at edges a matter of how fine these are."""
         each = np.stack([found.pressure.max(axis=1) for found in self.contact])
         return np.stack(
             [each[:, self.bands.band == b].max(axis=1) for b in range(len(self.lugs))], axis=1
@@ -147,7 +148,7 @@ class JointModel:
         Raises: ArgumentError as for any.
         """
         other = copy.copy(self)
-        for known in ("contact", "flexibility", "edges", "bands"):
+        for known in ("contact", "flexibility", "bands", "on_shaft"):
             other.__dict__.pop(known, None)
         other._shape(pin, material, lugs)
         return other
@@ -200,7 +201,7 @@ class JointModel:
         """
         softness = softness or (1.0,) * len(lugs)
         other = copy.copy(self)
-        for known in ("contact", "flexibility", "edges", "bands"):
+        for known in ("contact", "flexibility", "bands", "on_shaft"):
             other.__dict__.pop(known, None)
         other.lugs = tuple(softer(*both) for both in zip(lugs, softness, strict=True))
         if set(softness) == {1.0}:
@@ -256,7 +257,8 @@ class JointModel:
         """
         found = self.pressed(loads)
         waves = self.waves(found)
-        return self.joined(found, self.patterns([(waves, NEGLIGIBLE)]).loads(waves, loads))
+        patterns = self.patterns([(waves, NEGLIGIBLE)])
+        return self.joined(found, patterns.loads(waves, loads, self.arcs(found)))
 
     def waves(self, found: Sequence[Pressed]) -> Floats:
         """The harmonics of contact at some instants, (N + 1, T, R, 2) Pa, of cos and sin."""
@@ -268,13 +270,26 @@ class JointModel:
         """Those of which harmonics of pressures (N + 1, T, R, 2) Pa are made, in some parts, each
         with what is negligible; the known ones first.
         """
-        found = patterns_of(self.pin, self.rings, parts, known)
-        return replace(found, edges=self.edges)
+        return patterns_of(self.pin, self.rings, parts, known)
 
     @cached_property
-    def edges(self) -> tuple[LugEdge, ...]:
-        """Of the bores."""
-        return edges_of(self.whole, self.material, self.lugs)
+    def on_shaft(self) -> Rings:
+        """Where the rings are."""
+        bands, edge, exponent = self.bands, [], []
+        for _, lug, ends in self.by_lug():
+            middle, length = 0.5 * (ends[1:] + ends[:-1]), ends[-1]
+            edge.append(np.minimum(middle, length - middle) < lug.edge_radius)
+            exponent.append(np.full(len(middle), lug_edge_exponent(self.material, lug.bearing)))
+        half = 0.5 * bands.length
+        return Rings(
+            bands.z - half, bands.z + half, bands.radius, bands.band,
+            np.concatenate(edge), np.concatenate(exponent),
+        )  # fmt: skip
+
+    def arcs(self, found: Sequence[Pressed], rings: Rings | None = None) -> PressedArcs:
+        """Where contact presses at some instants. rings: of the cells, where they are others."""
+        cells, angles = [x.pressure > 0.0 for x in found], [x.angle for x in found]
+        return PressedArcs.of(rings or self.on_shaft, cells, angles)
 
     def joined(self, found: Sequence[Pressed], loads: PressureLoads) -> JointContact:
         """Contact at the instants of some loads, with them."""
@@ -339,18 +354,3 @@ def _directions(forces: Floats) -> list[float]:
     first = (size >= LARGEST * size.max(axis=1, keepdims=True)).argmax(axis=1)
     x, y = forces[np.arange(len(forces)), first].T
     return [float(angle) for angle in np.arctan2(y, x)]
-
-
-def edges_of(pin: Pin, material: Material, lugs: Sequence[Lug]) -> tuple[LugEdge, ...]:
-    """Of the bores of lugs, rounded where they have an edge radius."""
-    bands = [pin.band(lug.connection) for lug in lugs]
-    ends = np.array([[b.z0, b.z1] for b in bands])
-    found = []
-    for lug, band in zip(lugs, bands, strict=True):
-        exponent = lug_edge_exponent(material, lug.bearing)
-        for z in (band.z0, band.z1):
-            gaps = np.abs(ends - z)
-            feature = float(gaps[gaps > 0.0].min())
-            at, rounded = (band.radius, z), lug.edge_radius > 0.0
-            found.append(LugEdge(lug.connection, *at, exponent, feature, rounded))
-    return tuple(found)

@@ -1,7 +1,7 @@
-"""By how much a pin's maximum changes with its joint: with the cells of contact, and with what is
+"""By how much a pin's stress changes with its joint: with the cells of contact, and with what is
 seldom known of a joint, its clearance and how stiff its lugs are.
 
-Contact is solved again at the governing instant with the flexibilities at hand, and all pressures
+Contact is solved again at the governing instants with the flexibilities at hand, and all pressures
 act on one mesh, the first: its error is in all maxima alike, so that their ratios are compared.
 """
 
@@ -13,59 +13,55 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fea.asked import Asked, decided, left_open
+from fea.asked import Asked
 from fea.core.linear_solver import SolveError
-from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.harmonic.evaluate import (
-    HarmonicAnswer,
-    SectionProblem,
-    around_governing,
-    harmonic_solution,
-)
+from fea.harmonic.beneath import beneath
+from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
 from fea.joint.coarser_cells import on_coarser_cells
-from fea.joint.contact import ContactProblem
+from fea.joint.contact import ContactProblem, Pressed
 from fea.joint.lugs.changes import changes
 from fea.joint.lugs.rings import USUAL
-from fea.joint.pressure_loads import NEGLIGIBLE, Patterns, stacked
+from fea.joint.pressure_loads import NEGLIGIBLE, Patterns, PressureLoads, stacked
 from fea.joint.records import JointRange, Variation
 from fea.joint.solve_joint import JointContact, JointModel
+from fea.section.answer import SectionAnswer
 from fea.solve_pin import singularities_of
 
-CELLS = 0.5  # of the tolerance: what the cells may take
-APART = 0.25  # of half the interval of a maximum that depends on the excluded distance: the same
+CELLS = 0.6  # of the tolerance: what the cells may take
+ORDER = 1.4  # at least, of the error of cells twice as large (benchmarks/joints/cells.py)
 CHANCE = 0.06  # at least, of cells larger than the usual ones: two such can agree by chance (pin D
 # of the landing gear to 2 %, while both are 4 to 5 % off)
-OPEN = 0.5  # of it, where that interval leaves a decision open whatever the cells do
+BOTH = "own cells", "cells twice as large"
 ROUGHLY = 1e-2  # of the largest amplitude: what a pattern must add to that of a changed joint
 
 
 @dataclass(frozen=True)
+class AtPlaces:
+    """Stress of the surface, of sections and beneath the contact, Pa; or their errors, relative."""
+
+    surface: float
+    section: float
+    beneath: float
+
+    @property
+    def row(self) -> float:
+        """The larger of surface and section."""
+        return max(self.surface, self.section)
+
+
+@dataclass(frozen=True)
 class Comparison:
-    """At one instant, on the first mesh. largest: stress, Pa; interval: of it, Pa, where what is
-    excluded governs; cells: by how much, relative, it may differ for the cells. links: the loads.
-    over: what is changed of the joint, maxima relative to that of the joint as given; left_out:
-    what could not be, and why.
+    """At one instant, on the first mesh: stress there, and by how much, relative, it may differ for
+    the cells. links: the loads. over: what is changed of the joint, the larger of surface and
+    section relative to that of the joint as given; left_out: what could not be, and why.
     """
 
-    largest: float
-    interval: tuple[float, float]
-    cells: float
+    stress: AtPlaces
+    cells: AtPlaces
     links: PinLoads
     over: tuple[Variation, ...]
     left_out: str = ""
-
-    def fine(self, material: Material, asked: Asked) -> bool:
-        """Whether finer cells would not help: they take little of the tolerance, or of what is
-        uncertain anyway, or the required factor is decided, or what is excluded leaves it open.
-        """
-        low, high = self.interval
-        surely = low * (1.0 + self.cells), high / (1.0 + self.cells)
-        part = APART if asked.goal == "value" else OPEN * left_open(asked, material, *surely)
-        apart = part * (high - low) / 2.0 / self.largest
-        if self.cells <= max(CELLS * asked.tolerance, apart):
-            return True
-        return decided(asked, material, low / (1.0 + self.cells), high * (1.0 + self.cells))
 
     def range(self, largest: float) -> JointRange:
         """Over the joint, of a maximum in Pa."""
@@ -81,57 +77,101 @@ class Comparison:
         return apart <= float(np.diff(case.times).max(initial=0.0))
 
 
+@dataclass(frozen=True)
+class _Joint:
+    """Contact at an instant with something changed: the harmonics of its pressures, and the
+    cells.
+    """
+
+    waves: Floats
+    found: list[Pressed]
+
+
 def compare(
     model: JointModel, at: Sequence[JointContact], asked: Asked, known: Patterns | None = None
 ) -> tuple[Comparison, ...]:
     """Joints in contact, each at one instant. known: patterns of the pressures on them."""
     if not at:
         return ()
-    exact = _on_both_cells(model, at)
     few = model.cells.rings < USUAL  # twice as large cells are too large to tell changes apart
+    exact = _on_both_cells(model, at)
     over, varied, missing = _varied(model, at, few)
-    parts = [(waves, NEGLIGIBLE) for both in exact for waves in both]
-    parts += [(waves, ROUGHLY) for waves in itertools.chain(*varied)]
+    parts = [(one.waves, NEGLIGIBLE) for both in exact for one in both]
+    parts += [(one.waves, ROUGHLY) for one in itertools.chain(*varied)]
     patterns = model.patterns(parts, known)
-    each = [
-        [patterns.loads(waves, contact.loads.links) for waves in (*both, *others)]
+    out = []
+    every = [
+        [_loads(model, patterns, one, contact) for one in (*both, *others)]
         for contact, both, others in zip(at, exact, varied, strict=True)
     ]
-    loads = stacked(list(itertools.chain(*each)))
-    singular = singularities_of(
-        model.pin, model.material, (), (loads,), asked.distance, asked.lug_edges
-    )
-    problem = SectionProblem(model.pin, model.material, (), (loads,), singular, model.first)
-    section = harmonic_solution(problem, 0, 1.0)
-    maxima, out = HarmonicAnswer(section, singular).maxima(loads), []
-    for contact, names, own, why in zip(at, over, each, missing, strict=True):
-        first = float(maxima[0]) or 1.0  # nothing loads the pin
-        (_, coarse, *others), maxima = np.split(maxima, [len(own)])
-        like = first if few else float(coarse) or 1.0  # on the same cells as the others
+    stress = _at_places(model, asked, every)
+    for contact, names, loads, why in zip(at, over, every, missing, strict=True):
+        first, twice, *others = (stress.pop(0) for _ in loads)
+        like = (first if few else twice).row or 1.0  # on the same cells as the others
         ratios = tuple(
-            replace(x, max_von_mises=float(y) / like) for x, y in zip(names, others, strict=True)
+            replace(x, max_von_mises=y.row / like) for x, y in zip(names, others, strict=True)
         )
-        cells = max(abs(float(coarse) / first - 1.0), CHANCE * few) if coarse else 0.0
-        interval = around_governing(section, singular, own[0], first) or (first, first)
+        least = CHANCE * few
+        cells = AtPlaces(*(
+            max(abs(y / x - 1.0) / (2.0**ORDER - 1.0), least) if x and y else 0.0
+            for x, y in zip(_values(first), _values(twice), strict=True)
+        ))  # fmt: skip
         left_out = f"not included: {'; '.join(why)}" if why else ""
-        links = contact.loads.links
-        out.append(Comparison(first, interval, cells, links, ratios, left_out))
+        out.append(Comparison(first, cells, contact.loads.links, ratios, left_out))
     return tuple(out)
 
 
-def _on_both_cells(model: JointModel, at: Sequence[JointContact]) -> list[tuple[Floats, Floats]]:
-    """The harmonics of each contact, and of the same on cells twice as large."""
-    problem, belongs = on_coarser_cells(model)
-    out = []
-    for contact in at:
-        coarse = _coarse(model, contact.loads.links, problem, belongs)
-        out.append((model.waves(contact.contact), coarse))
-    return out
+def _values(places: AtPlaces) -> tuple[float, float, float]:
+    return places.surface, places.section, places.beneath
 
 
-def _coarse(model: JointModel, links: PinLoads, problem: ContactProblem, belongs: Floats) -> Floats:
+def _loads(
+    model: JointModel, patterns: Patterns, one: _Joint, contact: JointContact
+) -> PressureLoads:
+    return patterns.loads(one.waves, contact.loads.links, model.arcs(one.found))
+
+
+def _at_places(
+    model: JointModel, asked: Asked, every: Sequence[Sequence[PressureLoads]]
+) -> list[AtPlaces]:
+    """On the first mesh, of loads of one instant each; beneath the contact only of the first two of
+    each joint, on both cells.
+    """
+    each = list(itertools.chain(*every))
+    below = [k < len(BOTH) for loads in every for k in range(len(loads))]
+    whole = stacked(each)
+    singular = singularities_of(model.pin, model.material, (), (whole,), asked.distance)
+    problem = SectionProblem(model.pin, model.material, (), (whole,), singular, model.first)
+    section = harmonic_solution(problem, 0, 1.0)
+    answer = HarmonicAnswer(section, singular)
+    on_rings = [one.on_rings for one in each]
+    sections = SectionAnswer(model.pin, model.material, (), on_rings)
+    return [
+        AtPlaces(
+            answer.largest(one)[0],
+            sections.largest(other)[0],
+            beneath(section.fields, one, singular).value if deep else 0.0,
+        )
+        for one, other, deep in zip(each, on_rings, below, strict=True)
+    ]
+
+
+def _on_both_cells(model: JointModel, at: Sequence[JointContact]) -> list[tuple[_Joint, _Joint]]:
+    """Each contact, and the same on cells twice as large."""
+    cells = on_coarser_cells(model)
+    return [
+        (
+            _Joint(model.waves(contact.contact), list(contact.contact)),
+            _coarse(model, contact.loads.links, *cells),
+        )
+        for contact in at
+    ]
+
+
+def _coarse(model: JointModel, links: PinLoads, problem: ContactProblem, belongs: Floats) -> _Joint:
     found = model.pressed(links, problem)
-    return model.waves([replace(x, pressure=belongs @ x.pressure) for x in found])
+    found = [replace(x, pressure=belongs @ x.pressure) for x in found]
+    return _Joint(model.waves(found), found)
 
 
 def _own_cells(model: JointModel) -> tuple[ContactProblem, Floats]:
@@ -140,20 +180,20 @@ def _own_cells(model: JointModel) -> tuple[ContactProblem, Floats]:
 
 def _varied(
     model: JointModel, at: Sequence[JointContact], own: bool
-) -> tuple[list[list[Variation]], list[list[Floats]], list[list[str]]]:
-    """Of each contact, what is changed of the joint, the harmonics of contact then, and what could
-    not be changed: lugs that are free to tilt may leave a couple on the pin, and loads may be lost
-    in a large clearance. own: on the model's own cells, instead of cells twice as large.
+) -> tuple[list[list[Variation]], list[list[_Joint]], list[list[str]]]:
+    """Of each contact, what is changed of the joint, contact then, and what could not be changed:
+    lugs that are free to tilt may leave a couple on the pin, and loads may be lost in a large
+    clearance. own: on the model's own cells, instead of cells twice as large.
     """
     names: list[list[Variation]] = [[] for _ in at]
-    found: list[list[Floats]] = [[] for _ in at]
+    found: list[list[_Joint]] = [[] for _ in at]
     missing: list[list[str]] = [[] for _ in at]
     for change in changes(model.whole, model.lugs):
         other = model.varied(change.lugs, change.softness)
         cells = _own_cells(other) if own else on_coarser_cells(other)
-        for contact, over, waves, why in zip(at, names, found, missing, strict=True):
+        for contact, over, changed, why in zip(at, names, found, missing, strict=True):
             try:
-                waves.append(_coarse(other, contact.loads.links, *cells))
+                changed.append(_coarse(other, contact.loads.links, *cells))
             except SolveError as error:
                 why.append(f"{change.what} {change.value} ({error})")
                 continue

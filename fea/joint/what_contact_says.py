@@ -4,30 +4,26 @@ from __future__ import annotations
 
 import numpy as np
 
-from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.joint.bending import joint_forces, stations
-from fea.joint.edge_peak import EdgePeak, edge_peaks
 from fea.joint.records import BandContact, JointRange, JointResult
 from fea.joint.solve_joint import JointContact
 
 
 def joint_result(
     contact: JointContact,
-    material: Material,
     over: JointRange | None,
     case: PinLoads,
     remark: str = "",
 ) -> JointResult:
-    """Of a contact at a single instant. material: the pin's; case: what the rings do to the pin at
+    """Of a contact at a single instant. case: what the rings do to the pin at
     all instants; remark: what the range leaves out.
     """
-    edges = edge_peaks(contact, material)
     z = stations(contact.pin)
     moment = np.linalg.norm(contact.bending_moment(z)[0], axis=1)
     return JointResult(
         model="contact",
-        bands=tuple(_band(contact, b, edge) for b, edge in enumerate(edges)),
+        bands=tuple(_band(contact, b) for b in range(len(contact.lugs))),
         bending_moment=float(moment.max()),
         bending_moments=tuple(zip(z.tolist(), moment.tolist(), strict=True)),
         range=over,
@@ -36,7 +32,7 @@ def joint_result(
     )
 
 
-def _band(contact: JointContact, b: int, edge: EdgePeak | None) -> BandContact:
+def _band(contact: JointContact, b: int) -> BandContact:
     lug, bands = contact.lugs[b], contact.bands
     own = bands.band == b
     line = contact.line_load[0, own]
@@ -52,12 +48,10 @@ def _band(contact: JointContact, b: int, edge: EdgePeak | None) -> BandContact:
         name=lug.connection,
         force=size,
         contact_angle=float(np.degrees(contact.contact_angle[0, b])),
-        largest_pressure=float(contact.largest_pressure[0, b]),
+        mean_pressure=size / (2.0 * float(bands.radius[own][0]) * float(bands.length[own].sum())),
         line_load=tuple(pairs),
         couple=float(couple),
         clearance=lug.clearance,
         outer_diameter=lug.outer_diameter,
         ends=tuple(ends),
-        edge_pressure=None if edge is None else edge.pressure,
-        edge_von_mises=None if edge is None else edge.von_mises,
     )

@@ -39,7 +39,7 @@ from fea.beam.round_section import Circle
 from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, Span, stepped_beam
 from fea.core.material import Material
 from fea.core.pin_loads import AnyLoads
-from fea.plastic.interaction import bent_and_pulled
+from fea.plastic.interaction import bent_and_pulled, plastic_torque
 from geometry import Pin
 from geometry.arrays import Floats, Mask
 
@@ -114,7 +114,7 @@ def _strengths(sections: list[Circle]) -> Floats:
 
 def _torque(section: Circle) -> float:
     """Plastic torque per Pa of yield stress, m^3."""
-    return 2.0 / 3.0 * math.pi * (section.outer**3 - section.inner**3) / math.sqrt(3.0)
+    return plastic_torque(section) / math.sqrt(3.0)
 
 
 def _bending_and_axial(sections: list[Circle], across: Floats) -> tuple[Floats, Floats]:

@@ -15,6 +15,8 @@ Source: B. G. Neal, The Plastic Methods of Structural Analysis (1977), section 6
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from fea.beam.round_section import Circle
@@ -37,6 +39,27 @@ def bent_and_pulled(section: Circle, moment: Floats, axial: Floats) -> tuple[Flo
         (moment + lever[k] * axial) / (on_m[k] + lever[k] * on_n[k]) for k in (first, first + 1)
     ]
     return np.asarray(most), np.maximum(*flows)
+
+
+def plastic_use(
+    section: Circle, shear: float, moment: float, axial: float, torque: float, strength: float
+) -> float:
+    """Which part of what a fully plastic section carries these forces (N, N m, not negative) use at
+    most, of a yield strength in Pa: sqrt(g^2 + (V/Vs + T/Tp)^2), as fea.plastic.hinge has it.
+    """
+    M, N = (
+        np.array([moment / (strength * section.plastic_modulus)]),
+        np.array([axial / (strength * section.area)]),
+    )
+    bent = float(bent_and_pulled(section, M, N)[0][0]) if moment or axial else 0.0
+    in_shear = strength / math.sqrt(3.0)
+    sheared = shear * section.vq_it / (section.area * in_shear)
+    return math.hypot(bent, sheared + torque / (in_shear * plastic_torque(section)))
+
+
+def plastic_torque(section: Circle) -> float:
+    """Over the yield stress in shear, m^3."""
+    return 2.0 / 3.0 * math.pi * (section.outer**3 - section.inner**3)
 
 
 def _curve(section: Circle) -> tuple[Floats, Floats, Floats]:

@@ -10,18 +10,12 @@ from typing import Literal
 
 import numpy as np
 
-from fea.core.pin_loads import LugEdge
 from fea.singular.williams import Side, antiplane_exponent, plane_exponent
 from geometry import Pin, Vertex, vertices
 from geometry.arrays import Floats, Mask
 from geometry.shape.polygon import SMOOTH
-from geometry.shape.tolerance import SAME
 
-Kind = Literal[
-    "sharp corner", "edge of a clamp", "edge of a load", "edge of a lug", "rounded edge of a lug"
-]
-
-Edges = Literal["varied", "excluded"]
+Kind = Literal["sharp corner", "edge of a clamp", "edge of a load"]
 
 VARIED = (0.5, 2.0)  # times the excluded distance, which is a convention
 FILLET = 0.1  # of the smaller diameter: the radius to try
@@ -37,8 +31,7 @@ class Singularity:
     not known. torsion_theory: the exponent in torsion; bending has this part too. radius: how far
     (m) stress is not to be read. feature: how far (m) the singular field reaches at most, the
     height of a small step, say; at most the radius. angle: of the material, rad. advice: what would
-    make it finite, for people. excluded: whether stress nearer than `radius`, though larger, makes
-    the maximum outside no less certain, because it is judged otherwise.
+    make it finite, for people.
     """
 
     r: float
@@ -51,7 +44,6 @@ class Singularity:
     advice: str
     feature: float = math.inf
     angle: float = math.nan
-    excluded: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "feature", min(self.feature, self.radius))
@@ -62,11 +54,6 @@ class Singularity:
         not where that is a logarithm, nor under a lug, whose pressure is even on each ring.
         """
         return self.kind in ("sharp corner", "edge of a clamp")
-
-    @property
-    def bounded(self) -> bool:
-        """Whether stress has a bound that is not resolved."""
-        return self.kind == "rounded edge of a lug"
 
     @property
     def following(self) -> float:
@@ -111,51 +98,6 @@ def find_singularities(
         replace(singularity, feature=min(singularity.radius, _feature(every, k, constrained)))
         for k, singularity in enumerate(found)
         if singularity is not None
-    )
-
-
-def lug_edges(
-    pin: Pin, edges: Iterable[LugEdge], distance: float = 0.1, rounded: Edges = "varied"
-) -> tuple[Singularity, ...]:
-    """The edges of lugs that are singular, or would be if they were not rounded, in their order:
-    those with an exponent, where the pin's surface is smooth (a lug flush with an end face presses
-    on no half plane).
-
-    distance: of the local diameter, that is not to be read. Stress nearer than the first ring of
-    the contact pressure is not resolved. rounded: whether that distance is varied at rounded edges,
-    or stress within it excluded for good.
-    """
-    every = vertices(pin)
-    found = (_lug_edge(every, edge, distance, SAME * pin.smallest_diameter) for edge in edges)
-    return tuple(
-        replace(singularity, excluded=singularity.bounded and rounded == "excluded")
-        for singularity in found
-        if singularity is not None
-    )
-
-
-def _lug_edge(
-    every: tuple[Vertex, ...], edge: LugEdge, distance: float, near: float
-) -> Singularity | None:
-    """near: so far (m) from a vertex, the edge is there."""
-    at, corners = (edge.r, edge.z), []
-    for v in every:
-        if abs(v.angle - math.pi) > SMOOTH:
-            corners.append((v.r, v.z))
-        if math.dist(at, (v.r, v.z)) <= near:
-            at = (v.r, v.z)
-    if edge.exponent <= 0.0 or at in corners:
-        return None
-    return Singularity(
-        *at,
-        kind="rounded edge of a lug" if edge.rounded else "edge of a lug",
-        between=(edge.surface, "its lug"),
-        theory=None if edge.rounded else edge.exponent,
-        torsion_theory=0.0,
-        radius=distance * 2.0 * edge.r,
-        advice=_LOCAL if edge.rounded else _ROUNDED,
-        feature=min([edge.feature, *(math.dist(at, corner) for corner in corners)]),
-        angle=math.pi,
     )
 
 
@@ -238,11 +180,6 @@ INSTEAD_OF_CLAMP = (
 )
 _INSTEAD_OF_TRACTION = (
     'use distribution = "cosine": a bearing pressure has no jump of shear at its edge'
-)
-_ROUNDED = "give the bore an edge_radius: rounded, the stress is finite there"
-_LOCAL = (
-    "contact stress at the edge of a bore is local: assess it as bearing stress, or by the wear "
-    "and fretting that it causes"
 )
 _BORE = "a radius here would make it finite: the bore_radius of the wider segment"
 

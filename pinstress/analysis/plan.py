@@ -141,7 +141,6 @@ def asked_of(
         table.goal,
         table.required_safety_factor,
         table.excluded_distance,
-        table.lug_edges,
         memory=allowed_memory(require_positive("memory_limit", memory, endless=True)),
         near=study.meshes == "moved",
     )

@@ -78,7 +78,6 @@ def plan_chart(study: Study, pin: str, case: str, tolerance: float | None = None
         goal=table.goal,
         required=table.required_safety_factor,
         distance=table.excluded_distance,
-        lug_edges=table.lug_edges,
     )
     if task.lugs:
         return _plan_in_lugs(study, task, asked)

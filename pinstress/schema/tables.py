@@ -44,10 +44,6 @@ class AnalysisTable(StrictTable):
     excluded_distance: Annotated[Number, Field(ge=0.01, le=0.5)] = 0.1
     """Distance from a stress singularity within which stress is not evaluated, as a fraction of the
     local diameter."""
-    lug_edges: Literal["varied", "excluded"] = "varied"
-    """What maxima say of larger contact stress at rounded edges of lugs: they are ranges over half
-    and twice the excluded distance ("varied"), or stress within that distance of these edges is
-    left to bearing checks ("excluded"), and maxima are those farther away."""
     meshes: Literal["own", "moved"] | None = None
     """Whether each section of a pin has its "own" mesh, or that of the nearest of a series of
     shapes with its nodes "moved", which is quicker for many designs of almost the same shape.

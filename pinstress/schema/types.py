@@ -31,6 +31,10 @@ from pinstress.schema.shown import listed, nearest, shown
 from pinstress.schema.units import DIMENSIONS, LARGEST, SYSTEMS, to_si
 
 KINDS = ("given", "derived", "fitted", "assumed")
+REMOVED = {
+    "lug_edges": "it was removed: stress near the edges of lugs is read as surface, section and "
+    "contact, without an excluded distance (docs/lugs.md), so delete the line"
+}
 UNKNOWN_KEY = "unknown_key"  # the type of pydantic's error
 SMALLEST = 1.0 / LARGEST  # in SI: its square does not underflow
 FORBIDDEN = '/\\:*?"<>|'  # in names of files, on some system
@@ -281,5 +285,7 @@ def _unknown(key: object, known: list[str]) -> InitErrorDetails:
 
 def hint_for_key(key: str, known: list[str]) -> str:
     """What an unknown key may mean: found only for errors that are printed, since it takes time."""
+    if key in REMOVED:
+        return REMOVED[key]
     near = nearest(key, known, cutoff=0.5)
     return f"did you mean {near!r}?" if near else f"known here: {listed(known)}"

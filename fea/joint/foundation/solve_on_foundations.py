@@ -26,7 +26,7 @@ from fea.core.solution import Picture
 from fea.joint.bending import joint_forces, stations
 from fea.joint.foundation.bounds import LOCAL, Bounded, bounded
 from fea.joint.foundation.foundation_model import PLAIN_ERROR, FoundationModel, JointFoundation
-from fea.joint.foundation.plane_contact import half_angle, largest_pressure
+from fea.joint.foundation.plane_contact import half_angle
 from fea.joint.foundation.stress import FoundationStress
 from fea.joint.foundation.variations import FoundationRange
 from fea.joint.lugs.fit import beyond_foundations
@@ -266,7 +266,7 @@ def _joint(
 
 
 def _band(found: JointFoundation, model: FoundationModel, b: int) -> BandContact:
-    """Angle and largest pressure are those of plane contact at the largest load per length."""
+    """The angle is that of plane contact at the largest load per length."""
     lug, bands = found.lugs[b], found.bands
     own = bands.band == b
     line, length, half = found.line_load[0, own], bands.length[own], bands.length[own] / 2.0
@@ -276,14 +276,14 @@ def _band(found: JointFoundation, model: FoundationModel, b: int) -> BandContact
     arm = bands.z[own] - bands.middles[b]
     turning = found.loads.moments[0, own, :2].sum(axis=0) @ np.array([[0.0, -1.0], [1.0, 0.0]])
     most = float(np.linalg.norm(line, axis=1).max())
+    radius = float(bands.radius[own][0])
     stiff = 1.0 / model.material.plane_compliance
     gap = 0.5 * lug.clearance * stiff / most if most else 0.0
-    radius = float(bands.radius[own][0])
     return BandContact(
         name=lug.connection,
         force=size,
         contact_angle=math.degrees(half_angle(gap)) if most else 0.0,
-        largest_pressure=largest_pressure(gap) * most / radius,
+        mean_pressure=size / (2.0 * radius * float(length.sum())),
         line_load=tuple(zip(bands.z[own].tolist(), (line @ along).tolist(), strict=True)),
         couple=float(np.linalg.norm((length * arm) @ line + turning)),
         clearance=lug.clearance,

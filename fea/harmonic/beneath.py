@@ -1,0 +1,164 @@
+"""What lies beneath contact: stress farther than a distance from everything that lugs press on,
+and how far from there it exceeds a limit.
+
+Inside, stress falls from the edge of a lug like d^-0.2 (what the pressure makes and what bends the
+pin together), so that no distance is natural there; hence both numbers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea.core.pin_loads import AnyLoads, PinLoads
+from fea.core.places import BENEATH
+from fea.core.pressed import ANGLES, BINS, SAME, PressedArcs
+from fea.core.voigt import von_mises
+from fea.harmonic.fields import MeridianFields
+from fea.harmonic.superposition import Circumference
+from fea.singular.singularities import Singularity, outside
+from geometry import Pin
+from geometry.arrays import Floats, Ints, Mask
+
+EVERY = 8  # arcs, of which one is looked at for the reach
+ROUND = 9  # points of a quarter circle about the edge of a lug
+LITTLE = 1e-6  # of the distance: so much farther are points that are meant to be just outside
+
+
+@dataclass(frozen=True)
+class Beneath:
+    """The largest von Mises stress, Pa, at a location (x, y, z), m; the number of its instant."""
+
+    value: float
+    location: tuple[float, float, float]
+    instant: int
+
+
+class Away:
+    """Where on the circumference points (S, 2) are farther than BENEATH diameters from every cell
+    that is pressed, at the instants of a contact (fea.harmonic.superposition: Region).
+    """
+
+    def __init__(self, points: Floats, pressed: PressedArcs) -> None:
+        self.pressed, self._known = pressed, dict[int, Ints]()
+        near = _arcs_within(points, pressed, 2.0 * BENEATH * pressed.rings.radius)
+        some = (near >= 0).any(axis=1)
+        self._near = near[some]
+        self._row = np.full(len(points), -1)
+        self._row[some] = np.arange(some.sum())
+
+    def masked(self, points: Ints) -> Mask:
+        """Which of some points are read on a part of the circumference only."""
+        return np.asarray(self._row[points] >= 0)
+
+    def read(self, points: Ints, instants: Ints) -> Mask:
+        """On which arcs (J, BINS) pairs of points and instants are read."""
+        out, rows = np.ones((len(points), BINS), dtype=bool), self._row[points]
+        for t in np.unique(instants).tolist():
+            if t not in self._known:
+                self._known[t] = arcs_apart(self.pressed.on[t])
+            here = np.flatnonzero((instants == t) & (rows >= 0))
+            near = self._near[rows[here]]
+            for ring in np.flatnonzero((near >= 0).any(axis=0)):
+                out[here] &= self._known[t][ring] > near[:, ring, None]
+        return out
+
+
+def _arcs_within(points: Floats, pressed: PressedArcs, distance: Floats) -> Ints:
+    """How many arcs from a pressed one on a ring points (S, 2) are nearer to it than a distance
+    (R,), m: (S, R), -1 where they are farther anyway.
+    """
+    rings = pressed.rings
+    r, z = points[:, :1], points[:, 1:]
+    along = np.maximum(0.0, np.maximum(rings.start - z, z - rings.end))
+    rest = along**2 + (r - rings.radius) ** 2 - distance**2  # 2 r R (cos a - 1) more with the angle
+    arm = np.maximum(2.0 * r * rings.radius, np.finfo(float).tiny)
+    angle = np.arccos(np.clip(1.0 + rest / arm, -1.0, 1.0))
+    return np.where(rest < 0.0, np.floor(angle / (2.0 * np.pi) * BINS + 0.5), -1).astype(np.int64)
+
+
+def arcs_apart(on: Mask) -> Ints:
+    """How many arcs each (R, BINS) is from the nearest one of a mask; BINS of an empty one."""
+    turns = np.tile(on, 3)
+    number = np.arange(3 * BINS)
+    before = np.maximum.accumulate(np.where(turns, number, -BINS), axis=1)
+    after = np.minimum.accumulate(np.where(turns, number, 4 * BINS)[:, ::-1], axis=1)[:, ::-1]
+    apart = np.minimum(number - before, after - number)[:, BINS : 2 * BINS]
+    return np.asarray(np.minimum(apart, BINS))
+
+
+def beneath(fields: MeridianFields, loads: AnyLoads, zones: tuple[Singularity, ...]) -> Beneath:
+    """Of a pin on which lugs press, outside of singular zones."""
+    assert loads.pressed is not None
+    around = Circumference(fields, loads, Away(fields.points, loads.pressed))
+    top = around.top(_away_from(zones, fields))
+    r, z = (float(x) for x in fields.points[top.point])
+    at = (r * float(np.cos(top.angle)), r * float(np.sin(top.angle)), z)
+    return Beneath(top.value, at, top.instant)
+
+
+def reach(
+    fields: MeridianFields,
+    loads: PinLoads,
+    instant: int,
+    zones: tuple[Singularity, ...],
+    limits: tuple[float, ...],
+) -> tuple[float, ...]:
+    """How far, m, from every pressed cell von Mises stress exceeds limits, Pa, at an instant."""
+    assert loads.pressed is not None
+    rows = np.flatnonzero(_away_from(zones, fields))
+    around = Circumference(fields, loads)
+    rows = rows[around.reach(rows, np.array([instant]))[:, 0] > min(limits)]
+    if not len(rows):
+        return (0.0,) * len(limits)
+    stress = von_mises(around.stress(rows, instant, ANGLES[::EVERY]))
+    away = _distance(fields.points[rows], loads.pressed, instant)[:, ::EVERY]
+    return tuple(float(away[stress > limit].max(initial=0.0)) for limit in limits)
+
+
+def _away_from(zones: tuple[Singularity, ...], fields: MeridianFields) -> Mask:
+    out = outside(zones, *fields.points.T)
+    out[fields.unread] = False
+    return out
+
+
+def _distance(points: Floats, pressed: PressedArcs, instant: int) -> Floats:
+    """Of points (S, 2) at all arcs from the nearest pressed cell, (S, BINS) m."""
+    rings, on = pressed.rings, pressed.on[instant]
+    r, z = points[:, :1], points[:, 1:]
+    square = np.full((len(points), BINS), np.inf)
+    for k, arcs in enumerate(arcs_apart(on)):
+        if not on[k].any():
+            continue
+        angle = np.minimum(np.maximum(arcs - 0.5, 0.0) * 2.0 * np.pi / BINS, np.pi)
+        along = np.maximum(0.0, np.maximum(rings.start[k] - z, z - rings.end[k]))
+        R = rings.radius[k]
+        square = np.minimum(square, along**2 + r**2 + R**2 - 2.0 * r * R * np.cos(angle))
+    return np.sqrt(np.maximum(square, 0.0))
+
+
+def just_beneath(pin: Pin, rings: tuple[str, ...]) -> Floats:
+    """Points (P, 2), r and z in m, inside a pin just farther than BENEATH diameters from its rings:
+    under each, and about the ends of what they make up.
+    """
+    bands = [pin.band(name) for name in rings]
+    away = 2.0 * BENEATH * (1.0 + LITTLE)
+    under = [(b.radius * (1.0 - away), z) for b in bands for z in (b.z0, b.middle, b.z1)]
+    turns = np.linspace(0.0, np.pi / 2.0, ROUND)[1:]
+    ends = [(z, sign, b.radius) for b in bands for z, sign in ((b.z0, -1.0), (b.z1, 1.0))]
+    near = SAME * pin.length
+    alone = [x for x in ends if sum(abs(x[0] - z) <= near for z, *_ in ends) == 1]
+    about = [
+        (radius * (1.0 - away * float(np.cos(t))), z + sign * radius * away * float(np.sin(t)))
+        for z, sign, radius in alone
+        for t in turns
+    ]
+    points = np.array([*under, *about]).reshape(-1, 2)
+    if not len(points):
+        return points
+    inside = (points[:, 1] > 0.0) & (points[:, 1] < pin.length)
+    points = points[inside]
+    inner, outer = pin.radii_at(points[:, 1])
+    keep = (points[:, 0] > inner * (1.0 + LITTLE)) & (points[:, 0] < outer * (1.0 - LITTLE))
+    return np.asarray(points[keep])

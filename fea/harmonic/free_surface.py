@@ -1,0 +1,224 @@
+"""The stress of a pin's surface where lugs press on it: where it is read, and as what.
+
+Three kinds of points. Those of the outline itself, on the part of the circumference that is free
+(fea.core.pressed). In the middle of a ring, pressed or not, the stress without the local one of the
+pressure, -p along the pin, -p across the surface and -2 nu p around, that of a half-plane under any
+pressure that changes little around it: it has the tension of a fibre that is bent under its lug,
+and leaves to contact what is contact's. It is not read on the outermost pressed rings at the edge
+of a lug, whose steps are larger than what is looked for. And the edges of lugs themselves, seen
+from where the surface beside them is free: stress there has a cusp, s_0 + a d^(1 - s) + b d^(2 - s)
+at the distance d, with s the exponent of pressure, and is continued to d = 0 by these.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.core.pin_loads import AnyLoads
+from fea.core.pressed import BINS, ON, SAME, PressedArcs, Rings
+from fea.harmonic.fields import MeridianFields
+from fea.harmonic.superposition import Circumference
+from fea.harmonic.surface_stress import AT
+from geometry.arrays import Floats, Ints, Mask
+
+Floats32 = NDArray[np.float32]
+EDGE = 2  # pressed rings beyond the rounding of a lug's edge, whose pressed surface is not read
+MIDDLE = 0.3, 0.7  # of a ring, where the surface under pressure is read
+FAR = 0.06  # of the diameter, to where a cusp is fitted
+FEWEST = 6  # points to which it is
+SPAN = 2.0  # the farthest of them over the nearest
+
+
+@dataclass(frozen=True)
+class SurfacePoints:
+    """Points of a surface and their unit stress: `fields` has no others. middle: (S,) z, m, of the
+    middle of the element on which each is. relieved: (S,) the ring in whose middle a point is that
+    has the stress without that of the pressure, -1 for others. beside: by point at the edge of a
+    lug those from which it is continued, and those between both, for which it stands: they feel the
+    last step of the pressure.
+    """
+
+    fields: MeridianFields
+    middle: Floats
+    relieved: Ints
+    beside: dict[int, tuple[Ints, Ints]]
+
+
+def surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfacePoints:
+    """Of the fields of a pin on which these rings are, with Poisson's ratio. Found once."""
+    key: tuple[object, ...] = ("surface", nu, rings.key)
+    found: dict[tuple[object, ...], SurfacePoints] = fields.found
+    if key not in found:
+        found[key] = _surface_points(fields, rings, nu)
+    return found[key]
+
+
+def _surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfacePoints:
+    skin, x = fields.stress[: fields.skin], fields.points[: fields.skin]
+    middle = x[len(AT) // 2 :: len(AT), 1].repeat(len(AT))
+    ring = rings.at(x[:, 0], middle)
+    part = np.where(ring >= 0, (x[:, 1] - rings.start[ring]) / rings.length[ring], 0.0)
+    rows = np.flatnonzero((ring >= 0) & (part >= MIDDLE[0]) & (part <= MIDDLE[1]))
+    local = np.array([1.0, 2.0 * nu, 1.0, 0.0, 0.0, 0.0])[:, None]
+    relieved = skin[rows] - local * skin[rows, :1]
+    edges = _edges(x, middle, rings)
+    continued = [np.einsum("p,pck->ck", e.weights, skin[e.near]) for e in edges]
+    places = np.array([e.place for e in edges]).reshape(-1, 2)
+    first = len(x) + len(rows)
+    return SurfacePoints(
+        replace(
+            fields,
+            points=np.concatenate([x, x[rows], places]),
+            stress=np.concatenate(
+                [skin, relieved, np.array(continued).reshape(-1, *skin.shape[1:])]
+            ),
+            unread=fields.unread[fields.unread < fields.skin],
+        ),
+        np.concatenate([middle, middle[rows], places[:, 1]]),
+        np.concatenate([np.full(len(x), -1), ring[rows], np.full(len(places), -1)]),
+        {first + k: (e.near, e.between) for k, e in enumerate(edges)},
+    )
+
+
+@dataclass(frozen=True)
+class _Edge:
+    """Where contact ends at the edge of a lug, (2,); points of the outline beside it, from which
+    stress is continued with weights (P,), and those between both.
+    """
+
+    place: Floats
+    near: Ints
+    weights: Floats
+    between: Ints
+
+
+def _edges(x: Floats, middle: Floats, rings: Rings) -> list[_Edge]:
+    """Of all lugs: where rounding begins, since contact hardly reaches into it. Points from two
+    distances on, for contact that ends in the rounding and for one that does not.
+    """
+    out = []
+    for b in np.unique(rings.band):
+        own = np.flatnonzero(rings.band == b)
+        for side, sign in ((own, -1.0), (own[::-1], 1.0)):
+            flat = int(np.cumprod(rings.edge[side]).sum())
+            last, beyond = side[min(flat, len(side) - 1)], side[:flat][::-1][:1]
+            z = float((rings.start if sign < 0.0 else rings.end)[last])
+            nearest = [2.0 * float(rings.length[k]) for k in beyond] + [float(rings.length[last])]
+            for closest in nearest:
+                edge = float(rings.radius[last]), z, sign
+                found = _beside((x, middle), edge, closest, float(rings.exponent[last]))
+                out += [] if found is None else [found]
+    return out
+
+
+def _beside(
+    skin: tuple[Floats, Floats], edge: tuple[float, float, float], closest: float, exponent: float
+) -> _Edge | None:
+    """At an edge (r, z, sign of the side), by points on the cylinder beside it, from a distance on;
+    None where they are too few.
+    """
+    (x, middle), (radius, z, sign) = skin, edge
+    d = sign * (x[:, 1] - z)
+    on, beside = np.abs(x[:, 0] - radius) <= SAME * radius, sign * (middle - z) > 0.0
+    ends = d[beside & ~on & (d > 0.0)]  # where the cylinder has ended
+    far = min(2.0 * FAR * radius, float(ends.min(initial=np.inf)))
+    near = np.flatnonzero(on & beside & (d >= closest) & (d <= far))
+    if len(near) < FEWEST or d[near].max() < SPAN * d[near].min():
+        return None
+    powers = np.array([0.0, 1.0 - exponent, 2.0 - exponent])
+    weights = np.linalg.pinv((d[near, None] / d[near].max()) ** powers)[0]
+    between = np.flatnonzero(on & beside & (d < d[near].min()))
+    return _Edge(np.array([radius, z]), near, weights, between)
+
+
+class FreeSurface:
+    """Where on the circumference points of a surface are read, at the instants of a contact."""
+
+    def __init__(self, of: SurfacePoints, pressed: PressedArcs) -> None:
+        self.pressed, self.relieved = pressed, of.relieved
+        self.edges = np.array(list(of.beside), dtype=np.int64)
+        self.beside = [near for near, _ in of.beside.values()]
+        self._stands = np.zeros((len(of.relieved), len(self.edges)), dtype=bool)
+        for k, (_, between) in enumerate(of.beside.values()):
+            self._stands[between, k] = True
+        rings, plain = pressed.rings, (of.relieved < 0)[:, None]
+        r, z, size = of.fields.points[:, :1], of.middle[:, None], rings.length
+        off = np.abs(r - rings.radius)
+        on = (off <= ON * size) & (z > rings.start) & (z < rings.end)
+        before = (off <= size) & (z > rings.start - size) & (z < rings.start)
+        after = (off <= size) & (z > rings.end) & (z < rings.end + size)
+        near = np.concatenate([x & plain for x in (on, before, after)], axis=1)
+        near[self.edges] = False
+        some = near.any(axis=1) | (of.relieved >= 0) | self._stands.any(axis=1)
+        some[self.edges] = True
+        self._near = near[some].astype(np.float32)
+        self._row = np.full(len(some), -1)
+        self._row[some] = np.arange(some.sum())
+        self._known: dict[int, tuple[Floats32, Mask, Mask]] = {}
+
+    def masked(self, points: Ints) -> Mask:
+        """Which of some points are read on a part of the circumference only."""
+        return np.asarray(self._row[points] >= 0)
+
+    def read(self, points: Ints, instants: Ints) -> Mask:
+        """On which arcs (J, BINS) pairs of points and instants are read."""
+        out = np.ones((len(points), BINS), dtype=bool)
+        some = self._row[points] >= 0
+        for t in np.unique(instants).tolist():
+            here = np.flatnonzero((instants == t) & some)
+            out[here] = self._at(points[here], t)
+        return out
+
+    def _at(self, points: Ints, instant: int) -> Mask:
+        """Where masked points are read, (P, BINS)."""
+        if instant not in self._known:
+            self._known[instant] = self._arcs(instant)
+        shut, edges, inner = self._known[instant]
+        out = (self._near[self._row[points]] @ shut) == 0.0
+        own = self.relieved[points]
+        out[own >= 0] = inner[own[own >= 0]]
+        for k in np.flatnonzero(self._stands[points].any(axis=0)):
+            out[self._stands[points, k]] &= ~edges[k]
+        at_edge = np.isin(points, self.edges)
+        if at_edge.any():
+            out[at_edge] = edges[np.searchsorted(self.edges, points[at_edge])]
+        return np.asarray(out)
+
+    def _arcs(self, instant: int) -> tuple[Floats32, Mask, Mask]:
+        """What each ring shuts of itself, of what is before and what is after it, (3 R, BINS); where
+        the edges of lugs are read, (E, BINS), and the middles of rings, (R, BINS).
+        """
+        pressed, on = self.pressed, self.pressed.on[instant]
+        parts = np.concatenate([on, *pressed.last(instant)])
+        shut = pressed.widened(parts).astype(np.float32)
+        edges = np.ones((len(self.edges), BINS), dtype=bool)
+        for k, near in enumerate(self.beside):
+            rows = self._row[near]
+            edges[k] = ((self._near[rows[rows >= 0]] @ shut) == 0.0).all(axis=0)
+        return shut, edges, ~pressed.widened(self._at_edges(on))
+
+    def _at_edges(self, on: Mask) -> Mask:
+        """Which arcs (R, BINS) are the outermost pressed ones next to an edge of a lug: those under
+        its rounding and EDGE more, unless contact has receded from there.
+        """
+        rings, out = self.pressed.rings, np.zeros_like(on)
+        for b in np.unique(rings.band):
+            own = np.flatnonzero(rings.band == b)
+            for side in (own, own[::-1]):
+                rounded = int(np.cumprod(rings.edge[side]).sum())
+                near = side[: rounded + EDGE]
+                out[near] |= on[near] & on[side[: rounded + 1]].any(axis=0)
+        return out
+
+
+def reader(fields: MeridianFields, loads: AnyLoads, nu: float) -> Circumference:
+    """Where the largest stress of a case is looked for: all of a section's points, or, where lugs
+    press on the pin, its surface (what lies beneath: fea.harmonic.beneath).
+    """
+    if loads.pressed is None:
+        return Circumference(fields, loads)
+    of = surface_points(fields, loads.pressed.rings, nu)
+    return Circumference(of.fields, loads, FreeSurface(of, loads.pressed))

@@ -1,0 +1,1 @@
+"""Stress of sections by their section forces."""

@@ -1,0 +1,164 @@
+"""The stress of a pin's sections by its section forces: sqrt(s^2 + 3 t^2), over every section.
+
+s is that of the axial force and of bending, t that of torsion and of shear, as Saint-Venant has
+them in a round section, solid or hollow, so that it is exact in elasticity a diameter away from
+loads and changes of shape. It is what stress analysts call membrane and bending: it has no local
+stress, and so depends on no mesh and on no distance from an edge.
+
+Source: fea.beam.round_section, for the shear.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from fea.beam.line_load import acting, shares
+from fea.beam.round_section import Circle
+from fea.beam.stress import RZ, TZ, ZZ, section_stress
+from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, stepped_beam
+from fea.core.material import Material
+from fea.core.pin_loads import Amounts, AnyLoads, PinLoads
+from fea.core.solution import Picture
+from fea.harmonic.fields import MeridianFields
+from fea.harmonic.superposition import Circumference, Top
+from fea.plastic.interaction import plastic_use
+from geometry import Pin
+from geometry.arrays import Floats
+
+ALONG = 9  # sections between two stations, both ends included
+ACROSS = np.linspace(0.0, 1.0, 9)  # of the way from bore to outside, where stress is read
+CLOSER = 33  # points between two of these, and about the angle, near the largest
+NEAR = np.radians(2.0)  # of that angle
+
+
+@dataclass(frozen=True)
+class AtSection:
+    """The largest stress of sections, Pa, at an instant (its number): z, radius (m) and angle (rad)
+    of the point; axial and shear force (N), bending moment and torque (N m) there.
+    """
+
+    value: float
+    instant: int
+    z: float
+    r: float
+    angle: float
+    axial_force: float
+    shear_force: float
+    bending_moment: float
+    torque: float
+    section: Circle
+
+    def plastic_use(self, strength: float) -> float:
+        """Which part of what the fully plastic section carries is used, of a yield strength, Pa."""
+        forces = self.shear_force, self.bending_moment, abs(self.axial_force), abs(self.torque)
+        return plastic_use(self.section, *forces, strength)
+
+
+class SectionAnswer:
+    """Of a pin clamped at surfaces (by its own names), or in balance, under any loads made of the
+    unit loads of some cases (fea.core.solution: Answer).
+
+    Raises: as fea.beam.timoshenko.stepped_beam.
+    """
+
+    def __init__(
+        self, pin: Pin, material: Material, clamps: tuple[str, ...], cases: Sequence[AnyLoads]
+    ) -> None:
+        units = tuple(dict.fromkeys(load for case in cases for load in acting(case)))
+        self.forces = stepped_beam(pin, material, units, clamps)
+        self.nu = material.poisson_ratio
+        stations = self.forces.stations
+        free = np.array(self.forces.free, dtype=np.intp)
+        self._cells = np.repeat(free, ALONG)
+        part = np.tile(np.linspace(0.0, 1.0, ALONG), len(free))
+        self._z = stations[self._cells] + part * np.diff(stations)[self._cells]
+
+    @cached_property
+    def fields(self) -> MeridianFields:
+        """Stress of each unit load at points of the sections, section by section."""
+        inside = self.forces.inside(self._cells, self._z)
+        sections = [self.forces.sections[c] for c in self._cells]
+        each = {s: _at_radii(s, ACROSS, self.nu) for s in set(sections)}
+        radii = np.array([each[s][0] for s in sections])
+        per_force = np.array([each[s][1] for s in sections])
+        stress = np.einsum("srcq,sqk->srck", per_force, inside)
+        z = np.broadcast_to(self._z[:, None], radii.shape)
+        points = np.stack([radii, z], axis=2).reshape(-1, 2)
+        loads = self.forces.loads
+        return MeridianFields(
+            points, loads, stress.reshape(-1, 6, len(loads)), np.zeros((0, 3, len(loads))), 0, 0
+        )
+
+    def _felt(self, loads: AnyLoads) -> Amounts:
+        """Loads without what no section notices."""
+        known = set(self.forces.loads)
+        found = {load: x for load, x in loads.coefficients().items() if load in known}
+        return Amounts(loads.case, found, len(loads))
+
+    def maxima(self, loads: AnyLoads, least: float = 0.0) -> Floats:
+        """Largest stress (T,) Pa at every instant, `least` where it does not exceed that."""
+        return Circumference(self.fields, self._felt(loads)).maxima(self._all, least)
+
+    def largest(self, loads: AnyLoads) -> tuple[float, int]:
+        """The largest of these (Pa), and the number of its instant."""
+        top = self._top(loads)
+        return top.value, top.instant
+
+    def picture(self, loads: PinLoads, instant: int) -> Picture | None:
+        """None: sections have no surface."""
+        return None
+
+    @property
+    def _all(self) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+        return np.ones(len(self.fields.points), dtype=bool)
+
+    def _top(self, loads: AnyLoads) -> Top:
+        return Circumference(self.fields, self._felt(loads)).top(self._all)
+
+    def place(self, loads: AnyLoads) -> AtSection:
+        """Where and when the largest is, and what acts there."""
+        top = self._top(loads)
+        row = top.point // len(ACROSS)
+        section = self.forces.sections[self._cells[row]]
+        z = float(self._z[row])
+        inside = self.forces.inside(self._cells[[row]], self._z[[row]])[0]
+        c = shares(self.forces.loads, self._felt(loads))[top.instant]
+        V, M, N, T = (inside[q] @ c.T for q in (SHEAR, MOMENT, AXIAL, TORQUE))
+        value, r, angle = self._closer(section, (V, M, N, T), top)
+        return AtSection(
+            value, top.instant, z, r, angle, float(N[0]), float(np.hypot(*V)),
+            float(np.hypot(*M)), float(T[1]), section,
+        )  # fmt: skip
+
+    def _closer(
+        self, section: Circle, forces: tuple[Floats, ...], top: Top
+    ) -> tuple[float, float, float]:
+        """Value, radius and angle of the largest stress in a section, near a point of it."""
+        number = top.point % len(ACROSS)
+        ends = (ACROSS[max(number - 1, 0)], ACROSS[min(number + 1, len(ACROSS) - 1)])
+        radii, per_force = _at_radii(section, np.linspace(*ends, CLOSER), self.nu)
+        V, M, N, T = forces  # (2,) each: by phase, V and M of x and y
+        turns = top.angle + np.linspace(-NEAR, NEAR, CLOSER)
+        c, s = np.cos(turns), np.sin(turns)
+        square = np.zeros((len(radii), len(turns)))
+        for row, factor in ((ZZ, 1.0), (RZ, 3.0), (TZ, 3.0)):
+            first, second = (c, s) if row != TZ else (s, -c)
+            of_v, of_m, of_n, of_t = per_force[:, row].T
+            stress = np.outer(of_v, V[0] * first + V[1] * second)
+            stress += np.outer(of_m, M[0] * first + M[1] * second)
+            stress += (of_n * N[0] - of_t * T[1] * (row == TZ))[:, None]
+            square += factor * stress**2
+        i, j = np.unravel_index(square.argmax(), square.shape)
+        return float(np.sqrt(square[i, j])), float(radii[i]), float(turns[j])
+
+
+def _at_radii(section: Circle, parts: Floats, nu: float) -> tuple[Floats, Floats]:
+    """Radii (R,), m, at parts of the way from bore to outside, and stress there per V, M, N, T,
+    (R, 6, 4).
+    """
+    radii = section.inner + parts * (section.outer - section.inner)
+    return radii, np.array([section_stress(section, float(r), nu) for r in radii])

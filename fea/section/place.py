@@ -1,0 +1,73 @@
+"""The largest stress of a pin's sections over all instants of a case, with its error."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea.core.over_time import Between, rise_between, through_time
+from fea.core.peak import ErrorParts
+from fea.core.pin_loads import PinLoads
+from fea.core.places import SectionPlace
+from fea.section.answer import AtSection, SectionAnswer
+
+FLEXIBILITIES = 0.004  # of a moment in contact, by the meshes of pin and lugs (docs/lugs.md)
+
+
+@dataclass(frozen=True)
+class FoundSection:
+    """The largest stress of sections, the parts of its error (Pa), and the loads at its instant."""
+
+    at: AtSection
+    parts: ErrorParts
+    loads: PinLoads
+
+    @property
+    def time(self) -> float | None:
+        """s; None without a motion."""
+        return None if self.loads.times is None else float(self.loads.times[0])
+
+    @property
+    def lower_end(self) -> float:
+        """Less the error, Pa."""
+        return max(0.0, self.at.value - self.parts.total)
+
+    @property
+    def upper_end(self) -> float:
+        """With the error, Pa."""
+        return self.at.value + self.parts.total
+
+    def known(self, tolerance: float) -> bool:
+        """Whether the error is within a tolerance, relative."""
+        return self.parts.total <= tolerance * self.at.value
+
+    def place(self, tolerance: float, used: float | None) -> SectionPlace:
+        """As results have it. used: of a fully plastic section."""
+        at = self.at
+        return SectionPlace(
+            at.value, self.parts.total, "converged" if self.known(tolerance) else "unconverged",
+            at.z, self.time, at.axial_force, at.shear_force, at.bending_moment, abs(at.torque),
+            used,
+        )  # fmt: skip
+
+
+def found_section(
+    answer: SectionAnswer,
+    loads: PinLoads,
+    between: Between | None,
+    tolerance: float,
+    cells: float | None = None,
+) -> FoundSection:
+    """Over a case, and between its instants where it is a motion. cells: of contact that the forces
+    are from, their error, relative; None where the forces are given.
+    """
+    rise = 0.0
+    if between is not None and len(loads) > 1:
+        loads = through_time(answer, loads, between, tolerance)
+        rise = rise_between(answer, loads, between)
+    at = answer.place(loads)
+    parts = ErrorParts(mesh=0.0, time=rise)
+    if cells is not None:
+        parts = ErrorParts(FLEXIBILITIES * at.value, rise, cells=cells * at.value)
+    return FoundSection(at, parts, loads.at(np.array([at.instant])))
