@@ -85,3 +85,8 @@ class MeshResult:
         the distance that is left out.
         """
         return tuple(s for s in self.singularities if s.acts and s.felt > self.maximum)
+
+    @property
+    def singular(self) -> bool:
+        """Whether stress has no bound where it is the largest."""
+        return bool(self.governed)

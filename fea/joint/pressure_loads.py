@@ -116,7 +116,8 @@ def resultants(pin: Pin, rings: tuple[str, ...], waves: Floats, links: PinLoads)
     """Of pressures with harmonics (N + 1, T, R, 2) Pa, and what links do along the axis."""
     made = others_along(pin, rings, links)
     area = np.array([pin.band(name).area for name in rings])
-    made.forces[:, :, :2] = -0.5 * waves[1] * area[:, None]
+    if len(waves) > 1:
+        made.forces[:, :, :2] = -0.5 * waves[1] * area[:, None]
     return made
 
 

@@ -90,7 +90,12 @@ class SectionAnswer:
         points = np.stack([radii, z], axis=2).reshape(-1, 2)
         loads = self.forces.loads
         return MeridianFields(
-            points, loads, stress.reshape(-1, 6, len(loads)), np.zeros((0, 3, len(loads))), 0, 0
+            points,
+            loads,
+            stress.reshape(len(points), 6, len(loads)),
+            np.zeros((0, 3, len(loads))),
+            0,
+            0,
         )
 
     def _felt(self, loads: AnyLoads) -> Amounts:
