@@ -188,8 +188,8 @@ class FreeSurface:
         return np.asarray(out)
 
     def _arcs(self, instant: int) -> tuple[Floats32, Mask, Mask]:
-        """What each ring shuts of itself, of what is before and what is after it, (3 R, BINS); where
-        the edges of lugs are read, (E, BINS), and the middles of rings, (R, BINS).
+        """What each ring shuts of itself, of what is before it and what is after, (3 R, BINS);
+        where the edges of lugs are read, (E, BINS), and the middles of rings, (R, BINS).
         """
         pressed, on = self.pressed, self.pressed.on[instant]
         parts = np.concatenate([on, *pressed.last(instant)])

@@ -176,12 +176,13 @@ def _failed(given: InLugs, name: str, why: str) -> LugSolution:
 
 @dataclass(frozen=True)
 class Near:
-    """On the first mesh: the governing instant of a case, and which (T,) are so near its maximum
-    that they may govern.
+    """On the first mesh: the instant of a case's largest stress of the surface, this (Pa, where it
+    is known), and which (T,) are so near to it that they may govern.
     """
 
     instant: int
     may: NDArray[np.bool_]
+    largest: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -193,8 +194,8 @@ class Compared:
 
     @property
     def row(self) -> Comparison:
-        """That of the larger one."""
-        return max(self.surface, self.section, key=lambda x: x.stress.row)
+        """That of the larger one, of which the joint was varied."""
+        return max(self.surface, self.section, key=lambda x: (bool(x.over), x.stress.row))
 
     def fine(self, asked: Asked) -> bool:
         """Whether finer cells would not help."""
@@ -260,7 +261,7 @@ class _Contact:
             may = answer.maxima(x, MAY * largest) > MAY * largest
             if self.given.cut is not None:  # any may govern where it is cut
                 may[:] = True
-            out[x.case] = Near(instant, may)
+            out[x.case] = Near(instant, may, largest)
         return out
 
     def follow(self, near: Mapping[str, Near]) -> None:
@@ -302,14 +303,17 @@ class _Contact:
         """By case, at the instants of the largest stress of the surface on the first mesh and of
         sections.
         """
-        at, which = list[JointContact](), dict[str, tuple[int, int]]()
+        at, vary, which = list[JointContact](), list[bool](), dict[str, tuple[int, int]]()
         for case, links in self.instants.items():
-            both = near[case].instant, self.sections[case].largest(self.on_rings(links))[1]
+            stress, instant = self.sections[case].largest(self.on_rings(links))
+            both = near[case].instant, instant
             each = dict.fromkeys(both)
             first, second = (len(at) + list(each).index(t) for t in both)
             which[case] = first, second
             at += [self._joined(links, t) for t in each]
-        found = compare(self.model, at, asked, self._patterns)
+            governs = both[stress > near[case].largest]
+            vary += [t == governs for t in each]
+        found = compare(self.model, at, asked, self._patterns, vary)
         return {case: Compared(found[a], found[b]) for case, (a, b) in which.items()}
 
     def solved(
