@@ -26,6 +26,7 @@ from fea.core.peak import Note, Peak, decides
 from fea.core.pin_loads import Floats, PinLoads
 from fea.cut.evaluate import CutAnswer
 from fea.cut.region import RingedCutPin
+from fea.harmonic.beneath import beneath
 from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
 from fea.joint.cell_pressure import CellPressure
 from fea.joint.contact import Pressed
@@ -393,7 +394,7 @@ class _Contact:
         pressure = CellPressure(contact.bands, pressed.pressure, pressed.angle)
         cut, answer = self.given.cut, solution.answer
         if isinstance(answer, HarmonicAnswer):
-            error = known.surface.cells.beneath
+            error = known.surface.cells.beneath + self._by_mesh(answer, known.surface)
             place = contact_place(contact, material, answer, solved, asked.required, error)
             solution = replace(solution, peak=with_contact(peak, place))
         if cut is None or not isinstance(answer, CutAnswer):
@@ -401,6 +402,11 @@ class _Contact:
         left = neglected(cut, material, contact, pressure, answer)
         peak = with_neglected(peak, left, answer, over.variations, asked)
         return LugSolution(replace(solution, peak=peak), joint, self.press, pressure)
+
+    def _by_mesh(self, answer: HarmonicAnswer, known: Comparison) -> float:
+        """By how much what lies beneath contact differs from that on the first mesh, relative."""
+        there = beneath(answer.fields, self.press(known.links), answer.singularities).value
+        return abs(known.stress.beneath / there - 1.0) if there else 0.0
 
     def _compared_anew(self, asked: Asked) -> Callable[[JointContact], Comparison]:
         return lambda contact: compare(self.model, [contact], asked, self._patterns)[0]
