@@ -3,9 +3,9 @@
 Beside a pressed cell stress is not that of the true, smooth pressure: cells end in steps, and the
 elements that touch one are off by 13 % of it, the next by 3, 1.3 and less than 1 %. So what counts
 as pressed is a cell with pressure, a sector more on both sides, and beyond the last pressed ring
-its own length (or that of the next ring, if that is shorter). Everything else of the surface is free, however near to an edge: there the stress
-of a half-plane along its surface is that of the rest of the pin, for the pressure itself adds
-nothing beside where it acts.
+its own length (or that of the next ring, if that is shorter). Everything else of the surface is
+free, however near to an edge: there the stress of a half-plane along its surface is that of the
+rest of the pin, for the pressure itself adds nothing beside where it acts.
 """
 
 from __future__ import annotations
@@ -67,9 +67,9 @@ class Rings:
         return np.where((part >= MIDDLE[0]) & (part <= MIDDLE[1]), ring, -1)
 
     def near(self, r: Floats, z: Floats, middle: Floats) -> Mask:
-        """Which points (P,), m, each ring is under, before, and after within its own length or that
-        of the next one, if that is shorter: (P, 3 R). middle: (P,) z of the middle of the element on
-        which each is.
+        """Which points (P,), m, are under each ring, before it, and after it, within its own length
+        or that of the next one, if that is shorter: (P, 3 R). middle: (P,) z of the middle of the
+        element on which each is.
         """
         middle, (before, after) = middle[:, None], self._beside
         off = np.abs(r[:, None] - self.radius)

@@ -33,7 +33,8 @@ def ring_ends(
 
     beside: to resolve the peak of pressure where rounding begins, as many rings as lead from there
     to the middle, the first of `beside` times the radius for the usual count. longest_last: the
-    length, m, of the outermost straight ring at both ends at most, which are cut in parts for it.
+    length, m, of the outermost rings at both ends at most, which are cut in parts for it where
+    edges are sharp; where they are rounded contact ends in short ones anyway.
     """
     coarser = USUAL / count
     longest = 2.0 * LONGEST * band.radius * coarser
@@ -43,10 +44,9 @@ def ring_ends(
     inner = np.zeros(1)
     if flat > 1e-9 * band.length:
         inner = graded(flat, max(count, math.ceil(0.5 * math.pi * flat / longest - 1e-9)))
-        first, last = (_parts(float(inner[1]), most) for most in longest_last)
-        inner = np.concatenate([first, inner[1:-1], flat - last[::-1]])
     if not edge_radius:
-        return inner
+        first, last = (_parts(float(inner[1]), most) for most in longest_last)
+        return np.concatenate([first, inner[1:-1], flat - last[::-1]])
     rounded = max(2, count // 4, math.ceil(2.0 * edge_radius / longest))
     outer = edge_radius * (np.arange(1, rounded + 1) / rounded) ** 2
     return np.concatenate(
