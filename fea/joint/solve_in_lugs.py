@@ -11,6 +11,7 @@ required factor is to be decided, larger cells come first, which take a third of
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
@@ -200,7 +201,7 @@ class Compared:
 
     def fine(self, material: Material, asked: Asked) -> bool:
         """Whether finer cells would not help: they take little of the tolerance, or the required
-        factor is decided whatever they do.
+        factor is decided whatever they do, for what lies beneath the contact, too.
         """
         both = (self.surface, "surface"), (self.section, "section")
         stress = {name: float(getattr(x.stress, name)) for x, name in both}
@@ -211,7 +212,12 @@ class Compared:
         off = max(own, most)
         if off <= CELLS * asked.tolerance:
             return True
-        return decided(asked, material, largest / (1.0 + off), largest * (1.0 + off))
+        low, high = largest / (1.0 + off), largest * (1.0 + off)
+        below, error = self.surface.stress.beneath, 1.0 + self.surface.cells.beneath
+        return decided(asked, material, low, high) and (
+            decided(asked, material, below / error, below * error)
+            or decided(asked, material, low, math.inf)
+        )
 
     def near(
         self, contact: JointContact, case: PinLoads, anew: Callable[[JointContact], Comparison]
