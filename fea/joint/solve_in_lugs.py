@@ -3,10 +3,10 @@ the maximum depends on what is not known of the joint.
 
 Stress under the pressures is found as under any loads (fea.solve_pin), of a pin that nothing
 clamps. To the error of meshes and instants comes that of the cells: contact at the instant that
-governs on the first mesh is solved once more on cells twice as large, whose order is one at least,
-so that the difference counts whole; cells are refined until it is within half of the tolerance, or
-a quarter of what is uncertain anyway where stress near the edge of a lug governs. Where only a
-required factor is to be decided, larger cells come first, which take a third of the time.
+governs on the first mesh is solved once more on cells twice as large, and from the difference, by
+the order of cells, follows their error; they are refined until it is a part of the tolerance. Where
+only a required factor is to be decided, larger cells come first, which take a third of the time,
+and are enough if they decide it with their error, also for what lies beneath the contact.
 """
 
 from __future__ import annotations
