@@ -141,8 +141,8 @@ class PressedArcs:
         """Which arcs (R, BINS) are the outermost pressed ones next to an edge of a lug: those under
         its rounding and EDGE more, unless contact has receded from there.
         """
-        on, rings = self.on[instant], self.rings
-        out = np.zeros_like(on)
+        rings, on = self.rings, self.on[instant]
+        out: Mask = np.zeros_like(on)
         for b in np.unique(rings.band):
             own = np.flatnonzero(rings.band == b)
             for side in (own, own[::-1]):
