@@ -3,7 +3,8 @@
 Beside a pressed cell stress is not that of the true, smooth pressure: cells end in steps, and the
 elements that touch one are off by 13 % of it, the next by 3, 1.3 and less than 1 %. So what counts
 as pressed is a cell with pressure, a sector more on both sides, and beyond the last pressed ring
-its own length. Everything else of the surface is free, however near to an edge: there the stress
+its own length; of a fillet that begins there the element that touches it alone, since cells may be
+longer than the fillet, and what it raises is more than what the step is off. Everything else of the surface is free, however near to an edge: there the stress
 of a half-plane along its surface is that of the rest of the pin, for the pressure itself adds
 nothing beside where it acts.
 """
@@ -22,6 +23,7 @@ from geometry.arrays import Floats, Ints, Mask
 BINS = 360  # equal arcs about the axis, the first about x
 ANGLES = 2.0 * np.pi * np.arange(BINS) / BINS  # of their middles
 ON = 1e-3  # of a ring's length: nearer to its cylinder a point is on it
+ELEMENT = 0.25  # of a ring's length: elements at its ends are no larger (fea.harmonic.evaluate)
 SAME = 1e-9  # of the radius: ends of rings this near are one
 MIDDLE = 0.3, 0.7  # of a ring, where the surface under pressure is read
 EDGE = 2  # pressed rings beyond the rounding of a lug's edge, whose pressed surface is not read
@@ -67,15 +69,17 @@ class Rings:
         return np.where((part >= MIDDLE[0]) & (part <= MIDDLE[1]), ring, -1)
 
     def near(self, r: Floats, z: Floats, middle: Floats) -> Mask:
-        """Which points (P,), m, each ring is under, before, and after within its own length, (P,
-        3 R). middle: (P,) z of the middle of the element on which each is.
+        """Which points (P,), m, are on each ring, before it, and after it, (P, 3 R): on its cylinder
+        within its own length, off it, as in a fillet that begins beside it, in the element that
+        touches it. middle: (P,) z of the middle of the element on which each is.
         """
         size, middle = self.length, middle[:, None]
         off = np.abs(r[:, None] - self.radius)
         on = (off <= ON * size) & (middle > self.start) & (middle < self.end)
-        before = (off <= size) & (middle > self.start - size) & (middle < self.start)
-        after = (off <= size) & (middle > self.end) & (middle < self.end + size)
-        return np.concatenate([on, before, after], axis=1)
+        far = np.where(off <= ON * size, 1.0, ELEMENT) * size
+        before, after = self.start - middle, middle - self.end
+        beside = [(x > 0.0) & (np.hypot(x, off) < far) for x in (before, after)]
+        return np.concatenate([on, *beside], axis=1)
 
     @cached_property
     def follows(self) -> Mask:
