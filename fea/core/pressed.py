@@ -4,9 +4,9 @@ Beside a pressed cell stress is not that of the true, smooth pressure: cells end
 elements that touch one are off by 13 % of it, the next by 3, 1.3 and less than 1 %. So what counts
 as pressed is a cell with pressure, a sector more on both sides, and beyond the last pressed ring
 its own length; of a fillet that begins there the element that touches it alone, since cells may be
-longer than the fillet, and what it raises is more than what the step is off. Everything else of the surface is free, however near to an edge: there the stress
-of a half-plane along its surface is that of the rest of the pin, for the pressure itself adds
-nothing beside where it acts.
+longer than the fillet, and what it raises is more than what the step is off. Everything else of the
+surface is free, however near to an edge: there the stress of a half-plane along its surface is that
+of the rest of the pin, for the pressure itself adds nothing beside where it acts.
 """
 
 from __future__ import annotations
@@ -69,9 +69,9 @@ class Rings:
         return np.where((part >= MIDDLE[0]) & (part <= MIDDLE[1]), ring, -1)
 
     def near(self, r: Floats, z: Floats, middle: Floats) -> Mask:
-        """Which points (P,), m, are on each ring, before it, and after it, (P, 3 R): on its cylinder
-        within its own length, off it, as in a fillet that begins beside it, in the element that
-        touches it. middle: (P,) z of the middle of the element on which each is.
+        """Which points (P,), m, are on each ring, before it, and after it, (P, 3 R): on its
+        cylinder within its own length, off it, as in a fillet that begins beside it, in the
+        element that touches it. middle: (P,) z of the middle of the element on which each is.
         """
         size, middle = self.length, middle[:, None]
         off = np.abs(r[:, None] - self.radius)
