@@ -14,7 +14,10 @@ from geometry import Band, Pin, Segment
 
 USUAL = 8  # rings of a band with sharp edges, if it is not long
 LONGEST = 0.25  # ring, of the diameter, if there are so many
-GROWTH = 1.6  # of each ring over the one before, from there on
+# Where the peak at a rounded edge is resolved: rings of one length lie this far from where rounding
+# begins, of its radius, outwards (where contact ends) and inwards (where the peak is); from there
+# on each is so many times longer. Rings that grow from the start on are up to 13 % off.
+OUTWARDS, INWARDS, GROWTH = 0.08, 0.03, 1.6
 
 
 def ring_ends(band: Band, edge_radius: float, count: int, beside: float | None = None) -> Floats:
@@ -22,8 +25,8 @@ def ring_ends(band: Band, edge_radius: float, count: int, beside: float | None =
     where the bore is straight, but for long bands. Where its edges are rounded, the first rings of
     the rounding are so short that contact may end in them.
 
-    beside: to resolve the peak of pressure where rounding begins, as many rings as lead from there
-    to the middle, the first of `beside` times the radius for the usual count.
+    beside: to resolve the peak of pressure where rounding begins, rings of `beside` times the
+    radius there, for the usual count, and as many as lead from them to the middle.
     """
     coarser = USUAL / count
     longest = 2.0 * LONGEST * band.radius * coarser
@@ -46,10 +49,18 @@ def _to_the_peak(
     length: float, radius: float, beside: float, growth: float, longest: float
 ) -> Floats:
     first = beside * radius
-    outside = _growing(radius, first, growth, longest)[::-1]
-    flat = _growing(length / 2.0 - radius, first, growth, longest)
+    outside = _from_edge(radius, OUTWARDS * radius, first, growth, longest)[::-1]
+    flat = _from_edge(length / 2.0 - radius, INWARDS * radius, first, growth, longest)
     ends = np.cumsum([0.0, *outside, *flat])
     return np.concatenate([ends[:-1], [length / 2.0], length - ends[-2::-1]])
+
+
+def _from_edge(length: float, even: float, first: float, growth: float, longest: float) -> Floats:
+    """Lengths that add up to `length`, m: alike over `even`, then growing."""
+    even = min(even, length)
+    count = math.ceil(even / first - 1e-9)
+    alike = np.full(count, even / max(count, 1))
+    return np.concatenate([alike, _growing(length - even, first, growth, longest)])
 
 
 def graded(length: float, count: int) -> Floats:
