@@ -135,7 +135,7 @@ def _distance(points: Floats, pressed: PressedArcs, instant: int) -> Floats:
         along = np.maximum(0.0, np.maximum(rings.start[k] - z, z - rings.end[k]))
         R = rings.radius[k]
         square = np.minimum(square, along**2 + r**2 + R**2 - 2.0 * r * R * np.cos(angle))
-    return np.sqrt(np.maximum(square, 0.0))
+    return np.asarray(np.sqrt(np.maximum(square, 0.0)))
 
 
 def just_beneath(pin: Pin, rings: tuple[str, ...]) -> Floats:

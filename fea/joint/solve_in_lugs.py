@@ -26,6 +26,7 @@ from fea.core.peak import Note, Peak, decides
 from fea.core.pin_loads import Floats, PinLoads
 from fea.cut.evaluate import CutAnswer
 from fea.cut.region import RingedCutPin
+from fea.harmonic.beneath import beneath
 from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
 from fea.joint.cell_pressure import CellPressure
 from fea.joint.contact import Pressed
@@ -176,12 +177,13 @@ def _failed(given: InLugs, name: str, why: str) -> LugSolution:
 
 @dataclass(frozen=True)
 class Near:
-    """On the first mesh: the governing instant of a case, and which (T,) are so near its maximum
-    that they may govern.
+    """On the first mesh: the instant of a case's largest stress of the surface, this (Pa, where it
+    is known), and which (T,) are so near to it that they may govern.
     """
 
     instant: int
     may: NDArray[np.bool_]
+    largest: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -193,8 +195,8 @@ class Compared:
 
     @property
     def row(self) -> Comparison:
-        """That of the larger one."""
-        return max(self.surface, self.section, key=lambda x: x.stress.row)
+        """That of the larger one, of which the joint was varied."""
+        return max(self.surface, self.section, key=lambda x: (bool(x.over), x.stress.row))
 
     def fine(self, asked: Asked) -> bool:
         """Whether finer cells would not help."""
@@ -260,7 +262,7 @@ class _Contact:
             may = answer.maxima(x, MAY * largest) > MAY * largest
             if self.given.cut is not None:  # any may govern where it is cut
                 may[:] = True
-            out[x.case] = Near(instant, may)
+            out[x.case] = Near(instant, may, largest)
         return out
 
     def follow(self, near: Mapping[str, Near]) -> None:
@@ -302,14 +304,17 @@ class _Contact:
         """By case, at the instants of the largest stress of the surface on the first mesh and of
         sections.
         """
-        at, which = list[JointContact](), dict[str, tuple[int, int]]()
+        at, vary, which = list[JointContact](), list[bool](), dict[str, tuple[int, int]]()
         for case, links in self.instants.items():
-            both = near[case].instant, self.sections[case].largest(self.on_rings(links))[1]
+            stress, instant = self.sections[case].largest(self.on_rings(links))
+            both = near[case].instant, instant
             each = dict.fromkeys(both)
             first, second = (len(at) + list(each).index(t) for t in both)
             which[case] = first, second
             at += [self._joined(links, t) for t in each]
-        found = compare(self.model, at, asked, self._patterns)
+            governs = both[stress > near[case].largest]
+            vary += [t == governs for t in each]
+        found = compare(self.model, at, asked, self._patterns, vary)
         return {case: Compared(found[a], found[b]) for case, (a, b) in which.items()}
 
     def solved(
@@ -389,7 +394,7 @@ class _Contact:
         pressure = CellPressure(contact.bands, pressed.pressure, pressed.angle)
         cut, answer = self.given.cut, solution.answer
         if isinstance(answer, HarmonicAnswer):
-            error = known.surface.cells.beneath
+            error = known.surface.cells.beneath + self._by_mesh(answer, known.surface)
             place = contact_place(contact, material, answer, solved, asked.required, error)
             solution = replace(solution, peak=with_contact(peak, place))
         if cut is None or not isinstance(answer, CutAnswer):
@@ -397,6 +402,11 @@ class _Contact:
         left = neglected(cut, material, contact, pressure, answer)
         peak = with_neglected(peak, left, answer, over.variations, asked)
         return LugSolution(replace(solution, peak=peak), joint, self.press, pressure)
+
+    def _by_mesh(self, answer: HarmonicAnswer, known: Comparison) -> float:
+        """By how much what lies beneath contact differs from that on the first mesh, relative."""
+        there = beneath(answer.fields, self.press(known.links), answer.singularities).value
+        return abs(known.stress.beneath / there - 1.0) if there else 0.0
 
     def _compared_anew(self, asked: Asked) -> Callable[[JointContact], Comparison]:
         return lambda contact: compare(self.model, [contact], asked, self._patterns)[0]
