@@ -5,7 +5,7 @@ surface that shares nothing with the program's own: what rows are tried on.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -61,17 +61,13 @@ def _trial(rng: np.random.Generator, k: int) -> PinTrial:
             segments += parts
             shape.append(kind)
         thick = d * float(rng.uniform(0.3, 1.5))
-        segments.append(Segment(thick, own, bore, connection=name, fillet=_corner(segments)))
+        segments.append(Segment(thick, own, bore, connection=name))
         lugs.append(_lug(rng, name, own, thick))
     segments.append(Segment(d * float(rng.uniform(0.05, 0.4)), own, bore))
     title = f"{k}: {' '.join(shape)}{', a tube' if bore else ''}"
     loads = _loads(rng, names, d, 4 if k % 3 == 2 else 1)
     between = {} if loads.times is None else {"pull": _between(loads)}
     return PinTrial(InLugs(Pin(title, tuple(segments)), STEEL, tuple(lugs), (loads,), between))
-
-
-def _corner(before: Sequence[Segment]) -> float | None:
-    return None
 
 
 def _gap(
@@ -130,14 +126,17 @@ def _between(loads: PinLoads) -> Between:
     def at(times: Floats) -> PinLoads:
         flat = loads.forces.reshape(len(loads), -1)
         rows = np.stack([np.interp(times, known, column) for column in flat.T], axis=1)
-        return replace(loads, forces=rows.reshape(len(times), *loads.forces.shape[1:]), times=times)
+        forces = rows.reshape(len(times), *loads.forces.shape[1:])
+        return PinLoads(loads.case, loads.surfaces, forces, times=times)
 
     return at
 
 
 @dataclass(frozen=True)
 class Checked:
-    """A row, Pa, with its error, and the largest stress that the other reader finds at (z, angle)."""
+    """A row, Pa, with its error, and the largest stress that the other reader finds, Pa, at z, m,
+    and an angle, degrees.
+    """
 
     row: float
     error: float
