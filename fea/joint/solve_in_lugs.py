@@ -17,7 +17,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.asked import Asked
+from fea.asked import Asked, decided
 from fea.core.equilibrium import out_of_balance
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
@@ -115,7 +115,7 @@ def solve_in_lugs(
         contact.follow(near)
         compared = contact.compared(near, asked)
         last = finer is None or _count(model, finer) > MOST_CELLS
-        fine = {c: x for c, x in compared.items() if last or x.fine(asked)}
+        fine = {c: x for c, x in compared.items() if last or x.fine(given.material, asked)}
         for case, found in contact.solved(fine, asked, progress).items():
             if last or _enough(found.solution.peak, given.material, asked):
                 done[case] = found
@@ -198,15 +198,20 @@ class Compared:
         """That of the larger one, of which the joint was varied."""
         return max(self.surface, self.section, key=lambda x: (bool(x.over), x.stress.row))
 
-    def fine(self, asked: Asked) -> bool:
-        """Whether finer cells would not help."""
+    def fine(self, material: Material, asked: Asked) -> bool:
+        """Whether finer cells would not help: they take little of the tolerance, or the required
+        factor is decided whatever they do.
+        """
         both = (self.surface, "surface"), (self.section, "section")
         stress = {name: float(getattr(x.stress, name)) for x, name in both}
         cells = {name: float(getattr(x.cells, name)) for x, name in both}
         largest = max(stress.values()) or 1.0
         own = cells[max(stress, key=lambda name: stress[name])]
         most = max(stress[name] * (1.0 + cells[name]) for name in stress) / largest - 1.0
-        return max(own, most) <= CELLS * asked.tolerance
+        off = max(own, most)
+        if off <= CELLS * asked.tolerance:
+            return True
+        return decided(asked, material, largest / (1.0 + off), largest * (1.0 + off))
 
     def near(
         self, contact: JointContact, case: PinLoads, anew: Callable[[JointContact], Comparison]
