@@ -109,9 +109,7 @@ def _model(trial: PinTrial, size: Cells) -> JointModel:
 def _stress(model: JointModel, contact: JointContact, meshes: int) -> tuple[list[float], Floats]:
     """The surface on each mesh; surface, section and what lies beneath on the last, Pa."""
     asked = Asked(model="harmonic", meshes=meshes, tolerance=1e-9)
-    (found,) = solve_pin(
-        model.pin, model.material, (), (contact.loads,), asked, first=model.first
-    )
+    (found,) = solve_pin(model.pin, model.material, (), (contact.loads,), asked, first=model.first)
     assert isinstance(found.answer, HarmonicAnswer)
     history = [step.max_von_mises for step in found.peak.history]
     below = beneath(found.answer.fields, contact.loads, found.answer.singularities).value

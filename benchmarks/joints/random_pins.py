@@ -82,6 +82,7 @@ def _gap(
     if draw < 0.45:
         return [Segment(d * float(rng.uniform(0.01, 0.5)), own, bore)], own, "gap"
     if draw < 0.7 and own > d * 1.01:  # down again
+        rho *= (own - d) / (2.0 * height)
         rest = Segment(near + rho, d, bore)
         return [Segment(d * float(rng.uniform(0.02, 0.2)), own, bore, fillet=rho), rest], d, "step"
     if draw < 0.85 and own < d * 1.01:

@@ -159,7 +159,7 @@ class _Body:
         @BilinearForm
         def work(u, v, w):  # type: ignore[no-untyped-def]
             e, f, r = sym_grad(u), sym_grad(v), w.x[0]
-            et, ft = u.value[0] / r, v.value[0] / r
+            et, ft = u[0] / r, v[0] / r
             volume = rest * (trace(e) + et) * (trace(f) + ft)
             return 2.0 * np.pi * r * (volume + 2.0 * shear * (ddot(e, f) + et * ft))
 
@@ -171,8 +171,8 @@ class _Body:
         u[self.free] = -self.moved @ force
         field = self.basis.interpolate(u)
         (rr, rz), (_, zz) = (row for row in np.asarray(sym_grad(field)))
-        r, z = self.basis.global_coordinates().value
-        tt = field.value[0] / r
+        r, z = np.asarray(self.basis.global_coordinates())
+        tt = np.asarray(field)[0] / r
         shear = self.lame[1]
         square = (rr - tt) ** 2 + (tt - zz) ** 2 + (zz - rr) ** 2 + 6.0 * rz**2
         return float(2.0 * shear * np.sqrt(0.5 * square[z > near].max()))
