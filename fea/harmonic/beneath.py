@@ -13,7 +13,7 @@ import numpy as np
 
 from fea.core.pin_loads import AnyLoads, PinLoads
 from fea.core.places import BENEATH
-from fea.core.pressed import ANGLES, BINS, SAME, PressedArcs
+from fea.core.pressed import ANGLES, BINS, SAME, PressedArcs, Rings
 from fea.core.voigt import von_mises
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.superposition import Circumference
@@ -42,7 +42,7 @@ class Away:
 
     def __init__(self, points: Floats, pressed: PressedArcs) -> None:
         self.pressed, self._known = pressed, dict[int, Ints]()
-        near = _arcs_within(points, pressed, 2.0 * BENEATH * pressed.rings.radius)
+        near = arcs_within(points, pressed.rings, 2.0 * BENEATH * pressed.rings.radius)
         some = (near >= 0).any(axis=1)
         self._near = near[some]
         self._row = np.full(len(points), -1)
@@ -65,11 +65,10 @@ class Away:
         return out
 
 
-def _arcs_within(points: Floats, pressed: PressedArcs, distance: Floats) -> Ints:
+def arcs_within(points: Floats, rings: Rings, distance: Floats) -> Ints:
     """How many arcs from a pressed one on a ring points (S, 2) are nearer to it than a distance
     (R,), m: (S, R), -1 where they are farther anyway.
     """
-    rings = pressed.rings
     r, z = points[:, :1], points[:, 1:]
     along = np.maximum(0.0, np.maximum(rings.start - z, z - rings.end))
     rest = along**2 + (r - rings.radius) ** 2 - distance**2  # 2 r R (cos a - 1) more with the angle

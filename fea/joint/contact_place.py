@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.places import BandPressure, ContactPlace, PressedCell
+from fea.cut.evaluate import CutAnswer
 from fea.harmonic.beneath import Beneath, beneath, reach
 from fea.harmonic.evaluate import HarmonicAnswer
 from fea.joint.edge_peak import contact_edges
@@ -17,7 +20,7 @@ from geometry.arrays import Ints
 def contact_place(
     contact: JointContact,
     material: Material,
-    answer: HarmonicAnswer,
+    answer: HarmonicAnswer | CutAnswer,
     loads: PinLoads,
     required: float | None,
     error: float,
@@ -25,11 +28,11 @@ def contact_place(
     """contact: at the row's instant. loads: on the rings at all instants of the case; error: of
     what lies beneath, relative.
     """
-    zones, fields = answer.singularities, answer.fields
-    found = beneath(fields, loads, zones)
+    under = answer if isinstance(answer, CutAnswer) else _Plain(answer)
+    found = under.beneath(loads)
     limits = reached(material, required)
     instants = dict.fromkeys((found.instant, _instant(loads, contact)))
-    each = [reach(fields, loads, t, zones, limits) for t in instants] if limits else []
+    each = [under.reach(loads, t, limits) for t in instants] if limits else []
     most = [max(values) for values in zip(*each, strict=True)]
     return ContactPlace(
         found.value,
@@ -41,6 +44,19 @@ def contact_place(
         contact_edges(contact, material),
         tuple(_band(contact, b, material) for b in range(len(contact.lugs))),
     )
+
+
+@dataclass(frozen=True)
+class _Plain:
+    """A pin without cuts, asked as one with them is."""
+
+    answer: HarmonicAnswer
+
+    def beneath(self, loads: PinLoads) -> Beneath:
+        return beneath(self.answer.fields, loads, self.answer.singularities)
+
+    def reach(self, loads: PinLoads, instant: int, limits: tuple[float, ...]) -> tuple[float, ...]:
+        return reach(self.answer.fields, loads, instant, self.answer.singularities, limits)
 
 
 def reached(material: Material, required: float | None) -> tuple[float, ...]:
