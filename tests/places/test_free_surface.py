@@ -119,8 +119,8 @@ def test_the_free_surface_is_that_of_its_definition(solved: Solved) -> None:
     all else is, but where a lug's edge stands for it.
     """
     of, free = solved.of, solved.free
-    stands = {k for _, between in of.beside.values() for k in between.tolist()}
-    plain = [k for k in np.flatnonzero(of.relieved < 0).tolist() if k not in of.beside]
+    stands = {k for cusp in of.cusps.values() for k in cusp.between.tolist()}
+    plain = [k for k in np.flatnonzero(of.relieved < 0).tolist() if k not in of.cusps]
     points = np.sort(np.random.default_rng(0).choice(plain, 300, replace=False))
     partly = 0
     for instant in range(2):
@@ -141,17 +141,17 @@ def test_the_free_surface_is_that_of_its_definition(solved: Solved) -> None:
 def test_the_edges_of_lugs_are_read_where_all_beside_them_is(solved: Solved) -> None:
     """And then instead of what is between, which feels the last step of the pressure."""
     of, free = solved.of, solved.free
-    assert of.beside or not solved.pressed.rings.edge.any()  # rings may be too long for a fit
+    assert of.cusps or not solved.pressed.rings.edge.any()  # rings may be too long for a fit
     for instant in range(2):
         seen = np.zeros(BINS, dtype=bool)
-        for edge, (near, between) in of.beside.items():
+        for edge, cusp in of.cusps.items():
             (read,) = free.read(np.array([edge]), np.array([instant]))
-            each = free.read(near, np.full(len(near), instant))
+            each = free.read(cusp.near, np.full(len(cusp.near), instant))
             assert np.array_equal(read, each.all(axis=0))
-            inner = free.read(between, np.full(len(between), instant))
+            inner = free.read(cusp.between, np.full(len(cusp.between), instant))
             assert not (inner & read).any()
             seen |= read
-        assert seen.any() or not of.beside
+        assert seen.any() or not of.cusps
 
 
 def test_pressed_surface_is_read_away_from_the_edges_of_lugs(solved: Solved) -> None:
