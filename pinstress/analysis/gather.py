@@ -222,6 +222,7 @@ def _pin_result(
         safety_factor_interval=_factors(peak, strength),
         error_parts={} if peak.parts is None else asdict(peak.parts),
         loads=_governing_loads(task, here),
+        places=peak.places,
     )
 
 

@@ -25,6 +25,7 @@ from fea.core.dimensions import (
     Velocity,
 )
 from fea.core.peak import Refinement, SingularZone
+from fea.core.places import Places
 from fea.fatigue.records import PointFatigue, PointHistory
 from fea.joint.records import JointResult
 from fea.plastic.records import LimitLoad
@@ -130,7 +131,8 @@ class PinResult:
     the history; the intervals are those over half and twice the excluded distance, and
     error_estimate reaches both ends. error_parts: stresses by what they come from (mesh, time,
     ..). loads: at the governing instant. joint: contact with the lugs there, if that holds the pin.
-    second_opinion: that of CalculiX, if there is one. limit_load: past yield, if requested.
+    second_opinion: that of CalculiX, if there is one. limit_load: past yield, if requested. places:
+    surface, section and contact, of which the maximum is the larger of the first two.
     """
 
     pin: str
@@ -166,6 +168,7 @@ class PinResult:
     limit_load: LimitLoad | None = None
     required: float | None = None
     depends_on: tuple[Dependence, ...] = ()
+    places: Places | None = None
 
     @property
     def meets_required(self) -> bool | None:
