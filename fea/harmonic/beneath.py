@@ -98,23 +98,36 @@ def beneath(fields: MeridianFields, loads: AnyLoads, zones: tuple[Singularity, .
     return Beneath(top.value, at, top.instant)
 
 
-def reach(
+def depths(
     fields: MeridianFields,
     loads: PinLoads,
     instant: int,
     zones: tuple[Singularity, ...],
-    limits: tuple[float, ...],
-) -> tuple[float, ...]:
-    """How far, m, from every pressed cell von Mises stress exceeds limits, Pa, at an instant."""
+    least: float,
+) -> tuple[tuple[float, float], ...]:
+    """Pairs of a stress, Pa, and the distance, m, from every pressed cell to which it reaches at an
+    instant: falling stresses above a least one, each farther than all before.
+    """
     assert loads.pressed is not None
     rows = np.flatnonzero(_away_from(zones, fields))
     around = Circumference(fields, loads)
-    rows = rows[around.reach(rows, np.array([instant]))[:, 0] > min(limits)]
+    rows = rows[around.reach(rows, np.array([instant]))[:, 0] > least]
     if not len(rows):
-        return (0.0,) * len(limits)
-    stress = von_mises(around.stress(rows, instant, ANGLES[::EVERY]))
-    away = _distance(fields.points[rows], loads.pressed, instant)[:, ::EVERY]
-    return tuple(float(away[stress > limit].max(initial=0.0)) for limit in limits)
+        return ()
+    stress = von_mises(around.stress(rows, instant, ANGLES[::EVERY])).ravel()
+    return stairs(stress, _distance(fields.points[rows], loads.pressed, instant).ravel(), least)
+
+
+def stairs(stress: Floats, away: Floats, least: float = 0.0) -> tuple[tuple[float, float], ...]:
+    """Of points with a stress and a distance (N,) each: those that no point with more of both
+    covers, by falling stress.
+    """
+    order = np.lexsort((-away, -stress))
+    order = order[stress[order] > least]
+    farthest = np.maximum.accumulate(np.concatenate([[0.0], away[order]]))
+    farther = away[order] > farthest[:-1]
+    at = order[farther]
+    return tuple(zip(stress[at].tolist(), away[at].tolist(), strict=True))
 
 
 def _away_from(zones: tuple[Singularity, ...], fields: MeridianFields) -> Mask:
@@ -124,18 +137,19 @@ def _away_from(zones: tuple[Singularity, ...], fields: MeridianFields) -> Mask:
 
 
 def _distance(points: Floats, pressed: PressedArcs, instant: int) -> Floats:
-    """Of points (S, 2) at all arcs from the nearest pressed cell, (S, BINS) m."""
+    """Of points (S, 2) at every EVERY-th arc from the nearest pressed cell, m."""
     rings, on = pressed.rings, pressed.on[instant]
     r, z = points[:, :1], points[:, 1:]
-    square = np.full((len(points), BINS), np.inf)
-    for k, arcs in enumerate(arcs_apart(on)):
+    apart = arcs_apart(on)[:, ::EVERY]
+    square = np.full((len(points), apart.shape[1]), np.inf)
+    for k, arcs in enumerate(apart):
         if not on[k].any():
             continue
         angle = np.minimum(np.maximum(arcs - 0.5, 0.0) * 2.0 * np.pi / BINS, np.pi)
         along = np.maximum(0.0, np.maximum(rings.start[k] - z, z - rings.end[k]))
         R = rings.radius[k]
         square = np.minimum(square, along**2 + r**2 + R**2 - 2.0 * r * R * np.cos(angle))
-    return np.sqrt(np.maximum(square, 0.0))
+    return np.asarray(np.sqrt(np.maximum(square, 0.0)))
 
 
 def just_beneath(pin: Pin, rings: tuple[str, ...]) -> Floats:

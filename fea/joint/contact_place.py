@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.places import BandPressure, ContactPlace, PressedCell
-from fea.harmonic.beneath import Beneath, beneath, reach
+from fea.harmonic.beneath import Beneath, beneath, depths, stairs
 from fea.harmonic.evaluate import HarmonicAnswer
 from fea.joint.edge_peak import contact_edges
 from fea.joint.solve_joint import JointContact
@@ -21,26 +23,32 @@ def contact_place(
     loads: PinLoads,
     required: float | None,
     error: float,
+    row: float,
 ) -> ContactPlace:
     """contact: at the row's instant. loads: on the rings at all instants of the case; error: of
-    what lies beneath, relative.
+    what lies beneath, relative. row: the maximum of surface and section, Pa, below which no
+    outcome asks how far stress reaches.
     """
     zones, fields = answer.singularities, answer.fields
     found = beneath(fields, loads, zones)
     limits = reached(material, required)
     instants = dict.fromkeys((found.instant, _instant(loads, contact)))
-    each = [reach(fields, loads, t, zones, limits) for t in instants] if limits else []
-    most = [max(values) for values in zip(*each, strict=True)]
-    return ContactPlace(
+    least = min(row, *limits) if limits else row
+    each = [x for t in instants for x in depths(fields, loads, t, zones, least)]
+    known = stairs(*np.array(each).reshape(-1, 2).T)
+    place = ContactPlace(
         found.value,
         error * found.value,
         found.location,
         _time(loads, found),
-        most[0] if most else None,
-        most[1] if len(most) > 1 else None,
+        None,
+        None,
         contact_edges(contact, material),
         tuple(_band(contact, b, material) for b in range(len(contact.lugs))),
+        known,
     )
+    reach, required_too = (*(place.depth(x) for x in limits), None, None)[:2]
+    return replace(place, reach=reach, reach_required=required_too)
 
 
 def reached(material: Material, required: float | None) -> tuple[float, ...]:

@@ -389,8 +389,8 @@ class _Contact:
         pressure = CellPressure(contact.bands, pressed.pressure, pressed.angle)
         cut, answer = self.given.cut, solution.answer
         if isinstance(answer, HarmonicAnswer):
-            error = known.surface.cells.beneath
-            place = contact_place(contact, material, answer, solved, asked.required, error)
+            error, row = known.surface.cells.beneath, peak.max_von_mises or 0.0
+            place = contact_place(contact, material, answer, solved, asked.required, error, row)
             solution = replace(solution, peak=with_contact(peak, place))
         if cut is None or not isinstance(answer, CutAnswer):
             return LugSolution(solution, joint, self.press, pressure, model.pin, model)
