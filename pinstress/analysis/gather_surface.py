@@ -24,12 +24,12 @@ from fea.surface_fields import (
     unit_surface,
     unread,
 )
+from geometry.arrays import Ints
 from pinstress.analysis.gather_fields import shown_at
 from pinstress.analysis.gather_section import half_section
 from pinstress.analysis.thinning import fewer_loads, meridian_points
 from pinstress.model.cases import CaseLoads
 from pinstress.model.tasks import Task
-from geometry.arrays import Ints
 from reports.data.surface import SECTORS, LoadCourse, Mask, Surface, SurfaceCase
 
 

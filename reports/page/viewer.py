@@ -63,7 +63,9 @@ def pin_views(results: Results, pin: str) -> list[PinView]:
         "strength": surfaces[0].yield_strength,
         "required": results.required_safety_factor,
         "surfaces": [_surface(s) for s in surfaces],
-        "cases": [_case(c, found[c.case], k, s) | _row(found[c.case], results) for c, k, s in shown],
+        "cases": [
+            _case(c, found[c.case], k, s) | _row(found[c.case], results) for c, k, s in shown
+        ],
         "opens": opens,
         "box": box.tolist(),
         "centre": (0.5 * (box[0] + box[-1])).tolist(),

@@ -92,7 +92,7 @@ const startView = (root, paint, data) => {
     const when = chosen.times ? `t = ${short(chosen.times[k])} ${units.time}${governs() ? ", the governing instant" : ""}: ` : "";
     const error = governs() ? ` (${chosen.error})` : "";
     const where = `${chosen.unread ? " of the surface" : ""}${chosen.zoned ? " outside the excluded zones" : ""}`;
-    const factor = strength ? `; safety factor ${(governs() && chosen.factor) || written(strength / value)} (${chosen.verdict})` : "";
+    const factor = strength ? `; safety factor ${(governs() && chosen.factor) || written(strength / value, 3)} (${chosen.verdict})` : "";
     const largest = when ? "maximum" : "Maximum";
     one("told").textContent = `${when}${largest} von Mises stress${where} ${written(value)} ${units.stress}${error}${factor}.${governs() && chosen.row ? ` ${chosen.row}` : ""}`;
     one("told").dataset.maximum = value;
@@ -228,11 +228,13 @@ const startView = (root, paint, data) => {
     chosen.zones.some(([r, height, radius]) => Math.hypot(Math.hypot(x, y) - r, z - height) < radius * (1 - 1e-6))
     || Boolean(chosen.excluded && !inside && corners.some((v) => chosen.excluded[v])));
   const byLugs = ({ corners, inside }) => Boolean(!pressed() && mesh.unread && !inside && corners.some((v) => mesh.unread[v]));
+  // The largest stress beside a lug is read up to the edge, from where vertices are hidden.
+  const atMaximum = ({ place }) => Boolean(mesh.unread && governs() && !pressed() && Math.hypot(...place.map((x, i) => x - chosen.location[i])) < 1e-3 * data.size);
   const read = (found) => {
     const [x, y, z] = found.place, degrees = (Math.atan2(y, x) * 180) / Math.PI, radius = Math.hypot(x, y);
-    const value = found.value, shown = pressed() ? "contact pressure" : "von Mises stress";
+    const most = atMaximum(found), value = most ? chosen.maxima[chosen.instant] : found.value, shown = pressed() ? "contact pressure" : "von Mises stress";
     const factor = strength && !pressed() ? `, safety factor ${written(strength / value, 3)}` : "";
-    const what = byLugs(found) ? "pressed by a lug: contact is judged by itself" : excluded(found) ? "excluded zone, stress not evaluated" : `${shown} ${written(value)} ${units.stress}${factor}`;
+    const what = !most && byLugs(found) ? "pressed by a lug: contact is judged by itself" : excluded(found) ? "excluded zone, stress not evaluated" : `${shown} ${written(value)} ${units.stress}${factor}`;
     return { value, z, angle: degrees, radius, place: found.place, text: `${what}; z = ${short(z, 4)} ${units.length}, angle ${short(Number(degrees.toFixed(1)), 4)}°, radius ${short(radius, 4)} ${units.length}` };
   };
 
