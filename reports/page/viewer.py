@@ -24,6 +24,7 @@ WHOLE = 32767  # loads are integers up to this, scaled by the largest
 FINE = 4095  # the same of stresses, scaled by the largest at a point; thinning leaves 8e-3 of it
 COARSE = 127  # the same of displacements, which are shown by nothing but the shape
 PARTS = 4095  # stresses on a section are integers up to this, at the maximum
+MOSTLY = 90.0  # per cent of cells under pressure whose colours differ
 BENEATH = 0.999  # of the maximum; if the whole surface is below it, the maximum is inside
 
 
@@ -204,10 +205,18 @@ def _pressure(case: SurfaceCase) -> dict[str, Any] | None:
     return {
         "sectors": case.pressure.shape[1],
         "first": case.first,
-        "largest": float(case.pressure.max()),
+        "top": _top(case.pressure),
         "rings": packed(case.rings, "<i2"),
         "cells": packed(case.pressure, "<f4"),
     }
+
+
+def _top(pressure: Floats) -> float:
+    """At which the colours end, Pa: beyond it are cells at the edges of lugs, whose pressure says
+    how small they are.
+    """
+    some = pressure[pressure > 0.0]
+    return float(np.percentile(some, MOSTLY)) if len(some) else 0.0
 
 
 def _turn(box: Floats, location: tuple[float, ...] | None) -> list[list[float]]:

@@ -106,7 +106,7 @@ const startView = (root, paint, data) => {
     draw();
   };
 
-  const top = () => (pressed() ? chosen.pressure.largest : chosen.maxima[chosen.instant]) || 1;
+  const top = () => (pressed() ? chosen.pressure.top : chosen.maxima[chosen.instant]) || 1;
   // Where a stress is on the colour bar, of its length.
   const along = (stress) => (factors() ? 1 + Math.log10(stress / top()) / DECADES : stress / top());
   const scale = () => {
@@ -114,7 +114,7 @@ const startView = (root, paint, data) => {
     one("unit").textContent = factors() ? `safety factor (${chosen.verdict})` : `${shown} [${units.stress}]`;
     const ticks = factors() ? decadeTicks(least, least * 10 ** DECADES).map((f) => [along(strength / f), short(f, 3)]) : roundTicks(0, top()).map((s) => [along(s), short(s, 4)]);
     const clear = ticks.filter(([at]) => at < 0.8).map(([at, text]) => tick(at, text));
-    one("ticks").replaceChildren(...clear, tick(1, written(factors() ? least : top(), 3), "end"));
+    one("ticks").replaceChildren(...clear, tick(1, `${pressed() ? "≥ " : ""}${written(factors() ? least : top(), 3)}`, "end"));
     const marks = pressed() || !strength ? [] : [[strength, "yield", "black"], ...(allowed ? [[allowed, `required factor ${short(data.required)}`, "white"]] : [])];
     const on = marks.filter(([stress]) => along(stress) >= 0 && along(stress) <= 1), off = marks.filter((mark) => !on.includes(mark));
     one("marks").style.height = `${1.4 * on.length}em`;
