@@ -412,7 +412,8 @@ class _Contact:
             peak = row_of(peak, None, material, asked.tolerance)
             largest = peak.max_von_mises or 1.0
             error += left.error(largest, False, over.variations) / largest
-        place = contact_place(contact, material, answer, solved, asked.required, error)
+        row = peak.max_von_mises or 0.0
+        place = contact_place(contact, material, answer, solved, asked.required, error, row)
         solution = replace(solution, peak=with_contact(peak, place))
         if cut is not None:
             return LugSolution(solution, joint, self.press, pressure)
