@@ -7,9 +7,9 @@ METHOD = (
     "of a body of revolution on its half section, or a tetrahedral solid model. Meshes are refined "
     "until the grid convergence index is within the requested tolerance. All instants are "
     "superposed from unit-load solutions, so the maximum covers the whole motion.",
-    "At a sharp re-entrant corner, the edge of a clamp or the sharp edge of a lug, linear "
-    "elasticity predicts unbounded stress (a singularity). Stress is not evaluated within the "
-    "excluded distance of a singularity: a tenth of the local diameter, unless the study sets "
-    "another value. Not modelled: plasticity and friction in the pins; for pins without lugs, "
-    "contact and clearance.",
+    "At a sharp re-entrant corner or the edge of a clamp, linear elasticity predicts unbounded "
+    "stress (a singularity). Stress is not evaluated within the excluded distance of a "
+    "singularity: a tenth of the local diameter, unless the study sets another value, but no "
+    "farther than where a fillet, a groove or a hole begins. Not modelled: plasticity and friction "
+    "in the pins; for pins without lugs, contact and clearance.",
 )
