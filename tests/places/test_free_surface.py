@@ -12,7 +12,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.pressed import ANGLES, BINS, EDGE, PressedArcs
 from fea.core.voigt import von_mises
-from fea.harmonic.beneath import _distance, reach
+from fea.harmonic.beneath import EVERY, _distance, depths
 from fea.harmonic.evaluate import SectionProblem, harmonic_solution
 from fea.harmonic.free_surface import FreeSurface, SurfacePoints, surface_points
 from fea.harmonic.superposition import Circumference
@@ -191,13 +191,15 @@ def test_arcs_of_stacked_loads_follow_each_other(solved: Solved) -> None:
     assert not np.array_equal(solved.pressed.on[0], solved.pressed.on[1])
 
 
-def test_reach_is_how_far_stress_exceeds_a_limit(solved: Solved) -> None:
-    """All over the section and round it; less with a higher limit, nothing above the largest."""
+def test_depths_are_how_far_stress_exceeds_any_limit(solved: Solved) -> None:
+    """All over the section and round it, from the highest stress down: what reaches at least so
+    far.
+    """
     fields, loads = solved.of.fields, solved.contact.loads
     rows = np.flatnonzero(~np.isin(np.arange(len(fields.points)), fields.unread))
-    stress = von_mises(Circumference(fields, loads).stress(rows, 0, ANGLES[::8]))
-    away = _distance(fields.points[rows], solved.pressed, 0)[:, ::8]
-    limits = *np.quantile(stress, [0.7, 0.999]).tolist(), 2.0 * float(stress.max())
-    found = reach(fields, loads, 0, (), limits)
-    assert found == pytest.approx([float(away[stress > x].max(initial=0.0)) for x in limits])
-    assert found[0] >= found[1] > found[2] == 0.0
+    stress = von_mises(Circumference(fields, loads).stress(rows, 0, ANGLES[::EVERY]))
+    away = _distance(fields.points[rows], solved.pressed, 0)
+    found = depths(fields, loads, 0, (), 0.0)
+    for limit in np.quantile(stress, [0.3, 0.7, 0.99, 0.9999]).tolist():
+        expected = float(away[stress > limit].max(initial=0.0))
+        assert max((d for x, d in found if x > limit), default=0.0) == pytest.approx(expected)
