@@ -57,9 +57,9 @@ class ReadingPoint(Protocol):
 
 @dataclass(frozen=True)
 class OnSkin:
-    """Some points (P,) of the skin. edges: those they are on, and of the ones before and after these
-    those that go on smoothly; neighbours: (1 to 3 P,) each, numbers among these. of: (P,) the edge
-    of each point, likewise; at: (P,) which of its five it is.
+    """Some points (P,) of the skin. edges: those they are on, and the ones before and after these
+    that go on smoothly; neighbours: of each before and after it, numbers among these or -1. of:
+    (P,) the edge of each point, likewise; at: (P,) which of its five it is.
     """
 
     outline: Outline
@@ -117,7 +117,7 @@ class Relieved:
 
     def stress(self, material: Material, state: SectionState, n: Ints, u: Floats) -> Floats:
         found = self.point.stress(material, state, n, u)
-        return found - relief(material.poisson_ratio)[:, None] * found[0]
+        return np.asarray(found - relief(material.poisson_ratio)[:, None] * found[0])
 
 
 @dataclass(frozen=True)
