@@ -18,15 +18,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.core.pin_loads import AnyLoads
-from fea.core.pressed import BINS, ON, SAME, PressedArcs, Rings
+from fea.core.pressed import ANGLES, BINS, SAME, PressedArcs, Rings
 from fea.harmonic.fields import MeridianFields
-from fea.harmonic.superposition import Circumference
+from fea.harmonic.superposition import EVERY, Circumference
 from fea.harmonic.surface_stress import AT
 from geometry.arrays import Floats, Ints, Mask
 
 Floats32 = NDArray[np.float32]
-EDGE = 2  # pressed rings beyond the rounding of a lug's edge, whose pressed surface is not read
-MIDDLE = 0.3, 0.7  # of a ring, where the surface under pressure is read
 FAR = 0.06  # of the diameter, to where a cusp is fitted
 FEWEST = 6  # points to which it is
 SPAN = 2.0  # the farthest of them over the nearest
@@ -60,14 +58,15 @@ def surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfacePo
 def _surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfacePoints:
     skin, x = fields.stress[: fields.skin], fields.points[: fields.skin]
     middle = x[len(AT) // 2 :: len(AT), 1].repeat(len(AT))
-    ring = rings.at(x[:, 0], middle)
-    part = np.where(ring >= 0, (x[:, 1] - rings.start[ring]) / rings.length[ring], 0.0)
-    rows = np.flatnonzero((ring >= 0) & (part >= MIDDLE[0]) & (part <= MIDDLE[1]))
+    ring = rings.amid(x[:, 0], x[:, 1], middle)
+    rows = np.flatnonzero(ring >= 0)
     relieved = skin[rows] - relief(nu)[:, None] * skin[rows, :1]
     cusps = _cusps(x, middle, rings)
     continued = [np.einsum("p,pck->ck", c.weights(x[c.near, 1]), skin[c.near]) for c in cusps]
     places = np.array([c.place for c in cusps]).reshape(-1, 2)
     first, none = len(x) + len(rows), np.full(len(places), -1)
+    out = np.isin(np.arange(len(x)), fields.unread)
+    unread = np.concatenate([out, out[rows], [out[c.near].any() for c in cusps]]).astype(bool)
     return SurfacePoints(
         replace(
             fields,
@@ -75,7 +74,7 @@ def _surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfaceP
             stress=np.concatenate(
                 [skin, relieved, np.array(continued).reshape(-1, *skin.shape[1:])]
             ),
-            unread=fields.unread[fields.unread < fields.skin],
+            unread=np.flatnonzero(unread),
         ),
         np.concatenate([middle, middle[rows], places[:, 1]]),
         np.concatenate([np.full(len(x), -1), ring[rows], none]),
@@ -156,13 +155,8 @@ class FreeSurface:
         self._stands = np.zeros((len(of.relieved), len(self.edges)), dtype=bool)
         for k, cusp in enumerate(of.cusps.values()):
             self._stands[cusp.between, k] = True
-        rings, plain = pressed.rings, (of.relieved < 0)[:, None]
-        r, z, size = of.fields.points[:, :1], of.middle[:, None], rings.length
-        off = np.abs(r - rings.radius)
-        on = (off <= ON * size) & (z > rings.start) & (z < rings.end)
-        before = (off <= size) & (z > rings.start - size) & (z < rings.start)
-        after = (off <= size) & (z > rings.end) & (z < rings.end + size)
-        near = np.concatenate([x & plain for x in (on, before, after)], axis=1)
+        r, z = of.fields.points.T
+        near = pressed.rings.near(r, z, of.middle) & (of.relieved < 0)[:, None]
         near[self.edges] = False
         some = near.any(axis=1) | (of.relieved >= 0) | self._stands.any(axis=1)
         some[self.edges] = True
@@ -175,20 +169,20 @@ class FreeSurface:
         """Which of some points are read on a part of the circumference only."""
         return np.asarray(self._row[points] >= 0)
 
-    def read(self, points: Ints, instants: Ints) -> Mask:
-        """On which arcs (J, BINS) pairs of points and instants are read."""
-        out = np.ones((len(points), BINS), dtype=bool)
+    def read(self, points: Ints, instants: Ints, arcs: Ints | slice = EVERY) -> Mask:
+        """On which arcs (J, BINS), or some of them, pairs of points and instants are read."""
+        out = np.ones((len(points), len(ANGLES[arcs])), dtype=bool)
         some = self._row[points] >= 0
         for t in np.unique(instants).tolist():
             here = np.flatnonzero((instants == t) & some)
-            out[here] = self._at(points[here], t)
+            out[here] = self._at(points[here], t, arcs)
         return out
 
-    def _at(self, points: Ints, instant: int) -> Mask:
-        """Where masked points are read, (P, BINS)."""
+    def _at(self, points: Ints, instant: int, arcs: Ints | slice) -> Mask:
+        """Where masked points are read, (P, arcs)."""
         if instant not in self._known:
             self._known[instant] = self._arcs(instant)
-        shut, edges, inner = self._known[instant]
+        shut, edges, inner = (x[:, arcs] for x in self._known[instant])
         out = (self._near[self._row[points]] @ shut) == 0.0
         own = self.relieved[points]
         out[own >= 0] = inner[own[own >= 0]]
@@ -200,30 +194,16 @@ class FreeSurface:
         return np.asarray(out)
 
     def _arcs(self, instant: int) -> tuple[Floats32, Mask, Mask]:
-        """What each ring shuts of itself, of what is before and what is after it, (3 R, BINS); where
-        the edges of lugs are read, (E, BINS), and the middles of rings, (R, BINS).
+        """What each ring shuts (fea.core.pressed), (3 R, BINS); where the edges of lugs are read,
+        (E, BINS), and the middles of rings, (R, BINS).
         """
-        pressed, on = self.pressed, self.pressed.on[instant]
-        parts = np.concatenate([on, *pressed.last(instant)])
-        shut = pressed.widened(parts).astype(np.float32)
+        shut = self.pressed.shut(instant).astype(np.float32)
         edges = np.ones((len(self.edges), BINS), dtype=bool)
         for k, near in enumerate(self.beside):
             rows = self._row[near]
             edges[k] = ((self._near[rows[rows >= 0]] @ shut) == 0.0).all(axis=0)
-        return shut, edges, ~pressed.widened(self._at_edges(on))
-
-    def _at_edges(self, on: Mask) -> Mask:
-        """Which arcs (R, BINS) are the outermost pressed ones next to an edge of a lug: those under
-        its rounding and EDGE more, unless contact has receded from there.
-        """
-        rings, out = self.pressed.rings, np.zeros_like(on)
-        for b in np.unique(rings.band):
-            own = np.flatnonzero(rings.band == b)
-            for side in (own, own[::-1]):
-                rounded = int(np.cumprod(rings.edge[side]).sum())
-                near = side[: rounded + EDGE]
-                out[near] |= on[near] & on[side[: rounded + 1]].any(axis=0)
-        return out
+        inner = ~self.pressed.widened(self.pressed.at_edges(instant))
+        return shut, edges, inner
 
 
 def reader(fields: MeridianFields, loads: AnyLoads, nu: float) -> Circumference:
