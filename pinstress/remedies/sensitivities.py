@@ -79,18 +79,16 @@ def by_length(
     task: Task,
     joined: LugSolution,
     keys: Collection[str] | None = None,
-    place: Place | None = None,
 ) -> dict[str, float] | None:
     """The derivative of the largest von Mises stress of a pin in contact, solved, with respect to
     each of its lengths, Pa/m, by their keys in the pin's table: "profile[2].diameter", "fillet",
-    "lug.M.clearance"; None where it has no derivatives. keys: those asked for; without, all. place:
-    of surface or section; of the row without.
+    "lug.M.clearance"; None where it has no derivatives. keys: those asked for; without, all.
 
     Raises: MeshError, SolveError.
     """
     lengths = [x.of_joint for x in joint_parameters(study, task) if x.kind == "length"]
     asked = [x for x in lengths if keys is None or x.key in keys]
-    found = differentiated_in_lugs(joined, task, asked, alone=True, place=place)
+    found = differentiated_in_lugs(joined, task, asked, alone=True)
     return None if found is None else found.by_parameter
 
 
