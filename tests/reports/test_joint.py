@@ -219,24 +219,6 @@ def test_the_page_without_a_range(small: Results, tmp_path: Path) -> None:
     assert "what is not known" not in text
 
 
-def test_estimates_at_rounded_edges_are_shown_as_such(small: Results, tmp_path: Path) -> None:
-    first, *others = CONTACT.bands
-    edge = replace(first, edge_pressure=276_068.7, edge_von_mises=142_368.6)
-    odd = in_lugs(small, replace(CONTACT, bands=(edge, *others)))
-    text = parse(write_reports(odd, tmp_path)).text
-    assert "pressure at its edges [psi]" in text
-    assert "≈ 280,000" in text
-    assert "≈ 140,000" in text
-    assert "within 15 %" in text
-    assert "within 15 %" not in parse(write_reports(small, tmp_path)).text
-    found = joint_json(odd.pins[0].joint)
-    assert found is not None
-    assert found["bands"][0]["edge_pressure"] == 276_068.7
-    assert found["bands"][1]["edge_von_mises"] is None
-    row = dict(zip(joint_tables(odd)[0].columns, joint_tables(odd)[0].rows[0], strict=True))
-    assert (row["edge_pressure"], row["edge_von_mises"]) == (276_068.7, 142_368.6)
-
-
 def test_names_of_lugs_are_shown_and_not_run(small: Results, tmp_path: Path) -> None:
     odd = replace(CONTACT, bands=(replace(CONTACT.bands[0], name=EVIL), *CONTACT.bands[1:]))
     page = parse(write_reports(in_lugs(small, odd), tmp_path))

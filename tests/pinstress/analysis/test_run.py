@@ -29,7 +29,7 @@ def test_run_writes_what_the_contract_names(run_once: tuple[Path, str, str]) -> 
         assert (out / name).is_file(), name
     assert sorted(p.name for p in (folder / "out").iterdir()) == ["study"]
     results = json.loads((out / "results.json").read_text())
-    assert results["schema"] == "pinstress-results/1"
+    assert results["schema"] == "pinstress-results/2"
     assert results["units"] == {"length": "in", "force": "lbf", "stress": "psi", "time": "s"}
     (pin,) = results["pins"]
     assert (pin["pin"], pin["case"], pin["model"]) == ("B", "landing", "harmonic")

@@ -18,7 +18,7 @@ def make_joint(over: bool = True) -> JointResult:
             name=name,
             force=400.0 if name == "middle" else 200.0,
             contact_angle=81.25,
-            largest_pressure=987.6,
+            mean_pressure=987.6,
             line_load=((z + 0.25, 300.0), (z + 0.75, -100.0 if name == "left" else 100.0)),
             couple=12.5,
             clearance=0.0015,
