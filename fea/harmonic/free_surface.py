@@ -18,15 +18,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.core.pin_loads import AnyLoads
-from fea.core.pressed import BINS, ON, SAME, PressedArcs, Rings
+from fea.core.pressed import BINS, SAME, PressedArcs, Rings
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.superposition import Circumference
 from fea.harmonic.surface_stress import AT
 from geometry.arrays import Floats, Ints, Mask
 
 Floats32 = NDArray[np.float32]
-EDGE = 2  # pressed rings beyond the rounding of a lug's edge, whose pressed surface is not read
-MIDDLE = 0.3, 0.7  # of a ring, where the surface under pressure is read
 FAR = 0.06  # of the diameter, to where a cusp is fitted
 FEWEST = 6  # points to which it is
 SPAN = 2.0  # the farthest of them over the nearest
@@ -59,15 +57,16 @@ def surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfacePo
 def _surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfacePoints:
     skin, x = fields.stress[: fields.skin], fields.points[: fields.skin]
     middle = x[len(AT) // 2 :: len(AT), 1].repeat(len(AT))
-    ring = rings.at(x[:, 0], middle)
-    part = np.where(ring >= 0, (x[:, 1] - rings.start[ring]) / rings.length[ring], 0.0)
-    rows = np.flatnonzero((ring >= 0) & (part >= MIDDLE[0]) & (part <= MIDDLE[1]))
+    ring = rings.amid(x[:, 0], x[:, 1], middle)
+    rows = np.flatnonzero(ring >= 0)
     local = np.array([1.0, 2.0 * nu, 1.0, 0.0, 0.0, 0.0])[:, None]
     relieved = skin[rows] - local * skin[rows, :1]
     edges = _edges(x, middle, rings)
     continued = [np.einsum("p,pck->ck", e.weights, skin[e.near]) for e in edges]
     places = np.array([e.place for e in edges]).reshape(-1, 2)
     first = len(x) + len(rows)
+    out = np.isin(np.arange(len(x)), fields.unread)
+    unread = np.concatenate([out, out[rows], [out[e.near].any() for e in edges]]).astype(bool)
     return SurfacePoints(
         replace(
             fields,
@@ -75,7 +74,7 @@ def _surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfaceP
             stress=np.concatenate(
                 [skin, relieved, np.array(continued).reshape(-1, *skin.shape[1:])]
             ),
-            unread=fields.unread[fields.unread < fields.skin],
+            unread=np.flatnonzero(unread),
         ),
         np.concatenate([middle, middle[rows], places[:, 1]]),
         np.concatenate([np.full(len(x), -1), ring[rows], np.full(len(places), -1)]),
@@ -144,13 +143,8 @@ class FreeSurface:
         self._stands = np.zeros((len(of.relieved), len(self.edges)), dtype=bool)
         for k, (_, between) in enumerate(of.beside.values()):
             self._stands[between, k] = True
-        rings, plain = pressed.rings, (of.relieved < 0)[:, None]
-        r, z, size = of.fields.points[:, :1], of.middle[:, None], rings.length
-        off = np.abs(r - rings.radius)
-        on = (off <= ON * size) & (z > rings.start) & (z < rings.end)
-        before = (off <= size) & (z > rings.start - size) & (z < rings.start)
-        after = (off <= size) & (z > rings.end) & (z < rings.end + size)
-        near = np.concatenate([x & plain for x in (on, before, after)], axis=1)
+        r, z = of.fields.points.T
+        near = pressed.rings.near(r, z, of.middle) & (of.relieved < 0)[:, None]
         near[self.edges] = False
         some = near.any(axis=1) | (of.relieved >= 0) | self._stands.any(axis=1)
         some[self.edges] = True
@@ -188,30 +182,16 @@ class FreeSurface:
         return np.asarray(out)
 
     def _arcs(self, instant: int) -> tuple[Floats32, Mask, Mask]:
-        """What each ring shuts of itself, of what is before and what is after it, (3 R, BINS); where
-        the edges of lugs are read, (E, BINS), and the middles of rings, (R, BINS).
+        """What each ring shuts (fea.core.pressed), (3 R, BINS); where the edges of lugs are read,
+        (E, BINS), and the middles of rings, (R, BINS).
         """
-        pressed, on = self.pressed, self.pressed.on[instant]
-        parts = np.concatenate([on, *pressed.last(instant)])
-        shut = pressed.widened(parts).astype(np.float32)
+        shut = self.pressed.shut(instant).astype(np.float32)
         edges = np.ones((len(self.edges), BINS), dtype=bool)
         for k, near in enumerate(self.beside):
             rows = self._row[near]
             edges[k] = ((self._near[rows[rows >= 0]] @ shut) == 0.0).all(axis=0)
-        return shut, edges, ~pressed.widened(self._at_edges(on))
-
-    def _at_edges(self, on: Mask) -> Mask:
-        """Which arcs (R, BINS) are the outermost pressed ones next to an edge of a lug: those under
-        its rounding and EDGE more, unless contact has receded from there.
-        """
-        rings, out = self.pressed.rings, np.zeros_like(on)
-        for b in np.unique(rings.band):
-            own = np.flatnonzero(rings.band == b)
-            for side in (own, own[::-1]):
-                rounded = int(np.cumprod(rings.edge[side]).sum())
-                near = side[: rounded + EDGE]
-                out[near] |= on[near] & on[side[: rounded + 1]].any(axis=0)
-        return out
+        inner = ~self.pressed.widened(self.pressed.at_edges(instant))
+        return shut, edges, inner
 
 
 def reader(fields: MeridianFields, loads: AnyLoads, nu: float) -> Circumference:

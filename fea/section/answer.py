@@ -31,7 +31,8 @@ from geometry.arrays import Floats
 
 ALONG = 9  # sections between two stations, both ends included
 ACROSS = np.linspace(0.0, 1.0, 9)  # of the way from bore to outside, where stress is read
-CLOSER = 33  # points between two of these, and about the angle, near the largest
+CLOSER = 33  # points between two of these, about the angle, and along the pin, near the largest
+SAME = 1e-9  # relative: a section must have so much more than another
 NEAR = np.radians(2.0)  # of that angle
 
 
@@ -128,16 +129,27 @@ class SectionAnswer:
         """Where and when the largest is, and what acts there."""
         top = self._top(loads)
         row = top.point // len(ACROSS)
-        section = self.forces.sections[self._cells[row]]
-        z = float(self._z[row])
-        inside = self.forces.inside(self._cells[[row]], self._z[[row]])[0]
-        c = shares(self.forces.loads, self._felt(loads))[top.instant]
-        V, M, N, T = (inside[q] @ c.T for q in (SHEAR, MOMENT, AXIAL, TORQUE))
-        value, r, angle = self._closer(section, (V, M, N, T), top)
+        cell = self._cells[row]
+        section, z = self.forces.sections[cell], self._closer_z(row)
+        inside = self.forces.inside(np.full(len(z), cell), z)
+        forces = inside @ shares(self.forces.loads, self._felt(loads))[top.instant].T
+        found = [self._closer(section, tuple(x), top) for x in forces]
+        values = np.array([value for value, _, _ in found])
+        k = int(values.argmax()) if values.max() > (1.0 + SAME) * values[0] else 0
+        V, M, N, T = (forces[k, q] for q in (SHEAR, MOMENT, AXIAL, TORQUE))
+        value, r, angle = found[k]
         return AtSection(
-            value, top.instant, z, r, angle, float(N[0]), float(np.hypot(*V)),
+            value, top.instant, float(z[k]), r, angle, float(N[0]), float(np.hypot(*V)),
             float(np.hypot(*M)), float(T[1]), section,
         )  # fmt: skip
+
+    def _closer_z(self, row: int) -> Floats:
+        """A section by its number, and others near it between the same stations, m."""
+        z, cell = float(self._z[row]), self._cells[row]
+        start, end = self.forces.stations[cell : cell + 2]
+        step = (end - start) / (ALONG - 1)
+        near = np.linspace(max(start, z - step), min(end, z + step), CLOSER)
+        return np.concatenate([[z], near])
 
     def _closer(
         self, section: Circle, forces: tuple[Floats, ...], top: Top
