@@ -334,7 +334,7 @@ class HarmonicAnswer:
 
     def picture(self, loads: PinLoads, instant: int) -> Picture:
         """The surface at one instant, with its envelope over all."""
-        return revolve(self.fields, loads, instant)
+        return revolve(self.fields, loads, instant, self.solution.nu)
 
 
 def harmonic_result(

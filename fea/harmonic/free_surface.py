@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.core.pin_loads import AnyLoads
-from fea.core.pressed import BINS, SAME, PressedArcs, Rings
+from fea.core.pressed import ANGLES, BINS, SAME, PressedArcs, Rings
 from fea.harmonic.fields import MeridianFields
-from fea.harmonic.superposition import Circumference
+from fea.harmonic.superposition import EVERY, Circumference
 from fea.harmonic.surface_stress import AT
 from geometry.arrays import Floats, Ints, Mask
 
@@ -157,20 +157,20 @@ class FreeSurface:
         """Which of some points are read on a part of the circumference only."""
         return np.asarray(self._row[points] >= 0)
 
-    def read(self, points: Ints, instants: Ints) -> Mask:
-        """On which arcs (J, BINS) pairs of points and instants are read."""
-        out = np.ones((len(points), BINS), dtype=bool)
+    def read(self, points: Ints, instants: Ints, arcs: Ints | slice = EVERY) -> Mask:
+        """On which arcs (J, BINS), or some of them, pairs of points and instants are read."""
+        out = np.ones((len(points), len(ANGLES[arcs])), dtype=bool)
         some = self._row[points] >= 0
         for t in np.unique(instants).tolist():
             here = np.flatnonzero((instants == t) & some)
-            out[here] = self._at(points[here], t)
+            out[here] = self._at(points[here], t, arcs)
         return out
 
-    def _at(self, points: Ints, instant: int) -> Mask:
-        """Where masked points are read, (P, BINS)."""
+    def _at(self, points: Ints, instant: int, arcs: Ints | slice) -> Mask:
+        """Where masked points are read, (P, arcs)."""
         if instant not in self._known:
             self._known[instant] = self._arcs(instant)
-        shut, edges, inner = self._known[instant]
+        shut, edges, inner = (x[:, arcs] for x in self._known[instant])
         out = (self._near[self._row[points]] @ shut) == 0.0
         own = self.relieved[points]
         out[own >= 0] = inner[own[own >= 0]]

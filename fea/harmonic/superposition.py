@@ -374,13 +374,19 @@ class Circumference:
             forth[:, :EVEN, w], forth[:, EVEN:, w] = b[:, :EVEN], a[:, EVEN:]
         return back, forth
 
-    def envelope(self, points: Ints, angles: Floats) -> Floats:
-        """Largest von Mises stress (J, A) Pa over all instants at points (J,) and angles (rad)."""
-        parts = (points[k : k + FEWER] for k in range(0, len(points), FEWER))
-        out = [self._over_time(part, angles) for part in parts]
-        return np.asarray(np.sqrt(np.concatenate([np.zeros((0, len(angles))), *out])))
+    def envelope(self, points: Ints, angles: Floats, read: Mask | None = None) -> Floats:
+        """Largest von Mises stress (J, A) Pa over all instants at points (J,) and angles (rad);
+        read: (J, A, T) where it counts, all by default; -1 where it never does.
+        """
+        parts = (slice(k, k + FEWER) for k in range(0, len(points), FEWER))
+        out = [
+            self._over_time(points[part], angles, None if read is None else read[part])
+            for part in parts
+        ]
+        square = np.concatenate([np.zeros((0, len(angles))), *out])
+        return np.where(square < 0.0, -1.0, np.sqrt(np.maximum(square, 0.0)))
 
-    def _over_time(self, points: Ints, angles: Floats) -> Floats:
+    def _over_time(self, points: Ints, angles: Floats, read: Mask | None) -> Floats:
         """Its square (J, A): the numbers of every harmonic first, then those at each angle."""
         turns = np.outer(angles, self._n[[wave.start for wave in self._waves]])
         c, s = np.cos(turns), np.sin(turns)
@@ -395,6 +401,8 @@ class Circumference:
             if amounts:
                 at = np.tensordot(np.concatenate(signed, axis=1), np.stack(amounts), axes=1)
                 total += np.square(at, out=at).sum(axis=2)
+        if read is not None:
+            total[~read.swapaxes(0, 1)] = -1.0
         return np.asarray(total.max(axis=2).T)
 
     def stress(self, points: Ints, instant: int, angles: Floats) -> Floats:

@@ -50,5 +50,6 @@ def drawing_caption(shape: PinShape, units: Units, zoned: bool = True) -> str:
     more = zones * zoned + cuts * bool(shape.cuts) + solids * bool(shape.solids)
     return (
         f"Profile, lengths and diameters (⌀ outer / bore) in {units.length}. Blue: bearing bands; "
-        f"hatched: clamped; grey: free.{more} Material {shape.material}{weight}."
+        f"hatched: clamped; grey: free. Red dots: the surface's largest stress; a red line across: "
+        f"the section that governs instead.{more} Material {shape.material}{weight}."
     )
