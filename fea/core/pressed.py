@@ -3,9 +3,9 @@
 Beside a pressed cell stress is not that of the true, smooth pressure: cells end in steps, and the
 elements that touch one are off by 13 % of it, the next by 3, 1.3 and less than 1 %. So what counts
 as pressed is a cell with pressure, a sector more on both sides, and beyond the last pressed ring
-its own length. Everything else of the surface is free, however near to an edge: there the stress
-of a half-plane along its surface is that of the rest of the pin, for the pressure itself adds
-nothing beside where it acts.
+its own length (or that of the next ring, if that is shorter). Everything else of the surface is
+free, however near to an edge: there the stress of a half-plane along its surface is that of the
+rest of the pin, for the pressure itself adds nothing beside where it acts.
 """
 
 from __future__ import annotations
@@ -22,7 +22,10 @@ from geometry.arrays import Floats, Ints, Mask
 BINS = 360  # equal arcs about the axis, the first about x
 ANGLES = 2.0 * np.pi * np.arange(BINS) / BINS  # of their middles
 ON = 1e-3  # of a ring's length: nearer to its cylinder a point is on it
+ELEMENT = 0.25  # of a ring's length: elements at its ends are no larger (fea.harmonic.evaluate)
 SAME = 1e-9  # of the radius: ends of rings this near are one
+MIDDLE = 0.3, 0.7  # of a ring, where the surface under pressure is read
+EDGE = 2  # pressed rings beyond the rounding of a lug's edge, whose pressed surface is not read
 
 
 @dataclass(frozen=True)
@@ -57,6 +60,33 @@ class Rings:
         off = np.abs(r[:, None] - self.radius) <= ON * self.length
         on = off & (z[:, None] > self.start) & (z[:, None] < self.end)
         return np.where(on.any(axis=1), on.argmax(axis=1), -1)
+
+    def amid(self, r: Floats, z: Floats, middle: Floats) -> Ints:
+        """The ring (P,) in whose MIDDLE points are, m; -1 in none. middle: as of `near`."""
+        ring = self.at(r, middle)
+        part = np.where(ring >= 0, (z - self.start[ring]) / self.length[ring], 0.0)
+        return np.where((part >= MIDDLE[0]) & (part <= MIDDLE[1]), ring, -1)
+
+    def near(self, r: Floats, z: Floats, middle: Floats) -> Mask:
+        """Which points (P,), m, are under each ring, before it, and after it, within its own length
+        or that of the next one, if that is shorter: (P, 3 R). middle: (P,) z of the middle of the
+        element on which each is.
+        """
+        middle, (before, after) = middle[:, None], self._beside
+        off = np.abs(r[:, None] - self.radius)
+        under = (off <= ON * self.length) & (middle > self.start) & (middle < self.end)
+        first = (off <= before) & (middle > self.start - before) & (middle < self.start)
+        last = (off <= after) & (middle > self.end) & (middle < self.end + after)
+        return np.concatenate([under, first, last], axis=1)
+
+    @cached_property
+    def _beside(self) -> tuple[Floats, Floats]:
+        """How far before and after each ring, (R,) m, its step is felt."""
+        before, after = self.length.copy(), self.length.copy()
+        here = self.follows
+        before[1:][here] = np.minimum(before[1:], self.length[:-1])[here]
+        after[:-1][here] = np.minimum(after[:-1], self.length[1:])[here]
+        return before, after
 
     @cached_property
     def follows(self) -> Mask:
@@ -112,6 +142,25 @@ class PressedArcs:
         before, after = np.zeros_like(on), np.zeros_like(on)
         before[1:], after[:-1] = on[:-1] & follows, on[1:] & follows
         return on & ~before, on & ~after
+
+    def shut(self, instant: int) -> Mask:
+        """What each ring shuts of itself, of what is before and what is after it, (3 R, BINS)."""
+        first, last = self.last(instant)
+        return self.widened(np.concatenate([self.on[instant], first, last]))
+
+    def at_edges(self, instant: int) -> Mask:
+        """Which arcs (R, BINS) are the outermost pressed ones next to an edge of a lug: those under
+        its rounding and EDGE more, unless contact has receded from there.
+        """
+        on, rings = self.on[instant], self.rings
+        out: Mask = np.zeros_like(on)
+        for b in np.unique(rings.band):
+            own = np.flatnonzero(rings.band == b)
+            for side in (own, own[::-1]):
+                rounded = int(np.cumprod(rings.edge[side]).sum())
+                near = side[: rounded + EDGE]
+                out[near] |= on[near] & on[side[: rounded + 1]].any(axis=0)
+        return out
 
     def widened(self, arcs: Mask) -> Mask:
         """Arcs (.., BINS) with a sector more on both sides."""

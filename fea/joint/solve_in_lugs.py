@@ -3,21 +3,22 @@ the maximum depends on what is not known of the joint.
 
 Stress under the pressures is found as under any loads (fea.solve_pin), of a pin that nothing
 clamps. To the error of meshes and instants comes that of the cells: contact at the instant that
-governs on the first mesh is solved once more on cells twice as large, whose order is one at least,
-so that the difference counts whole; cells are refined until it is within half of the tolerance, or
-a quarter of what is uncertain anyway where stress near the edge of a lug governs. Where only a
-required factor is to be decided, larger cells come first, which take a third of the time.
+governs on the first mesh is solved once more on cells twice as large, and from the difference, by
+the order of cells, follows their error; they are refined until it is a part of the tolerance. Where
+only a required factor is to be decided, larger cells come first, which take a third of the time,
+and are enough if they decide it with their error, also for what lies beneath the contact.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.asked import Asked
+from fea.asked import Asked, decided
 from fea.core.equilibrium import out_of_balance
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
@@ -26,6 +27,7 @@ from fea.core.peak import Note, Peak, decides
 from fea.core.pin_loads import Floats, PinLoads
 from fea.cut.evaluate import CutAnswer
 from fea.cut.region import RingedCutPin
+from fea.harmonic.beneath import beneath
 from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
 from fea.joint.cell_pressure import CellPressure
 from fea.joint.contact import Pressed
@@ -114,7 +116,7 @@ def solve_in_lugs(
         contact.follow(near)
         compared = contact.compared(near, asked)
         last = finer is None or _count(model, finer) > MOST_CELLS
-        fine = {c: x for c, x in compared.items() if last or x.fine(asked)}
+        fine = {c: x for c, x in compared.items() if last or x.fine(given.material, asked)}
         for case, found in contact.solved(fine, asked, progress).items():
             if last or _enough(found.solution.peak, given.material, asked):
                 done[case] = found
@@ -176,12 +178,13 @@ def _failed(given: InLugs, name: str, why: str) -> LugSolution:
 
 @dataclass(frozen=True)
 class Near:
-    """On the first mesh: the governing instant of a case, and which (T,) are so near its maximum
-    that they may govern.
+    """On the first mesh: the instant of a case's largest stress of the surface, this (Pa, where it
+    is known), and which (T,) are so near to it that they may govern.
     """
 
     instant: int
     may: NDArray[np.bool_]
+    largest: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -193,18 +196,28 @@ class Compared:
 
     @property
     def row(self) -> Comparison:
-        """That of the larger one."""
-        return max(self.surface, self.section, key=lambda x: x.stress.row)
+        """That of the larger one, of which the joint was varied."""
+        return max(self.surface, self.section, key=lambda x: (bool(x.over), x.stress.row))
 
-    def fine(self, asked: Asked) -> bool:
-        """Whether finer cells would not help."""
+    def fine(self, material: Material, asked: Asked) -> bool:
+        """Whether finer cells would not help: they take little of the tolerance, or the required
+        factor is decided whatever they do, for what lies beneath the contact, too.
+        """
         both = (self.surface, "surface"), (self.section, "section")
         stress = {name: float(getattr(x.stress, name)) for x, name in both}
         cells = {name: float(getattr(x.cells, name)) for x, name in both}
         largest = max(stress.values()) or 1.0
         own = cells[max(stress, key=lambda name: stress[name])]
         most = max(stress[name] * (1.0 + cells[name]) for name in stress) / largest - 1.0
-        return max(own, most) <= CELLS * asked.tolerance
+        off = max(own, most)
+        if off <= CELLS * asked.tolerance:
+            return True
+        low, high = largest / (1.0 + off), largest * (1.0 + off)
+        below, error = self.surface.stress.beneath, 1.0 + self.surface.cells.beneath
+        return decided(asked, material, low, high) and (
+            decided(asked, material, below / error, below * error)
+            or decided(asked, material, low, math.inf)
+        )
 
     def near(
         self, contact: JointContact, case: PinLoads, anew: Callable[[JointContact], Comparison]
@@ -260,7 +273,7 @@ class _Contact:
             may = answer.maxima(x, MAY * largest) > MAY * largest
             if self.given.cut is not None:  # any may govern where it is cut
                 may[:] = True
-            out[x.case] = Near(instant, may)
+            out[x.case] = Near(instant, may, largest)
         return out
 
     def follow(self, near: Mapping[str, Near]) -> None:
@@ -302,14 +315,17 @@ class _Contact:
         """By case, at the instants of the largest stress of the surface on the first mesh and of
         sections.
         """
-        at, which = list[JointContact](), dict[str, tuple[int, int]]()
+        at, vary, which = list[JointContact](), list[bool](), dict[str, tuple[int, int]]()
         for case, links in self.instants.items():
-            both = near[case].instant, self.sections[case].largest(self.on_rings(links))[1]
+            stress, instant = self.sections[case].largest(self.on_rings(links))
+            both = near[case].instant, instant
             each = dict.fromkeys(both)
             first, second = (len(at) + list(each).index(t) for t in both)
             which[case] = first, second
             at += [self._joined(links, t) for t in each]
-        found = compare(self.model, at, asked, self._patterns)
+            governs = both[stress > near[case].largest]
+            vary += [t == governs for t in each]
+        found = compare(self.model, at, asked, self._patterns, vary)
         return {case: Compared(found[a], found[b]) for case, (a, b) in which.items()}
 
     def solved(
@@ -388,15 +404,26 @@ class _Contact:
         (pressed,) = contact.contact
         pressure = CellPressure(contact.bands, pressed.pressure, pressed.angle)
         cut, answer = self.given.cut, solution.answer
-        if isinstance(answer, HarmonicAnswer):
-            error, row = known.surface.cells.beneath, peak.max_von_mises or 0.0
-            place = contact_place(contact, material, answer, solved, asked.required, error, row)
-            solution = replace(solution, peak=with_contact(peak, place))
-        if cut is None or not isinstance(answer, CutAnswer):
-            return LugSolution(solution, joint, self.press, pressure, model.pin, model)
-        left = neglected(cut, material, contact, pressure, answer)
-        peak = with_neglected(peak, left, answer, over.variations, asked)
-        return LugSolution(replace(solution, peak=peak), joint, self.press, pressure)
+        assert isinstance(answer, HarmonicAnswer | CutAnswer)
+        error = known.surface.cells.beneath + self._by_mesh(answer, known.surface)
+        if cut is not None and isinstance(answer, CutAnswer):
+            left = neglected(cut, material, contact, pressure, answer)
+            peak = with_neglected(peak, left, answer, over.variations, asked)
+            peak = row_of(peak, None, material, asked.tolerance)
+            largest = peak.max_von_mises or 1.0
+            error += left.error(largest, False, over.variations) / largest
+        row = peak.max_von_mises or 0.0
+        place = contact_place(contact, material, answer, solved, asked.required, error, row)
+        solution = replace(solution, peak=with_contact(peak, place))
+        if cut is not None:
+            return LugSolution(solution, joint, self.press, pressure)
+        return LugSolution(solution, joint, self.press, pressure, model.pin, model)
+
+    def _by_mesh(self, answer: HarmonicAnswer | CutAnswer, known: Comparison) -> float:
+        """By how much what lies beneath contact differs from that on the first mesh, relative."""
+        fields = answer.solution.uncut if isinstance(answer, CutAnswer) else answer.fields
+        there = beneath(fields, self.press(known.links), answer.singularities).value
+        return abs(known.stress.beneath / there - 1.0) if there else 0.0
 
     def _compared_anew(self, asked: Asked) -> Callable[[JointContact], Comparison]:
         return lambda contact: compare(self.model, [contact], asked, self._patterns)[0]

@@ -88,14 +88,21 @@ class _Joint:
 
 
 def compare(
-    model: JointModel, at: Sequence[JointContact], asked: Asked, known: Patterns | None = None
+    model: JointModel,
+    at: Sequence[JointContact],
+    asked: Asked,
+    known: Patterns | None = None,
+    vary: Sequence[bool] | None = None,
 ) -> tuple[Comparison, ...]:
-    """Joints in contact, each at one instant. known: patterns of the pressures on them."""
+    """Joints in contact, each at one instant. known: patterns of the pressures on them; vary: by
+    instant, whether joints with something changed are looked at, by default all.
+    """
     if not at:
         return ()
+    vary = (True,) * len(at) if vary is None else vary
     few = model.cells.rings < USUAL  # twice as large cells are too large to tell changes apart
     exact = _on_both_cells(model, at)
-    over, varied, missing = _varied(model, at, few)
+    over, varied, missing = _varied(model, at, few, vary)
     parts = [(one.waves, NEGLIGIBLE) for both in exact for one in both]
     parts += [(one.waves, ROUGHLY) for one in itertools.chain(*varied)]
     patterns = model.patterns(parts, known)
@@ -179,11 +186,11 @@ def _own_cells(model: JointModel) -> tuple[ContactProblem, Floats]:
 
 
 def _varied(
-    model: JointModel, at: Sequence[JointContact], own: bool
+    model: JointModel, at: Sequence[JointContact], own: bool, vary: Sequence[bool]
 ) -> tuple[list[list[Variation]], list[list[_Joint]], list[list[str]]]:
     """Of each contact, what is changed of the joint, contact then, and what could not be changed:
     lugs that are free to tilt may leave a couple on the pin, and loads may be lost in a large
-    clearance. own: on the model's own cells, instead of cells twice as large.
+    clearance. own: on the model's own cells, instead of cells twice as large; vary: which.
     """
     names: list[list[Variation]] = [[] for _ in at]
     found: list[list[_Joint]] = [[] for _ in at]
@@ -191,7 +198,9 @@ def _varied(
     for change in changes(model.whole, model.lugs):
         other = model.varied(change.lugs, change.softness)
         cells = _own_cells(other) if own else on_coarser_cells(other)
-        for contact, over, changed, why in zip(at, names, found, missing, strict=True):
+        for contact, over, changed, why, so in zip(at, names, found, missing, vary, strict=True):
+            if not so:
+                continue
             try:
                 changed.append(_coarse(other, contact.loads.links, *cells))
             except SolveError as error:
