@@ -3,10 +3,9 @@
 Beside a pressed cell stress is not that of the true, smooth pressure: cells end in steps, and the
 elements that touch one are off by 13 % of it, the next by 3, 1.3 and less than 1 %. So what counts
 as pressed is a cell with pressure, a sector more on both sides, and beyond the last pressed ring
-its own length; of a fillet that begins there the element that touches it alone, since cells may be
-longer than the fillet, and what it raises is more than what the step is off. Everything else of the
-surface is free, however near to an edge: there the stress of a half-plane along its surface is that
-of the rest of the pin, for the pressure itself adds nothing beside where it acts.
+its own length (or that of the next ring, if that is shorter). Everything else of the surface is
+free, however near to an edge: there the stress of a half-plane along its surface is that of the
+rest of the pin, for the pressure itself adds nothing beside where it acts.
 """
 
 from __future__ import annotations
@@ -69,17 +68,25 @@ class Rings:
         return np.where((part >= MIDDLE[0]) & (part <= MIDDLE[1]), ring, -1)
 
     def near(self, r: Floats, z: Floats, middle: Floats) -> Mask:
-        """Which points (P,), m, are on each ring, before it, and after it, (P, 3 R): on its
-        cylinder within its own length, off it, as in a fillet that begins beside it, in the
-        element that touches it. middle: (P,) z of the middle of the element on which each is.
+        """Which points (P,), m, are under each ring, before it, and after it, within its own length
+        or that of the next one, if that is shorter: (P, 3 R). middle: (P,) z of the middle of the
+        element on which each is.
         """
-        size, middle = self.length, middle[:, None]
+        middle, (before, after) = middle[:, None], self._beside
         off = np.abs(r[:, None] - self.radius)
-        on = (off <= ON * size) & (middle > self.start) & (middle < self.end)
-        far = np.where(off <= ON * size, 1.0, ELEMENT) * size
-        before, after = self.start - middle, middle - self.end
-        beside = [(x > 0.0) & (np.hypot(x, off) < far) for x in (before, after)]
-        return np.concatenate([on, *beside], axis=1)
+        under = (off <= ON * self.length) & (middle > self.start) & (middle < self.end)
+        first = (off <= before) & (middle > self.start - before) & (middle < self.start)
+        last = (off <= after) & (middle > self.end) & (middle < self.end + after)
+        return np.concatenate([under, first, last], axis=1)
+
+    @cached_property
+    def _beside(self) -> tuple[Floats, Floats]:
+        """How far before and after each ring, (R,) m, its step is felt."""
+        before, after = self.length.copy(), self.length.copy()
+        here = self.follows
+        before[1:][here] = np.minimum(before[1:], self.length[:-1])[here]
+        after[:-1][here] = np.minimum(after[:-1], self.length[1:])[here]
+        return before, after
 
     @cached_property
     def follows(self) -> Mask:
@@ -145,7 +152,7 @@ class PressedArcs:
         """Which arcs (R, BINS) are the outermost pressed ones next to an edge of a lug: those under
         its rounding and EDGE more, unless contact has receded from there.
         """
-        rings, on = self.rings, self.on[instant]
+        on, rings = self.on[instant], self.rings
         out: Mask = np.zeros_like(on)
         for b in np.unique(rings.band):
             own = np.flatnonzero(rings.band == b)

@@ -23,7 +23,7 @@ from fea.cut.local_fields import (
 from fea.cut.region import surface_ends, zone
 from fea.cut.shown import ShownCut, shown
 from fea.cut.supports import ClampMotions, Support, motions, reactions
-from fea.harmonic.beneath import Beneath, beneath, reach
+from fea.harmonic.beneath import Beneath, Steps, beneath, depths, stairs
 from fea.harmonic.evaluate import (
     HarmonicAnswer,
     HarmonicSolution,
@@ -217,13 +217,14 @@ class CutAnswer:
                 found = Beneath(float(value[t]), (x, y, z), t)
         return found
 
-    def reach(self, loads: PinLoads, instant: int, limits: tuple[float, ...]) -> tuple[float, ...]:
-        """How far, m, from pressed cells von Mises stress exceeds limits, Pa, at an instant."""
+    def depths(self, loads: PinLoads, instant: int, least: float) -> Steps:
+        """How far from pressed cells stress reaches at an instant (fea.harmonic.beneath)."""
         pressed = loads.pressed
         assert pressed is not None
-        whole = reach(self.solution.uncut, loads, instant, self.singularities, limits)
-        each = [piece.reach(loads, pressed, instant, limits) for piece in self.solution.pieces]
-        return tuple(map(max, whole, *each))
+        found = [*depths(self.solution.uncut, loads, instant, self.singularities, least)]
+        for piece in self.solution.pieces:
+            found += piece.depths(loads, pressed, instant, least)
+        return stairs(*np.array(found).reshape(-1, 2).T)
 
     def picture(self, loads: PinLoads, instant: int) -> Picture:
         """The surface at one instant, with its envelope over all."""

@@ -20,6 +20,7 @@ from fea.cut.local_model import LocalModel, turned
 from fea.cut.lost_loads import bearings
 from fea.cut.movement import displacement, rigid
 from fea.cut.region import zone
+from fea.harmonic.beneath import Steps, stairs
 from fea.harmonic.fields import MeridianFields
 from fea.singular.singularities import Singularity, outside
 from fea.solid.nodal_loads import Unit
@@ -143,14 +144,12 @@ class LocalFields:
         of = replace(self._plain(rows), free=Away.of(self.points[rows], pressed.rings))
         return of.largest(self.coefficients(loads), pressed)
 
-    def reach(
-        self, loads: AnyLoads, pressed: PressedArcs, instant: int, limits: tuple[float, ...]
-    ) -> tuple[float, ...]:
-        """How far, m, from pressed cells von Mises stress exceeds limits, Pa, at an instant."""
+    def depths(self, loads: AnyLoads, pressed: PressedArcs, instant: int, least: float) -> Steps:
+        """How far from pressed cells stress reaches at an instant (fea.harmonic.beneath)."""
         rows = np.flatnonzero(self.outside())
         square = squares(self.stress[rows])(self.coefficients(loads)[[instant]])[:, 0]
         far = distance(self.points[rows], pressed, instant)
-        return tuple(float(far[square > x**2].max(initial=0.0)) for x in limits)
+        return stairs(np.sqrt(np.maximum(square, 0.0)), far, least)
 
     def inside(self, loads: AnyLoads) -> tuple[AtSingularity, ...]:
         """What is at the inner corners."""

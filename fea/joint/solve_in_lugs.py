@@ -3,21 +3,22 @@ the maximum depends on what is not known of the joint.
 
 Stress under the pressures is found as under any loads (fea.solve_pin), of a pin that nothing
 clamps. To the error of meshes and instants comes that of the cells: contact at the instant that
-governs on the first mesh is solved once more on cells twice as large, whose order is one at least,
-so that the difference counts whole; cells are refined until it is within half of the tolerance, or
-a quarter of what is uncertain anyway where stress near the edge of a lug governs. Where only a
-required factor is to be decided, larger cells come first, which take a third of the time.
+governs on the first mesh is solved once more on cells twice as large, and from the difference, by
+the order of cells, follows their error; they are refined until it is a part of the tolerance. Where
+only a required factor is to be decided, larger cells come first, which take a third of the time,
+and are enough if they decide it with their error, also for what lies beneath the contact.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.asked import Asked
+from fea.asked import Asked, decided
 from fea.core.equilibrium import out_of_balance
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
@@ -115,7 +116,7 @@ def solve_in_lugs(
         contact.follow(near)
         compared = contact.compared(near, asked)
         last = finer is None or _count(model, finer) > MOST_CELLS
-        fine = {c: x for c, x in compared.items() if last or x.fine(asked)}
+        fine = {c: x for c, x in compared.items() if last or x.fine(given.material, asked)}
         for case, found in contact.solved(fine, asked, progress).items():
             if last or _enough(found.solution.peak, given.material, asked):
                 done[case] = found
@@ -198,15 +199,25 @@ class Compared:
         """That of the larger one, of which the joint was varied."""
         return max(self.surface, self.section, key=lambda x: (bool(x.over), x.stress.row))
 
-    def fine(self, asked: Asked) -> bool:
-        """Whether finer cells would not help."""
+    def fine(self, material: Material, asked: Asked) -> bool:
+        """Whether finer cells would not help: they take little of the tolerance, or the required
+        factor is decided whatever they do, for what lies beneath the contact, too.
+        """
         both = (self.surface, "surface"), (self.section, "section")
         stress = {name: float(getattr(x.stress, name)) for x, name in both}
         cells = {name: float(getattr(x.cells, name)) for x, name in both}
         largest = max(stress.values()) or 1.0
         own = cells[max(stress, key=lambda name: stress[name])]
         most = max(stress[name] * (1.0 + cells[name]) for name in stress) / largest - 1.0
-        return max(own, most) <= CELLS * asked.tolerance
+        off = max(own, most)
+        if off <= CELLS * asked.tolerance:
+            return True
+        low, high = largest / (1.0 + off), largest * (1.0 + off)
+        below, error = self.surface.stress.beneath, 1.0 + self.surface.cells.beneath
+        return decided(asked, material, low, high) and (
+            decided(asked, material, below / error, below * error)
+            or decided(asked, material, low, math.inf)
+        )
 
     def near(
         self, contact: JointContact, case: PinLoads, anew: Callable[[JointContact], Comparison]
@@ -401,7 +412,8 @@ class _Contact:
             peak = row_of(peak, None, material, asked.tolerance)
             largest = peak.max_von_mises or 1.0
             error += left.error(largest, False, over.variations) / largest
-        place = contact_place(contact, material, answer, solved, asked.required, error)
+        row = peak.max_von_mises or 0.0
+        place = contact_place(contact, material, answer, solved, asked.required, error, row)
         solution = replace(solution, peak=with_contact(peak, place))
         if cut is not None:
             return LugSolution(solution, joint, self.press, pressure)

@@ -26,7 +26,7 @@ from fea.joint.lugs.changes import softer
 from fea.joint.lugs.fit import fitted, on_structure
 from fea.joint.lugs.links import link_forces, link_numbers
 from fea.joint.lugs.lug import Bushing, Lug
-from fea.joint.lugs.rings import annulus, ring_ends, ringed, rings
+from fea.joint.lugs.rings import annulus, beside_fillets, ring_ends, ringed, rings
 from fea.joint.pressure_loads import NEGLIGIBLE, Patterns, PressureLoads, amplitudes, patterns_of
 from fea.singular.lug_edge import lug_edge_exponent
 from geometry import Pin
@@ -134,7 +134,13 @@ class JointModel:
         self.whole = pin = on_structure(pin, lugs)
         self.lugs = fitted(pin, material, lugs)
         self.ends = {
-            name: ring_ends(pin.band(name), lug.edge_radius, cells.rings, cells.beside)
+            name: ring_ends(
+                pin.band(name),
+                lug.edge_radius,
+                cells.rings,
+                cells.beside,
+                beside_fillets(pin, pin.band(name)),
+            )
             for name, lug in zip(pin.connections, self.lugs, strict=True)
         }
         cut = pin, {name: ends.tolist() for name, ends in self.ends.items()}

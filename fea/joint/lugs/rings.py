@@ -14,16 +14,30 @@ from geometry import Band, Pin, Segment
 
 USUAL = 8  # rings of a band with sharp edges, if it is not long
 LONGEST = 0.25  # ring, of the diameter, if there are so many
-GROWTH = 1.6  # of each ring over the one before, from there on
+FINER = 2.5  # times as long each part of an outermost ring that is cut is with the next one
+PEAK = 0.25  # of a fillet's radius from where it begins: its largest stress is not nearer
+LEAST = 1e-3  # ring, of the diameter
+# Where the peak at a rounded edge is resolved: rings of one length lie this far from where rounding
+# begins, of its radius, outwards (where contact ends) and inwards (where the peak is); from there
+# on each is so many times longer. Rings that grow from the start on are up to 13 % off.
+OUTWARDS, INWARDS, GROWTH = 0.08, 0.03, 1.6
 
 
-def ring_ends(band: Band, edge_radius: float, count: int, beside: float | None = None) -> Floats:
+def ring_ends(
+    band: Band,
+    edge_radius: float,
+    count: int,
+    beside: float | None = None,
+    longest_last: tuple[float, float] = (math.inf, math.inf),
+) -> Floats:
     """Ends of the rings of a band, (R + 1,) m from its start on, as fine as `count` says: so many
     where the bore is straight, but for long bands. Where its edges are rounded, the first rings of
     the rounding are so short that contact may end in them.
 
-    beside: to resolve the peak of pressure where rounding begins, as many rings as lead from there
-    to the middle, the first of `beside` times the radius for the usual count.
+    beside: to resolve the peak of pressure where rounding begins, rings of `beside` times the
+    radius there, for the usual count, and as many as lead from them to the middle. longest_last:
+    the length, m, of the outermost rings at both ends at most, which are cut in parts for it where
+    edges are sharp; where they are rounded contact ends in short ones anyway.
     """
     coarser = USUAL / count
     longest = 2.0 * LONGEST * band.radius * coarser
@@ -34,7 +48,8 @@ def ring_ends(band: Band, edge_radius: float, count: int, beside: float | None =
     if flat > 1e-9 * band.length:
         inner = graded(flat, max(count, math.ceil(0.5 * math.pi * flat / longest - 1e-9)))
     if not edge_radius:
-        return inner
+        first, last = (_parts(float(inner[1]), most) for most in longest_last)
+        return np.concatenate([first, inner[1:-1], flat - last[::-1]])
     rounded = max(2, count // 4, math.ceil(2.0 * edge_radius / longest))
     outer = edge_radius * (np.arange(1, rounded + 1) / rounded) ** 2
     return np.concatenate(
@@ -42,14 +57,51 @@ def ring_ends(band: Band, edge_radius: float, count: int, beside: float | None =
     )
 
 
+def _parts(length: float, most: float) -> Floats:
+    """Ends but the far one of the parts of an outermost ring, from the edge on: the first part no
+    longer than `most`, each so many times as long as those before it together.
+    """
+    count = 0 if length <= most else math.ceil(math.log(length / most) / math.log(FINER))
+    return np.asarray(
+        [0.0, *(length * (most / length) ** (k / (count or 1)) for k in range(count, 0, -1))]
+    )
+
+
+def beside_fillets(pin: Pin, band: Band) -> tuple[float, float]:
+    """The longest, m, that the outermost rings of a band may be at both ends, so that a fillet's
+    largest stress is beyond what is not read beside them (fea.core.pressed).
+    """
+    near = [
+        min(
+            (
+                max(math.dist(x.at, (band.radius, z)) - x.reach, 0.0) + PEAK * x.radius
+                for x in pin.roundings
+                if x.inner
+            ),
+            default=math.inf,
+        )
+        for z in (band.z0, band.z1)
+    ]
+    least = LEAST * 2.0 * band.radius
+    return max(near[0], least), max(near[1], least)
+
+
 def _to_the_peak(
     length: float, radius: float, beside: float, growth: float, longest: float
 ) -> Floats:
     first = beside * radius
-    outside = _growing(radius, first, growth, longest)[::-1]
-    flat = _growing(length / 2.0 - radius, first, growth, longest)
+    outside = _from_edge(radius, OUTWARDS * radius, first, growth, longest)[::-1]
+    flat = _from_edge(length / 2.0 - radius, INWARDS * radius, first, growth, longest)
     ends = np.cumsum([0.0, *outside, *flat])
     return np.concatenate([ends[:-1], [length / 2.0], length - ends[-2::-1]])
+
+
+def _from_edge(length: float, even: float, first: float, growth: float, longest: float) -> Floats:
+    """Lengths that add up to `length`, m: alike over `even`, then growing."""
+    even = min(even, length)
+    count = math.ceil(even / first - 1e-9)
+    alike = np.full(count, even / max(count, 1))
+    return np.concatenate([alike, _growing(length - even, first, growth, longest)])
 
 
 def graded(length: float, count: int) -> Floats:
