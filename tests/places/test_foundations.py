@@ -70,14 +70,14 @@ def test_places_of_a_row() -> None:
 
 def test_a_stub_is_governed_by_its_section() -> None:
     """Shear on the axis of a short pin, V (3 + 2 nu) / (2 A (1 + nu)), of Saint-Venant."""
-    stub = Pin("P", (Segment(0.01, D, connection="L"), Segment(0.012, D, connection="M"),
-                     Segment(0.01, D, connection="R")))  # fmt: skip
+    stub = Pin("P", (Segment(0.006, D, connection="L"), Segment(0.007, D, connection="M"),
+                     Segment(0.006, D, connection="R")))  # fmt: skip
     peak = solved(stub, "foundation", Asked()).solution.peak
     assert peak.places is not None
     assert peak.places.section is not None
     assert peak.places.governs == "section"
     force = peak.places.section.shear_force
-    assert F / 2.0 < force < 0.7 * F
+    assert 0.49 * F < force < 0.7 * F
     shear = force / (math.pi * D**2 / 4.0) * (3.0 + 2.0 * 0.3) / 2.0 / 1.3
     assert peak.max_von_mises == pytest.approx(math.sqrt(3.0) * shear, rel=0.03)
     assert peak.location is not None
