@@ -215,7 +215,7 @@ def _of_case(
         case = through_time(answer, case, between, asked.tolerance)
         rise = rise_between(answer, case, between)
     every = stress.model.solve(case)
-    places = _Places.of(over, every)
+    places = FoundPlaces.of(stress, every)
     found = places.row
     peak, here = _peak(over, case.case, found, rise, asked, why), case.at(np.array([found.instant]))
     history = (Refinement(0, found.maximum, time.perf_counter() - start),)
@@ -230,7 +230,7 @@ def _of_case(
 
 
 @dataclass(frozen=True)
-class _Places:
+class FoundPlaces:
     """The largest stress of the surface and of the sections; bounds of the row are those of both,
     and of what lies beneath contact.
     """
@@ -240,10 +240,10 @@ class _Places:
     both: Bounded
 
     @classmethod
-    def of(cls, over: FoundationRange, every: JointFoundation) -> _Places:
+    def of(cls, stress: FoundationStress, every: JointFoundation) -> FoundPlaces:
         """Of a case at all its instants; sections by the line loads of the foundations."""
-        sections = SectionAnswer(every.pin, over.own.model.material, (), [every.loads])
-        both, surface = (bounded(x, every) for x in (over.own, over.own.on_surface))
+        sections = SectionAnswer(every.pin, stress.model.material, (), [every.loads])
+        both, surface = (bounded(x, every) for x in (stress, stress.on_surface))
         return cls(surface, sections.place(every.loads), both)
 
     @property
@@ -265,14 +265,14 @@ class _Places:
         of, at, strength = self.surface, self.section, material.yield_strength
         error = of.maximum if of.error is None else of.error
         known = "converged" if error <= tolerance * of.maximum else "unconverged"
-        surface = SurfacePlace(of.maximum, error, known, _point(of), _time(case, of.instant))
+        surface = SurfacePlace(of.maximum, error, known, point_of(of), _time(case, of.instant))
         parts = ErrorParts(0.0, model=min(of.moment_part, 1.0) * at.value)
         section = FoundSection(at, parts, case.at(np.array([at.instant])))
         used = None if strength is None else at.plastic_use(strength)
         return Places(self.governs, surface, section.place(tolerance, used))
 
 
-def _point(of: Bounded) -> tuple[float, float, float]:
+def point_of(of: Bounded) -> tuple[float, float, float]:
     r, z = of.place
     return r * math.cos(of.theta), r * math.sin(of.theta), z
 
@@ -300,7 +300,7 @@ def _peak(
         note=own.text,
         max_von_mises=found.maximum,
         error_estimate=parts.total,
-        location=_point(found),
+        location=point_of(found),
         why=why.text,
         parts=parts,
         reasons=own.codes + why.codes,
