@@ -59,7 +59,7 @@ def cells() -> str:
         ("section, meshes of flexibilities", str(len(soft)), *_spread(np.array(soft)),
          f"{np.mean(np.array(soft) <= FLEXIBILITIES):.0%}"),
     ]  # fmt: skip
-    return f"{first}\n\n{table(head[:5] + ('estimated covers',), more)}"
+    return f"{first}\n\n{table((*head[:5], 'estimated covers'), more)}"
 
 
 def _row(found: list[CellError], k: int) -> tuple[str, ...]:
