@@ -29,7 +29,7 @@ from fea.harmonic.evaluate import (
     harmonic_result,
     harmonic_solution,
 )
-from fea.singular.singularities import Singularity, find_singularities
+from fea.singular.singularities import Singularity, begins, find_singularities
 from fea.solid.evaluate import SolidAnswer, solid_result, solid_solution
 from fea.verdict import FEWEST, Seen, judge
 from geometry import CutPin, Pin, PinLike
@@ -129,8 +129,12 @@ def singularities_of(
 
 
 def job_singularities(job: PinJob, cases: tuple[PinLoads, ...]) -> tuple[Singularity, ...]:
-    """Zones of unbounded stress in any of the cases of a job."""
-    return singularities_of(job.pin, job.material, job.constrained, cases, job.asked.distance)
+    """Zones of unbounded stress in any of the cases of a job, which end where its cuts begin."""
+    found = singularities_of(job.pin, job.material, job.constrained, cases, job.asked.distance)
+    openings = () if job.cut is None else tuple(cut.opens for cut in job.cut.cuts.values())
+    return tuple(
+        p.up_to(*(begins(max(a - p.z, p.z - b), (b - a) / 2.0) for a, b in openings)) for p in found
+    )
 
 
 def refined(

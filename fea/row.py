@@ -37,7 +37,8 @@ def row_of(
     places = replace(places, section=section.place(tolerance, used), governs=governs)
     if governs == "surface":
         error = max(surface.error_estimate, section.upper_end - surface.max_von_mises)
-        return replace(_looser(surface, error, tolerance), places=places)
+        row = _at_least(_looser(surface, error, tolerance), section.lower_end)
+        return replace(row, places=places)
     return replace(_by_section(surface, section, tolerance, links), places=places)
 
 
@@ -64,6 +65,16 @@ def _looser(peak: Peak, error: float, tolerance: float) -> Peak:
         interval=peak.interval and (peak.interval[0], max(peak.interval[1], largest + error)),
         verdict="unconverged" if loose else peak.verdict,
     )
+
+
+def _at_least(peak: Peak, low: float) -> Peak:
+    """With an interval that begins at a stress (Pa), if it has one: sections have that much."""
+    if peak.interval is None:
+        return peak
+    largest, (first, last) = peak.max_von_mises or 0.0, peak.interval
+    first = max(first, low)
+    error = max(largest - first, last - largest)
+    return replace(peak, interval=(first, last), error_estimate=error)
 
 
 def _by_section(

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from fea.core.pin_loads import PinLoads
+from fea.core.pressed import BINS
 from fea.core.solution import Answer
 from fea.cut.evaluate import CutAnswer
 from fea.harmonic.evaluate import HarmonicAnswer
-from fea.harmonic.superposition import EVEN, METRIC, Circumference
+from fea.harmonic.superposition import EVEN, METRIC
 from fea.singular.singularities import outside
 from fea.solid.boundary import QUARTERS, SurfaceMesh
 from fea.solid.evaluate import SolidAnswer
@@ -110,7 +112,7 @@ def excluded(answer: Answer) -> Mask:
 
 def largest_there(answer: Answer, loads: PinLoads, instant: int) -> Floats:
     """Von Mises stress (P,) Pa at the surface's points at an instant, of a meridian the largest
-    about the axis.
+    about the axis where it is read (fea.harmonic.free_surface), 0 where it is not.
     """
     if isinstance(answer, SolidAnswer | CutAnswer):
         if isinstance(answer, CutAnswer):
@@ -121,8 +123,36 @@ def largest_there(answer: Answer, loads: PinLoads, instant: int) -> Floats:
         return np.asarray(np.linalg.norm(stress @ amounts(answer, loads)[instant, :, 0], axis=1))
     assert isinstance(answer, HarmonicAnswer)
     skin = np.arange(answer.fields.skin)
-    found, _ = Circumference(answer.fields, loads).round(skin, np.full(len(skin), instant))
+    found, _ = answer.reader(loads).round(skin, np.full(len(skin), instant))
     return found
+
+
+def largest_at(answer: Answer, loads: PinLoads, instant: int) -> tuple[float, float, float] | None:
+    """Where (x, y, z), m, the largest stress of what is read of a section is at an instant; None of
+    other models.
+    """
+    if not isinstance(answer, HarmonicAnswer):
+        return None
+    around = answer.reader(loads.at(np.array([instant])))
+    top = around.top(around.fields.outside(answer.singularities))
+    r, z = (float(x) for x in around.fields.points[top.point])
+    return r * math.cos(top.angle), r * math.sin(top.angle), z
+
+
+def unread(answer: Answer, loads: PinLoads, points: Ints, angles: Floats) -> Mask | None:
+    """Where points (J,) of the surface are not read, for lugs press on them or beside: (T, J, A) at
+    all instants and angles (rad). None where no lugs press on a body of revolution.
+    """
+    if not isinstance(answer, HarmonicAnswer) or loads.pressed is None:
+        return None
+    region = answer.reader(loads).region
+    assert region is not None
+    arcs = np.rint(np.degrees(angles) * BINS / 360.0).astype(np.int64) % BINS
+    some = np.flatnonzero(region.masked(points))
+    out = np.zeros((len(loads), len(points), len(angles)), dtype=bool)
+    for t in range(len(loads)):
+        out[t, some] = ~region.read(points[some], np.full(len(some), t))[:, arcs]
+    return out
 
 
 def _shown(surface: SurfaceMesh) -> tuple[Ints, Ints]:

@@ -198,7 +198,8 @@ class WholeJoint:
             found = RingBody(body, was.rings, was.pushed, guided=True).flexibility(highest)
             other.of_lugs[:, own, own], other.wavy[:, :, own, own] = found, other.wavy_of(lug, ends)
         waves = other.waves([self._pressed(other)])
-        loads = other.patterns([(waves, ALL)]).loads(waves, links)
+        arcs = other.arcs(model.pressed(links))
+        loads = other.patterns([(waves, ALL)]).loads(waves, links, arcs)
         mesh = self.solved.solution.mesh
         reaches = [Reach((p.r, p.z), p.radius) for p in self.solved.zones]
         shift = _moved(mesh, model.pin, other.pin, reaches).nodes - mesh.nodes
@@ -224,8 +225,9 @@ def whole_joint(
 ) -> WholeJoint:
     """Solved on its first mesh, with all harmonics of contact."""
     model = JointModel(pin, material, lugs, cells)
-    waves = model.waves(model.pressed(links))
-    loads = model.patterns([(waves, ALL)]).loads(waves, links)
+    found = model.pressed(links)
+    waves = model.waves(found)
+    loads = model.patterns([(waves, ALL)]).loads(waves, links, model.arcs(found))
     zones = singularities_of(model.pin, material, (), (loads,))
     problem = SectionProblem(model.pin, material, (), (loads,), zones, model.first)
     section = harmonic_solution(problem, 0, 1.0)

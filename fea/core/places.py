@@ -100,7 +100,9 @@ class ContactPlace:
     """beneath: the largest von Mises stress farther than BENEATH diameters from every pressed cell,
     with its error, where and when. reach: how far from pressed cells stress exceeds yield, at the
     governing instants; reach_required: the same of yield over the required factor; None without
-    one. edges, bands: at the row's instant.
+    one. edges, bands: at the row's instant. depths: pairs of a stress and how far from pressed
+    cells it is, falling stresses and growing distances, down to the least stress for which an
+    outcome may ask.
     """
 
     beneath: Stress
@@ -111,6 +113,16 @@ class ContactPlace:
     reach_required: Length | None
     edges: tuple[ContactEdge, ...]
     bands: tuple[BandPressure, ...]
+    depths: tuple[tuple[Stress, Length], ...] = ()
+
+    @property
+    def upper_end(self) -> float:
+        """What lies beneath, with its error, Pa."""
+        return self.beneath + self.beneath_error
+
+    def depth(self, limit: float) -> float:
+        """How far, m, from every pressed cell stress exceeds a limit, Pa."""
+        return max((depth for stress, depth in self.depths if stress > limit), default=0.0)
 
 
 @dataclass(frozen=True)

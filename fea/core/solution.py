@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from fea.core.pin_loads import AnyLoads, PinLoads
-from geometry.arrays import Floats, Ints
+from geometry.arrays import Floats, Ints, Mask
 
 
 @dataclass(frozen=True)
@@ -14,6 +14,8 @@ class Picture:
     """A mesh with results at its N nodes at one instant: points (N, 3) m; cells (M, 10), in VTK's
     order of "tetra10", or (M, 4), "quad"; displacement (N, 3) m; stress (N, 6) Pa: xx, yy, zz, yz,
     xz, xy; envelope (N,): the largest von Mises stress over all instants, Pa, NaN inside the body.
+    pressed: (N,) where lugs press on what is shown of the surface; there the envelope is that of
+    the instants at which they do not, NaN if they always do. None without lugs.
     """
 
     points: Floats
@@ -22,6 +24,7 @@ class Picture:
     displacement: Floats
     stress: Floats
     envelope: Floats
+    pressed: Mask | None = None
 
 
 class Answer(Protocol):

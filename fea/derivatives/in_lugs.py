@@ -143,7 +143,7 @@ class _InLugs:
             without,
             self._by_forces(),
             self._by_moments(),
-            tied_places(adjoint.around, adjoint.fields, solved.zones, top, solved.error),
+            tied_places(adjoint.around, solved.zones, top, solved.error),
             tied_times(solved, top.value),
             self.contact.changing,
         )

@@ -44,7 +44,7 @@ PATCH = 2.0  # elements of the first mesh about such a place, in which all are r
 
 @dataclass(frozen=True)
 class HarmonicSolution:
-    """Fields on one mesh, how fine (of the diameter) that mesh is at each singularity, and
+    """Fields on one mesh, how fine (of its scale) that mesh is at each singularity, and
     Poisson's ratio. quiet: fillets where the mesh is coarse (fea.harmonic.quiet_corners).
     elsewhere: stress (P, 6, K) Pa at the points that were asked for. ends: where pressures end on
     the outline, (r, z) in m.
@@ -250,7 +250,8 @@ def _rims(pin: Pin, singularities: tuple[Singularity, ...]) -> Floats:
 
 def _distances(singularity: Singularity) -> tuple[float, ...]:
     """From a singularity, m, at which stress is read on a circle about it."""
-    return (*(times * singularity.radius for times in (1.0, *VARIED)), FELT * singularity.feature)
+    radii = (singularity.varied(times).radius for times in (1.0, *VARIED))
+    return tuple(dict.fromkeys((*radii, FELT * singularity.feature)))
 
 
 def _ends(
@@ -273,7 +274,7 @@ def _spots(
     close: tuple[float, ...],
     factor: float,
 ) -> list[Spot]:
-    """At singularities, with elements `close` (of the diameter), and at edges of bands, `factor`
+    """At singularities, with elements `close` (of their scale), and at edges of bands, `factor`
     times finer than on the first mesh.
     """
     spots = [
@@ -290,9 +291,9 @@ def _spots(
 
 
 def _spot(singularity: Singularity, near: float, factor: float) -> Spot:
-    """near: the element there, of the diameter, before it is scaled to a small feature."""
+    """near: the element there, of the singularity's scale."""
     p = singularity
-    size = near * 2.0 * p.r * p.feature / p.radius
+    size = near * p.scale
     if p.kind == "edge of a load":
         size = LOGARITHM * p.radius / factor
     return Spot(p.r, p.z, size, p.radius)
@@ -333,7 +334,7 @@ class HarmonicAnswer:
 
     def picture(self, loads: PinLoads, instant: int) -> Picture:
         """The surface at one instant, with its envelope over all."""
-        return revolve(self.fields, loads, instant)
+        return revolve(self.fields, loads, instant, self.solution.nu)
 
 
 def harmonic_result(

@@ -18,16 +18,14 @@ from fea.singular.singularities import VARIED, Singularity
 from fea.singular.williams import notch_factor
 from geometry.arrays import Floats, Mask
 
-CLOSE = (1e-2, 1e-3, 1e-4)  # element at a corner or clamp's edge, of the diameter, mesh by mesh
-READ = (4.0, 0.01)  # exponents: from so many elements to so much of the diameter
+CLOSE = (1e-2, 1e-3, 1e-4)  # element at a corner or clamp's edge, of its scale, mesh by mesh
+READ = (4.0, 0.01)  # exponents: from so many elements to so much of the scale
 
 
 def inside(
     fields: MeridianFields, around: Circumference, singularity: Singularity, close: float, nu: float
 ) -> AtSingularity:
-    """What is inside of a singularity. close: its element, of the diameter, before it is scaled to
-    a small feature; nu: Poisson's ratio.
-    """
+    """What is inside of a singularity. close: its element, of its scale; nu: Poisson's ratio."""
     distance, within, felt = _places(fields, singularity)
     far = around.top(felt)
     near = around.top(within & ~felt, far.value)
@@ -71,7 +69,7 @@ def _growth(
 ) -> tuple[float | None, Strength | None]:
     """Exponent and strength from the side of the singularity on which stress is larger."""
     skin = distance[: fields.skin]
-    d = skin / (2.0 * singularity.r * singularity.feature / singularity.radius)
+    d = skin / singularity.scale
     near = np.flatnonzero((d >= READ[0] * CLOSE[-1]) & (d <= READ[1]))
     if not len(near):
         return None, None
@@ -96,10 +94,10 @@ def interval(
     fields: MeridianFields, around: Circumference, singularities: Collection[Singularity]
 ) -> tuple[float, float]:
     """The least and the largest maximum (Pa) outside the singularities, if half and twice as far
-    from them is left out.
+    from them is left out, but no farther than where the next feature begins.
     """
     found = []
     for times in VARIED:
-        varied = [replace(p, radius=times * p.radius) for p in singularities]
+        varied = [p.varied(times) for p in singularities]
         found.append(around.top(fields.outside(varied)).value)
     return min(found), max(found)

@@ -7,59 +7,63 @@ import numpy as np
 from fea.core.pin_loads import PinLoads
 from fea.core.solution import Picture
 from fea.harmonic.fields import MeridianFields
+from fea.harmonic.shown_surface import Shown, shown_surface
 from fea.harmonic.superposition import Circumference
 from geometry.arrays import Floats, Ints
 
-SECTORS = 60
-CLOSE = 1e-9  # of the length: points that are one
 
-
-def revolve(fields: MeridianFields, loads: PinLoads, instant: int) -> Picture:
-    """Skin and loads as they are at an instant."""
-    rows = _skin(fields)
-    around = Circumference(fields, loads)
-    points, displacement, stress = _turned(fields, around, loads, rows, instant)
+def revolve(fields: MeridianFields, loads: PinLoads, instant: int, nu: float) -> Picture:
+    """Skin and loads as they are at an instant; nu: Poisson's ratio."""
+    shown = shown_surface(fields, loads, nu)
+    stress, pressed = shown.stress(instant)
+    points, displacement, turned = _turned(fields, loads, shown, shown.rows, instant, stress)
     return Picture(
         points=points,
-        cells=_quads(len(rows)),
+        cells=_quads(len(shown.rows), len(shown.angles)),
         cell_type="quad",
         displacement=displacement,
-        stress=stress,
-        envelope=_envelope(around, rows, _angles()),
+        stress=turned,
+        envelope=shown.envelope(instant).ravel(),
+        pressed=None if loads.pressed is None else pressed.ravel(),
     )
 
 
-def revolve_solid(fields: MeridianFields, loads: PinLoads, instant: int) -> Picture:
-    """The whole body as wedges, straight between the corners of the section's triangles; without an
-    envelope.
+def revolve_solid(fields: MeridianFields, loads: PinLoads, instant: int, nu: float) -> Picture:
+    """The whole body as wedges, straight between the corners of the section's triangles, its
+    surface as `revolve` shows it; without an envelope.
     """
     rows, numbers = np.unique(fields.triangles, return_inverse=True)
-    around = Circumference(fields, loads)
-    points, displacement, stress = _turned(fields, around, loads, rows, instant)
-    here = numbers.reshape(-1, 3)[:, None] * SECTORS + np.arange(SECTORS)[:, None]
-    there = numbers.reshape(-1, 3)[:, None] * SECTORS + (np.arange(SECTORS)[:, None] + 1) % SECTORS
+    shown = shown_surface(fields, loads, nu)
+    stress = Circumference(fields, loads).stress(rows, instant, shown.angles)
+    pressed = np.zeros(stress.shape[:2], dtype=bool)
+    if loads.pressed is not None:
+        outer = np.flatnonzero(rows < fields.skin)
+        place = np.searchsorted(shown.rows, rows[outer], side="right") - 1
+        on_skin, on = shown.stress(instant)
+        stress[outer], pressed[outer] = on_skin[place], on[place]
+    points, displacement, turned = _turned(fields, loads, shown, rows, instant, stress)
     return Picture(
         points=points,
-        cells=np.concatenate([there, here], axis=2).reshape(-1, 6),
+        cells=_wedges(numbers.reshape(-1, 3), len(shown.angles)),
         cell_type="wedge",
         displacement=displacement,
-        stress=stress,
+        stress=turned,
         envelope=np.full(len(points), np.nan),
+        pressed=None if loads.pressed is None else pressed.ravel(),
     )
-
-
-def _angles() -> Floats:
-    return np.asarray(np.arange(SECTORS) * 2.0 * np.pi / SECTORS)
 
 
 def _turned(
-    fields: MeridianFields, around: Circumference, loads: PinLoads, rows: Ints, instant: int
+    fields: MeridianFields, loads: PinLoads, shown: Shown, rows: Ints, instant: int, stress: Floats
 ) -> tuple[Floats, Floats, Floats]:
-    """Of every point on all meridians: x, y, z (P, 3), displacement (P, 3), stress (P, 6)."""
-    r, z = np.repeat(fields.points[rows], SECTORS, axis=0).T
-    angle = np.tile(_angles(), len(rows))
-    rr, tt, zz, tz, rz, rt = around.stress(rows, instant, _angles()).reshape(-1, 6).T
-    u_r, u_t, u_z = _moved(fields, loads, rows, instant).T
+    """Of every point on all meridians: x, y, z (P, 3), displacement (P, 3), stress (P, 6), which is
+    (rows, A, 6) in cylindrical coordinates.
+    """
+    sectors = len(shown.angles)
+    r, z = np.repeat(fields.points[rows], sectors, axis=0).T
+    angle = np.tile(shown.angles, len(rows))
+    rr, tt, zz, tz, rz, rt = stress.reshape(-1, 6).T
+    u_r, u_t, u_z = _moved(fields, loads, rows, instant, shown.angles).T
     c, s = np.cos(angle), np.sin(angle)
     twice = 2.0 * c * s * rt
     return (
@@ -79,36 +83,32 @@ def _turned(
     )
 
 
-def _skin(fields: MeridianFields) -> Ints:
-    """Points of the skin in order, those that coincide once, if neither is a corner's."""
-    x = fields.points[: fields.skin]
-    step = np.linalg.norm(np.diff(x, axis=0), axis=1)
-    return np.flatnonzero(np.concatenate([[True], step > CLOSE * np.ptp(x[:, 1])]))
+def _quads(count: int, sectors: int) -> Ints:
+    i = np.arange(count - 1)[:, None] * sectors
+    j = np.arange(sectors)[None]
+    k = (j + 1) % sectors
+    return np.stack([i + j, i + k, i + sectors + k, i + sectors + j], axis=2).reshape(-1, 4)
 
 
-def _quads(count: int) -> Ints:
-    i = np.arange(count - 1)[:, None] * SECTORS
-    j = np.arange(SECTORS)[None]
-    k = (j + 1) % SECTORS
-    return np.stack([i + j, i + k, i + SECTORS + k, i + SECTORS + j], axis=2).reshape(-1, 4)
+def _wedges(triangles: Ints, sectors: int) -> Ints:
+    """Of triangles (M, 3) of numbered rows."""
+    turn = np.arange(sectors)[:, None]
+    here = triangles[:, None] * sectors + turn
+    there = triangles[:, None] * sectors + (turn + 1) % sectors
+    return np.concatenate([there, here], axis=2).reshape(-1, 6)
 
 
-def _moved(fields: MeridianFields, loads: PinLoads, rows: Ints, instant: int) -> Floats:
+def _moved(
+    fields: MeridianFields, loads: PinLoads, rows: Ints, instant: int, angles: Floats
+) -> Floats:
     """Displacement along r, theta, z (P, 3) at points on all meridians."""
     amounts: dict[tuple[int, int], Floats] = {}  # of every harmonic and phase
     for load, both in loads.coefficients().items():
         unit = fields.displacement[rows, :, fields.loads.index(load)]
         for phase, amount in enumerate(both[instant]):
             amounts[load.n, phase] = amounts.get((load.n, phase), 0.0) + amount * unit
-    out = np.zeros((len(rows), SECTORS, 3))
+    out = np.zeros((len(rows), len(angles), 3))
     for (n, phase), u in amounts.items():
-        psi = n * _angles() - phase * np.pi / 2.0
+        psi = n * angles - phase * np.pi / 2.0
         out += u[:, None] * np.stack([np.cos(psi), np.sin(psi), np.cos(psi)], axis=1)
     return out.reshape(-1, 3)
-
-
-def _envelope(around: Circumference, rows: Ints, theta: Floats) -> Floats:
-    """Largest von Mises stress over all instants at rows x angles, flat."""
-    turn = len(theta) // 2 if around.odd else len(theta)  # odd harmonics: half a turn says it all
-    found = around.envelope(rows, theta[:turn])
-    return np.tile(found, len(theta) // turn).ravel()

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
+
 import numpy as np
 
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.places import BandPressure, ContactPlace, PressedCell
-from fea.harmonic.beneath import Beneath, beneath, reach
+from fea.cut.evaluate import CutAnswer
+from fea.harmonic.beneath import Beneath, Steps, beneath, depths, stairs
 from fea.harmonic.evaluate import HarmonicAnswer
 from fea.joint.edge_peak import contact_edges
 from fea.joint.solve_joint import JointContact
@@ -17,30 +20,49 @@ from geometry.arrays import Ints
 def contact_place(
     contact: JointContact,
     material: Material,
-    answer: HarmonicAnswer,
+    answer: HarmonicAnswer | CutAnswer,
     loads: PinLoads,
     required: float | None,
     error: float,
+    row: float,
 ) -> ContactPlace:
     """contact: at the row's instant. loads: on the rings at all instants of the case; error: of
-    what lies beneath, relative.
+    what lies beneath, relative. row: the maximum of surface and section, Pa, below which no
+    outcome asks how far stress reaches.
     """
-    zones, fields = answer.singularities, answer.fields
-    found = beneath(fields, loads, zones)
+    under = answer if isinstance(answer, CutAnswer) else _Plain(answer)
+    found = under.beneath(loads)
     limits = reached(material, required)
     instants = dict.fromkeys((found.instant, _instant(loads, contact)))
-    each = [reach(fields, loads, t, zones, limits) for t in instants] if limits else []
-    most = [max(values) for values in zip(*each, strict=True)]
-    return ContactPlace(
+    least = min(row, *limits) if limits else row
+    each = [x for t in instants for x in under.depths(loads, t, least)]
+    known = stairs(*np.array(each).reshape(-1, 2).T)
+    place = ContactPlace(
         found.value,
         error * found.value,
         found.location,
         _time(loads, found),
-        most[0] if most else None,
-        most[1] if len(most) > 1 else None,
+        None,
+        None,
         contact_edges(contact, material),
         tuple(_band(contact, b, material) for b in range(len(contact.lugs))),
+        known,
     )
+    reach, required_too = (*(place.depth(x) for x in limits), None, None)[:2]
+    return replace(place, reach=reach, reach_required=required_too)
+
+
+@dataclass(frozen=True)
+class _Plain:
+    """A pin without cuts, asked as one with them is."""
+
+    answer: HarmonicAnswer
+
+    def beneath(self, loads: PinLoads) -> Beneath:
+        return beneath(self.answer.fields, loads, self.answer.singularities)
+
+    def depths(self, loads: PinLoads, instant: int, least: float) -> Steps:
+        return depths(self.answer.fields, loads, instant, self.answer.singularities, least)
 
 
 def reached(material: Material, required: float | None) -> tuple[float, ...]:

@@ -3,14 +3,15 @@ the maximum depends on what is not known of the joint.
 
 Stress under the pressures is found as under any loads (fea.solve_pin), of a pin that nothing
 clamps. To the error of meshes and instants comes that of the cells: contact at the instant that
-governs on the first mesh is solved once more on cells twice as large, whose order is one at least,
-so that the difference counts whole; cells are refined until it is within half of the tolerance, or
-a quarter of what is uncertain anyway where stress near the edge of a lug governs. Where only a
-required factor is to be decided, larger cells come first, which take a third of the time.
+governs on the first mesh is solved once more on cells twice as large, and from the difference, by
+the order of cells, follows their error; they are refined until it is a part of the tolerance. Where
+only a required factor is to be decided, larger cells come first, which take a third of the time,
+and are enough if they decide it with their error, also for what lies beneath the contact.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
@@ -200,7 +201,7 @@ class Compared:
 
     def fine(self, material: Material, asked: Asked) -> bool:
         """Whether finer cells would not help: they take little of the tolerance, or the required
-        factor is decided whatever they do.
+        factor is decided whatever they do, for what lies beneath the contact, too.
         """
         both = (self.surface, "surface"), (self.section, "section")
         stress = {name: float(getattr(x.stress, name)) for x, name in both}
@@ -211,7 +212,12 @@ class Compared:
         off = max(own, most)
         if off <= CELLS * asked.tolerance:
             return True
-        return decided(asked, material, largest / (1.0 + off), largest * (1.0 + off))
+        low, high = largest / (1.0 + off), largest * (1.0 + off)
+        below, error = self.surface.stress.beneath, 1.0 + self.surface.cells.beneath
+        return decided(asked, material, low, high) and (
+            decided(asked, material, below / error, below * error)
+            or decided(asked, material, low, math.inf)
+        )
 
     def near(
         self, contact: JointContact, case: PinLoads, anew: Callable[[JointContact], Comparison]
@@ -398,19 +404,25 @@ class _Contact:
         (pressed,) = contact.contact
         pressure = CellPressure(contact.bands, pressed.pressure, pressed.angle)
         cut, answer = self.given.cut, solution.answer
-        if isinstance(answer, HarmonicAnswer):
-            error = known.surface.cells.beneath + self._by_mesh(answer, known.surface)
-            place = contact_place(contact, material, answer, solved, asked.required, error)
-            solution = replace(solution, peak=with_contact(peak, place))
-        if cut is None or not isinstance(answer, CutAnswer):
-            return LugSolution(solution, joint, self.press, pressure, model.pin, model)
-        left = neglected(cut, material, contact, pressure, answer)
-        peak = with_neglected(peak, left, answer, over.variations, asked)
-        return LugSolution(replace(solution, peak=peak), joint, self.press, pressure)
+        assert isinstance(answer, HarmonicAnswer | CutAnswer)
+        error = known.surface.cells.beneath + self._by_mesh(answer, known.surface)
+        if cut is not None and isinstance(answer, CutAnswer):
+            left = neglected(cut, material, contact, pressure, answer)
+            peak = with_neglected(peak, left, answer, over.variations, asked)
+            peak = row_of(peak, None, material, asked.tolerance)
+            largest = peak.max_von_mises or 1.0
+            error += left.error(largest, False, over.variations) / largest
+        row = peak.max_von_mises or 0.0
+        place = contact_place(contact, material, answer, solved, asked.required, error, row)
+        solution = replace(solution, peak=with_contact(peak, place))
+        if cut is not None:
+            return LugSolution(solution, joint, self.press, pressure)
+        return LugSolution(solution, joint, self.press, pressure, model.pin, model)
 
-    def _by_mesh(self, answer: HarmonicAnswer, known: Comparison) -> float:
+    def _by_mesh(self, answer: HarmonicAnswer | CutAnswer, known: Comparison) -> float:
         """By how much what lies beneath contact differs from that on the first mesh, relative."""
-        there = beneath(answer.fields, self.press(known.links), answer.singularities).value
+        fields = answer.solution.uncut if isinstance(answer, CutAnswer) else answer.fields
+        there = beneath(fields, self.press(known.links), answer.singularities).value
         return abs(known.stress.beneath / there - 1.0) if there else 0.0
 
     def _compared_anew(self, asked: Asked) -> Callable[[JointContact], Comparison]:

@@ -140,7 +140,7 @@ class JointModel:
                 cells.rings,
                 cells.beside,
                 beside_fillets(pin, pin.band(name)),
-            )  # fmt: skip
+            )
             for name, lug in zip(pin.connections, self.lugs, strict=True)
         }
         cut = pin, {name: ends.tolist() for name, ends in self.ends.items()}

@@ -27,22 +27,25 @@ from fea.harmonic.fields import MeridianFields
 from fea.harmonic.superposition import Circumference, Top
 from fea.plastic.interaction import plastic_use
 from geometry import Pin
-from geometry.arrays import Floats
+from geometry.arrays import Floats, Mask
 
 ALONG = 9  # sections between two stations, both ends included
 ACROSS = np.linspace(0.0, 1.0, 9)  # of the way from bore to outside, where stress is read
-CLOSER = 33  # points between two of these, and about the angle, near the largest
+CLOSER = 33  # points between two of these, about the angle, and along the pin, near the largest
+SAME = 1e-9  # relative: a section must have so much more than another
 NEAR = np.radians(2.0)  # of that angle
 
 
 @dataclass(frozen=True)
 class AtSection:
     """The largest stress of sections, Pa, at an instant (its number): z, radius (m) and angle (rad)
-    of the point; axial and shear force (N), bending moment and torque (N m) there.
+    of the point, in a cell of the beam; axial and shear force (N), bending moment and torque (N m)
+    there.
     """
 
     value: float
     instant: int
+    cell: int
     z: float
     r: float
     angle: float
@@ -106,7 +109,7 @@ class SectionAnswer:
 
     def maxima(self, loads: AnyLoads, least: float = 0.0) -> Floats:
         """Largest stress (T,) Pa at every instant, `least` where it does not exceed that."""
-        return Circumference(self.fields, self._felt(loads)).maxima(self._all, least)
+        return self.around(loads).maxima(self.all, least)
 
     def largest(self, loads: AnyLoads) -> tuple[float, int]:
         """The largest of these (Pa), and the number of its instant."""
@@ -118,26 +121,42 @@ class SectionAnswer:
         return None
 
     @property
-    def _all(self) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    def all(self) -> Mask:
+        """All points of the sections."""
         return np.ones(len(self.fields.points), dtype=bool)
 
+    def around(self, loads: AnyLoads) -> Circumference:
+        """A case on these points."""
+        return Circumference(self.fields, self._felt(loads))
+
     def _top(self, loads: AnyLoads) -> Top:
-        return Circumference(self.fields, self._felt(loads)).top(self._all)
+        return self.around(loads).top(self.all)
 
     def place(self, loads: AnyLoads) -> AtSection:
         """Where and when the largest is, and what acts there."""
         top = self._top(loads)
         row = top.point // len(ACROSS)
-        section = self.forces.sections[self._cells[row]]
-        z = float(self._z[row])
-        inside = self.forces.inside(self._cells[[row]], self._z[[row]])[0]
-        c = shares(self.forces.loads, self._felt(loads))[top.instant]
-        V, M, N, T = (inside[q] @ c.T for q in (SHEAR, MOMENT, AXIAL, TORQUE))
-        value, r, angle = self._closer(section, (V, M, N, T), top)
+        cell = self._cells[row]
+        section, z = self.forces.sections[cell], self._closer_z(row)
+        inside = self.forces.inside(np.full(len(z), cell), z)
+        forces = inside @ shares(self.forces.loads, self._felt(loads))[top.instant].T
+        found = [self._closer(section, tuple(x), top) for x in forces]
+        values = np.array([value for value, _, _ in found])
+        k = int(values.argmax()) if values.max() > (1.0 + SAME) * values[0] else 0
+        V, M, N, T = (forces[k, q] for q in (SHEAR, MOMENT, AXIAL, TORQUE))
+        value, r, angle = found[k]
         return AtSection(
-            value, top.instant, z, r, angle, float(N[0]), float(np.hypot(*V)),
+            value, top.instant, int(cell), float(z[k]), r, angle, float(N[0]), float(np.hypot(*V)),
             float(np.hypot(*M)), float(T[1]), section,
         )  # fmt: skip
+
+    def _closer_z(self, row: int) -> Floats:
+        """A section by its number, and others near it between the same stations, m."""
+        z, cell = float(self._z[row]), self._cells[row]
+        start, end = self.forces.stations[cell : cell + 2]
+        step = (end - start) / (ALONG - 1)
+        near = np.linspace(max(start, z - step), min(end, z + step), CLOSER)
+        return np.concatenate([[z], near])
 
     def _closer(
         self, section: Circle, forces: tuple[Floats, ...], top: Top

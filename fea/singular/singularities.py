@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 
 from fea.singular.williams import Side, antiplane_exponent, plane_exponent
-from geometry import Pin, Vertex, vertices
+from geometry import Arc, Pin, Vertex, meridian, vertices
 from geometry.arrays import Floats, Mask
 from geometry.shape.polygon import SMOOTH
 
@@ -20,6 +20,8 @@ Kind = Literal["sharp corner", "edge of a clamp", "edge of a load"]
 VARIED = (0.5, 2.0)  # times the excluded distance, which is a convention
 FILLET = 0.1  # of the smaller diameter: the radius to try
 LOGARITHM = 0.1  # of the distance of a power: a logarithm is felt that much closer only
+OWN_ARC = 0.25  # of the radius of an arc that begins at a singularity: so far it is nearly straight
+OVER_FIELD = 10.0  # what meshes are scaled by over the reach of a singular field
 
 
 @dataclass(frozen=True)
@@ -30,8 +32,9 @@ class Singularity:
     bending loads; 0 at the edge of a load, where it grows like log(1/d); None where the angle is
     not known. torsion_theory: the exponent in torsion; bending has this part too. radius: how far
     (m) stress is not to be read. feature: how far (m) the singular field reaches at most, the
-    height of a small step, say; at most the radius. angle: of the material, rad. advice: what would
-    make it finite, for people.
+    height of a small step, say; at most the radius. angle: of the material, rad. limit: of the
+    radius, m, where the next fillet or groove begins. scale: the length (m) by which meshes are
+    scaled near it, at most the diameter. advice: what would make it finite, for people.
     """
 
     r: float
@@ -44,9 +47,24 @@ class Singularity:
     advice: str
     feature: float = math.inf
     angle: float = math.nan
+    limit: float = math.inf
+    scale: float = math.inf
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "radius", min(self.radius, self.limit))
         object.__setattr__(self, "feature", min(self.feature, self.radius))
+        object.__setattr__(self, "scale", min(self.scale, 2.0 * self.r))
+
+    def varied(self, times: float) -> Singularity:
+        """With so many times the distance left out, but no farther than where the next feature
+        begins.
+        """
+        return replace(self, radius=times * self.radius)
+
+    def up_to(self, *distances: float) -> Singularity:
+        """With features whose stress counts from these distances, m, on."""
+        limit = min(self.limit, *distances, math.inf)
+        return replace(self, limit=limit, scale=min(self.scale, OVER_FIELD * limit))
 
     @property
     def measured(self) -> bool:
@@ -82,7 +100,9 @@ def find_singularities(
     nu: float,
     distance: float = 0.1,
 ) -> tuple[Singularity, ...]:
-    """Every such singularity, in the order of `vertices`.
+    """Every such singularity, in the order of `vertices`. The zone of each ends where a fillet or a
+    groove begins: farther away, its term K d^-theory is not what governs stress. Those of other
+    singularities may overlap it, since neither has stress that counts.
 
     clamps: surfaces (by the pin's names) that are clamped. loaded: those under a traction that does
     not fade towards their edges; a bearing pressure's shear does. nu: Poisson's ratio. distance: of
@@ -93,12 +113,33 @@ def find_singularities(
     constrained = {pin.surface(name) for name in clamps}
     pushed = {pin.surface(name) for name in loaded}
     every = vertices(pin)
-    found = (_singularity(pin, v, constrained, pushed, nu, distance) for v in every)
-    return tuple(
-        replace(singularity, feature=min(singularity.radius, _feature(every, k, constrained)))
-        for k, singularity in enumerate(found)
-        if singularity is not None
-    )
+    arcs, found = _inner_arcs(pin), []
+    for k, v in enumerate(every):
+        singularity = _singularity(pin, v, constrained, pushed, nu, distance)
+        if singularity is not None:
+            feature = _feature(every, k, constrained)
+            here = replace(singularity, feature=feature, scale=OVER_FIELD * feature)
+            found.append(here.up_to(*(_free_of(arc, (v.r, v.z)) for arc in arcs)))
+    return tuple(found)
+
+
+def free_of_arcs(pin: Pin, r: Floats, z: Floats) -> Floats:
+    """How far (m) from points at r, z (S,), m, the first of the pin's fillets and grooves is."""
+    arcs = _inner_arcs(pin)
+    at = zip(r.tolist(), z.tolist(), strict=True)
+    return np.array([min((_free_of(arc, x) for arc in arcs), default=math.inf) for x in at])
+
+
+def begins(gap: float, radius: float) -> float:
+    """How far (m) from a singularity stress is still its own beside a fillet, a groove or a hole of
+    some radius (m): up to it, or, where it begins there or nearly so, OWN_ARC of its radius.
+    """
+    return max(gap, OWN_ARC * radius)
+
+
+@lru_cache(64)
+def _inner_arcs(pin: Pin) -> tuple[Arc, ...]:
+    return tuple(edge for edge in meridian(pin) if isinstance(edge, Arc) and edge.turn < 0.0)
 
 
 def outside(singularities: Iterable[Singularity], r: Floats, z: Floats) -> Mask:
@@ -151,6 +192,16 @@ def _singularity(
     else:
         return None
     return Singularity(v.r, v.z, kind, v.between, plane, torsion, reach, advice, angle=v.angle)
+
+
+def _free_of(arc: Arc, at: tuple[float, float]) -> float:
+    """How far (m) from (r, z) an arc begins."""
+    r, z = at[0] - arc.centre[0], at[1] - arc.centre[1]
+    a, b = arc.start[0] - arc.centre[0], arc.start[1] - arc.centre[1]
+    part = math.atan2(a * z - b * r, a * r + b * z) / arc.turn
+    ends = min(math.dist(at, end) for end in (arc.start, arc.end))
+    gap = abs(math.hypot(r, z) - arc.radius) if 0.0 <= part <= 1.0 else ends
+    return begins(gap, arc.radius)
 
 
 def _feature(every: tuple[Vertex, ...], k: int, constrained: set[str]) -> float:

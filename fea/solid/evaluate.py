@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from fea.core.mesh_result import AtSingularity, MeshResult
 from fea.core.pin_loads import AnyLoads, PinLoads, UnitLoad
 from fea.core.solution import Picture
 from fea.singular.probes import all_round, rim
-from fea.singular.singularities import VARIED, Singularity, clamp_rims, outside
+from fea.singular.singularities import VARIED, Singularity, clamp_rims, free_of_arcs, outside
 from fea.solid.model import SolidModel, UnitFields, acting
 from fea.solid.sharp_edges import sharp_edges
 from fea.solid.superposition import envelope
@@ -80,7 +81,7 @@ def solid_solution(
     model = SolidModel(pin, mesh, material, clamps)
     require_memory(pin.name, model.unknowns, memory)
     if isinstance(pin, Pin):
-        near = [[replace(p, radius=x * p.radius) for p in singularities] for x in (1.0, *VARIED)]
+        near = [[p.varied(x) for p in singularities] for x in (1.0, *VARIED)]
         rims = [all_round(rim(pin, p, p.radius)) for here in near for p in here]
         fields = model.solve(units, np.concatenate([np.zeros((0, 3)), *rims]))
         r, z = np.hypot(*fields.points[:, :2].T), fields.points[:, 2]
@@ -88,7 +89,8 @@ def solid_solution(
         found = list(singularities)
     else:
         fields = model.solve(units)
-        edge = sharp_edges(fields.space, fields.surface, clamps)
+        limit = partial(free_of_arcs, profile) if isinstance(profile, Pin) else None
+        edge = sharp_edges(fields.space, fields.surface, clamps, limit)
         at = [edge.singularities(fields.points, times * distance) for times in (1.0, *VARIED)]
         within, *varied = ([mask for _, mask in here] for here in at)
         found = [singularity for singularity, _ in at[0]]

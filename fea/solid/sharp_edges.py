@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,27 +20,29 @@ SIDES = ((0, 1, 2), (1, 2, 0), (0, 2, 1))  # of a facet: ends and the corner acr
 @dataclass(frozen=True)
 class SharpEdges:
     """Points (K, 3), m, along inner corners and along edges of clamps, and the body's outer radius
-    (K,), m, at their z.
+    (K,), m, at their z. limit: (K,) how far, m, from each its zone reaches at most.
     """
 
     corner: Floats
     rim: Floats
     radius: Floats
+    limit: Floats
 
     def singularities(self, x: Floats, part: float) -> list[tuple[Singularity, Mask]]:
         """Of points x (S, 3), m: those within `part` of the diameter of any inner corner, and of
-        any clamp's edge, as a singularity each; none where there is nothing of the kind.
+        any clamp's edge, as a singularity each; none where there is nothing of the kind. Of several
+        corners, the nearest is what counts.
         """
         first = len(self.corner)
+        every = np.minimum(part * 2.0 * self.radius, self.limit)
         kinds: tuple[tuple[Kind, Floats, Floats, str], ...] = (
-            ("sharp corner", self.corner, self.radius[:first], _RADIUS),
-            ("edge of a clamp", self.rim, self.radius[first:], INSTEAD_OF_CLAMP),
+            ("sharp corner", self.corner, every[:first], _RADIUS),
+            ("edge of a clamp", self.rim, every[first:], INSTEAD_OF_CLAMP),
         )
         found = []
-        for kind, points, radius, advice in kinds:
+        for kind, points, reach, advice in kinds:
             if len(points):
                 distance, nearest = cKDTree(points).query(x)
-                reach = part * 2.0 * radius
                 at = points[0]
                 singularity = Singularity(
                     r=float(np.hypot(at[0], at[1])),
@@ -94,8 +97,15 @@ def turned_edges(
     return TurnedEdges(facet, edge, turn)
 
 
-def sharp_edges(space: Discretisation, surface: SurfaceMesh, clamps: tuple[str, ...]) -> SharpEdges:
-    """Inner corners that turn by more than TURN, and the rims of the clamped surfaces."""
+def sharp_edges(
+    space: Discretisation,
+    surface: SurfaceMesh,
+    clamps: tuple[str, ...],
+    limit: Callable[[Floats, Floats], Floats] | None = None,
+) -> SharpEdges:
+    """Inner corners that turn by more than TURN, and the rims of the clamped surfaces. limit: of
+    their zones (S,), m, at r, z (S,), m; none by default.
+    """
     clamped = surface.on(space, clamps)
     # of facets made plane: sides that were straightened for the elements' sake kink curved ones
     edges = turned_edges(space, surface, _plane_normals(space.nodes, surface))
@@ -104,8 +114,12 @@ def sharp_edges(space: Discretisation, surface: SurfaceMesh, clamps: tuple[str, 
     rim = first != second
     x = space.nodes
     corners, rims = (x[np.unique(edges.nodes[on])] for on in (corner, rim))
-    radius = _outer_radius(space.nodes[surface.nodes], np.concatenate([corners, rims]))
-    return SharpEdges(corners, rims, radius)
+    points = np.concatenate([corners, rims])
+    radius = _outer_radius(space.nodes[surface.nodes], points)
+    limits = np.full(len(points), np.inf)
+    if limit is not None:
+        limits = limit(np.hypot(*points[:, :2].T), points[:, 2])
+    return SharpEdges(corners, rims, radius, limits)
 
 
 def _plane_normals(nodes: Floats, surface: SurfaceMesh) -> Floats:

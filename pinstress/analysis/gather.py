@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, replace
 from importlib.metadata import version
 
@@ -11,9 +11,12 @@ import numpy as np
 from fea.checks.records import BeamCheck
 from fea.core.peak import Peak, decides
 from fea.core.pin_loads import PinLoads
+from fea.joint.pressure_loads import PressureLoads
 from fea.joint.records import JointResult
+from fea.joint.solve_in_lugs import LugSolution
+from fea.section.answer import SectionAnswer
 from fea.solve_pin import Solution
-from geometry import CutPin
+from geometry import CutPin, Pin
 from pinstress.analysis.gather_fatigue import fatigue_of
 from pinstress.analysis.mechanics.gather_loads import drive_position, mechanics, position_unit
 from pinstress.analysis.mechanics.gather_sequences import with_sequences
@@ -212,6 +215,7 @@ def _pin_result(
         history=peak.history,
         held=_held(task, joint),
         joint=joint,
+        places=peak.places,
         left_out=task.left_out[peak.case],
         published_max_von_mises=theirs[0],
         published_safety_factor=theirs[1],
@@ -268,21 +272,14 @@ def _shape(task: Task, peaks: list[Peak]) -> plain.PinShape:
 
 
 def landing_range(
-    loads: Mapping[str, CaseLoads],
-    task: Task,
-    solution: Solution,
-    pressed: Callable[[PinLoads], PinLoads],
+    loads: Mapping[str, CaseLoads], task: Task, found: Solution | LugSolution
 ) -> plain.LandingRange | None:
-    """A pin over the ranges of its landing's impulse: unit fields superposed. pressed: what acts on
-    the pin under loads of its links.
-    """
+    """A pin over the ranges of its landing's impulse: unit fields superposed."""
+    solution = found.solution if isinstance(found, LugSolution) else found
     case, over = solution.peak.case, loads[solution.peak.case].range
     if over is None or solution.answer is None:
         return None
-    maxima, strength = (
-        solution.answer.maxima(pressed(task.ranges[case])),
-        task.material.yield_strength,
-    )
+    maxima, strength = _maxima(task, found, task.ranges[case]), task.material.yield_strength
     return plain.LandingRange(
         pin=task.pin.name,
         case=case,
@@ -298,6 +295,24 @@ def landing_range(
         spread=_spread(solution.peak),
         error=(solution.peak.error_estimate or 0.0) / (solution.peak.max_von_mises or 1.0),
     )
+
+
+def _maxima(task: Task, found: Solution | LugSolution, loads: PinLoads) -> plain.Floats:
+    """The larger of surface and section, Pa, under other loads of a case, at each instant."""
+    if isinstance(found, LugSolution):
+        solution, pin, acting = found.solution, found.rings, found.pressed(loads)
+        clamps: tuple[str, ...] = ()
+    else:
+        solution, acting = found, loads
+        pin = task.pin if isinstance(task.pin, Pin) else None
+        clamps = tuple(task.pin.surface(name) for name in task.clamps)
+    assert solution.answer is not None
+    surface, places = solution.answer.maxima(acting), solution.peak.places
+    if places is None or places.section is None or pin is None:
+        return surface
+    feels = acting.on_rings if isinstance(acting, PressureLoads) else acting
+    sections = SectionAnswer(pin, task.material, clamps, (feels,))
+    return np.maximum(surface, sections.maxima(feels))
 
 
 def _spread(peak: Peak) -> tuple[float, float] | None:

@@ -41,7 +41,10 @@ def field(
     shown = solution.answer.picture(loads, governing) if solution.answer else None
     if solution.answer is None or shown is None:
         return None
-    times = loads.times
+    times, contact = loads.times, pressure.at(shown.points) if pressure else None
+    pressed = shown.pressed
+    if pressed is None and contact is not None:  # a pin with cuts
+        pressed = contact > 0.0
     return plain.Field(
         pin=peak.pin,
         case=peak.case,
@@ -64,7 +67,8 @@ def field(
             for i in instants(len(loads), governing)
         ),
         volume=_volume(solution.answer, loads, governing) if also == "solid" else None,
-        contact_pressure=pressure.at(shown.points) if pressure else None,
+        contact_pressure=contact,
+        pressed=pressed,
         solids=peak.solids,
     )
 
@@ -73,7 +77,7 @@ def _volume(answer: Answer, loads: PinLoads, instant: int) -> plain.Volume | Non
     """All of a revolved pin; a solid model's field has it already."""
     if not isinstance(answer, HarmonicAnswer):
         return None
-    shown = revolve_solid(answer.fields, loads, instant)
+    shown = revolve_solid(answer.fields, loads, instant, answer.solution.nu)
     return plain.Volume(
         shown.points,
         shown.cells,
@@ -81,6 +85,7 @@ def _volume(answer: Answer, loads: PinLoads, instant: int) -> plain.Volume | Non
         shown.displacement,
         shown.stress,
         von_mises(shown.stress),
+        shown.pressed,
     )
 
 
@@ -110,6 +115,7 @@ def _still(task: Task, answer: Answer, loads: PinLoads, instant: int, time: floa
         shown.displacement.astype(np.float32),
         von_mises(shown.stress).astype(np.float32),
         _bands(task, loads, instant),
+        shown.pressed,
     )
 
 
@@ -130,7 +136,12 @@ def _bands(task: Task, loads: PinLoads, instant: int) -> tuple[plain.BandLoad, .
 
 
 def _outside(peak: Peak) -> tuple[float, tuple[float, float, float]] | None:
-    """Where stress at singularities is left out, whether or not they govern."""
+    """Where stress at singularities is left out, whether or not they govern, and what lugs press
+    on: the largest of the surface.
+    """
+    places = peak.places
+    if places is not None and places.contact is not None:
+        return places.surface.max_von_mises, places.surface.location
     if not peak.singular_at or peak.max_von_mises is None or peak.location is None:
         return None
     return peak.max_von_mises, peak.location

@@ -20,8 +20,8 @@ ROUND = 2e-3  # of the radius
 def half_section(
     plane: MeridianPlane, loads: PinLoads, instant: int, maximum: float, at: tuple[float, ...]
 ) -> HalfSection:
-    """Through the point `at` (x, y, z) of the maximum, which is outside of what is excluded; what
-    exceeds it is cut down to it.
+    """Through the point `at` (x, y, z) of the surface's maximum, which is outside of what is
+    excluded; what exceeds it is cut down to it, but not what lies beneath lugs.
     """
     x, y, z = at
     angle, r = atan2(y, x), hypot(x, y)
@@ -32,7 +32,9 @@ def half_section(
     part = np.union1d(np.sin(np.linspace(0.0, 0.5 * np.pi, ROWS)), [own])
     j = int(np.searchsorted(part, own))
     grid = _grid(stations, inner, outer, part)
-    found = np.minimum(plane.von_mises(loads, instant, angle, grid), maximum)
+    found = plane.von_mises(loads, instant, angle, grid)
+    if loads.pressed is None:
+        found = np.minimum(found, maximum)
     found[0, k, j] = maximum
     allowed = np.broadcast_to(np.where(plane.outside(grid), WITHIN * maximum, np.inf), found.shape)
     walls = np.stack([inner, outer], axis=1)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import atan2
 
 import numpy as np
 
@@ -15,13 +16,21 @@ from fea.harmonic.half_section import MeridianPlane
 from fea.joint.cell_pressure import CellPressure
 from fea.solid.evaluate import SolidAnswer
 from fea.solve_pin import Solution
-from fea.surface_fields import amounts, excluded, largest_there, unit_surface
+from fea.surface_fields import (
+    amounts,
+    excluded,
+    largest_at,
+    largest_there,
+    unit_surface,
+    unread,
+)
+from geometry.arrays import Ints
 from pinstress.analysis.gather_fields import shown_at
 from pinstress.analysis.gather_section import half_section
 from pinstress.analysis.thinning import fewer_loads, meridian_points
 from pinstress.model.cases import CaseLoads
 from pinstress.model.tasks import Task
-from reports.data.surface import LoadCourse, Mask, Surface, SurfaceCase
+from reports.data.surface import SECTORS, LoadCourse, Mask, Surface, SurfaceCase
 
 
 def surfaces_of(
@@ -76,6 +85,10 @@ def _surface(
         )
         surface, cases = fewer_loads(surface, cases)
         keep = meridian_points(surface, cases, kept)
+        cases = [
+            replace(c, unread=_unread(loads[c.case], s, np.flatnonzero(keep), c.location))
+            for c, (s, _, _) in zip(cases, with_fields, strict=True)
+        ]
     return Surface(
         pin=task.pin.name,
         points=surface.points[keep],
@@ -102,7 +115,7 @@ def _case(
     shown, answer = shown_at(solution, case), solution.answer
     assert answer is not None
     maxima = answer.maxima(shown.loads)
-    top, at = float(maxima[shown.instant]), solution.peak.location
+    top, at = float(maxima[shown.instant]), largest_at(answer, shown.loads, shown.instant)
     return SurfaceCase(
         case=solution.peak.case,
         times=shown.loads.times,
@@ -114,7 +127,18 @@ def _case(
         zones=_zones(answer),
         loads=_courses(task, shown.loads),
         section=half_section(plane, shown.loads, shown.instant, top, at) if plane and at else None,
+        location=at,
     )
+
+
+def _unread(
+    case: CaseLoads, solution: Solution, points: Ints, at: tuple[float, ...] | None
+) -> Mask | None:
+    """Of points (J,) of a meridian, from the angle of a location on."""
+    assert solution.answer is not None
+    start = 0.0 if at is None else atan2(at[1], at[0])
+    turns = start + 2.0 * np.pi * np.arange(SECTORS) / SECTORS
+    return unread(solution.answer, shown_at(solution, case).loads, points, turns)
 
 
 def _zones(answer: Answer) -> Floats:
@@ -150,8 +174,8 @@ def _own(case: SurfaceCase, solution: Solution, points: Floats) -> Mask:
     if case.rings is not None:
         jumps = np.flatnonzero(np.diff(case.rings))
         kept[jumps] = kept[jumps + 1] = True
-    if solution.peak.location is not None:
-        x, y, z = solution.peak.location
+    if case.location is not None:
+        x, y, z = case.location
         away = np.hypot(points[:, 0] - np.hypot(x, y), points[:, 2] - z)
         kept |= away <= away.min() * (1.0 + 1e-9)
     return kept

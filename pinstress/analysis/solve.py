@@ -10,7 +10,6 @@ from math import inf
 from fea.checks.opinions import Opinion
 from fea.core.memory import allowed_memory, solid_memory
 from fea.core.peak import Peak
-from fea.core.pin_loads import PinLoads
 from fea.fatigue.critical_points import stress_histories
 from fea.fatigue.records import PointHistory
 from fea.harmonic.evaluate import FirstMesh
@@ -187,10 +186,7 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
     peaks = tuple(
         replace(s.peak, note="; ".join(filter(None, (s.peak.note, notes)))) for s in found
     )
-    pressed = [j.pressed for j in joined] or [_as_given] * len(found)
-    ranges = (
-        gather.landing_range(plan.loads, task, s, on) for s, on in zip(found, pressed, strict=True)
-    )
+    ranges = (gather.landing_range(plan.loads, task, s) for s in every)
     landing = tuple(r for r in ranges if r is not None)
     beam = None
     if task is plan.checked and study.table.beam_check is not None:
@@ -256,7 +252,3 @@ def _around(plan: Plan, task: Task, peaks: tuple[Peak, ...]) -> tuple[JointResul
     return prescribed_ranges(
         around.pin, task.material, around.lugs, loads, (plan.asked.distance, around.assumed)
     )
-
-
-def _as_given(loads: PinLoads) -> PinLoads:
-    return loads

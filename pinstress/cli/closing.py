@@ -15,7 +15,7 @@ from reports.data.decision import DEPENDS, FAILS, NOT_DECIDED, YIELDS, as_descri
 from reports.data.headline import judged_checks
 from reports.data.results import PinResult, Results, SingularZone
 from reports.format.numbers import engineering
-from reports.format.words import depends_words, undecided_because
+from reports.format.words import but_words, undecided_because
 
 NUMERICS_FAILED, REQUIREMENT_MISSED = 3, 4  # exit statuses
 Reason = TypeVar("Reason", bound=Hashable)
@@ -82,8 +82,8 @@ def report_violations(results: Results) -> int:
         click.echo(f"Required factor missed: {_listed(short)}.", err=True)
     depending = [p for p in results.pins if outcome(p) == DEPENDS]
     for p in depending:
-        within = depends_words(p.depends_on, results.units)
-        click.echo(f"Safe as described, but not within {within}: {_listed([p])}.", err=True)
+        but = but_words(p.depends_on, results.units, "not")
+        click.echo(f"Safe as described, {but}: {_listed([p])}.", err=True)
     negative = [c for c in judged_checks(results) if c.row is None and c.outcome == FAILS]
     for c in negative:
         case = f" ({c.case})" if c.case else ""

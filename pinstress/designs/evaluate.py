@@ -28,7 +28,7 @@ from pinstress.analysis.stored import shape_of
 from pinstress.cache.serialise import pack
 from pinstress.designs.laws import Floats
 from pinstress.designs.number import Number, put
-from pinstress.designs.outcomes import DesignAnswer, bare_answer, outcome_of
+from pinstress.designs.outcomes import DesignAnswer, bare_answer, outcome_of, stress_at
 from pinstress.designs.parameters import Parameter
 from pinstress.model.cases import CaseLoads, case_loads
 from pinstress.model.impulses import ImpulseLoads
@@ -52,7 +52,9 @@ class DesignRow:
     """One pin in one case of a design, in SI. max_von_mises, error_estimate: Pa, None where there
     is no maximum (verdict `failed` or `rigid`). governing_time: s, None without a motion. mass: kg,
     None without a density. reason, code: why the verdict is not `converged`, for people and for
-    programs. outcome, depends_on: as of a run (pinstress.designs.outcomes).
+    programs. outcome, depends_on: as of a run (pinstress.designs.outcomes). governs: "surface" or
+    "section", empty where the model has no places; the largest stress of these and beneath contact,
+    Pa, None where there is none.
     """
 
     pin: str
@@ -67,6 +69,10 @@ class DesignRow:
     code: str = ""
     outcome: str = NOT_DECIDED
     depends_on: str = ""
+    governs: str = ""
+    surface: float | None = None
+    section: float | None = None
+    beneath: float | None = None
 
 
 class Recent(Generic[K, V]):
@@ -240,6 +246,8 @@ class Evaluator:
                     "" if good else peak.note,
                     "" if good else _code(peak),
                     *outcome_of(answer, task, required, study.system),
+                    peak.places.governs if peak.places else "",
+                    *stress_at(peak),
                 ),
             )
 

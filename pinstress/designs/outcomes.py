@@ -28,7 +28,7 @@ AS_DESCRIBED = "as described"
 
 @dataclass(frozen=True)
 class DesignAnswer:
-    """What is kept of a solved pin in a case: no meshes, no zones."""
+    """What is kept of a solved pin in a case: no meshes, zones, edges or cells."""
 
     peak: Peak
     joint: JointResult | None
@@ -39,14 +39,16 @@ def bare_answer(
     task: Task, found: Solution | LugSolution, loads: Mapping[str, CaseLoads]
 ) -> DesignAnswer:
     """Of one solution of a task."""
-    joint = None
     if isinstance(found, LugSolution):
-        solution, pressed = found.solution, found.pressed
-        joint = found.joint and replace(found.joint, along=None, bending_moments=())
+        peak, joint = found.solution.peak, found.joint
+        joint = joint and replace(joint, along=None, bending_moments=())
     else:
-        solution, pressed = found, lambda given: given
-    peak = replace(solution.peak, history=(), singular_at=())
-    return DesignAnswer(peak, joint, landing_range(loads, task, solution, pressed))
+        peak, joint = found.peak, None
+    places = peak.places
+    if places is not None and places.contact is not None:
+        places = replace(places, contact=replace(places.contact, edges=(), bands=()))
+    peak = replace(peak, history=(), singular_at=(), places=places)
+    return DesignAnswer(peak, joint, landing_range(loads, task, found))
 
 
 def outcome_of(
@@ -60,9 +62,21 @@ def outcome_of(
     if not decided or strength is None or permitted is None or not peak.max_von_mises:
         return found, ""
     judged = Judged(peak.lower_end, peak.max_von_mises, peak.upper_end, strength, permitted, True)
-    if on := dependences(judged, answer.joint, answer.landing):
+    contact = peak.places.contact if peak.places else None
+    if on := dependences(judged, contact, answer.joint, answer.landing):
         units = Units(system.length, system.force, system.stress, system.time)
         own = [in_units(d, system.factor) for d in on]
         return DEPENDS, depends_words(own, units)
     joint_open = around is not None and around.pin is not None
     return (f"{found} {AS_DESCRIBED}" if joint_open else found), ""
+
+
+def stress_at(peak: Peak) -> tuple[float | None, float | None, float | None]:
+    """The largest stress of surface and section and beneath contact, Pa."""
+    places = peak.places
+    section, contact = (places.section, places.contact) if places else (None, None)
+    return (
+        places.surface.max_von_mises if places else None,
+        section.max_von_mises if section else None,
+        contact.beneath if contact else None,
+    )

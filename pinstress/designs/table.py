@@ -33,6 +33,10 @@ RESULTS = {  # by column: the dimension, or None of a text; SI in a DesignRow
     "mass": "mass",
     "reason": None,
     "code": None,
+    "governs": None,
+    "surface": "stress",
+    "section": "stress",
+    "beneath": "stress",
 }
 
 

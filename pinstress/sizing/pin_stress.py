@@ -333,8 +333,7 @@ class PinStress:
             return [_Found(peak.case, peak.case, peak.upper_end, whole)]
         zones = answer.singularities
         if peak.verdict != "converged" and peak.interval is not None:
-            near = min(VARIED)
-            zones = tuple(replace(zone, radius=near * zone.radius) for zone in zones)
+            zones = tuple(zone.varied(min(VARIED)) for zone in zones)
         clamps = tuple(pin.surface(name) for name in task.clamps)
         solved = SolvedCase(pin, task.material, clamps, solution.loads, answer.solution, zones)
         masks = halves(pin.stations, answer.fields.points)

@@ -2,7 +2,8 @@
 
 A row is judged as its study describes it. What the study gives as a range (the impulse of a
 landing), or what is seldom known of a joint, may still turn "safe" into "fails"; then a factor that
-is met is met on a condition, and this names it.
+is met is met on a condition, and this names it. So does what lies beneath contact with lugs: a row
+is the larger of surface and section, and safe only if that meets the factor too.
 """
 
 from __future__ import annotations
@@ -10,13 +11,17 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
+from fea.core.places import ContactPlace
 from fea.joint.records import JointResult, Variation
 from reports.data.decision import BELOW, NOT_DECIDED, SAFE, as_described, factor_ends
 from reports.data.results import Dependence, Floats, LandingRange, PinResult
 
+BENEATH: Literal["beneath"] = "beneath"
+WITH_ERROR = "with its error"  # of what lies beneath, which exceeds what is permitted only with it
 TOGETHER = "impulse time, velocity change and pulse together"
 
 
@@ -42,14 +47,17 @@ class Judged:
 
 
 def dependences(
-    judged: Judged, joint: JointResult | None, landing: LandingRange | None
+    judged: Judged,
+    contact: ContactPlace | None,
+    joint: JointResult | None,
+    landing: LandingRange | None,
 ) -> tuple[Dependence, ...]:
-    """Everything whose range changes the outcome, that of the joint first; empty where nothing
-    does.
+    """Everything that changes the outcome: what lies beneath contact, then the ranges, that of the
+    joint first; empty where nothing does.
     """
     if judged.maximum <= 0.0:
         return ()
-    found = [*_over_joint(judged, joint)]
+    found = [*_beneath(judged, contact), *_over_joint(judged, joint)]
     if landing is not None:
         found += _over_landing(judged, landing)
     return tuple(found)
@@ -61,10 +69,25 @@ def depends_on(pin: PinResult, landing: LandingRange | None) -> tuple[Dependence
     if found == NOT_DECIDED or not pin.max_von_mises or not pin.safety_factor:
         return ()
     strength = pin.safety_factor * pin.max_von_mises
+    contact = pin.places.contact if pin.places else None
     high, low = (strength / end for end in factor_ends(pin))
     permitted = strength / (pin.required or 1.0)
     judged = Judged(low, pin.max_von_mises, high, strength, permitted, found in (SAFE, BELOW))
-    return dependences(judged, pin.joint, landing)
+    return dependences(judged, contact, pin.joint, landing)
+
+
+def _beneath(judged: Judged, contact: ContactPlace | None) -> Iterator[Dependence]:
+    """Of a row that is safe as described: no distance from the edges of lugs makes it plainly so
+    while the field away from them says otherwise.
+    """
+    if contact is None or not judged.safe or contact.upper_end <= judged.permitted:
+        return
+    exceeds = contact.beneath > judged.permitted
+    yield Dependence(
+        BENEATH, "" if exceeds else WITH_ERROR, BENEATH,
+        judged.strength / (contact.beneath if exceeds else contact.upper_end),
+        reach=contact.depth(judged.permitted),
+    )  # fmt: skip
 
 
 def _over_joint(judged: Judged, joint: JointResult | None) -> Iterator[Dependence]:

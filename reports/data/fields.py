@@ -42,18 +42,21 @@ class BandLoad:
 
 @dataclass(frozen=True)
 class Still:
-    """The pin of a Field at another instant: displacement (N, 3), von_mises (N,), its loads."""
+    """The pin of a Field at another instant: displacement (N, 3), von_mises (N,), its loads, and
+    where lugs press on it, (N,), None without lugs.
+    """
 
     time: Time
     displacement: Annotated[Floats32, "length"]
     von_mises: Annotated[Floats32, "stress"]
     loads: tuple[BandLoad, ...]
+    pressed: NDArray[np.bool_] | None = None
 
 
 @dataclass(frozen=True)
 class Volume:
     """All of a revolved pin: points (N, 3), cells (M, 6; "wedge"), displacement (N, 3), stress
-    (N, 6) as a Field's, von_mises (N,).
+    (N, 6) as a Field's, von_mises (N,), pressed (N,) as a Still's.
     """
 
     points: Lengths
@@ -62,6 +65,7 @@ class Volume:
     displacement: Lengths
     stress: Stresses
     von_mises: Stresses
+    pressed: NDArray[np.bool_] | None = None
 
 
 @dataclass(frozen=True)
@@ -70,10 +74,12 @@ class Field:
     (M, 4; "quad": the surface alone), displacement (N, 3), stress (N, 6: xx, yy, zz, yz, xz, xy),
     von_mises (N,), and envelope (N,): the largest von Mises over all instants at surface nodes, NaN
     inside. yield_strength: for the factor of safety at each point, None without one. outside: where
-    zones are excluded, the largest stress outside of them and where it is (x, y, z). time:
-    None without a motion. loads: what acts at this instant. stills: along the motion, and
-    volume: all of a revolved pin, if wanted. contact_pressure: (N,) of its lugs, None without.
-    solids: between which z local solids are about cuts.
+    zones are excluded or lugs press on the surface, the largest stress that is read of it and where
+    it is (x, y, z). time: None without a motion. loads: what acts at this instant. stills: along
+    the motion, and volume: all of a revolved pin, if wanted. contact_pressure: (N,) of its lugs;
+    pressed: (N,) where they press on what is shown, and where the envelope has only the instants at
+    which they do not (NaN if there are none); None without lugs. solids: between which z local
+    solids are about cuts.
     """
 
     pin: str
@@ -93,4 +99,5 @@ class Field:
     stills: tuple[Still, ...] = ()
     volume: Volume | None = None
     contact_pressure: Stresses | None = None
+    pressed: NDArray[np.bool_] | None = None
     solids: tuple[tuple[Length, Length], ...] = ()

@@ -25,6 +25,7 @@ from fea.core.dimensions import (
     Velocity,
 )
 from fea.core.peak import Refinement, SingularZone
+from fea.core.places import Places
 from fea.fatigue.records import PointFatigue, PointHistory
 from fea.joint.records import JointResult
 from fea.plastic.records import LimitLoad
@@ -95,20 +96,22 @@ class Dependence:
     """Something that the study gives as a range, or that is seldom known, and that changes the
     outcome of a row.
 
-    what: "clearance", "impulse time"; value: in words where it is not a number ("guided"). over:
-    whose range. factor: of safety there. given, at, flips_at: as the study has it, where the
-    outcome is another, and between them where it changes (interpolated), of `dimension`; None where
-    it is not a number.
+    what: "clearance", "impulse time", "beneath"; value: in words where it is not a number
+    ("guided"). over: whose range, or "beneath" of what lies beneath contact. factor: of safety
+    there. given, at, flips_at: as the study has it, where the outcome is another, and between them
+    where it changes (interpolated), of `dimension`; None where it is not a number. reach: how far
+    from pressed cells stress beneath contact exceeds what is permitted.
     """
 
     what: str
     value: str
-    over: Literal["joint", "landing"]
+    over: Literal["joint", "landing", "beneath"]
     factor: float
     given: Annotated[float, "own"] | None = None
     at: Annotated[float, "own"] | None = None
     flips_at: Annotated[float, "own"] | None = None
     dimension: str = "1"
+    reach: Length | None = None
 
     @property
     def instead(self) -> dict[str, str]:
@@ -130,7 +133,9 @@ class PinResult:
     the history; the intervals are those over half and twice the excluded distance, and
     error_estimate reaches both ends. error_parts: stresses by what they come from (mesh, time,
     ..). loads: at the governing instant. joint: contact with the lugs there, if that holds the pin.
-    second_opinion: that of CalculiX, if there is one. limit_load: past yield, if requested.
+    places: surface, section and contact, of which the maximum is the larger of the first two; None
+    where the model has none. second_opinion: that of CalculiX, if there is one. limit_load: past
+    yield, if requested.
     """
 
     pin: str
@@ -166,6 +171,14 @@ class PinResult:
     limit_load: LimitLoad | None = None
     required: float | None = None
     depends_on: tuple[Dependence, ...] = ()
+    places: Places | None = None
+
+    @property
+    def yield_strength(self) -> float | None:
+        """Of the material; None where it has none, or the row has no stress."""
+        if self.safety_factor is None or not self.max_von_mises:
+            return None
+        return self.safety_factor * self.max_von_mises
 
     @property
     def meets_required(self) -> bool | None:

@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.core.dimensions import Floats, Forces, Length, Lengths, Stress, Stresses, Times
+from fea.core.dimensions import Floats, Forces, Length, Lengths, Point, Stress, Stresses, Times
 
+SECTORS = 72  # into which a body of revolution is divided where it is drawn
 Ints = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
@@ -50,10 +51,12 @@ class SurfaceCase:
     amounts: (T, K, 2) of the unit loads, by phase. maxima: (T,) largest von Mises stress outside of
     what is excluded, as the analysis found it; `instant` governs. times: None without a motion.
     excluded: (P,) whether no stress is read there. largest: (P,) von Mises stress at the governing
-    instant, of a meridian the maximum over the circumference. pressure: (R, M) of contact with lugs
-    at that instant, on M sectors of R rings, the first at `first`, rad, from x; rings: (P,) on
-    which of them a point is, -1 on none; None without contact. zones: (Z, 3) of circles that are
-    excluded: r, z, distance. section: at that instant, of a body of revolution.
+    instant, of a meridian the maximum over the circumference of what is read. location: (x, y, z)
+    of the largest at that instant. unread: (T, P, SECTORS) where lugs press on the surface or
+    beside that, from the angle of this location on; None without lugs. pressure: (R, M) of contact
+    with lugs at that instant, on M sectors of R rings, the first at `first`, rad, from x; rings:
+    (P,) on which of them a point is, -1 on none; None without contact. zones: (Z, 3) of circles
+    that are excluded: r, z, distance. section: at that instant, of a body of revolution.
     """
 
     case: str
@@ -69,6 +72,8 @@ class SurfaceCase:
     zones: Lengths = field(default_factory=lambda: np.zeros((0, 3)))
     loads: tuple[LoadCourse, ...] = ()
     section: HalfSection | None = None
+    location: Point | None = None
+    unread: Mask | None = None
 
 
 @dataclass(frozen=True)

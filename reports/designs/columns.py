@@ -14,13 +14,25 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 META = b"pinstress"
-ROW = ("pin", "case", "outcome", "depends_on", "verdict", "reason", "code")  # texts of every row
+ROW = (
+    "pin",
+    "case",
+    "outcome",
+    "depends_on",
+    "verdict",
+    "reason",
+    "code",
+    "governs",
+)  # texts of every row
 TITLES = {
     "mass": "mass",
     "max_von_mises": "maximum von Mises",
     "error_estimate": "± of maximum",
     "safety_factor": "safety factor",
     "governing_time": "governing time",
+    "surface": "surface von Mises",
+    "section": "section von Mises",
+    "beneath": "beneath contact",
 }
 
 

@@ -15,6 +15,7 @@ from reports.data.decision import (
     outcome,
     worst_first,
 )
+from reports.data.dependence import BENEATH
 from reports.data.headline import JudgedCheck, worst_checks
 from reports.data.results import Dependence, PinResult, Results, Units
 from reports.format.numbers import engineering, short
@@ -25,13 +26,13 @@ BEYOND = "beyond yield"
 MAX_NAMED = 4  # properties of a range; of more, their number is given
 
 READING = (
-    "One row per pin and case, the worst first. The maximum is the largest von Mises stress "
-    "anywhere in the pin, except in excluded zones, at any instant; ± is its estimated error, from "
-    "successive meshes; the safety factor is the yield strength divided by the maximum. The "
-    "utilisation is the required factor (1 if none is required) divided by the safety factor, the "
-    "margin of safety its inverse less 1. A solid model reports the "
-    "mean over several rotations of the loads about the axis; pictures and VTU files show one "
-    "orientation, so their maximum may differ by up to the ±."
+    "One row per pin and case, the worst first. The maximum is the larger von Mises stress of the "
+    "pin's surface, except in excluded zones, and of its sections under axial force, bending, "
+    "shear and torsion, at any instant; ± is its estimated error; the safety factor is the yield "
+    "strength divided by the maximum. The utilisation is the required factor (1 if none is "
+    "required) divided by the safety factor, the margin of safety its inverse less 1. A solid "
+    "model reports the mean over several rotations of the loads about the axis; pictures and VTU "
+    "files show one orientation, so their maximum may differ by up to the ±."
 )
 JOINT = (
     "Joint is the range of the maximum over properties of the joint that are seldom known: other "
@@ -41,11 +42,18 @@ JOINT = (
     "in contact, it is that of a beam on foundations in their lugs, or in assumed ones, with its "
     "error."
 )
+BELOW_CONTACT = (
+    "Beneath is the largest von Mises stress farther than a tenth of the diameter from where lugs "
+    "press on the pin. It is not part of the maximum; a pin is safe only if it meets the required "
+    "factor there too, with its error. Contact stress at the edges of lugs is reported by itself "
+    "(contact_edges.csv)."
+)
 RESULTS = {
     SAFE: "the pin meets its required safety factor, with the error of its maximum and over all "
     "that the study leaves open.",
     DEPENDS: "the pin meets its required safety factor as the study describes it, but not within "
-    "the range of its joint or of its landing; the value at which it fails is named.",
+    "the range of its joint or of its landing, where the value at which it fails is named, or not "
+    "beneath its contact with lugs, where the depth is named.",
     FAILS: "the pin does not meet its required safety factor.",
     NOT_DECIDED: "the results do not show whether the pin meets it; the verdict gives the reason, "
     "or the factor is within its error of the required one, or the material has no yield strength.",
@@ -96,23 +104,54 @@ def result_words(pin: PinResult) -> str:
     if found == NOT_DECIDED:
         return f"{found}: {undecided_because(pin)}"
     if found == DEPENDS:
-        return f"{found}: {', '.join(dict.fromkeys(d.over for d in pin.depends_on))}"
+        return f"{found}: {over_words(pin.depends_on)}"
     more = [undecided_because(pin)] * (pin.verdict != "converged")
     more += [YIELDS] * bool(pin.yields and found != YIELDS)
     return f"{found} ({', '.join(more)})" if more else found
 
 
+def over_words(depends_on: Sequence[Dependence]) -> str:
+    """What an outcome depends on, briefly: "joint, beneath contact"."""
+    short_names = (f"{d.over} contact" if d.over == BENEATH else d.over for d in depends_on)
+    return ", ".join(dict.fromkeys(short_names))
+
+
 def depends_words(depends_on: Sequence[Dependence], units: Units) -> str:
     """What an outcome depends on, with the values at which it changes: "the range of the joint
-    (clearance above 0.0031 in, tilt guided)".
+    (clearance above 0.0031 in, tilt guided)", "stress beneath contact (FoS 1.08, too low to a depth
+    of 0.31 in)".
     """
+    below = [_beneath(d, units) for d in depends_on if d.over == BENEATH]
+    ranges = _ranges(depends_on, units)
+    return " and ".join([*(f"stress beneath contact ({x})" for x in below), *ranges])
+
+
+def but_words(depends_on: Sequence[Dependence], units: Units, fails: str = "fails") -> str:
+    """The same as a clause on a pin: "but not beneath contact (..), and fails within the range of
+    the joint (..)". fails: the verb.
+    """
+    below = [f"not beneath contact ({_beneath(d, units)})" for d in depends_on if d.over == BENEATH]
+    ranges = [f"{fails} within {x}" for x in _ranges(depends_on, units)]
+    return f"but {', and '.join([*below, *ranges])}"
+
+
+def _ranges(depends_on: Sequence[Dependence], units: Units) -> list[str]:
+    """All ranges in words, as one; none where there are none."""
     parts = []
-    for over in dict.fromkeys(d.over for d in depends_on):
+    for over in dict.fromkeys(d.over for d in depends_on if d.over != BENEATH):
         each = list(dict.fromkeys(_dependence(d, units) for d in depends_on if d.over == over))
         if len(each) > MAX_NAMED:
             each = [*each[: MAX_NAMED - 1], f"and {len(each) - MAX_NAMED + 1} others"]
         parts.append(f"the {over} ({', '.join(each)})")
-    return f"the range of {' and of '.join(parts)}"
+    return [f"the range of {' and of '.join(parts)}"] if parts else []
+
+
+def _beneath(d: Dependence, units: Units) -> str:
+    """With the factor there, and the depth where stress itself is too large."""
+    factor = f"FoS {engineering(d.factor, 3)}"
+    if d.value:
+        return f"{factor} {d.value}"
+    return f"{factor}, too low to a depth of {engineering(d.reach, 2)} {units.length}"
 
 
 def _dependence(d: Dependence, units: Units) -> str:
@@ -145,8 +184,8 @@ def headline(results: Results) -> str:
         return f"Pin {row.pin} {first.outcome}: {factor} < {needed} ({row.case})."
     state, fails = ("is safe", "fails") if row.required else ("stays below yield", "yields")
     return (
-        f"Pin {row.pin} {state} as described ({factor} ≥ {needed}; {row.case}), but {fails} "
-        f"within {depends_words(row.depends_on, results.units)}."
+        f"Pin {row.pin} {state} as described ({factor} ≥ {needed}; {row.case}), "
+        f"{but_words(row.depends_on, results.units, fails)}."
     )
 
 

@@ -1,18 +1,22 @@
-"""Numbered rings on the drawing of a pin at stress singularities, with their kind, and stripes
-where stress is excluded about them.
+"""Marks on the drawing of a pin: numbered rings at stress singularities, with their kind, and
+stripes where stress is excluded about them; dots where rows have their stress on the surface, and
+lines across the section that has it.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from math import hypot
+from typing import Literal
 
 from reports.format.drawing.spread import rows
 from reports.format.drawing.svg import line, text, wide
+from reports.page.drawing_places import PlaceMark
 from reports.tables.stress.singular_zones import Zone
 
 RED = "#a8211b"
 RING = 4.0  # radius
+DOT = 3.5
 LINE = 14.0  # height of a row of words
 ABOVE = 10.0  # between the section and the first row
 STRIPES = (
@@ -24,21 +28,31 @@ STRIPES = (
 
 @dataclass(frozen=True)
 class _Mark:
-    """A zone on the drawing: position x, distance r from the axis, what is excluded, label."""
+    """A zone on the drawing: position x, distance r from the axis, what is excluded, label; or a
+    place of stress, r of a section that of the pin.
+    """
 
     x: float
     r: float
     excluded: float
     words: str
     governs: bool
+    kind: Literal["zone", "surface", "section"] = "zone"
 
 
 class ZoneMarks:
-    """Marks of the zones (one per circle) on a pin drawn at `scale` from `left`, with labels kept
-    inside a picture of `width`.
+    """Marks of the zones (one per circle) and of places on a pin drawn at `scale` from `left`, with
+    labels kept inside a picture of `width`; radius: the pin's, drawn.
     """
 
-    def __init__(self, zones: list[Zone], left: float, scale: float, width: float) -> None:
+    def __init__(
+        self,
+        zones: list[Zone],
+        places: list[PlaceMark],
+        drawn: tuple[float, float, float],
+        width: float,
+    ) -> None:
+        left, scale, radius = drawn
         self.marks = [
             _Mark(
                 left + scale * zone.z,
@@ -48,6 +62,16 @@ class ZoneMarks:
                 zone.found.governs,
             )
             for zone in zones
+        ] + [
+            _Mark(
+                left + scale * place.z,
+                radius if place.r is None else scale * place.r,
+                0.0,
+                place.words,
+                False,
+                "section" if place.r is None else "surface",
+            )
+            for place in places
         ]
         self.places = [_within(m, width) for m in self.marks]
         self.rows = rows(self.places, [wide(m.words) for m in self.marks])
@@ -67,7 +91,7 @@ class ZoneMarks:
             f'r="{mark.excluded:.2f}" fill="url(#excluded)"/>'
             for mark in self.marks
             for side in (-1.0, 1.0)
-            if _touches(mark.x, axis + side * mark.r, mark.excluded, wall)
+            if mark.kind == "zone" and _touches(mark.x, axis + side * mark.r, mark.excluded, wall)
         ]
         if not discs:
             return []
@@ -81,10 +105,24 @@ class ZoneMarks:
             y = foot + ABOVE + LINE * (row + 1) - 3.0
             parts.append(line(mark.x, axis + mark.r + RING, place, y - 10.0, 'opacity="0.7"', RED))
         for mark, place, row in zip(self.marks, self.places, self.rows, strict=True):
-            parts += [_ring(mark.x, axis + side * mark.r, mark.governs) for side in (-1.0, 1.0)]
+            parts += _drawn(mark, axis)
             y = foot + ABOVE + LINE * (row + 1) - 3.0
             parts.append(text(place, y, mark.words, halo=True))
         return parts
+
+
+def _drawn(mark: _Mark, axis: float) -> list[str]:
+    ends = [axis + side * mark.r for side in (-1.0, 1.0)]
+    if mark.kind == "section":
+        across = 'class="place" stroke-width="2"'
+        return [line(mark.x, ends[0] - RING, mark.x, ends[1] + RING, across, RED)]
+    if mark.kind == "surface":
+        return [
+            f'<circle class="place" cx="{mark.x:.2f}" cy="{y:.2f}" r="{DOT:.1f}" fill="{RED}" '
+            'stroke="#fff" stroke-width="1"/>'
+            for y in ends
+        ]
+    return [_ring(mark.x, y, mark.governs) for y in ends]
 
 
 def _words(zone: Zone) -> str:

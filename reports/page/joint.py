@@ -8,19 +8,19 @@ from fea.joint.records import JointResult, Variation
 from reports.data.results import PinResult, Units
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering, short
-from reports.format.ranges import END, error_words, joint_range, part_words
+from reports.format.ranges import END, joint_range, part_words
 
 TITLES = {"contact": "Contact with the lugs", "foundation": "Load from the lugs"}
 PLANE = (
-    "By a beam on foundations; contact angles and largest pressures are those of plane contact at "
-    "the largest load per length, without peaks at edges."
+    "By a beam on foundations; contact angles are those of plane contact at the largest load per "
+    "length."
 )
 
 
 @dataclass(frozen=True)
 class JointPart:
-    """A sentence on the maximum, the bands if lugs support the pin, and the maximum with the joint
-    changed, if it was; assumed: in lugs that were not given.
+    """A sentence on the error and range of the maximum, the bands if lugs support the pin, and the
+    maximum with the joint changed, if it was; assumed: in lugs that were not given.
     """
 
     title: str
@@ -36,55 +36,58 @@ def joint_part(pin: PinResult, units: Units) -> JointPart | None:
     if joint is None:
         return None
     title = TITLES.get(joint.model, "Range over the joint")
-    bands = _bands(joint, units) if joint.bands else None
+    bands = _bands(pin, joint, units) if joint.bands else None
     assumed = joint.range is not None and joint.range.assumed
     return JointPart(title, _sentence(pin, joint, units), bands, _range(joint, units), assumed)
 
 
 def _sentence(pin: PinResult, joint: JointResult, units: Units) -> str:
-    outside = " outside the excluded zones" if pin.verdict == "singular" else ""
-    largest = f"{engineering(pin.max_von_mises)} {units.stress}"
     parts = part_words(pin)
-    error = f"{error_words(pin)}; errors of {parts}" if parts else error_words(pin)
-    over = "" if joint.bands else "; no range over the joint"
+    error = f"errors of {parts}" if parts else ""
+    over = "" if joint.bands else "no range over the joint"
     if joint.range:
-        over = f"; {joint_range(pin)} {units.stress} over what is not known of the joint"
+        over = (
+            f"the maximum is {joint_range(pin)} {units.stress} over what is not known of the joint"
+        )
         if joint.range.model == "foundation":
             lugs = "assumed lugs" if joint.range.assumed else "its lugs"
             over += f" (beam on foundations in {lugs}, its error included)"
-    why = f": {joint.remark}" if joint.remark else ""
+    said = "; ".join(filter(None, (error, over)))
+    why = f"{';' if joint.range else ':'} {joint.remark}" if joint.remark else ""
     more = f" {PLANE}" if joint.model == "foundation" else ""
-    return f"Maximum von Mises stress{outside} {largest} ({error}){over}{why}.{more}"
+    text = f"{said[:1].upper()}{said[1:]}{why}."
+    return f"{text}{more}".lstrip(".: ").strip()
 
 
-def _bands(joint: JointResult, units: Units) -> Grid:
+def _bands(pin: PinResult, joint: JointResult, units: Units) -> Grid:
     head = [
         "connection", f"force [{units.force}]", "half contact angle [°]",
-        f"largest pressure [{units.stress}]", f"couple on the link [{units.force}·{units.length}]",
+        f"mean pressure [{units.stress}]", f"couple on the link [{units.force}·{units.length}]",
         f"clearance [{units.length}]", f"outer diameter [{units.length}]",
     ]  # fmt: skip
-    edges = any(band.edge_pressure is not None for band in joint.bands)
-    if edges:
-        head += [f"pressure at its edges [{units.stress}]", f"von Mises there [{units.stress}]"]
+    contact = pin.places.contact if pin.places else None
+    shares = {band.name: band.bearing_share for band in (contact.bands if contact else ())}
+    judged = any(share is not None for share in shares.values())
+    if judged:
+        head.insert(4, "of bearing strength")
     body = [
         [
             band.name,
             engineering(band.force),
             engineering(band.contact_angle, 3),
-            engineering(band.largest_pressure),
+            engineering(band.mean_pressure),
+            *([_per_cent(shares.get(band.name))] if judged else []),
             engineering(band.couple),
             short(band.clearance),
             short(band.outer_diameter),
-            *([_estimate(band.edge_pressure), _estimate(band.edge_von_mises)] if edges else []),
         ]
         for band in joint.bands
     ]
     return Grid(head, body, [False, *[True] * (len(head) - 1)])
 
 
-def _estimate(stress: float | None) -> str:
-    """With no more digits than it is known to."""
-    return DASH if stress is None else f"≈ {engineering(stress, 2)}"
+def _per_cent(share: float | None) -> str:
+    return DASH if share is None else f"{engineering(100.0 * share, 3)} %"
 
 
 def _range(joint: JointResult, units: Units) -> Grid | None:

@@ -12,6 +12,7 @@ from reports.format.numbers import DASH, engineering, like, ratio, short
 from reports.format.ranges import error_words, factor_range
 from reports.format.template import environment
 from reports.format.words import BEYOND, MEANING, headline, verdict_words
+from reports.page.drawing_places import place_marks
 from reports.page.factors import change_part, factor_part, limit_part, sensitivity_part
 from reports.page.loads import load_part, timings
 from reports.page.motion import motion_parts
@@ -101,4 +102,6 @@ def _template() -> Template:
 
 def _drawing(shape: PinShape, results: Results, width: float = WIDTH) -> str:
     zones = pin_zones(results, shape.pin).values()
-    return draw_pin(shape, results.units, circles(zone for case in zones for zone in case), width)
+    every = circles(zone for case in zones for zone in case)
+    places = place_marks(results, shape.pin, sum(s[0] for s in shape.segments))
+    return draw_pin(shape, results.units, every, width, places)

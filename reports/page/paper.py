@@ -16,6 +16,7 @@ from reports.format.file_names import plot_name
 from reports.format.grid import Grid
 from reports.format.words import headline
 from reports.page.joint import joint_part
+from reports.page.places import places_part
 from reports.tables.published import published_maxima
 from reports.tables.strength.changes import INTRODUCTION, change_notes, changes_grid
 from reports.tables.strength.envelope import READING, cell_text, matrix
@@ -144,7 +145,7 @@ def _pin(results: Results, name: str, drawings: dict[str, str]) -> Content:
 
 
 def _case(pin: PinResult, results: Results) -> Content:
-    joint = joint_part(pin, results.units)
+    joint, places = joint_part(pin, results.units), places_part(pin, results.units)
     return {
         "case": pin.case,
         "outcome": outcome(pin),
@@ -152,6 +153,7 @@ def _case(pin: PinResult, results: Results) -> Content:
         "model": pin.why,
         "held": pin.held,
         "plot": plot_name("surface", pin.case, pin.pin),
+        "places": None if places is None else asdict(places),
         "bands": asdict(joint.bands) if joint and joint.bands else None,
     }
 

@@ -10,6 +10,7 @@ from reports.format.drawing.cuts import draw_cut, words
 from reports.format.drawing.spread import rows
 from reports.format.drawing.svg import INK, line, text, wide
 from reports.format.numbers import short
+from reports.page.drawing_places import PlaceMark
 from reports.page.drawing_zones import STRIPES, ZoneMarks
 from reports.tables.stress.singular_zones import Zone
 
@@ -43,9 +44,14 @@ class _Piece:
 
 
 def draw_pin(
-    shape: PinShape, units: Units, zones: list[Zone] | None = None, width: float = WIDTH
+    shape: PinShape,
+    units: Units,
+    zones: list[Zone] | None = None,
+    width: float = WIDTH,
+    places: list[PlaceMark] | None = None,
 ) -> str:
-    """The drawing as an <svg> element; zones: one per circle. All its text is escaped.
+    """The drawing as an <svg> element; zones: one per circle; places: of the rows' stress. All its
+    text is escaped.
 
     width: of the drawing, in pixels, of which letters have the size 11.
     """
@@ -58,7 +64,7 @@ def draw_pin(
     axis = 8.0 + 2.0 * LINE * (max(tops) + 1) + 12.0 + radius
     left, right = pieces[0].x, pieces[-1].x + pieces[-1].width
     scale = (right - left) / sum(s[0] for s in shape.segments)
-    marks = ZoneMarks(zones or [], left, scale, width)
+    marks = ZoneMarks(zones or [], places or [], (left, scale, radius), width)
     chain = axis + radius + marks.height + 24.0
     overall = chain + LINE * (max(feet) + 1) + 22.0
     height = overall + 12.0 + LINE * len(shape.cuts)

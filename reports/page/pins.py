@@ -10,6 +10,7 @@ from reports.format.grid import Grid
 from reports.format.numbers import ratio
 from reports.page.joint import JointPart, joint_part
 from reports.page.loads import loads_at
+from reports.page.places import PlacesPart, places_part
 from reports.page.second_opinion import OpinionPart, opinion_part
 from reports.page.viewer import PinView, pin_views
 from reports.tables.strength.hand_checks import hand_check_table
@@ -23,7 +24,8 @@ ZONE_NUMBERS = ("zone", "exponent")
 @dataclass(frozen=True)
 class PinCase:
     """A pin in one case: result, outcome, what it is in a sentence, singular zones, hand checks,
-    margins of safety, loads, contact with lugs, CalculiX's opinion, our maximum over the published.
+    margins of safety, loads, where stress is read, contact with lugs, CalculiX's opinion, our
+    maximum over the published.
     """
 
     result: PinResult
@@ -33,6 +35,7 @@ class PinCase:
     checks: Grid | None
     margins: Grid | None
     loads: Grid | None
+    places: PlacesPart | None
     joint: JointPart | None
     opinion: OpinionPart | None
     ratio: float | None
@@ -73,6 +76,7 @@ def pin_parts(results: Results, drawings: dict[str, str]) -> list[PinPart]:
                     Grid(*hand_check_table(p, results.units)) if p.hand_checks else None,
                     margins_grid(results, p.pin, p.case),
                     loads_at(p, results.units),
+                    places_part(p, results.units),
                     joint_part(p, results.units),
                     opinion_part(p.second_opinion, results.units),
                     ratio(p.max_von_mises, p.published_max_von_mises),

@@ -10,7 +10,7 @@ import numpy as np
 from markupsafe import Markup
 
 from reports.data.results import Floats, PinResult, PinShape, Results
-from reports.data.surface import HalfSection, LoadCourse, Surface, SurfaceCase
+from reports.data.surface import SECTORS, HalfSection, LoadCourse, Surface, SurfaceCase
 from reports.format.drawing.camera import View
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering
@@ -18,12 +18,13 @@ from reports.format.packed import packed
 from reports.format.ranges import error_words, factor_range
 from reports.format.script_json import script_json
 from reports.format.words import verdict_words
+from reports.text.place_words import section_governs
 
-SECTORS = 72  # of a body of revolution
 WHOLE = 32767  # loads are integers up to this, scaled by the largest
 FINE = 4095  # the same of stresses, scaled by the largest at a point; thinning leaves 8e-3 of it
 COARSE = 127  # the same of displacements, which are shown by nothing but the shape
 PARTS = 4095  # stresses on a section are integers up to this, at the maximum
+MOSTLY = 90.0  # per cent of cells under pressure whose colours differ
 BENEATH = 0.999  # of the maximum; if the whole surface is below it, the maximum is inside
 
 
@@ -63,7 +64,9 @@ def pin_views(results: Results, pin: str) -> list[PinView]:
         "strength": surfaces[0].yield_strength,
         "required": results.required_safety_factor,
         "surfaces": [_surface(s) for s in surfaces],
-        "cases": [_case(c, found[c.case], k, s) for c, k, s in shown],
+        "cases": [
+            _case(c, found[c.case], k, s) | _row(found[c.case], results) for c, k, s in shown
+        ],
         "opens": opens,
         "box": box.tolist(),
         "centre": (0.5 * (box[0] + box[-1])).tolist(),
@@ -120,7 +123,9 @@ def _case(case: SurfaceCase, pin: PinResult, number: int, surface: Surface) -> d
     on_surface = float(case.largest[~case.excluded].max(initial=0.0))
     # The solid model's maximum is a mean over directions of the loads.
     error = sum(pin.error_parts.values())
-    least = BENEATH * (pin.max_von_mises or 0.0) - (0.0 if surface.revolved else error)
+    most = float(case.maxima[case.instant]) if surface.revolved else (pin.max_von_mises or 0.0)
+    least = BENEATH * most - (0.0 if surface.revolved else error)
+    location = case.location or pin.location
     amounts = case.amounts / _largest(surface)[:, None]
     scale = np.abs(amounts).max(axis=(0, 2), initial=0.0)
     return {
@@ -129,20 +134,36 @@ def _case(case: SurfaceCase, pin: PinResult, number: int, surface: Surface) -> d
         "times": None if case.times is None else [float(f"{t:.7g}") for t in case.times],
         "instant": case.instant,
         "maxima": _short(case.maxima, case.instant),
-        "error": error_words(pin),
-        "factor": factor_range(pin),
         "verdict": verdict_words(pin.verdict, pin.yields),
-        "location": pin.location,
-        "beneath": on_surface < least,
+        "location": location,
+        "beneath": on_surface < least and case.unread is None,
         "zoned": bool(case.excluded.any() or len(case.zones)),
         "zones": case.zones.tolist(),
         "excluded": None if surface.revolved else packed(case.excluded, "u1"),
+        "unread": None if case.unread is None else packed(np.packbits(case.unread), "u1"),
         "pressure": _pressure(case),
         "loads": [_load(load) for load in case.loads],
         "section": None if case.section is None else _section(case.section),
-        "turn": _turn(_box(surface), pin),
+        "turn": _turn(_box(surface), location),
         "amounts": packed(np.rint(_parts(amounts, scale[:, None], WHOLE)).T, "<i2"),
         "amounts_scale": (scale / WHOLE).tolist(),
+    }
+
+
+def _row(pin: PinResult, results: Results) -> dict[str, str]:
+    """What is said of the row at its instant: error and factor of the surface's largest stress, and
+    in a sentence the section where that is larger.
+    """
+    by_section = section_governs(pin)
+    if by_section is None or pin.places is None:
+        return {"error": error_words(pin), "factor": factor_range(pin), "row": ""}
+    units, surface = results.units, pin.places.surface
+    return {
+        "error": f"± {engineering(surface.error_estimate, 2)}",
+        "factor": "",
+        "row": f"The section at z = {engineering(by_section.z)} {units.length} governs: "
+        f"{engineering(pin.max_von_mises)} {units.stress} ({error_words(pin)}), "
+        f"safety factor {factor_range(pin)}.",
     }
 
 
@@ -184,15 +205,23 @@ def _pressure(case: SurfaceCase) -> dict[str, Any] | None:
     return {
         "sectors": case.pressure.shape[1],
         "first": case.first,
-        "largest": float(case.pressure.max()),
+        "top": _top(case.pressure),
         "rings": packed(case.rings, "<i2"),
         "cells": packed(case.pressure, "<f4"),
     }
 
 
-def _turn(box: Floats, pin: PinResult) -> list[list[float]]:
+def _top(pressure: Floats) -> float:
+    """At which the colours end, Pa: beyond it are cells at the edges of lugs, whose pressure says
+    how small they are.
+    """
+    some = pressure[pressure > 0.0]
+    return float(np.percentile(some, MOSTLY)) if len(some) else 0.0
+
+
+def _turn(box: Floats, location: tuple[float, ...] | None) -> list[list[float]]:
     """Rows right, up and towards the viewer; the maximum faces the viewer."""
-    view = View.of(box, np.asarray(pin.location))
+    view = View.of(box, np.asarray(location))
     towards = view.eye - view.centre
     towards /= np.linalg.norm(towards)
     rows: list[list[float]] = np.stack([np.cross(view.up, towards), view.up, towards]).tolist()

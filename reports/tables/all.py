@@ -26,6 +26,7 @@ from reports.tables.strength.safety_factors import safety_factors_table
 from reports.tables.strength.sensitivities import sensitivities_table
 from reports.tables.stress.calculix import opinion_tables
 from reports.tables.stress.joint import joint_tables
+from reports.tables.stress.places import place_tables
 from reports.tables.stress.singular_zones import zones_table
 from reports.tables.table import Table
 
@@ -57,6 +58,7 @@ def stress_tables(results: Results) -> list[Table]:
         margins_table(results),
         arms_table(results),
         hand_check_rows(results),
+        *place_tables(results),
         zones_table(results),
         landing_table(results),
     ]

@@ -26,8 +26,9 @@ from reports.tables.strength.margins import margins_json
 from reports.tables.strength.sensitivities import sensitivities_json
 from reports.tables.stress.calculix import opinion_json
 from reports.tables.stress.joint import joint_json
+from reports.tables.stress.places import places_json
 
-SCHEMA = "pinstress-results/1"
+SCHEMA = "pinstress-results/2"
 
 
 def to_json(results: Results) -> dict[str, Any]:
@@ -127,6 +128,7 @@ def _pin(pin: PinResult) -> dict[str, Any]:
         "time": finite(pin.time),
         "safety_factor": finite(pin.safety_factor),
         "safety_factor_interval": _interval(pin.safety_factor_interval),
+        **places_json(pin),
         "yields": _truth(pin.yields),
         "meets_required": _truth(pin.meets_required),
         "outcome": outcome(pin),
@@ -168,6 +170,7 @@ def _dependence(d: Dependence) -> dict[str, Any]:
         "given": finite(d.given),
         "at": finite(d.at),
         "flips_at": finite(d.flips_at),
+        "reach": finite(d.reach),
         "safety_factor": finite(d.factor),
     }
 

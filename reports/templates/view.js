@@ -76,7 +76,10 @@ const startView = (root, paint, data) => {
     mesh.moved = found.moved;
     shape.set("value", mesh.value);
     shape.set("moved", mesh.moved);
-    if (chosen.excluded) shape.set("excluded", Float32Array.from(chosen.excluded, (x) => (pressed() ? 0 : x)));
+    // What lugs press on is hidden up to the first vertices that are read, whose stress has no part of theirs.
+    mesh.unread = unreadOf(surface, chosen, instant());
+    const hidden = mesh.unread ? Float32Array.from(mesh.unread, (x) => 1000 * x) : chosen.excluded;
+    if (hidden) shape.set("excluded", Float32Array.from(hidden, (x) => (pressed() ? 0 : x)));
   };
   const update = () => {
     compute();
@@ -88,13 +91,14 @@ const startView = (root, paint, data) => {
     const k = instant(), value = chosen.maxima[k];
     const when = chosen.times ? `t = ${short(chosen.times[k])} ${units.time}${governs() ? ", the governing instant" : ""}: ` : "";
     const error = governs() ? ` (${chosen.error})` : "";
-    const where = chosen.zoned ? " outside the excluded zones" : "";
-    const factor = strength ? `; safety factor ${governs() ? chosen.factor : written(strength / value)} (${chosen.verdict})` : "";
+    const where = `${chosen.unread ? " of the surface" : ""}${chosen.zoned ? " outside the excluded zones" : ""}`;
+    const factor = strength ? `; safety factor ${(governs() && chosen.factor) || written(strength / value, 3)} (${chosen.verdict})` : "";
     const largest = when ? "maximum" : "Maximum";
-    one("told").textContent = `${when}${largest} von Mises stress${where} ${written(value)} ${units.stress}${error}${factor}.`;
+    one("told").textContent = `${when}${largest} von Mises stress${where} ${written(value)} ${units.stress}${error}${factor}.${governs() && chosen.row ? ` ${chosen.row}` : ""}`;
     one("told").dataset.maximum = value;
     one("beneath").hidden = !(chosen.beneath && governs()) || opened() || pressed();
     one("zones").hidden = !chosen.zoned || pressed();
+    one("lugs").hidden = !chosen.unread || pressed();
     const loads = forcesAt(chosen, k).map((f) => `${f.name} ${f.held ? "clamped" : `${short(f.size, 4)} ${units.force}`}`);
     one("loads").textContent = loads.length ? `Forces on the pin: ${loads.join(", ")}.` : "";
     if (chosen.times) one("time").setAttribute("aria-valuetext", `${short(chosen.times[k])} ${units.time}`);
@@ -102,7 +106,7 @@ const startView = (root, paint, data) => {
     draw();
   };
 
-  const top = () => (pressed() ? chosen.pressure.largest : chosen.maxima[chosen.instant]) || 1;
+  const top = () => (pressed() ? chosen.pressure.top : chosen.maxima[chosen.instant]) || 1;
   // Where a stress is on the colour bar, of its length.
   const along = (stress) => (factors() ? 1 + Math.log10(stress / top()) / DECADES : stress / top());
   const scale = () => {
@@ -110,7 +114,7 @@ const startView = (root, paint, data) => {
     one("unit").textContent = factors() ? `safety factor (${chosen.verdict})` : `${shown} [${units.stress}]`;
     const ticks = factors() ? decadeTicks(least, least * 10 ** DECADES).map((f) => [along(strength / f), short(f, 3)]) : roundTicks(0, top()).map((s) => [along(s), short(s, 4)]);
     const clear = ticks.filter(([at]) => at < 0.8).map(([at, text]) => tick(at, text));
-    one("ticks").replaceChildren(...clear, tick(1, written(factors() ? least : top(), 3), "end"));
+    one("ticks").replaceChildren(...clear, tick(1, `${pressed() ? "≥ " : ""}${written(factors() ? least : top(), 3)}`, "end"));
     const marks = pressed() || !strength ? [] : [[strength, "yield", "black"], ...(allowed ? [[allowed, `required factor ${short(data.required)}`, "white"]] : [])];
     const on = marks.filter(([stress]) => along(stress) >= 0 && along(stress) <= 1), off = marks.filter((mark) => !on.includes(mark));
     one("marks").style.height = `${1.4 * on.length}em`;
@@ -223,11 +227,14 @@ const startView = (root, paint, data) => {
   const excluded = ({ place: [x, y, z], corners, inside }) => !pressed() && (
     chosen.zones.some(([r, height, radius]) => Math.hypot(Math.hypot(x, y) - r, z - height) < radius * (1 - 1e-6))
     || Boolean(chosen.excluded && !inside && corners.some((v) => chosen.excluded[v])));
+  const byLugs = ({ corners, inside }) => Boolean(!pressed() && mesh.unread && !inside && corners.some((v) => mesh.unread[v]));
+  // The largest stress beside a lug is read up to the edge, from where vertices are hidden.
+  const atMaximum = ({ place }) => Boolean(mesh.unread && governs() && !pressed() && Math.hypot(...place.map((x, i) => x - chosen.location[i])) < 1e-3 * data.size);
   const read = (found) => {
     const [x, y, z] = found.place, degrees = (Math.atan2(y, x) * 180) / Math.PI, radius = Math.hypot(x, y);
-    const value = found.value, shown = pressed() ? "contact pressure" : "von Mises stress";
+    const most = atMaximum(found), value = most ? chosen.maxima[chosen.instant] : found.value, shown = pressed() ? "contact pressure" : "von Mises stress";
     const factor = strength && !pressed() ? `, safety factor ${written(strength / value, 3)}` : "";
-    const what = excluded(found) ? "excluded zone, stress not evaluated" : `${shown} ${written(value)} ${units.stress}${factor}`;
+    const what = !most && byLugs(found) ? "pressed by a lug: contact is judged by itself" : excluded(found) ? "excluded zone, stress not evaluated" : `${shown} ${written(value)} ${units.stress}${factor}`;
     return { value, z, angle: degrees, radius, place: found.place, text: `${what}; z = ${short(z, 4)} ${units.length}, angle ${short(Number(degrees.toFixed(1)), 4)}°, radius ${short(radius, 4)} ${units.length}` };
   };
 

@@ -104,6 +104,13 @@ const pressing = (surface, { start, pressure: { sectors, first, rings, cells } }
   });
 };
 
+// Which vertices are not read at an instant, for lugs press on them or beside: 1 or 0, null without lugs.
+const unreadOf = (surface, { unread }, instant) => {
+  if (!unread) return null;
+  const count = surface.count * surface.around, first = instant * count;
+  return Uint8Array.from({ length: count }, (_, v) => (unread[(first + v) >> 3] >> (7 - ((first + v) & 7))) & 1);
+};
+
 // Von Mises stress and displacement (x, y, z) of all vertices at an instant of a case.
 const superposed = (surface, chosen, instant) => {
   const { count, around, K, n, waves, even } = surface, turns = angles(surface, surface.triangles ? 0 : chosen.start);

@@ -6,7 +6,7 @@ from reports.data.decision import DEPENDS, outcome
 from reports.data.results import PinResult, PinShape, Units
 from reports.format.numbers import components, engineering, short
 from reports.format.ranges import error_words, factor_range
-from reports.format.words import depends_words, verdict_words
+from reports.format.words import but_words, verdict_words
 
 
 def pin_sentence(pin: PinResult, units: Units) -> str:
@@ -15,7 +15,9 @@ def pin_sentence(pin: PinResult, units: Units) -> str:
     if pin.max_von_mises is None:
         return verdict
     outside = " outside the excluded zones" if pin.verdict == "singular" else ""
-    text = f"Maximum von Mises stress{outside} {engineering(pin.max_von_mises)} {units.stress}"
+    where = f" of its {pin.places.governs}" if pin.places and pin.places.section else ""
+    text = f"Maximum von Mises stress{where}{outside} {engineering(pin.max_von_mises)} "
+    text += f"{units.stress}"
     text += f" ({error_words(pin)})"
     if pin.time is not None:
         text += f", at t = {short(pin.time)} {units.time}"
@@ -33,7 +35,7 @@ def _depends(pin: PinResult, units: Units) -> str:
     if outcome(pin) != DEPENDS:
         return ""
     state, fails = ("Safe", "fails") if pin.required else ("Below yield", "yields")
-    return f" {state} as described, but {fails} within {depends_words(pin.depends_on, units)}."
+    return f" {state} as described, {but_words(pin.depends_on, units, fails)}."
 
 
 def drawing_caption(shape: PinShape, units: Units, zoned: bool = True) -> str:
@@ -48,5 +50,6 @@ def drawing_caption(shape: PinShape, units: Units, zoned: bool = True) -> str:
     more = zones * zoned + cuts * bool(shape.cuts) + solids * bool(shape.solids)
     return (
         f"Profile, lengths and diameters (⌀ outer / bore) in {units.length}. Blue: bearing bands; "
-        f"hatched: clamped; grey: free.{more} Material {shape.material}{weight}."
+        f"hatched: clamped; grey: free. Red dots: the surface's largest stress; a red line across: "
+        f"the section that governs instead.{more} Material {shape.material}{weight}."
     )

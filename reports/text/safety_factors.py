@@ -100,6 +100,8 @@ def _columns(results: Results) -> list[Column]:
         column(f"max von\nMises [{units.stress}]", lambda pin: engineering(pin.max_von_mises), 1),
         column("±", _error, 3),
         column(f"joint [{units.stress}]", lambda pin: joint_range(pin, TO), 4),
+        column("at", lambda pin: pin.places.governs if pin.places else DASH, 5, False),
+        column(f"beneath\n[{units.stress}]", _beneath, 5),
         column(f"t [{units.time}]", lambda pin: DASH if pin.time is None else short(pin.time), 6),
         column("verdict", lambda pin: pin.verdict, 7, False),
         column("model", lambda pin: pin.model, 8, False),
@@ -112,6 +114,11 @@ def _error(pin: PinResult) -> str:
     if pin.verdict == "singular" or not pin.max_von_mises or pin.error_estimate is None:
         return DASH
     return f"{engineering(100.0 * pin.error_estimate / pin.max_von_mises, 2)} %"
+
+
+def _beneath(pin: PinResult) -> str:
+    contact = pin.places.contact if pin.places else None
+    return DASH if contact is None else engineering(contact.beneath)
 
 
 def _of_grid(grid: Grid) -> list[Column]:

@@ -8,8 +8,8 @@ from reports.data.decision import BELOW, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIEL
 from reports.data.governing import governing
 from reports.data.headline import JudgedCheck, pins_with, worst_checks
 from reports.data.results import Results
-from reports.format.numbers import engineering, short
-from reports.format.words import BEYOND, depends_words, undecided_because
+from reports.format.numbers import short
+from reports.format.words import BEYOND, but_words, over_words, undecided_because
 
 LISTED = 4  # cases of a pin; of more, their number is given
 
@@ -18,7 +18,7 @@ def summary(results: Results) -> str:
     """How many pins are safe, which are not, and the rows without a maximum."""
     if not results.pins:
         return "No pin was solved."
-    ways = (_against_required, _depending, _left_out, _yielding, _negative, _unknown)
+    ways = (_against_required, _depending, _at_edges, _yielding, _negative, _unknown)
     return " ".join(part for part in (way(results) for way in ways) if part)
 
 
@@ -56,7 +56,7 @@ def _due_to(check: JudgedCheck) -> str:
     if check.outcome == NOT_DECIDED:
         return undecided_because(check.row)
     if check.outcome == DEPENDS:
-        return ", ".join(dict.fromkeys(d.over for d in check.row.depends_on))
+        return over_words(check.row.depends_on)
     return ""
 
 
@@ -66,11 +66,11 @@ def _depending(results: Results) -> str:
     rows = [p for p in results.pins if outcome(p) == DEPENDS]
     if len(rows) > 1 or (rows and pins_with(worst_checks(results).values(), FAILS, YIELDS)):
         each = (
-            f"{p.pin} ({p.case}): {depends_words(p.depends_on, results.units)}"
+            f"{p.pin} ({p.case}), {but_words(p.depends_on, results.units, 'not')}"
             for p in rows[:LISTED]
         )
         more = f"; and {len(rows) - LISTED} rows more" if len(rows) > LISTED else ""
-        text = f"Safe as described, but not within: {'; '.join(each)}{more}."
+        text = f"Safe as described: {'; '.join(each)}{more}."
     for over in ("joint", "landing"):
         some = [
             (p.pin, p.case)
@@ -82,34 +82,11 @@ def _depending(results: Results) -> str:
     return text.strip()
 
 
-def _left_out(results: Results) -> str:
-    """The rows whose stress is larger at the rounded edges of lugs, which are excluded."""
-    rows = _listed(
-        (p.pin, p.case)
-        for p in results.pins
-        if any(
-            zone.kind.endswith("rounded edge of a lug")
-            and zone.max_von_mises > (p.max_von_mises or 0.0)
-            for zone in p.singular_at
-        )
-    )
-    text = "Larger contact stress at the rounded edges of lugs is local and left out"
-    return f"{text}: {rows}.{_largest_at_edges(results)}" if rows else ""
-
-
-def _largest_at_edges(results: Results) -> str:
-    """What it is estimated to be."""
-    edges = [
-        (band.edge_von_mises, p)
-        for p in results.pins
-        for band in (p.joint.bands if p.joint else ())
-        if band.edge_von_mises is not None
-    ]
-    if not edges:
+def _at_edges(results: Results) -> str:
+    """Where contact at the edges of lugs is found, which no factor counts."""
+    if not any(p.places and p.places.contact and p.places.contact.edges for p in results.pins):
         return ""
-    most, p = max(edges, key=lambda edge: edge[0])
-    rows = _listed([(p.pin, p.case)])
-    return f" The largest is estimated at {engineering(most, 2)} {results.units.stress}: {rows}."
+    return "Contact stress at the edges of lugs is reported by itself (contact_edges.csv)."
 
 
 def _yielding(results: Results) -> str:

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fea.plastic.records import FlowField
-from reports.data.results import BandLoad, Field, Floats, Units, Volume
+from reports.data.results import BandLoad, Field, Units, Volume
 from reports.vtk.render import render_pin
 from reports.vtk.renderer import renderer_problem
 from reports.vtk.writer import Block, Data, write_block, write_multiblock, write_series
@@ -35,15 +36,17 @@ FACES = {  # of a tetrahedron: corners, then the middles of their edges
 }
 AROUND = 60  # quads around a band
 
+Arrays = dict[str, NDArray[Any]]
 
-def point_data(field: Field, units: Units) -> dict[str, Floats]:
+
+def point_data(field: Field, units: Units) -> Arrays:
     """Arrays at the nodes under names with units: displacement (N, 3), stress (N, 6: XX, YY, ZZ,
     XY, YZ, XZ, as ParaView names the components of a symmetric tensor), von Mises (N,), von Mises
     envelope (N,; NaN inside), with a yield strength the factor of safety that follows from it, and
-    the contact pressure of a pin in lugs.
+    of a pin in lugs the contact pressure and where it is pressed (0 or 1).
     """
     stress = units.stress
-    data = {
+    data: Arrays = {
         f"displacement [{units.length}]": field.displacement,
         f"stress [{stress}]": field.stress[:, VTK_SYMMETRIC],
         f"von Mises [{stress}]": field.von_mises,
@@ -54,7 +57,11 @@ def point_data(field: Field, units: Units) -> dict[str, Floats]:
         data["factor of safety"] = field.yield_strength / np.maximum(field.envelope, lowest)
     if field.contact_pressure is not None:
         data[f"contact pressure [{stress}]"] = field.contact_pressure
-    return data
+    return data | _pressed(field.pressed)
+
+
+def _pressed(pressed: NDArray[np.bool_] | None) -> Arrays:
+    return {} if pressed is None else {"pressed": pressed.astype(np.uint8)}
 
 
 def write_vtu(field: Field, path: Path, units: Units) -> None:
@@ -111,21 +118,23 @@ def write_flow(flow: FlowField, path: Path, units: Units) -> None:
 
 
 def _volume(volume: Volume, units: Units) -> Block:
-    data = {
+    data: Arrays = {
         f"displacement [{units.length}]": volume.displacement,
         f"stress [{units.stress}]": volume.stress[:, VTK_SYMMETRIC],
         f"von Mises [{units.stress}]": volume.von_mises,
     }
+    data |= _pressed(volume.pressed)
     return Block(volume.points, volume.cells, volume.cell_type, data)
 
 
 def _write_stills(field: Field, directory: Path, units: Units) -> list[tuple[float, str, str]]:
     parts: list[tuple[float, str, str]] = []
     for i, still in enumerate(field.stills):
-        data = {
+        data: Arrays = {
             f"displacement [{units.length}]": still.displacement,
             f"von Mises [{units.stress}]": still.von_mises,
         }
+        data |= _pressed(still.pressed)
         pin, loads = f"pin_{i:03d}.vtu", f"loads_{i:03d}.vtu"
         write_block(Block(field.points, field.cells, field.cell_type, data), directory / pin)
         write_block(_loads(still.loads, units), directory / loads)
@@ -195,7 +204,10 @@ def local_solids(field: Field) -> Field:
 def _part(field: Field, cells: NDArray[np.int64], cell_type: str) -> Field:
     """Some cells alone, and their nodes."""
     nodes, numbers = np.unique(cells, return_inverse=True)
-    pressure = field.contact_pressure
+
+    def own(values: Any) -> Any:
+        return None if values is None else values[nodes]
+
     return replace(
         field,
         points=field.points[nodes],
@@ -205,9 +217,15 @@ def _part(field: Field, cells: NDArray[np.int64], cell_type: str) -> Field:
         stress=field.stress[nodes],
         von_mises=field.von_mises[nodes],
         envelope=field.envelope[nodes],
-        contact_pressure=None if pressure is None else pressure[nodes],
+        contact_pressure=own(field.contact_pressure),
+        pressed=own(field.pressed),
         stills=tuple(
-            replace(s, displacement=s.displacement[nodes], von_mises=s.von_mises[nodes])
+            replace(
+                s,
+                displacement=s.displacement[nodes],
+                von_mises=s.von_mises[nodes],
+                pressed=own(s.pressed),
+            )
             for s in field.stills
         ),
     )

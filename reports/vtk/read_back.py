@@ -73,8 +73,7 @@ class Opened:
             raise Damaged(f"{name} is damaged: its points are no body")
         stress = np.empty((len(mesh.points), 6))
         stress[:, VTK_SYMMETRIC] = _data(mesh, f"stress [{u.stress}]", 6, name)
-        place = row["location"]
-        excluded = bool(row["singular_at"]) and None not in (place, row["max_von_mises"])
+        pressed = mesh.data.get("pressed")
         return Field(
             pin=row["pin"],
             case=row["case"],
@@ -85,9 +84,19 @@ class Opened:
             von_mises=_data(mesh, f"von Mises [{u.stress}]", 1, name),
             envelope=_data(mesh, f"von Mises envelope [{u.stress}]", 1, name, gaps=True),
             cell_type=mesh.cell_type,
-            outside=(row["max_von_mises"], tuple(place)) if excluded else None,
+            outside=_outside(row),
             verdict=row["verdict"],
+            pressed=None if pressed is None else pressed.astype(bool),
         )
+
+
+def _outside(row: dict[str, Any]) -> tuple[float, tuple[float, float, float]] | None:
+    """What Field.outside has of a row."""
+    read = row["surface"] if row.get("contact") else row
+    largest, place = read["max_von_mises"], read["location"]
+    if not (row["singular_at"] or row.get("contact")) or None in (largest, place):
+        return None
+    return largest, tuple(place)
 
 
 def _data(mesh: Vtu, key: str, width: int, name: str, gaps: bool = False) -> Floats:

@@ -19,6 +19,7 @@ SIZE = (1200, 800)
 SUBDIVISIONS = 3  # of each quadratic triangle, so that round pins look round
 SHARP = 30.0  # degrees between faces from which an edge is drawn
 INK = "#222222"
+PRESSED = "#b4b4b4"
 
 
 def render_pin(
@@ -52,9 +53,9 @@ def show_pin(field: Field, units: Units, title: str) -> None:
 def _draw(plotter: Any, field: Field, units: Units, title: str, top: float | None = None) -> None:
     peak = int(np.argmax(field.von_mises))
     largest, place, label = float(field.von_mises[peak]), field.points[peak], "max"
-    if field.outside is not None:  # colours would only show how fine the mesh is at the zones
+    if field.outside is not None:  # colours would only show how fine meshes and cells are there
         largest, place = field.outside[0], np.asarray(field.outside[1])
-        label = "max outside excluded zones"
+        label = "max outside excluded zones" if field.pressed is None else "max of the surface"
     top = max(largest, top or 0.0)
     power = _power(top)
     # VTK's font has no raised digits.
@@ -68,7 +69,8 @@ def _draw(plotter: Any, field: Field, units: Units, title: str, top: float | Non
     _mark(plotter, place, view.above(field.points, place), label)
     plotter.add_text(_drawable(title), position=(24, SIZE[1] - 48), font_size=13, color=INK)
     # Apart from the bar, whose own title lies on its labels.
-    plotter.add_text(name, position=(0.2 * SIZE[0], 0.1 * SIZE[1]), font_size=10, color=INK)
+    text = name if field.pressed is None else f"{name}; grey: pressed by lugs"
+    plotter.add_text(text, position=(0.2 * SIZE[0], 0.1 * SIZE[1]), font_size=10, color=INK)
     plotter.camera_position = view.camera
     plotter.camera.view_angle = VIEW_ANGLE
     plotter.reset_camera_clipping_range()
@@ -93,7 +95,10 @@ def _surface(field: Field, name: str, scale: float) -> pyvista.PolyData:
     counts = np.full((len(field.cells), 1), field.cells.shape[1])
     cells = np.hstack([counts, field.cells]).ravel()
     grid = pyvista.UnstructuredGrid(cells, kind, np.asarray(field.points, dtype=float))
-    grid.point_data[name] = field.von_mises / scale
+    shown = field.von_mises / scale
+    grid.point_data[name] = (
+        shown if field.pressed is None else np.where(field.pressed, np.nan, shown)
+    )
     # VTK's own filter: the arguments of pyvista's extract_surface change from version to version.
     skin = vtkDataSetSurfaceFilter()
     skin.SetInputData(grid)
@@ -127,6 +132,7 @@ def _add_surface(
         # Between the nodes the quadratic surface may dip below zero.
         clim=(0.0, largest or 1.0),
         cmap="viridis",
+        nan_color=PRESSED,
         smooth_shading=True,
         scalar_bar_args=bar,
         specular=0.15,

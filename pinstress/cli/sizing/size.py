@@ -24,10 +24,12 @@ from pinstress.study.choices import require_positive
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study
 from reports.data.decision import DEPENDS, FAILS, NOT_DECIDED, factor_ends, outcome
+from reports.data.dependence import BENEATH
 from reports.data.headline import worst_checks
 from reports.data.results import PinResult, Results
 from reports.format.numbers import DASH, engineering, short
 from reports.format.ranges import factor_range
+from reports.format.words import over_words
 from reports.text.sizes import SizeRow, print_sizes
 
 PASSES = 4
@@ -222,9 +224,10 @@ def why_missed(results: Results, pin: str) -> str:
     if check.row is None and check.outcome == FAILS:
         return f"{check.check} has a margin of safety of {1.0 / check.used - 1.0:.3g} in that run"
     if depends:
-        over = ", ".join(dict.fromkeys(d.over for p in found for d in p.depends_on))
-        return (
-            f"the factor is reached as described, but not within the range of the {over} "
-            f"({', '.join(depends)})"
-        )
+        every = [d for p in found if outcome(p) == DEPENDS for d in p.depends_on]
+        ranges = over_words([d for d in every if d.over != BENEATH])
+        places = ["beneath contact"] * any(d.over == BENEATH for d in every)
+        places += [f"within the range of the {ranges}"] * bool(ranges)
+        cases = ", ".join(depends)
+        return f"the factor is reached as described, but not {' and not '.join(places)} ({cases})"
     return ""

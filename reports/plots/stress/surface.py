@@ -33,7 +33,8 @@ def surface_plot(
     instant, without the excluded zones. shape: for the strip with the bands.
     """
     z = surface.points[:, 2]
-    read = np.where(case.excluded, np.nan, case.largest)
+    lugs = _unread(case)
+    read = np.where(case.excluded | lugs, np.nan, case.largest)
     name = f"Pin {clipped(pin.pin)}, {clipped(pin.case)}"
     across = {"field": "x", "type": "quantitative", "title": f"z [{units.length}]", "sort": None,
               "scale": {"domain": [float(z.min()), float(z.max())], "nice": False}}  # fmt: skip
@@ -44,18 +45,24 @@ def surface_plot(
         "data": table({"x": z, "y": read}),
         "vconcat": [
             {"title": f"von Mises [{units.stress}]", "height": 190, "encoding": {"x": across},
-             "layer": [bands(_spans(z, case.excluded)), level(0.0, style="zero"),
+             "layer": [bands(_spans(z, case.excluded | lugs)), level(0.0, style="zero"),
                        *(_side(*side, list(sides), z, read) for side in sides.items()),
                        *_mark(pin, units)]},
             *_strip(shape, across),
         ],
     }  # fmt: skip
-    note = "; shaded: excluded zones" if case.excluded.any() else ""
+    what = ["excluded zones"] * bool(case.excluded.any())
+    what += ["lugs press all round, or their edges are beside"] * bool(lugs.any())
+    note = f"; shaded: {'; '.join(what)}" if what else ""
+    section = pin.places is not None and pin.places.governs == "section"
     when = ", at the governing instant" if pin.time is not None else ""
+    dot = "a dot above the curve marks a maximum inside the pin or on the boundary of "
+    dot += "an excluded zone"
+    if case.unread is not None:
+        dot = f"the dot is the {'section that governs' if section else 'largest'}"
     caption = (
         f"Pin {pin.pin}, {pin.case}: von Mises stress along the pin, maximum over the "
-        f"circumference{when}; a dot above the curve marks a maximum inside the pin or on the "
-        f"boundary of an excluded zone{note}"
+        f"circumference{' of what is read' if case.unread is not None else ''}{when}; {dot}{note}"
     )
     return Plot(plot_name("surface", pin.case, pin.pin), caption, spec)
 
@@ -89,6 +96,13 @@ def _sides(z: Floats) -> dict[str, slice]:
     if (z[end[-1] :] < z.max() - little).any():
         found["bore"] = slice(int(end[-1]), len(z))
     return found
+
+
+def _unread(case: SurfaceCase) -> Mask:
+    """Points (P,) that are read nowhere on the circumference, for lugs press on it or beside."""
+    if case.unread is None:
+        return np.zeros(len(case.largest), dtype=bool)
+    return np.asarray(case.largest <= 0.0)
 
 
 def _spans(z: Floats, excluded: Mask) -> list[tuple[float, float]]:

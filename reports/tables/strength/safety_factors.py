@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from reports.data.decision import DEPENDS, limit, outcome, worst_first
+from reports.data.dependence import BENEATH
 from reports.data.envelope import elsewhere, in_detail
 from reports.data.results import PinResult, Results, Units
 from reports.format.files import markdown
@@ -17,6 +18,7 @@ from reports.format.ranges import (
     utilisation_range,
 )
 from reports.format.words import (
+    BELOW_CONTACT,
     JOINT,
     MEANING,
     READING,
@@ -55,6 +57,8 @@ LATER = (
     *("outcome", "utilisation", "margin_of_safety"),
     "error_truncation",
     "depends_on",
+    *("governs", "surface", "section", "beneath", "beneath_error", "reach", "reach_required"),
+    "length_unit",
 )
 TEXTS = ("pin", "case", "result", "verdict", "model")
 OVER_JOINT = "joint_high"  # in whose place the whole range is shown
@@ -64,7 +68,11 @@ def safety_factor_rows(results: Results) -> list[Row]:
     """A row per pin and case; numbers in the study's units, None where there is none."""
     required = finite(results.required_safety_factor)
     return [
-        {**safety_factor_row(pin, required), "depends_on": _depends(pin, results.units)}
+        {
+            **safety_factor_row(pin, required),
+            "depends_on": _depends(pin, results.units),
+            "length_unit": results.units.length,
+        }
         for pin in results.pins
     ]
 
@@ -111,6 +119,7 @@ def safety_factor_row(pin: PinResult, required: float | None) -> Row:
         **_ends("safety_factor", pin.safety_factor_interval),
         **{f"error_{part}": finite(value) for part, value in pin.error_parts.items()},
         **_joint(pin),
+        **_places(pin),
         "outcome": outcome(pin),
         **_used(pin, required),
     }
@@ -141,12 +150,28 @@ def _joint(pin: PinResult) -> Row:
     }
 
 
+def _places(pin: PinResult) -> Row:
+    places = pin.places
+    section, contact = (places.section, places.contact) if places else (None, None)
+    return {
+        "governs": places.governs if places else None,
+        "surface": finite(places.surface.max_von_mises) if places else None,
+        "section": finite(section.max_von_mises) if section else None,
+        **{
+            name: finite(getattr(contact, name)) if contact else None
+            for name in (BENEATH, "beneath_error", "reach", "reach_required")
+        },
+    }
+
+
 def _yes(value: bool) -> str:
     return "yes" if value else "no"
 
 
 def shown_columns(rows: list[Row], results: Results) -> dict[str, str]:
-    """Columns for display with their headings; the range over the joint only if there is any."""
+    """Columns for display with their headings; the range over the joint, what lies beneath
+    contact and the time only if there are any.
+    """
     units, required = results.units, results.required_safety_factor
     needed = "" if required is None else f" (≥ {short(required)})"
     headings = {
@@ -158,11 +183,14 @@ def shown_columns(rows: list[Row], results: Results) -> dict[str, str]:
         "max_von_mises": f"max von Mises [{units.stress}]",
         "error_estimate": f"± [{units.stress}]",
         OVER_JOINT: f"joint [{units.stress}]",
+        BENEATH: f"beneath [{units.stress}]",
         "time": f"time [{units.time}]",
         "verdict": "verdict",
         "model": "model",
     }
-    empty = [k for k in (OVER_JOINT, "time") if all(row[k] in (None, DASH) for row in rows)]
+    empty = [
+        k for k in (OVER_JOINT, BENEATH, "time") if all(row[k] in (None, DASH) for row in rows)
+    ]
     return {name: text for name, text in headings.items() if name not in empty}
 
 
@@ -225,7 +253,8 @@ def _markdown(everything: Results) -> str:
 
 def reading(columns: Iterable[str]) -> list[str]:
     """How the table with these columns is to be read, a paragraph each."""
-    return [READING, JOINT] if OVER_JOINT in columns else [READING]
+    names = tuple(columns)
+    return [READING, *[JOINT] * (OVER_JOINT in names), *[BELOW_CONTACT] * (BENEATH in names)]
 
 
 def _note(pin: PinResult) -> str:

@@ -12,9 +12,9 @@ from reports.format.numbers import finite
 from reports.tables.table import Table
 
 BANDS = (
-    *("pin", "case", "connection", "force", "contact_angle", "largest_pressure", "couple"),
+    *("pin", "case", "connection", "force", "contact_angle", "mean_pressure", "couple"),
     *("clearance", "outer_diameter", "length_unit", "force_unit", "stress_unit"),
-    *("edge_pressure", "edge_von_mises"),
+    "bearing_share",
 )
 LINES = (
     *("pin", "case", "connection", "z", "line_load", "length_unit", "force_unit"),
@@ -49,12 +49,10 @@ def joint_json(joint: JointResult | None) -> dict[str, Any] | None:
                 "name": band.name,
                 "force": finite(band.force),
                 "contact_angle": finite(band.contact_angle),
-                "largest_pressure": finite(band.largest_pressure),
+                "mean_pressure": finite(band.mean_pressure),
                 "couple": finite(band.couple),
                 "clearance": finite(band.clearance),
                 "outer_diameter": finite(band.outer_diameter),
-                "edge_pressure": finite(band.edge_pressure),
-                "edge_von_mises": finite(band.edge_von_mises),
                 "line_load": [[finite(z), finite(load)] for z, load in band.line_load],
                 "ends": [finite(z) for z in band.ends],
             }
@@ -94,11 +92,13 @@ def _joined(results: Results) -> Iterator[tuple[PinResult, JointResult]]:
 def _bands(results: Results) -> Iterator[list[Cell]]:
     u = results.units
     for pin, joint in _joined(results):
+        contact = pin.places.contact if pin.places else None
+        shares = {b.name: b.bearing_share for b in contact.bands} if contact else {}
         for b in joint.bands:
             yield [
-                *(pin.pin, pin.case, b.name, b.force, b.contact_angle, b.largest_pressure),
+                *(pin.pin, pin.case, b.name, b.force, b.contact_angle, b.mean_pressure),
                 *(b.couple, b.clearance, b.outer_diameter, u.length, u.force, u.stress),
-                *(b.edge_pressure, b.edge_von_mises),
+                shares.get(b.name),
             ]
 
 

@@ -8,10 +8,12 @@ import pytest
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.harmonic.evaluate import HarmonicAnswer
-from fea.harmonic.revolve import SECTORS, revolve_solid
+from fea.harmonic.revolve import revolve_solid
+from fea.harmonic.shown_surface import SECTORS
 from fea.solve_pin import Asked, solve_pin
 from geometry import Pin, Segment
 
+NU = 0.3  # does not matter without lugs
 PIN = Pin("P", (Segment(0.02, 0.02, bore=0.008), Segment(0.01, 0.02, connection="B")))
 LOADS = PinLoads("c", ("B",), np.array([[[0.0, 0.0, 0.0]], [[300.0, -400.0, 200.0]]]))
 
@@ -34,7 +36,7 @@ def volumes(wedges: Floats) -> Floats:
 
 def test_wedges_fill_the_body(answer: HarmonicAnswer) -> None:
     """60 sectors lose sin x / x of a circle, x = 6 deg: 0.18 %."""
-    picture = revolve_solid(answer.fields, LOADS, 1)
+    picture = revolve_solid(answer.fields, LOADS, 1, NU)
     assert picture.cell_type == "wedge"
     size = np.abs(volumes(picture.points[picture.cells]))
     x = 2.0 * np.pi / SECTORS
@@ -44,7 +46,7 @@ def test_wedges_fill_the_body(answer: HarmonicAnswer) -> None:
 
 def test_the_body_shows_what_its_surface_does(answer: HarmonicAnswer) -> None:
     """At points of the surface that are corners of triangles; without load, nothing."""
-    skin, body = answer.picture(LOADS, 1), revolve_solid(answer.fields, LOADS, 1)
+    skin, body = answer.picture(LOADS, 1), revolve_solid(answer.fields, LOADS, 1, NU)
     where = {tuple(p): k for k, p in enumerate(np.round(skin.points, 12).tolist())}
     pairs = [
         (k, where[tuple(p)])
@@ -56,6 +58,6 @@ def test_the_body_shows_what_its_surface_does(answer: HarmonicAnswer) -> None:
     largest = np.linalg.norm(skin.displacement, axis=1).max()
     gap = body.displacement[mine] - skin.displacement[theirs]
     assert np.abs(gap).max() < 1e-9 * largest
-    still = revolve_solid(answer.fields, LOADS, 0)
+    still = revolve_solid(answer.fields, LOADS, 0, NU)
     assert not still.displacement.any()
     assert not still.stress.any()

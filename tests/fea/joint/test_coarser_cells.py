@@ -54,18 +54,23 @@ def test_no_coarse_ring_is_both_flat_and_rounded(rings: int, radius: float) -> N
 @pytest.mark.slow
 def test_cells_err_alike_under_light_and_heavy_loads() -> None:
     """Without clearance contact hardly depends on how large loads are, so nor may its error. A gap
-    common to what is flat and what is rounded kept light loads off: 20 % instead of 7.
+    common to what is flat and what is rounded kept light loads off: 20 % instead of 7. Between the
+    eyes, which touch, the surface has the cusp of an edge, sharper where light loads do not reach
+    into its rounding; there the section governs.
     """
     model = JointModel(PIN, STEEL, LUGS, Cells(12, 48, 16))
     light, heavy = (
         compare(model, [model.solve(shear(force))], Asked())[0] for force in (50.0, 50e3)
     )
-    assert light.largest / 50.0 == pytest.approx(heavy.largest / 50e3, rel=0.03)
-    assert light.cells == pytest.approx(heavy.cells, abs=0.03)
+    for place in ("row", "section", "beneath"):
+        low, high = (float(getattr(found.stress, place)) for found in (light, heavy))
+        assert low / 50.0 == pytest.approx(high / 50e3, rel=0.03)
+    assert light.cells.section == pytest.approx(heavy.cells.section, abs=1e-9)
+    assert light.cells.beneath == pytest.approx(heavy.cells.beneath, abs=0.03)
 
 
 def test_rough_cells_that_agree_by_chance_have_an_error() -> None:
     """Of the landing gear's pin D two rough solutions agree to 2 % and are 4 to 5 % off."""
     model = JointModel(PIN, STEEL, LUGS, Cells(4, 24, 8))
     (found,) = compare(model, [model.solve(shear(50e3))], Asked())
-    assert found.cells >= CHANCE
+    assert min(found.cells.surface, found.cells.section, found.cells.beneath) >= CHANCE

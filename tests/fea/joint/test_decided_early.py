@@ -1,52 +1,69 @@
-"""When meshes are enough: two only where the excluded distance leaves the maximum open anyway."""
+"""When meshes and cells are enough: where their error decides nothing that finer ones might."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from fea.asked import Asked, enough
+from fea.asked import Asked, enough, reasons
 from fea.core.material import Material
 from fea.core.mesh_result import AtSingularity, MeshResult
 from fea.core.pin_loads import PinLoads
-from fea.joint.variations import Comparison
+from fea.joint.solve_in_lugs import Compared
+from fea.joint.variations import AtPlaces, Comparison
 from fea.singular.singularities import Singularity
-from fea.verdict import Seen, judge
+from fea.verdict import FEWEST, Seen, judge
 
 STEEL = Material("steel", 210e9, 0.3, yield_strength=400e6)
-ROUNDED = Singularity(
-    0.01, 0.02, "rounded edge of a lug", ("lug A", "shaft"), 0.23, 0.0, 0.002, "round it more"
-)
+CLAMP = Singularity(0.01, 0.02, "edge of a clamp", ("held", "shaft"), 0.5, 0.5, 0.002, "none")
 DECIDE = Asked(goal="decide", required=2.0)  # a limit of 200 MPa
 
 
 def mesh(maximum: float, felt: float, interval: tuple[float, float] | None = None) -> MeshResult:
-    """Stresses in MPa; felt: next to a rounded edge."""
-    edge = AtSingularity(felt * 1e6, felt * 1e6, (0.0, 0.0, 0.0), bounded=True)
+    """Stresses in MPa; felt: next to a clamp's edge."""
+    edge = AtSingularity(felt * 1e6, felt * 1e6, (0.0, 0.0, 0.0))
     ends = interval and (interval[0] * 1e6, interval[1] * 1e6)
     return MeshResult(1000, maximum * 1e6, 0, (0.0, 0.0, 0.0), (edge,), interval=ends)
 
 
-def seen(*results: MeshResult) -> Seen:
-    return Seen("P", "c", "harmonic", results, (0.1,) * len(results), 2.0**0.5)
+def seen(*results: MeshResult, fewest: int = FEWEST) -> Seen:
+    times = (0.1,) * len(results)
+    return Seen("P", "c", "harmonic", results, times, 2.0**0.5, fewest=fewest)
 
 
 @pytest.mark.parametrize(
     ("felt", "maximum", "done"),
     [
-        (150.0, 100.0, True),  # far below the limit
+        (90.0, 100.0, True),  # far below the limit
+        (150.0, 100.0, True),  # also with the whole interval
         (500.0, 300.0, True),  # far above
-        (90.0, 100.0, False),  # a third mesh makes it converge
-        (250.0, 180.0, False),  # the limit is within what is uncertain
-        (250.0, 168.0, False),  # not by the margin: up to 197 MPa
+        (90.0, 199.0, False),  # its error reaches the limit
+        (250.0, 180.0, False),  # its interval does
     ],
 )
-def test_two_meshes_decide(felt: float, maximum: float, done: bool) -> None:
+def test_meshes_decide_as_soon_as_there_are_enough(felt: float, maximum: float, done: bool) -> None:
+    """Two of a pin in contact, three of others: fewer can agree by chance."""
     ends = None if felt < maximum else (0.9 * maximum, 1.15 * maximum)
     first, second = mesh(maximum, felt, ends), mesh(1.002 * maximum, felt, ends)
-    assert enough(DECIDE, STEEL, seen(first, second)) is done
-    assert not enough(DECIDE, STEEL, seen(first))
-    assert not enough(Asked(), STEEL, seen(first, second))
+    asked = replace(DECIDE, tolerance=1e-3)
+    assert enough(asked, STEEL, seen(first, second, fewest=2)) is done
+    assert not enough(asked, STEEL, seen(first, fewest=2))
+    assert not enough(asked, STEEL, seen(first, second))
+    assert not enough(replace(asked, goal="value"), STEEL, seen(first, second, fewest=2))
+
+
+def test_a_surface_that_is_surely_below_the_sections_needs_no_finer_mesh() -> None:
+    """Whatever is asked: the row is that of the sections."""
+    first, second = mesh(100.0, 0.0), mesh(104.0, 0.0)
+    here = seen(first, second, fewest=2)
+    high = here.range[1]
+    for section, done in ((1.001 * high, True), (0.999 * high, False)):
+        asked = Asked(1e-4, elsewhere={"c": section})
+        assert enough(asked, STEEL, here) is done
+        assert ("surface-below-sections" in reasons(asked, STEEL, "harmonic")(here).codes) is done
+    assert not enough(Asked(1e-4, elsewhere={"d": 2.0 * high}), STEEL, here)
 
 
 def test_ends_that_change_from_mesh_to_mesh_widen_the_interval() -> None:
@@ -61,29 +78,43 @@ def test_ends_that_change_from_mesh_to_mesh_widen_the_interval() -> None:
     assert seen(mesh(100.0, 90.0), last).range == pytest.approx(steady.range)
 
 
+def compared(surface: float, section: float, beneath: float, cells: AtPlaces) -> Compared:
+    """Stresses in MPa, at one instant."""
+    links = PinLoads("c", ("A",), np.zeros((1, 1, 3)))
+    at = AtPlaces(1e6 * surface, 1e6 * section, 1e6 * beneath)
+    found = Comparison(at, cells, links, ())
+    return Compared(found, found)
+
+
 @pytest.mark.parametrize(
-    ("cells", "ends", "fine"),
+    ("stress", "cells", "value", "decide"),
     [
-        (0.005, (180.0, 230.0), True),  # little of the tolerance
-        (0.05, (180.0, 230.0), True),  # open whatever cells do, and less than half as uncertain
-        (0.08, (180.0, 230.0), False),
-        (0.05, (195.0, 205.0), False),  # finer cells may decide
-        (0.05, (230.0, 260.0), True),  # decided
-        (0.05, (180.0, 200.0), False),
+        ((150.0, 100.0, 90.0), (0.01, 0.01, 0.01), True, True),  # little of the tolerance
+        ((150.0, 100.0, 90.0), (0.05, 0.05, 0.05), False, True),  # safe by far
+        ((196.0, 100.0, 90.0), (0.05, 0.05, 0.05), False, False),  # the limit is within the error
+        ((150.0, 188.0, 90.0), (0.05, 0.08, 0.05), False, False),  # of the sections', too
+        ((150.0, 150.0, 195.0), (0.05, 0.05, 0.05), False, False),  # and of what lies beneath
+        ((150.0, 150.0, 250.0), (0.05, 0.05, 0.05), False, True),  # too much beneath, surely
+        ((250.0, 150.0, 195.0), (0.05, 0.05, 0.05), False, True),  # fails, whatever lies beneath
+        ((150.0, 100.0, 90.0), (0.01, 0.9, 0.01), False, True),  # sections may be more: 190 MPa
+        ((150.0, 60.0, 90.0), (0.01, 0.9, 0.01), True, True),  # or surely not
     ],
 )
-def test_cells_are_fine_enough_where_what_is_excluded_leaves_a_decision_open(
-    cells: float, ends: tuple[float, float], fine: bool
+def test_when_cells_are_fine_enough(
+    stress: tuple[float, float, float],
+    cells: tuple[float, float, float],
+    value: bool,
+    decide: bool,
 ) -> None:
-    low, high = (1e6 * x for x in ends)
-    links = PinLoads("c", ("A",), np.zeros((1, 1, 3)))
-    found = Comparison((low + high) / 2.0, (low, high), cells, links, ())
-    assert found.fine(STEEL, DECIDE) is fine
+    found = compared(*stress, AtPlaces(*cells))
+    assert found.fine(STEEL, Asked(tolerance=0.02)) is value
+    assert found.fine(STEEL, DECIDE) is decide
 
 
-def test_two_meshes_say_that_they_are_only_two() -> None:
-    last = mesh(100.0, 150.0, (94.0, 120.0))
-    peak = judge(seen(last, last), (ROUNDED,), 0.02)
+def test_two_meshes_may_be_too_few() -> None:
+    last = mesh(100.0, 90.0)
+    peak = judge(seen(last, last), (CLAMP,), 0.02)
     assert peak.verdict == "unconverged"
     assert "too-few-meshes" in peak.reasons
-    assert "from two meshes only" in peak.note
+    assert "only 2 meshes were solved" in peak.note
+    assert judge(seen(last, last, fewest=2), (CLAMP,), 0.02).verdict == "converged"

@@ -56,20 +56,27 @@ def sharp() -> LugSolution:
 
 
 def test_a_clevis_beside_contact_in_three_dimensions(sharp: LugSolution) -> None:
-    """Two programs give 306.3 MPa at mid-span and M / M0 = .8418 where edges are excluded."""
+    """Two programs give 306.3 MPa at mid-span and M / M0 = .8418. The free surface there has that
+    without any distance from the edges, which are sharp; the section has 32 M / (pi d^3).
+    """
     peak, joint = sharp.solution.peak, sharp.joint
     assert joint is not None
     assert joint.range is not None
-    assert peak.verdict == "singular"
+    assert peak.verdict == "converged"
     assert peak.max_von_mises == pytest.approx(306.3e6, rel=0.03)
     assert peak.location is not None
     assert peak.location[2] == pytest.approx(0.023, abs=0.0005)
+    assert peak.singular_at == ()
     low, high = joint.range.max_von_mises
     assert low < 306.3e6 < high < 1.1 * low * 1.1
     nominal = FORCE / 2.0 * (0.005 + 0.001 + 0.005)
     middle = dict(joint.bending_moments)[0.023]
     assert middle / nominal == pytest.approx(0.8418, abs=0.03)
-    assert "the edge of a lug" in peak.note
+    assert peak.places is not None
+    assert peak.places.section is not None
+    bending = 32.0 * 0.8418 * nominal / (math.pi * D**3)
+    assert peak.places.section.max_von_mises == pytest.approx(bending, rel=0.03)
+    assert peak.places.section.z == pytest.approx(0.023, abs=0.0005)
     assert "contact" in peak.why
 
 
@@ -78,8 +85,8 @@ def test_the_error_names_the_cells(sharp: LugSolution) -> None:
     assert peak.parts is not None
     assert peak.max_von_mises is not None
     assert 0.0 < peak.parts.cells < 0.02 * peak.max_von_mises
-    assert peak.interval is not None
-    assert peak.interval[1] - peak.interval[0] >= 2.0 * peak.parts.cells
+    assert peak.interval is None
+    assert peak.error_estimate == pytest.approx(peak.parts.total)
 
 
 def test_bands_carry_what_their_links_exert(sharp: LugSolution) -> None:
@@ -119,40 +126,24 @@ def test_stress_is_in_proportion_without_clearance(sharp: LugSolution) -> None:
     assert none == 0.0
 
 
-def test_rounded_edges_have_a_bound_that_is_not_resolved() -> None:
-    """The maximum away from them is the same as away from sharp ones, and no singularity."""
+def test_the_edges_of_lugs_are_contacts_and_leave_the_row(sharp: LugSolution) -> None:
+    """Rounded by 0.5 mm they move it by 1 % at most; they have a peak then, and none if sharp. All
+    but the outer ones of the fork have a K, to a quarter the same.
+    """
     lugs = tuple(replace(lug, edge_radius=0.0005) for lug in LUGS)
     (found,) = solve_in_lugs(InLugs(PIN, STEEL, lugs, (STEADY,)), QUICK)
-    peak = found.solution.peak
-    assert peak.verdict in ("converged", "unconverged")
-    assert peak.max_von_mises == pytest.approx(306.3e6, rel=0.03)
-    assert "away from the rounded edges of lugs" in peak.note
-    assert "local-contact" in peak.reasons
-    assert {zone.kind for zone in peak.singular_at} == {"the rounded edge of a lug"}
-    assert not any(zone.governs for zone in peak.singular_at)
-
-
-def test_excluded_edges_leave_the_maximum_and_its_own_error() -> None:
-    """Half and twice the distance say nothing then; sharp edges stay singular."""
-    lugs = tuple(replace(lug, edge_radius=0.0005) for lug in LUGS)
-    excluded = replace(QUICK, lug_edges="excluded")
-    (varied,), (found,) = (
-        solve_in_lugs(InLugs(PIN, STEEL, lugs, (STEADY,)), asked) for asked in (QUICK, excluded)
-    )
-    peak, other = found.solution.peak, varied.solution.peak
-    assert peak.interval is None
-    assert other.interval is not None
-    assert peak.max_von_mises == pytest.approx(other.max_von_mises, rel=1e-9)
-    assert peak.parts is not None
-    assert peak.error_estimate == pytest.approx(peak.parts.total)
-    assert other.error_estimate is not None
-    assert peak.parts.total < other.error_estimate
-    assert "local-contact" in peak.reasons
-    assert "left to bearing checks" in peak.note
-    assert {zone.kind for zone in peak.singular_at} == {"the rounded edge of a lug"}
-    (sharp,) = solve_in_lugs(InLugs(PIN, STEEL, LUGS, (STEADY,)), excluded)
-    assert sharp.solution.peak.verdict == "singular"
-    assert sharp.solution.peak.interval is not None
+    rounded, plain = found.solution.peak, sharp.solution.peak
+    assert rounded.verdict == "converged"
+    assert rounded.singular_at == ()
+    assert rounded.max_von_mises == pytest.approx(plain.max_von_mises, rel=0.023)
+    strengths = []
+    for peak in (plain, rounded):
+        assert peak.places is not None
+        assert peak.places.contact is not None
+        edges = {(e.band, e.end): e for e in peak.places.contact.edges}
+        assert {e.max_pressure is None for e in edges.values()} == {peak is plain}
+        strengths.append([edges["M", "start"].K, edges["L", "end"].K])
+    assert strengths[0] == pytest.approx(strengths[1], rel=0.25)
 
 
 def test_the_crest_of_a_motion_is_found_between_samples() -> None:
@@ -275,7 +266,7 @@ def test_larger_cells_decide_and_have_the_range_of_the_usual_ones() -> None:
     assert decided.rings is not None
     assert usual.rings is not None
     assert len(decided.rings.connections) < len(usual.rings.connections)
-    assert "mesh-decides" in peaks[1].reasons
+    assert "contact" in peaks[1].reasons
     value, error = peaks[0].max_von_mises or 0.0, peaks[1].error_estimate or 0.0
     assert abs((peaks[1].max_von_mises or 0.0) - value) <= error
     ratios = []
@@ -305,7 +296,7 @@ def test_nothing_is_in_contact_without_loads() -> None:
     peak = found.solution.peak
     assert (peak.verdict, peak.max_von_mises, peak.error_estimate) == ("converged", 0.0, 0.0)
     assert found.joint is not None
-    assert all(band.largest_pressure == 0.0 for band in found.joint.bands)
+    assert all(band.mean_pressure == 0.0 for band in found.joint.bands)
 
 
 def test_moments_across_the_axis_are_refused() -> None:

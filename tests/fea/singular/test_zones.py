@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fea.core.material import Material
-from fea.core.pin_loads import LugEdge, PinLoads
-from fea.singular.singularities import find_singularities, lug_edges
+from fea.core.pin_loads import PinLoads
+from fea.singular.singularities import find_singularities
 from fea.singular.williams import antiplane_exponent, plane_exponent
-from fea.solve_pin import singularities_of, solve_pin
+from fea.solve_pin import solve_pin
 from geometry import GeometryError, Pin, Segment
 from tests.support.errors import raises
 
@@ -211,52 +210,3 @@ def test_in_torsion_eigenvalues_are_multiples_of_the_first() -> None:
     (smooth,) = (p for p in singularities if p.z == 0.02)
     assert smooth.torsion_theory == pytest.approx(1.0 - 1.0 / 2.0)
     assert smooth.following_torsion == pytest.approx(3.0 / 2.0 - 1.0)
-
-
-def test_the_edges_of_a_lug() -> None:
-    """Of a loaded end of 20 mm: one on the smooth shaft, one flush with the face at z = 0.06."""
-    edges = [LugEdge("P1", 0.01, z, 0.226, 0.02) for z in (0.04 + 1e-14, 0.06)]
-    (singularity,) = lug_edges(shouldered(), edges, 0.05)
-    assert (singularity.kind, singularity.r, singularity.z) == ("edge of a lug", 0.01, 0.04)
-    assert singularity.between == ("P1", "its lug")
-    assert (singularity.theory, singularity.torsion_theory) == (0.226, 0.0)
-    assert singularity.radius == singularity.feature == pytest.approx(0.001)
-    assert "edge_radius" in singularity.advice
-    assert not singularity.measured
-
-
-def test_a_lug_that_is_not_singular() -> None:
-    assert lug_edges(shouldered(), [LugEdge("P1", 0.01, 0.04, 0.0)]) == ()
-
-
-@pytest.mark.parametrize(
-    ("z", "reach", "feature"), [(0.05, 0.0015, 0.0015), (0.0212, 0.02, 0.0012), (0.05, 0.02, 0.002)]
-)
-def test_how_far_the_edge_of_a_lug_reaches(z: float, reach: float, feature: float) -> None:
-    """As far as the lug or a gap, to the sharp shoulder at 0.02, or as is left out."""
-    (singularity,) = lug_edges(shouldered(), [LugEdge("P1", 0.01, z, 0.226, reach)])
-    assert singularity.feature == pytest.approx(feature)
-
-
-def test_lugs_of_all_cases(steel: Material) -> None:
-    """Each case has its own edges, and together they have all of them, once, beside the corner."""
-    one, two, three = (LugEdge("P1", 0.01, z, 0.226) for z in (0.04, 0.05, 0.055))
-    pressed = PinLoads(
-        "a", ("P1",), np.zeros((2, 1, 3)), times=np.arange(2.0), lug_edges=(one, two)
-    )
-    other = replace(pressed, case="b", lug_edges=(two, three))
-    every = singularities_of(shouldered(), steel, (), (pressed, other))
-    assert [(p.kind, p.z) for p in every] == [
-        ("sharp corner", 0.02), *(("edge of a lug", edge.z) for edge in (one, two, three)),
-    ]  # fmt: skip
-    for case in (pressed, other):
-        assert set(singularities_of(shouldered(), steel, (), (case,))) < set(every)
-
-
-def test_loads_keep_their_lug_edges() -> None:
-    edges = (LugEdge("P1", 0.01, 0.04, 0.226),)
-    loads = PinLoads("a", ("P1",), np.ones((2, 1, 3)), times=np.arange(2.0), lug_edges=edges)
-    later = replace(loads, times=loads.times + 0.5 if loads.times is not None else None)
-    for made in (loads.at(np.array([1])), loads.turned(1.0), loads.merged(later)):
-        assert made.lug_edges == edges
-    assert PinLoads("a", ("P1",), np.ones((2, 1, 3))).lug_edges == ()

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
+
+import numpy as np
 
 from fea.joint.records import BandContact, JointRange, JointResult, Variation
 from reports.data.results import Results
+from reports.data.surface import Surface, SurfaceCase
 
 RANGE = (1100.0, 1900.0)
 
@@ -18,7 +22,7 @@ def make_joint(over: bool = True) -> JointResult:
             name=name,
             force=400.0 if name == "middle" else 200.0,
             contact_angle=81.25,
-            largest_pressure=987.6,
+            mean_pressure=987.6,
             line_load=((z + 0.25, 300.0), (z + 0.75, -100.0 if name == "left" else 100.0)),
             couple=12.5,
             clearance=0.0015,
@@ -47,3 +51,15 @@ def in_lugs(results: Results, joint: JointResult, **changes: object) -> Results:
     changes |= {"error_parts": {"mesh": 5.0, "time": 0.0, "cells": 1.0}}
     first = replace(results.pins[0], joint=joint, **changes)  # type: ignore[arg-type]
     return replace(results, pins=(first, *results.pins[1:]))
+
+
+def surface_in(case: str, pressure: tuple[Any, Any] = (None, None)) -> Surface:
+    """A meridian of three points and one unit load."""
+    one = SurfaceCase(
+        case, None, 0, np.ones((1, 1, 2)), np.ones(1), np.zeros(3, bool), np.ones(3), *pressure
+    )
+    even = (True, True, True, False, False, True, False, True)
+    return Surface(
+        "A", np.array([[1.0, 0, 0], [1, 0, 1], [1, 0, 2]]), np.zeros((0, 3), np.int64),
+        np.zeros(1, np.int64), even, np.ones((3, 5, 1)), np.ones((3, 3, 1)), None, (one,),
+    )  # fmt: skip

@@ -1,0 +1,163 @@
+"""The stress of a pin's surface as it is shown: each side of a pressed ring by itself.
+
+At the end of a ring the outline has two points in one place, one for each side, which the step of
+the pressure tells apart. Where a lug presses on one side only, the free side is shown. Beside
+pressed cells (fea.core.pressed) the mesh does not resolve that step; there the stress is that of
+the edge of a lug, continued from where it is resolved (fea.harmonic.free_surface), and elsewhere
+that of the nearest point at which the surface is read. So what is shown of the free surface is
+nowhere more than what is read of it.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from fea.core.pin_loads import PinLoads
+from fea.core.pressed import BINS, PressedArcs
+from fea.core.voigt import von_mises
+from fea.harmonic.fields import MeridianFields
+from fea.harmonic.free_surface import FreeSurface, surface_points
+from fea.harmonic.superposition import Circumference
+from geometry.arrays import Floats, Ints, Mask
+
+SECTORS = 60
+FINER = 72, 90, 120, 180, 360  # numbers of sectors that begin where arcs do
+PER_CELL = 2  # sectors at least
+CLOSE = 1e-9  # of the length: points that are one
+
+
+class Shown(Protocol):
+    """What is shown of a surface at the instants of a case. rows: of the skin, the first one (P,)
+    at each place; angles: (A,) rad.
+    """
+
+    rows: Ints
+    angles: Floats
+
+    def stress(self, instant: int) -> tuple[Floats, Mask]:
+        """(P, A, 6) Pa: rr, tt, zz, tz, rz, rt, and where (P, A) a lug presses on what is shown."""
+        ...
+
+    def envelope(self, instant: int) -> Floats:
+        """The largest von Mises stress (P, A) Pa of the free surface over all instants, of what is
+        shown at this one; NaN where lugs press on it at all of them.
+        """
+        ...
+
+
+def shown_surface(fields: MeridianFields, loads: PinLoads, nu: float) -> Shown:
+    """Of a pin under loads, with Poisson's ratio."""
+    if loads.pressed is None:
+        return _Plain(fields, loads)
+    return _Free(fields, loads, loads.pressed, nu)
+
+
+def sectors_of(pressed: PressedArcs | None) -> int:
+    """Into how many sectors a surface is divided, so that cells of contact are resolved."""
+    if pressed is None:
+        return SECTORS
+    return next(n for n in FINER if n * pressed.sector >= PER_CELL * BINS or n == BINS)
+
+
+def _first(x: Floats) -> Mask:
+    """Which points (S,) of the skin, in their order, are the first ones in their place."""
+    step = np.linalg.norm(np.diff(x, axis=0), axis=1)
+    return np.concatenate([[True], step > CLOSE * np.ptp(x[:, 1])])
+
+
+class _Plain:
+    """Under prescribed loads: all of it, and of two points in one place the first."""
+
+    def __init__(self, fields: MeridianFields, loads: PinLoads) -> None:
+        self.angles = np.asarray(np.arange(SECTORS) * 2.0 * np.pi / SECTORS)
+        self.rows = np.flatnonzero(_first(fields.points[: fields.skin]))
+        self.around = Circumference(fields, loads)
+
+    def stress(self, instant: int) -> tuple[Floats, Mask]:
+        found = self.around.stress(self.rows, instant, self.angles)
+        return found, np.zeros(found.shape[:2], dtype=bool)
+
+    def envelope(self, instant: int) -> Floats:
+        # Odd harmonics: half a turn says it all.
+        turn = len(self.angles) // 2 if self.around.odd else len(self.angles)
+        found = self.around.envelope(self.rows, self.angles[:turn])
+        return np.tile(found, len(self.angles) // turn)
+
+
+class _Free:
+    """Where lugs press on it."""
+
+    def __init__(
+        self, fields: MeridianFields, loads: PinLoads, pressed: PressedArcs, nu: float
+    ) -> None:
+        count = sectors_of(pressed)
+        self.pressed, self.arcs = pressed, np.arange(count) * (BINS // count)
+        self.angles = np.asarray(np.arange(count) * 2.0 * np.pi / count)
+        of = surface_points(fields, pressed.rings, nu)
+        self.x, self.cusps = fields.points[: fields.skin], of.cusps
+        self.skin, first = np.arange(fields.skin), _first(self.x)
+        self.rows, self.place = np.flatnonzero(first), np.cumsum(first) - 1
+        self.ring = pressed.rings.at(self.x[:, 0], of.middle[: fields.skin])
+        self.around, self.free = Circumference(of.fields, loads), FreeSurface(of, pressed)
+
+    def stress(self, instant: int) -> tuple[Floats, Mask]:
+        every = self.around.stress(self.skin, instant, self.angles)
+        read = self._read(self.skin, instant)
+        pressed = np.logical_and.reduceat(self._on(instant), self.rows)
+        free = np.logical_or.reduceat(read, self.rows)
+        taken = np.where(free[self.place], read, True)[..., None]  # what is pressed: of both sides
+        out = np.add.reduceat(taken * every, self.rows) / np.add.reduceat(
+            taken.astype(float), self.rows
+        )
+        pressed &= ~free
+        self._continue(out, free, instant)
+        self._fill(out, free, ~free & ~pressed)
+        return out, pressed
+
+    def envelope(self, instant: int) -> Floats:
+        read = np.ones((len(self.skin), len(self.angles), self.around.count), dtype=bool)
+        some = np.flatnonzero(self.free.masked(self.skin))
+        for t in range(self.around.count):
+            read[some, :, t] = self._read(some, t)
+        most = np.maximum.reduceat(self.around.envelope(self.skin, self.angles, read), self.rows)
+        shown, pressed = self.stress(instant)
+        now = np.where(pressed, -1.0, von_mises(shown))
+        found = np.maximum(most, now)
+        return np.where(found < 0.0, np.nan, found)
+
+    def _read(self, points: Ints, instant: int) -> Mask:
+        return self.free.read(points, np.full(len(points), instant), self.arcs)
+
+    def _on(self, instant: int) -> Mask:
+        """On which points of the skin (S, A) a lug presses."""
+        on = self.pressed.on[instant][:, self.arcs]
+        return np.asarray(on[self.ring] & (self.ring >= 0)[:, None])
+
+    def _continue(self, out: Floats, free: Mask, instant: int) -> None:
+        """To the edges of lugs, and in a line between them and the first points that are read."""
+        for edge, cusp in reversed(self.cusps.items()):
+            near, between = cusp.near, cusp.between
+            here = self._read(np.array([edge]), instant)[0]
+            z = self.around.fields.points[edge, 1]
+            off = np.abs(self.x[:, 1] - z)
+            first = near[off[near].argmin()]
+            away = np.hypot(self.x[:, 0] - self.x[near[0], 0], off)
+            rows = np.union1d(between, np.flatnonzero(away <= CLOSE * np.ptp(self.x[:, 1])))
+            ends = self.around.stress(np.array([edge, first]), instant, self.angles[here])
+            part = (off[rows] / off[first])[:, None, None]
+            places = np.ix_(self.place[rows], np.flatnonzero(here))
+            out[places] = (1.0 - part) * ends[0] + part * ends[1]
+            free[places] = True
+
+    def _fill(self, out: Floats, free: Mask, left: Mask) -> None:
+        """What is `left` of places and angles, by the nearest ones that are free."""
+        if not (left.any() and free.any()):
+            return
+        r, z = self.x[self.rows].T
+        c, s = np.cos(self.angles), np.sin(self.angles)
+        height = np.broadcast_to(z[:, None], free.shape)
+        points = np.stack([r[:, None] * c, r[:, None] * s, height], axis=2)
+        out[left] = out[free][cKDTree(points[free]).query(points[left])[1]]

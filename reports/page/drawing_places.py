@@ -1,0 +1,46 @@
+"""Where the stress of a pin's rows is, for its drawing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import hypot
+
+from reports.data.decision import worst_first
+from reports.data.results import Results
+
+SAME = 0.01  # of the pin's length: places so near are one
+MOST = 4  # places
+NAMED = 2  # cases of a place
+
+
+@dataclass(frozen=True)
+class PlaceMark:
+    """Where the stress of some cases is: at a distance r from the axis, or None in a section."""
+
+    z: float
+    r: float | None
+    cases: tuple[str, ...]
+
+    @property
+    def words(self) -> str:
+        few = len(self.cases) <= NAMED
+        return f"max ({', '.join(self.cases) if few else f'{len(self.cases)} cases'})"
+
+
+def place_marks(results: Results, pin: str, length: float) -> list[PlaceMark]:
+    """Those of a pin, the worst cases first."""
+    found: list[PlaceMark] = []
+    for row in worst_first(results):
+        if row.pin != pin or row.location is None:
+            continue
+        x, y, z = row.location
+        by_section = row.places is not None and row.places.governs == "section"
+        r = None if by_section else hypot(x, y)
+        for k, mark in enumerate(found):
+            near = abs(mark.z - z) <= SAME * length and (mark.r is None) == (r is None)
+            if near and abs((mark.r or 0.0) - (r or 0.0)) <= SAME * length:
+                found[k] = PlaceMark(mark.z, mark.r, (*mark.cases, row.case))
+                break
+        else:
+            found.append(PlaceMark(z, r, (row.case,)))
+    return found[:MOST]

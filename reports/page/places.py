@@ -1,0 +1,164 @@
+"""The page's part on where a pin's stress is read: surface, section and contact."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from fea.core.places import BENEATH, ContactEdge, ContactPlace, SectionPlace
+from reports.data.results import PinResult, Units
+from reports.format.grid import Grid
+from reports.format.numbers import DASH, components, engineering, short
+from reports.format.ranges import factor_text
+from reports.tables.stress.places import factor_at
+
+LEAST = 1e-6  # of the place of the largest stress: no distance is smaller
+INTRODUCTION = (
+    "The row's stress is the larger of surface and section. Beneath contact: the largest von Mises "
+    f"stress inside the pin, farther than {BENEATH:g} diameters from where lugs press on it; the "
+    "pin is safe only if that meets the required factor, too."
+)
+EDGES = (
+    "At the distance d from the edge of a lug, pressure rises as K / d^exponent; the distance at "
+    "which it falls to yield is given. Peak pressure, and von Mises stress of the pin under it by "
+    "contact alone, follow from K and the radius of the edge; a sharp edge has no peak. Contact "
+    "stress is not part of the safety factor: bearing is judged by the mean pressure."
+)
+
+
+@dataclass(frozen=True)
+class PlacesPart:
+    """The three places, what acts at the section, how far stress reaches from contact, and the
+    edges of lugs, if there are any.
+    """
+
+    grid: Grid
+    introduction: str
+    notes: tuple[str, ...]
+    edges: Grid | None
+    on_edges: str = EDGES
+
+
+def places_part(pin: PinResult, units: Units) -> PlacesPart | None:
+    """None where stress is read at no more than the surface."""
+    places = pin.places
+    if places is None or (places.section is None and places.contact is None):
+        return None
+    section, contact = places.section, places.contact
+    notes = (_acting(section, units), _reach(pin, contact, units))
+    size = max(abs(x) for x in places.surface.location)
+    first, _, _ = INTRODUCTION.partition(". ")
+    return PlacesPart(
+        _grid(pin, units),
+        INTRODUCTION if contact else f"{first}.",
+        tuple(note for note in notes if note),
+        _edges(contact.edges, units, LEAST * size) if contact and contact.edges else None,
+    )
+
+
+def _grid(pin: PinResult, units: Units) -> Grid:
+    places = pin.places
+    assert places is not None
+    surface, section, contact = places.surface, places.section, places.contact
+    found = [
+        ("surface", surface.max_von_mises, surface.error_estimate, surface.verdict,
+         _at(surface.location), surface.time),
+    ]  # fmt: skip
+    if section is not None:
+        found.append(
+            ("section", section.max_von_mises, section.error_estimate, section.verdict,
+             ["", "", engineering(section.z)], section.time)
+        )  # fmt: skip
+    if contact is not None:
+        found.append(
+            ("beneath contact", contact.beneath, contact.beneath_error, "",
+             _at(contact.beneath_location), contact.beneath_time)
+        )  # fmt: skip
+    timed = any(time is not None for *_, time in found)
+    head = [
+        "place", f"von Mises [{units.stress}]", "±", "safety factor", f"x [{units.length}]", "y",
+        "z", f"t [{units.time}]", "",
+    ]  # fmt: skip
+    body = [
+        [
+            name, engineering(stress), engineering(error, 2),
+            factor_text(factor_at(pin, stress), pin.required or 1.0), *where,
+            DASH if time is None else short(time),
+            ", ".join(filter(None, (verdict, "governs" * (name == places.governs)))),
+        ]
+        for name, stress, error, verdict, where, time in found
+    ]  # fmt: skip
+    if not timed:
+        head, body = head[:7] + head[8:], [row[:7] + row[8:] for row in body]
+    return Grid(head, body, [False, *[True] * (len(head) - 2), False])
+
+
+def _at(location: tuple[float, float, float]) -> list[str]:
+    return list(components(location, max(map(abs, location))))
+
+
+def _acting(section: SectionPlace | None, units: Units) -> str:
+    """What acts at the section, without what does not."""
+    if section is None:
+        return ""
+    moment = f"{units.force}·{units.length}"
+    every = (
+        ("axial force", section.axial_force, units.force),
+        ("shear force", section.shear_force, units.force),
+        ("bending moment", section.bending_moment, moment),
+        ("torque", section.torque, moment),
+    )
+    acting = [f"{name} {engineering(size)} {unit}" for name, size, unit in every if size]
+    use = section.plastic_utilisation
+    of = "" if use is None else f"; {engineering(100.0 * use, 2)} % of its fully plastic capacity"
+    return f"Section at z = {engineering(section.z)} {units.length}: {', '.join(acting)}{of}."
+
+
+def _reach(pin: PinResult, contact: ContactPlace | None, units: Units) -> str:
+    """How far from pressed cells stress exceeds yield, and what the required factor permits."""
+    if contact is None or contact.reach is None:
+        return ""
+    reaches = [("yield", contact.reach)]
+    if contact.reach_required is not None and pin.required:
+        reaches.append((f"yield over the required factor {short(pin.required)}",
+                        contact.reach_required))  # fmt: skip
+    deep = [
+        f"{limit} to a depth of {engineering(reach, 2)} {units.length}"
+        for limit, reach in reaches
+        if reach > 0.0
+    ]
+    if not deep:
+        return (
+            f"Away from where lugs press, stress inside the pin nowhere exceeds {reaches[-1][0]}."
+        )
+    return f"From where lugs press, stress inside the pin exceeds {', and '.join(deep)}."
+
+
+def _edges(edges: tuple[ContactEdge, ...], units: Units, least: float) -> Grid:
+    """least: the smallest distance that is told from none."""
+    peaks = any(edge.max_pressure is not None for edge in edges)
+    head = [
+        "lug", "edge", f"K [{units.stress}·{units.length}^exponent]", "exponent",
+        f"yield at [{units.length}]",
+    ]  # fmt: skip
+    if peaks:
+        head += [f"peak pressure [{units.stress}]", "±", f"von Mises under it [{units.stress}]"]
+    body = [
+        [
+            edge.band, edge.end, engineering(edge.K, 3), engineering(edge.exponent, 3),
+            _distance(edge.yield_distance, least),
+            *([_peak(edge.max_pressure), engineering(edge.error_estimate, 2),
+               engineering(edge.max_von_mises, 3)] if peaks else []),
+        ]
+        for edge in edges
+    ]  # fmt: skip
+    return Grid(head, body, [False, False, *[True] * (len(head) - 2)])
+
+
+def _distance(distance: float | None, least: float) -> str:
+    if distance is None:
+        return DASH
+    return "0" if distance < least else engineering(distance, 2)
+
+
+def _peak(pressure: float | None) -> str:
+    return DASH if pressure is None else engineering(pressure, 3)
