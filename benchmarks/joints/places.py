@@ -78,11 +78,11 @@ def _numbers(peak: Peak, unit: float, digits: int) -> tuple[str, str, str, str]:
 
 
 def _clevises() -> str:
-    """The tension fibre at mid-span is beneath the inner lug's free side, and governs slender pins;
-    on stubby ones other places of the surface do.
+    """Those whose largest stress is the tension fibre at mid-span, on the free side of the inner
+    lug; on stubby pins it is elsewhere.
     """
     rows = []
-    for inner, outer, gap, clearance, _, fibre in TRUTH:
+    for inner, outer, gap, clearance, _, fibre in (x for x in TRUTH if x[0] >= D * 1e3):
         peak = clevis_row(inner, outer, gap, clearance)
         surface, section, _, below = _numbers(peak, 1e6, 4)
         about = f"{inner:g} / {outer:g}+{outer:g}, gap {gap:g}", f"{clearance:g}"
