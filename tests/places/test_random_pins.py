@@ -47,7 +47,7 @@ def test_what_is_drawn() -> None:
 
 
 def test_the_reader_sees_what_is_free_and_nothing_else() -> None:
-    """A line of five points under bending, s = cos(angle) z Pa: largest at the last point; with that
+    """A line of five points under bending, s = cos(angle) z Pa: largest at the last; with that one
     pressed on one side, the other is read; with both, the third point, for the fourth is too near.
     """
     z = np.linspace(0.1, 0.5, 5)
