@@ -28,6 +28,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import UnitLoad
 from fea.derivatives.governing import by_loads, waves_of
 from fea.derivatives.governing_point import point_of
+from fea.derivatives.in_section import OTHER
 from fea.derivatives.reading_point import Continued, ReadingPoint, SectionState
 from fea.derivatives.records import Derivatives, SolvedCase
 from fea.derivatives.ties import tied_places, tied_times
@@ -53,7 +54,6 @@ from geometry.shape.dimensions import Dimension
 
 POISSON = 1e-3  # step of Poisson's ratio
 EXPONENT = 1e-4  # step of a pressure's exponent
-OTHER = "with a little more or less of it the section has other edges"
 
 
 def derivatives(solved: SolvedCase, dimensions: Iterable[Dimension]) -> Derivatives:
