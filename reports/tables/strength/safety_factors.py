@@ -60,7 +60,7 @@ LATER = (
     *("governs", "surface", "section", "beneath", "beneath_error", "reach", "reach_required"),
     "length_unit",
 )
-TEXTS = ("pin", "case", "result", "verdict", "model")
+TEXTS = ("pin", "case", "result", "governs", "verdict", "model")
 OVER_JOINT = "joint_high"  # in whose place the whole range is shown
 
 
@@ -169,8 +169,8 @@ def _yes(value: bool) -> str:
 
 
 def shown_columns(rows: list[Row], results: Results) -> dict[str, str]:
-    """Columns for display with their headings; the range over the joint, what lies beneath
-    contact and the time only if there are any.
+    """Columns for display with their headings; what governs, the range over the joint, what lies
+    beneath contact and the time only if there are any.
     """
     units, required = results.units, results.required_safety_factor
     needed = "" if required is None else f" (≥ {short(required)})"
@@ -182,6 +182,7 @@ def shown_columns(rows: list[Row], results: Results) -> dict[str, str]:
         "utilisation": "utilisation",
         "max_von_mises": f"max von Mises [{units.stress}]",
         "error_estimate": f"± [{units.stress}]",
+        "governs": "at",
         OVER_JOINT: f"joint [{units.stress}]",
         BENEATH: f"beneath [{units.stress}]",
         "time": f"time [{units.time}]",
@@ -189,7 +190,9 @@ def shown_columns(rows: list[Row], results: Results) -> dict[str, str]:
         "model": "model",
     }
     empty = [
-        k for k in (OVER_JOINT, BENEATH, "time") if all(row[k] in (None, DASH) for row in rows)
+        k
+        for k in ("governs", OVER_JOINT, BENEATH, "time")
+        if all(row[k] in (None, DASH) for row in rows)
     ]
     return {name: text for name, text in headings.items() if name not in empty}
 
