@@ -24,9 +24,9 @@ TRUTH = 290e6  # Pa, on 16 rings of a lug; 287 on 12
 
 @pytest.mark.parametrize("cells", [ROUGH, pytest.param(FINE, marks=pytest.mark.slow)])
 def test_it_is_found_on_any_cells(cells: Cells) -> None:
-    """Fillets of 0.05 d that begin 0.005 d from the outer lugs, 0.05 d from the middle one. On
-    rough cells the last rings are 0.07 and 0.14 d long, and a lug presses on either side of each
-    fillet: what is within a ring's length of pressed cells had 134 MPa left.
+    """Fillets of 0.05 d that begin 0.005 d from the outer lugs, 0.05 d from the middle one. Rough
+    cells would end in rings of 0.07 and 0.14 d, and a lug presses on either side of each fillet:
+    with no part of these rings cut for it, 134 MPa were left within a ring's length of both.
     """
     gap = 1.1 * RHO
     pin = Pin(
