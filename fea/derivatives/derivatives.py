@@ -38,6 +38,7 @@ from fea.harmonic.boundary import Outline
 from fea.harmonic.free_surface import reader
 from fea.harmonic.model import HarmonicModel, applied, generalised
 from fea.harmonic.stress_recovery import points_of_nodes
+from fea.singular.singularities import free_of_arcs
 from geometry import Pin
 from geometry.arrays import Floats, Ints, Mask
 from geometry.mesh.moved.outline_motion import (
@@ -296,7 +297,7 @@ class Adjoint:
             outline = self.outline.moved(nodes)
             integrals = None if grown is None else self.space.integrals + step * grown
             forces, tractions = self._forces(pin, outline, integrals, moved=True)
-            state = SectionState(nodes, tractions, self._places_at(step, velocity))
+            state = SectionState(nodes, tractions, self._places_at(pin, step, velocity))
             rows, own = self._plain_pressures
             work = np.sum(self._lambda * forces) + np.sum(own * outline.weights(rows))
             values.append(np.array(work + self.read(state)))
@@ -308,10 +309,21 @@ class Adjoint:
         nodes = self.space.nodes
         return [int(np.hypot(*(nodes - place[:2]).T).argmin()) for place in self.places]
 
-    def _places_at(self, step: float, velocity: Floats) -> Floats:
-        out = self.places.copy()
+    def _places_at(self, pin: Pin, step: float, velocity: Floats) -> Floats:
+        """On a pin that is moved: zones are as large as the diameter there, or end where the next
+        fillet begins.
+        """
+        out, zones = self.places.copy(), self.solved.zones
         out[:, :2] += step * velocity[self._zone_nodes]
-        out[:, 2] *= out[:, 0] / self.places[:, 0]
+        times = out[:, 0] / self.places[:, 0]
+        limited = np.array([p.radius >= p.limit for p in zones], dtype=bool)
+        if limited.any():
+            now, then = (
+                free_of_arcs(of, *x[limited, :2].T)
+                for of, x in ((pin, out), (self.solved.pin, self.places))
+            )
+            times[limited] = now / then
+        out[:, 2] *= times
         return out
 
     @property

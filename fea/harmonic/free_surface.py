@@ -12,7 +12,7 @@ at the distance d, with s the exponent of pressure, and is continued to d = 0 by
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +27,7 @@ from geometry.arrays import Floats, Ints, Mask
 Floats32 = NDArray[np.float32]
 FAR = 0.06  # of the diameter, to where a cusp is fitted
 FEWEST = 6  # points to which it is
+MOST = 256  # instants whose arcs are kept: some 50 MB
 SPAN = 2.0  # the farthest of them over the nearest
 
 
@@ -36,7 +37,7 @@ class SurfacePoints:
     middle of the element on which each is. relieved: (S,) the ring in whose middle a point is that
     has the stress without that of the pressure, -1 for others. on_skin: (S,) the point of the
     section's skin that each is, -1 of others. cusps: by point at the edge of a lug how it is
-    continued.
+    continued. arcs: what FreeSurface has found of what is pressed at an instant.
     """
 
     fields: MeridianFields
@@ -44,6 +45,7 @@ class SurfacePoints:
     relieved: Ints
     on_skin: Ints
     cusps: dict[int, Cusp]
+    arcs: dict[tuple[bytes, int], tuple[Floats32, Mask, Mask]] = field(default_factory=dict)
 
 
 def surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfacePoints:
@@ -163,7 +165,7 @@ class FreeSurface:
         self._near = near[some].astype(np.float32)
         self._row = np.full(len(some), -1)
         self._row[some] = np.arange(some.sum())
-        self._known: dict[int, tuple[Floats32, Mask, Mask]] = {}
+        self._known = of.arcs
 
     def masked(self, points: Ints) -> Mask:
         """Which of some points are read on a part of the circumference only."""
@@ -180,9 +182,12 @@ class FreeSurface:
 
     def _at(self, points: Ints, instant: int, arcs: Ints | slice) -> Mask:
         """Where masked points are read, (P, arcs)."""
-        if instant not in self._known:
-            self._known[instant] = self._arcs(instant)
-        shut, edges, inner = (x[:, arcs] for x in self._known[instant])
+        key = self.pressed.on[instant].tobytes(), self.pressed.sector
+        if key not in self._known:
+            if len(self._known) == MOST:
+                self._known.clear()
+            self._known[key] = self._arcs(instant)
+        shut, edges, inner = (x[:, arcs] for x in self._known[key])
         out = (self._near[self._row[points]] @ shut) == 0.0
         own = self.relieved[points]
         out[own >= 0] = inner[own[own >= 0]]
