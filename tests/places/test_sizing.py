@@ -24,6 +24,7 @@ from pinstress.sizing.pin_stress import PinStress
 from pinstress.sizing.scaled_study import resized_study
 from pinstress.sizing.size_pin import Wish, counts, size_pin
 from pinstress.study.file import Study, parse_study
+from reports.tables.strength.changes import change_notes
 from tests.conftest import ROOT
 
 SURFACE = SurfacePlace(100.0, 5.0, "converged", (0.0, 0.0, 1.0))
@@ -71,7 +72,9 @@ def test_a_pin_is_sized_by_what_lies_beneath() -> None:
     of the new study is safe, beneath, too; as it was it depends on that, and there are remedies.
     """
     study = touching(2.6)
-    (before,) = run(study).pins
+    results = run(study)
+    (before,) = results.pins
+    assert any("beneath the contact" in note for note in change_notes(results))
     assert before.decided
     assert [x.over for x in before.depends_on] == ["beneath"]
     assert (low_factor(before) or 0.0) < 2.6 < (before.safety_factor or 0.0)
