@@ -74,7 +74,7 @@ def test_a_pin_is_sized_by_what_lies_beneath() -> None:
     study = touching(2.6)
     results = run(study)
     (before,) = results.pins
-    assert any("beneath the contact" in note for note in change_notes(results))
+    assert any("beneath contact" in note for note in change_notes(results))
     assert before.decided
     assert [x.over for x in before.depends_on] == ["beneath"]
     assert (low_factor(before) or 0.0) < 2.6 < (before.safety_factor or 0.0)

@@ -15,7 +15,7 @@ INTRODUCTION = (
 CONTACT = (
     "In contact with lugs stress is not quite proportional to loads: take the load as an estimate."
 )
-BENEATH = "What lies beneath the contact with its lugs is larger than surface and section, and counts, of "
+BENEATH = "What lies beneath contact is larger than surface and section, and counts: {}."
 SAME = 1.0 - 1e-9
 SINGULAR = "Of singular rows the factor is reached only outside the excluded zones: first {}."
 REMEDIES = {
