@@ -14,10 +14,10 @@ from reports.data.results import PinResult
 
 def surface_and_section(peak: Peak) -> Iterator[tuple[Place, float]]:
     """Both, with the upper end of what is known of each, Pa; of a row without places, and of a
-    singular surface, that of the row.
+    singular surface that governs, that of the row.
     """
     places = peak.places
-    if places is None or peak.verdict == "singular":
+    if places is None or (peak.verdict == "singular" and places.governs == "surface"):
         yield "surface", peak.upper_end
     else:
         yield "surface", places.surface.max_von_mises + places.surface.error_estimate

@@ -15,6 +15,8 @@ INTRODUCTION = (
 CONTACT = (
     "In contact with lugs stress is not quite proportional to loads: take the load as an estimate."
 )
+BENEATH = "What lies beneath contact is larger than surface and section, and counts: {}."
+SAME = 1.0 - 1e-9
 SINGULAR = "Of singular rows the factor is reached only outside the excluded zones: first {}."
 REMEDIES = {
     "sharp corner": "give the sharp corner a radius",
@@ -52,8 +54,18 @@ def change_notes(results: Results) -> list[str]:
             pins.setdefault(change.diameter_note, []).append(change.pin)
     notes = [f"{'Pins' if pin[1:] else 'Pin'} {', '.join(pin)}: {n}." for n, pin in pins.items()]
     notes += [CONTACT] * any(not c.proportional for c in results.changes)
+    by_contact = [c.pin for c in results.changes if _by_contact(results, c)]
+    notes += [BENEATH.format(", ".join(by_contact))] * bool(by_contact)
     remedies = _remedies(results)
     return notes + [SINGULAR.format("; ".join(remedies))] * bool(remedies)
+
+
+def _by_contact(results: Results, change: Change) -> bool:
+    """Whether what lies beneath contact says what is needed."""
+    row = next(p for p in results.pins if (p.pin, p.case) == (change.pin, change.case))
+    contact = row.places.contact if row.places else None
+    needed = SAME * change.yield_strength / change.required
+    return contact is not None and contact.upper_end >= needed
 
 
 def _remedies(results: Results) -> list[str]:

@@ -74,14 +74,13 @@ def test_a_pin_as_wide_as_long_is_no_remedy(weak: pinstress.Study) -> None:
 def test_a_longer_impulse_is_enough() -> None:
     """With the weights of the linkage, which act as well; J in its lugs, which carry its couple.
 
-    The time is for the maximum with the error of this run; a run of its own has another error, so
-    what is compared is the factor with the error that the time allows for.
+    The time is for what lies beneath contact, which is larger than surface and section, with the
+    error of this run; a run of its own has another error, so what is compared is the factor with
+    the error that the time allows for.
     """
     lugs = {name: {"edge_radius": 0.02} for name in ("J1", "J2", "J3")}
     held = {"pin.J.clamp": [], "pin.J.fillet": 0.15, "pin.J.lug": lugs}
-    gear = pinstress.changed_study(
-        pinstress.load_study(GEAR), {**held, "analysis.lug_edges": "excluded"}
-    )
+    gear = pinstress.changed_study(pinstress.load_study(GEAR), held)
     before = pinstress.run(gear, pins=["J"], cases=["landing"])
     found = only(before)
     assert found.given_time == 0.15
@@ -89,8 +88,17 @@ def test_a_longer_impulse_is_enough() -> None:
     key = "case.landing.apply[1].impulse.impulse_time"
     longer = pinstress.changed_study(gear, {key: found.impulse_time})
     after = pinstress.run(longer, pins=["J"], cases=["landing"])
-    allowed = least(before) / (before.pins[0].safety_factor or 0.0)
-    assert (after.pins[0].safety_factor or 0.0) * allowed == pytest.approx(10.0, rel=5e-3)
+    first, second = (x.pins[0] for x in (before, after))
+    assert first.places is not None
+    assert second.places is not None
+    contact, then = first.places.contact, second.places.contact
+    assert contact is not None
+    assert then is not None
+    assert contact.upper_end > (first.max_von_mises or 0.0)
+    allowed = contact.upper_end / contact.beneath
+    permitted = (second.yield_strength or 0.0) / 10.0
+    # contact is not in proportion to loads: with less of them other cells are pressed
+    assert then.beneath * allowed == pytest.approx(permitted, rel=2e-2)
 
 
 def test_the_command_and_the_files_say_it(
