@@ -2,7 +2,7 @@
 
 Those of accuracy alone come first, one on each core; those that measure times follow one by one.
 With --record a table also goes to docs/measured/NAME.md, with the day and the machine, for the page
-of the documentation that includes it.
+of the documentation that includes it. `--pins N` is how many pins `places` draws at random.
 """
 
 from __future__ import annotations
@@ -10,10 +10,19 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Iterator
+from functools import partial
 
 from benchmarks import failures, publications
 from benchmarks.cuts import cut, cut_charts, cut_coverage
-from benchmarks.joints import edge_peak, foundation, joint, joint_ccx, joint_derivatives
+from benchmarks.joints import (
+    cells,
+    edge_peak,
+    foundation,
+    joint,
+    joint_ccx,
+    joint_derivatives,
+    places,
+)
 from benchmarks.motion import motion_accuracy, peers_drop, peers_motion, scissor
 from benchmarks.pins import (
     accuracy,
@@ -48,6 +57,8 @@ ACCURACY = {
     "instants": modelling.instants,
     "recovery": recovery.recovery,
     "edge-peak": edge_peak.edge_peak,
+    "places": places.places,
+    "cells": cells.cells,
     "fillet": accuracy.fillet,
     "reliability": reliability.reliability,
     "publications": publications.publications,
@@ -86,6 +97,10 @@ ABREAST = max(2, cores())  # with 1 they would not be processes
 
 def main(arguments: list[str]) -> int:
     """Print the tables of the named benchmarks, or of all."""
+    if "--pins" in arguments:
+        at = arguments.index("--pins")
+        ALL["places"] = partial(places.places, int(arguments[at + 1]))
+        arguments = arguments[:at] + arguments[at + 2 :]
     names = [a for a in arguments if a != "--record"]
     unknown = [n for n in names if n not in ALL]
     if unknown:

@@ -1,5 +1,6 @@
-"""Peak of pressure at the rounded edges of lugs: estimated from the pressure beside it, and
-resolved by rings of a few thousandths of the radius.
+"""Peak of pressure at the rounded edges of lugs, estimated from the pressure beside it: of shrink
+fits against finite elements of lugs whose edges are rounded, of clevises against rings of a few
+thousandths of the radius.
 """
 
 from __future__ import annotations
@@ -10,15 +11,21 @@ from itertools import product
 import numpy as np
 
 from benchmarks.joints.joint import COARSE, EYE, STEEL, USUAL, D, _model, _pull
+from benchmarks.joints.rounded_edge import ShrinkFit, edge_stress
 from benchmarks.timing import table
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.joint.edge_peak import contact_edges
 from fea.joint.lugs.lug import Lug
-from fea.joint.solve_joint import JointContact
+from fea.joint.solve_joint import Cells, JointContact, JointModel
+from geometry import Pin, Segment
 
-RESOLVED = replace(USUAL, beside=0.004)
 ALUMINIUM = Material("aluminium", 70e9, 0.33)
+# Shrink fits: radius of the edges and length, of the diameter. Their elements, of the radius.
+FITS = tuple(product((STEEL, ALUMINIUM), (0.01, 0.02, 0.05), (0.5, 1.0, 2.0)))
+INTERFERENCE, ELEMENT = 1e-3, 1.0 / 600.0
+ALIKE = Cells(8, 6, 0), Cells(4, 6, 0), Cells(8, 6, 0, beside=1.0 / 300.0)  # round the axis
+RESOLVED = Cells(8, 24, 8, beside=1.0 / 200.0)
 # Inner, outer lugs and gap, mm; radius of the edges, of the diameter; clearance, mm; lugs of; load,
 # of the usual one.
 TRIED: tuple[tuple[tuple[float, float, float], float, float, Material, float], ...] = (
@@ -34,6 +41,38 @@ BANDS = ("outer", 0), ("inner", 1)
 
 
 def edge_peak() -> str:
+    """Two tables."""
+    return f"{_fits()}\n\n{_clevises()}"
+
+
+def _fits() -> str:
+    rows = []
+    for material, radius, length in FITS:
+        fit = shrink_fit(radius, length)
+        truth = edge_stress(fit, STEEL, material, ELEMENT)
+        usual, larger, resolved = (shrunk(fit, material, cells) for cells in ALIKE)
+        numbers = (_estimated(usual, 0), _estimated(larger, 0), resolved.largest_pressure[0, 0])
+        off = [f"{100.0 * (x / truth.pressure - 1.0):+.1f}" for x in numbers]
+        about = material.name, f"{radius:g}", f"{length:g}"
+        rows.append((*about, f"{truth.pressure / 1e6:.0f}", *off))
+    head = ("lug of", "edge radius / d", "length / d", "by finite elements [MPa]")
+    return table((*head, "estimate off [%]", "on larger cells [%]", "resolved rings [%]"), rows)
+
+
+def shrink_fit(radius: float, length: float) -> ShrinkFit:
+    """Of a pin, radius of the edges and length of the lug in diameters."""
+    return ShrinkFit(D, length * D, radius * D, EYE, INTERFERENCE * D, D)
+
+
+def shrunk(fit: ShrinkFit, material: Material, cells: Cells) -> JointContact:
+    """The same by rings; material: of the lug."""
+    over = Segment(fit.over, fit.diameter)
+    pin = Pin("P", (over, Segment(fit.length, fit.diameter, connection="M"), over))
+    lug = Lug("M", fit.outer, material, -fit.interference, edge_radius=fit.radius)
+    return JointModel(pin, STEEL, [lug], cells).solve(PinLoads("fit", ("M",), np.zeros((1, 1, 3))))
+
+
+def _clevises() -> str:
     """A row for each kind of lug of a clevis."""
     rows = []
     for (inner, outer, gap), radius, clearance, lugs, part in TRIED:

@@ -19,8 +19,8 @@ from fea.derivatives.records import Derivatives, SolvedCase
 from fea.derivatives.virtual_work import Interior
 from fea.harmonic.assembly import Section
 from fea.harmonic.evaluate import HarmonicAnswer, _ends, _rims
+from fea.harmonic.free_surface import reader
 from fea.harmonic.model import HarmonicModel
-from fea.harmonic.superposition import Circumference
 from fea.solve_pin import singularities_of, solve_pin
 from geometry import Pin
 from geometry.arrays import Floats
@@ -109,10 +109,15 @@ def velocities(of: SolvedCase) -> tuple[list[Dimension], Floats]:
 
 
 def moved_maximum(
-    of: SolvedCase, pin: Pin, moved: Floats, material: Material, loads: PinLoads | None = None
+    of: SolvedCase,
+    pin: Pin,
+    moved: Floats,
+    material: Material,
+    loads: PinLoads | None = None,
+    point: int | None = None,
 ) -> float:
-    """The stress at the governing point on the same mesh with its nodes moved (N, 2), all of it
-    found anew; under other loads than before, if any.
+    """The stress at the governing point, or another one by its number, on the same mesh with its
+    nodes moved (N, 2), all of it found anew; under other loads than before, if any.
     """
     loads = loads or of.loads
     mesh = of.solution.mesh
@@ -121,9 +126,11 @@ def moved_maximum(
     units = tuple(loads.coefficients())
     ends = _ends(pin, of.clamps, units)
     fields = HarmonicModel(pin, mesh, material, of.clamps).solve(units, _rims(pin, zones), ends)
-    before = of.solution.fields
-    old = Circumference(before, of.loads).top(before.outside(of.zones))
-    value, _ = Circumference(fields, loads).round(np.array([old.point]), np.array([0]))
+    if point is None:
+        before = reader(of.solution.fields, of.loads, of.material.poisson_ratio)
+        point = before.top(before.fields.outside(of.zones)).point
+    read = reader(fields, loads, material.poisson_ratio)
+    value, _ = read.round(np.array([point]), np.array([0]))
     return float(value[0])
 
 

@@ -22,6 +22,7 @@ from geometry.arrays import Floats, Ints, Mask
 BINS = 360  # equal arcs about the axis, the first about x
 ANGLES = 2.0 * np.pi * np.arange(BINS) / BINS  # of their middles
 ON = 1e-3  # of a ring's length: nearer to its cylinder a point is on it
+ELEMENT = 0.25  # of a ring's length: elements at its ends are no larger (fea.harmonic.evaluate)
 SAME = 1e-9  # of the radius: ends of rings this near are one
 MIDDLE = 0.3, 0.7  # of a ring, where the surface under pressure is read
 EDGE = 2  # pressed rings beyond the rounding of a lug's edge, whose pressed surface is not read
@@ -152,7 +153,7 @@ class PressedArcs:
         its rounding and EDGE more, unless contact has receded from there.
         """
         on, rings = self.on[instant], self.rings
-        out = np.zeros_like(on)
+        out: Mask = np.zeros_like(on)
         for b in np.unique(rings.band):
             own = np.flatnonzero(rings.band == b)
             for side in (own, own[::-1]):

@@ -22,7 +22,9 @@ from fea.cut.local_fields import (
 )
 from fea.cut.region import surface_ends, zone
 from fea.cut.shown import ShownCut, shown
+from fea.cut.shown_free import free_picture
 from fea.cut.supports import ClampMotions, Support, motions, reactions
+from fea.harmonic.beneath import Beneath, Steps, beneath, depths, stairs
 from fea.harmonic.evaluate import (
     HarmonicAnswer,
     HarmonicSolution,
@@ -48,11 +50,13 @@ LEAST = 1e-3  # of the stress: what brings less is solved as if it brought so mu
 @dataclass(frozen=True)
 class CutSolution:
     """The uncut pin, whose stress where it is cut does not count, and the pieces about the cuts.
-    reactions: motions of redundant clamps that go with loads; held: its first support, if any.
+    uncut: the fields of the first, where that counts, too. reactions: motions of redundant clamps
+    that go with loads; held: its first support, if any.
     """
 
     section: HarmonicSolution
     pieces: tuple[LocalFields, ...]
+    uncut: MeridianFields
     reactions: ClampMotions
     held: Support | None = None
 
@@ -119,9 +123,11 @@ def cut_solution(
         for model, stress in zip(models, at[:-1], strict=True)
     )
     found = tuple(there or next(new) for there in known)
-    fields = _without(section.fields, [zone(piece) for piece in pieces])
+    uncut = section.fields
+    fields = _without(uncut, [zone(piece) for piece in pieces])
     section = replace(section, fields=fields, elsewhere=NOWHERE)
-    return CutSolution(section, found, reactions(supports, found), next(iter(supports), None))
+    held = next(iter(supports), None)
+    return CutSolution(section, found, uncut, reactions(supports, found), held)
 
 
 def _supports(problem: SectionProblem) -> list[Support]:
@@ -198,9 +204,38 @@ class CutAnswer:
                 value, instant = float(here.max()), int(here.argmax())
         return value, instant
 
+    def beneath(self, loads: PinLoads) -> Beneath:
+        """What lies beneath contact (fea.harmonic.beneath): of the pin without cuts, where it is
+        cut, too, and at the surface about these.
+        """
+        assert loads.pressed is not None
+        found = beneath(self.solution.uncut, loads, self.singularities)
+        for piece in self.solution.pieces:
+            value, point = piece.beneath(loads, loads.pressed)
+            t = int(value.argmax())
+            if value[t] > found.value:
+                x, y, z = piece.points[point[t]].tolist()
+                found = Beneath(float(value[t]), (x, y, z), t)
+        return found
+
+    def depths(self, loads: PinLoads, instant: int, least: float) -> Steps:
+        """How far from pressed cells stress reaches at an instant (fea.harmonic.beneath)."""
+        pressed = loads.pressed
+        assert pressed is not None
+        found = [*depths(self.solution.uncut, loads, instant, self.singularities, least)]
+        for piece in self.solution.pieces:
+            found += piece.depths(loads, pressed, instant, least)
+        return stairs(*np.array(found).reshape(-1, 2).T)
+
     def picture(self, loads: PinLoads, instant: int) -> Picture:
         """The surface at one instant, with its envelope over all."""
         surface, c = self.surface, self.coefficients(loads)
+        if loads.pressed is not None:
+            stress, envelope, pressed = free_picture(surface, c, loads.pressed, instant)
+            moved = surface.displacement @ c[instant]
+            return Picture(
+                surface.points, surface.triangles, "triangle", moved, stress, envelope, pressed
+            )
         largest = np.zeros(len(surface.points))
         found = squares(surface.stress)
         for k in range(0, len(c), 64):

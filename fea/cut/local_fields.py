@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -12,12 +12,15 @@ from scipy.spatial import cKDTree
 from fea.core.material import Material
 from fea.core.mesh_result import FELT, AtSingularity, Point
 from fea.core.pin_loads import AnyLoads, require_solved
+from fea.core.pressed import PressedArcs, Rings
 from fea.core.voigt import ENTRIES, TENSOR
+from fea.cut.free_points import Away, FreePoints, Reading, distance, relieved
 from fea.cut.inner_corners import InnerCorner, inner_corners
 from fea.cut.local_model import LocalModel, turned
 from fea.cut.lost_loads import bearings
 from fea.cut.movement import displacement, rigid
 from fea.cut.region import zone
+from fea.harmonic.beneath import Steps, stairs
 from fea.harmonic.fields import MeridianFields
 from fea.singular.singularities import Singularity, outside
 from fea.solid.nodal_loads import Unit
@@ -62,7 +65,8 @@ class LocalFields:
     changed: rows on the outline of the uncut pin, and what the cuts change of their stress (O, 6,
     L); ended: (O,) which of these are where the piece ends. moved: (2, 6, L) by how much the cuts
     move its ends, as a shift (m) and a turn (rad) about the pin's origin. scatter: (P,) of the
-    stress with the positions of nodes, relative. finer: its spots than those of the first mesh.
+    stress with the positions of nodes, relative. finer: its spots than those of the first mesh. nu:
+    Poisson's ratio.
     """
 
     piece: Piece
@@ -81,6 +85,7 @@ class LocalFields:
     corners: tuple[InnerCorner, ...]
     scatter: Floats
     finer: float
+    nu: float
 
     def coefficients(self, loads: AnyLoads) -> Floats:
         """How much of each unit load acts at each instant, (T, L).
@@ -99,29 +104,52 @@ class LocalFields:
         return out
 
     @cached_property
-    def _squares(self) -> tuple[Ints, Callable[[Floats], Floats]]:
-        rows = np.flatnonzero(self.outside())
-        return rows, squares(self.stress[rows])
+    def _readings(self) -> dict[object, Reading]:
+        return {}
+
+    def _reading(self, loads: AnyLoads, times: float = 1.0) -> Reading:
+        """What is read under loads, if so many times the distance from inner corners is left out;
+        found once.
+        """
+        rings = None if loads.pressed is None else loads.pressed.rings
+        key = times, None if rings is None else rings.key
+        if key not in self._readings:
+            rows = np.flatnonzero(self.outside(times))
+            self._readings[key] = self._free(rows, rings) if rings else self._plain(rows)
+        return self._readings[key]
+
+    def _plain(self, rows: Ints) -> Reading:
+        return Reading(rows, squares(self.stress[rows]))
+
+    def _free(self, rows: Ints, rings: Rings) -> Reading:
+        free = FreePoints.of(self.points, np.isin(np.arange(len(self.points)), self.outer), rings)
+        amid = rows[free.amid[rows] >= 0]
+        more = relieved(self.stress[amid], self.points[amid], self.nu)
+        found = squares(np.concatenate([self.stress[rows], more]))
+        both = np.concatenate([rows, amid])
+        return Reading(both, found, free.some(both, len(rows)))
 
     def largest(self, loads: AnyLoads) -> tuple[Floats, Ints]:
         """The largest von Mises stress (T,) Pa at every instant, and its point (T,)."""
-        return self._largest(loads, *self._squares)
+        return self._reading(loads).largest(self.coefficients(loads), loads.pressed)
 
     def varied(self, loads: AnyLoads, times: float) -> float:
         """The largest if so many times the distance from inner corners is left out, Pa."""
-        rows = np.flatnonzero(self.outside(times))
-        return float(self._largest(loads, rows, squares(self.stress[rows]))[0].max())
+        of = self._reading(loads, times)
+        return float(of.largest(self.coefficients(loads), loads.pressed)[0].max())
 
-    def _largest(
-        self, loads: AnyLoads, rows: Ints, found: Callable[[Floats], Floats]
-    ) -> tuple[Floats, Ints]:
-        c = self.coefficients(loads)
-        value, point = np.zeros(len(c)), np.zeros(len(c), dtype=np.int64)
-        for k in range(0, len(c) if len(rows) else 0, 64):
-            here = found(c[k : k + 64])
-            point[k : k + 64] = rows[here.argmax(axis=0)]
-            value[k : k + 64] = np.sqrt(np.maximum(here.max(axis=0), 0.0))
-        return value, point
+    def beneath(self, loads: AnyLoads, pressed: PressedArcs) -> tuple[Floats, Ints]:
+        """As `largest`, of what lies beneath the contact (fea.core.places)."""
+        rows = np.flatnonzero(self.outside())
+        of = replace(self._plain(rows), free=Away.of(self.points[rows], pressed.rings))
+        return of.largest(self.coefficients(loads), pressed)
+
+    def depths(self, loads: AnyLoads, pressed: PressedArcs, instant: int, least: float) -> Steps:
+        """How far from pressed cells stress reaches at an instant (fea.harmonic.beneath)."""
+        rows = np.flatnonzero(self.outside())
+        square = squares(self.stress[rows])(self.coefficients(loads)[[instant]])[:, 0]
+        far = distance(self.points[rows], pressed, instant)
+        return stairs(np.sqrt(np.maximum(square, 0.0)), far, least)
 
     def inside(self, loads: AnyLoads) -> tuple[AtSingularity, ...]:
         """What is at the inner corners."""
@@ -135,8 +163,8 @@ class LocalFields:
         return tuple(out)
 
     def _within(self, loads: AnyLoads, where: Mask) -> tuple[float, int]:
-        rows = np.flatnonzero(where)
-        value, point = self._largest(loads, rows, squares(self.stress[rows]))
+        of = self._plain(np.flatnonzero(where))
+        value, point = of.largest(self.coefficients(loads))
         return float(value.max()), int(point[value.argmax()])
 
     def left_at_ends(self, loads: AnyLoads, instant: int) -> float:
@@ -164,8 +192,7 @@ class LocalFields:
 
     def swing(self, loads: AnyLoads) -> float:
         """The largest von Mises stress of what is not the mean of all instants, Pa."""
-        _, found = self._squares
-        c = self.coefficients(loads)
+        found, c = self._reading(loads).squares, self.coefficients(loads)
         c = c - c.mean(axis=0)
         parts = [found(c[k : k + 64]).max(initial=0.0) for k in range(0, len(c), 64)]
         return float(np.sqrt(max(0.0, *parts)))
@@ -174,8 +201,9 @@ class LocalFields:
         """Points near the cuts where stress is nearly the maximum at an instant, well apart; none
         where it is lower there than elsewhere in the piece.
         """
-        c = self.coefficients(loads)[instant]
-        value = np.sqrt(np.maximum(squares(self.stress)(c[None])[:, 0], 0.0)) * self.outside()
+        c, of = self.coefficients(loads)[instant], self._reading(loads)
+        value = np.zeros(len(self.points))
+        np.maximum.at(value, of.rows, of.stress(c[None], loads.pressed, instant)[:, 0])
         least, hole = HIGH * value.max(), self.piece.smallest
         low, high = zone(self.piece)
         value *= (self.points[:, 2] > low - hole) & (self.points[:, 2] < high + hole)
@@ -323,6 +351,7 @@ def local_fields(
         ),
         np.tile(model.scatter, len(x)),
         model.finer,
+        model.material.poisson_ratio,
     )
 
 

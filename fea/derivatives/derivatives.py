@@ -28,15 +28,17 @@ from fea.core.material import Material
 from fea.core.pin_loads import UnitLoad
 from fea.derivatives.governing import by_loads, waves_of
 from fea.derivatives.governing_point import point_of
-from fea.derivatives.reading_point import SectionState
+from fea.derivatives.in_section import OTHER
+from fea.derivatives.reading_point import Continued, ReadingPoint, SectionState
 from fea.derivatives.records import Derivatives, SolvedCase
 from fea.derivatives.ties import tied_places, tied_times
 from fea.derivatives.virtual_work import COLUMNS, Interior, integral_rate, shape_gradient, work
 from fea.harmonic.assembly import around, elasticity
 from fea.harmonic.boundary import Outline
+from fea.harmonic.free_surface import reader
 from fea.harmonic.model import HarmonicModel, applied, generalised
 from fea.harmonic.stress_recovery import points_of_nodes
-from fea.harmonic.superposition import Circumference
+from fea.singular.singularities import free_of_arcs
 from geometry import Pin
 from geometry.arrays import Floats, Ints, Mask
 from geometry.mesh.moved.outline_motion import (
@@ -51,7 +53,7 @@ from geometry.mesh.moved.outline_motion import (
 from geometry.shape.dimensions import Dimension
 
 POISSON = 1e-3  # step of Poisson's ratio
-OTHER = "with a little more or less of it the section has other edges"
+EXPONENT = 1e-4  # step of a pressure's exponent
 
 
 def derivatives(solved: SolvedCase, dimensions: Iterable[Dimension]) -> Derivatives:
@@ -80,20 +82,32 @@ class Adjoint:
         if like and like.solved.zones == solved.zones:
             self.outline_nodes, self.interior = like.outline_nodes, like.interior
         self.space, self.outline = self.model.space, self.model.outline
-        self.around = Circumference(self.fields, solved.loads)
-        outside = self.fields.outside(solved.zones)
+        self.around = reader(self.fields, solved.loads, solved.material.poisson_ratio)
+        self.read_at = self.around.fields
+        outside = self.read_at.outside(solved.zones)
         self.top = self.around.top(outside if among is None else outside & among)
         self.waves, self.weight = waves_of(self.fields_at, solved.loads, self.top)
         self.n = np.array([wave.n for wave in self.waves])
         self.traction = self._forces(solved.pin, self.outline)[1]
-        self.point = point_of(self.model, solved, self.traction, self.top.point)
+        self.point = point_of(self.model, solved, self._jumping, self.top.point)
         self._lambda = self._solve()
 
     @cached_property
     def fields_at(self) -> dict[UnitLoad, Floats]:
         """Stress (6,) Pa at the governing point of each unit load."""
-        at = self.fields.stress[self.top.point]
+        at = self.read_at.stress[self.top.point]
         return {load: at[:, k] for k, load in enumerate(self.fields.loads)}
+
+    @property
+    def _jumping(self) -> Floats:
+        """Tractions (E, 3, 3, K) of all unit loads: edges are apart where any of them jumps."""
+        loads, out = self.fields.loads, [self.traction]
+        acting = {load for wave in self.waves for load in wave.amounts}
+        for n in sorted({load.n for load in loads}):
+            others = [x for x in loads if x.n == n and x not in acting]
+            if others:
+                out.append(applied(self.model, self.solved.pin, self.outline, n, others)[1])
+        return np.concatenate(out, axis=3)
 
     @cached_property
     def u(self) -> Floats:
@@ -171,11 +185,30 @@ class Adjoint:
     def state(self) -> SectionState:
         return SectionState(self.space.nodes, self.traction, self.places)
 
-    def read(self, state: SectionState, material: Material | None = None) -> float:
+    def read(
+        self,
+        state: SectionState,
+        material: Material | None = None,
+        point: ReadingPoint | None = None,
+    ) -> float:
         """Von Mises stress to first order, of displacements as they are."""
         u = self.u[self.point.nodes]
-        found = self.point.stress(material or self.solved.material, state, self.n, u)
+        found = (point or self.point).stress(material or self.solved.material, state, self.n, u)
         return float(sum(c.weight @ found[:, k] for k, c in enumerate(self.waves)))
+
+    def by_exponent(self) -> float:
+        """By the exponent of pressure at the edge of a lug from beside which stress is continued,
+        Pa.
+        """
+        point = self.point
+        if not isinstance(point, Continued):
+            return 0.0
+
+        def other(x: float) -> Floats:
+            cusp = replace(point.cusp, exponent=point.cusp.exponent + x)
+            return np.array(self.read(self.state, point=replace(point, cusp=cusp)))
+
+        return float(rate(other, EXPONENT))
 
     def _solve(self) -> Floats:
         """Adjoints (3 N, K)."""
@@ -196,7 +229,7 @@ class Adjoint:
     def derivatives(self, dimensions: tuple[Dimension, ...]) -> Derivatives:
         by_dimension, without = self.by_dimension(dimensions)
         top, solved = self.top, self.solved
-        r, z = (float(x) for x in self.fields.points[top.point])
+        r, z = (float(x) for x in self.read_at.points[top.point])
         by_force, by_moment = by_loads(self.fields_at, solved.loads, self.weight, top)
         return Derivatives(
             top.value,
@@ -207,7 +240,7 @@ class Adjoint:
             by_moment,
             self.by_poisson(),
             self.by_density(),
-            tied_places(self.around, self.fields, solved.zones, top, solved.error),
+            tied_places(self.around, solved.zones, top, solved.error),
             tied_times(solved, top.value),
         )
 
@@ -264,7 +297,7 @@ class Adjoint:
             outline = self.outline.moved(nodes)
             integrals = None if grown is None else self.space.integrals + step * grown
             forces, tractions = self._forces(pin, outline, integrals, moved=True)
-            state = SectionState(nodes, tractions, self._places_at(step, velocity))
+            state = SectionState(nodes, tractions, self._places_at(pin, step, velocity))
             rows, own = self._plain_pressures
             work = np.sum(self._lambda * forces) + np.sum(own * outline.weights(rows))
             values.append(np.array(work + self.read(state)))
@@ -276,10 +309,21 @@ class Adjoint:
         nodes = self.space.nodes
         return [int(np.hypot(*(nodes - place[:2]).T).argmin()) for place in self.places]
 
-    def _places_at(self, step: float, velocity: Floats) -> Floats:
-        out = self.places.copy()
+    def _places_at(self, pin: Pin, step: float, velocity: Floats) -> Floats:
+        """On a pin that is moved: zones are as large as the diameter there, or end where the next
+        fillet begins.
+        """
+        out, zones = self.places.copy(), self.solved.zones
         out[:, :2] += step * velocity[self._zone_nodes]
-        out[:, 2] *= out[:, 0] / self.places[:, 0]
+        times = out[:, 0] / self.places[:, 0]
+        limited = np.array([p.radius >= p.limit for p in zones], dtype=bool)
+        if limited.any():
+            now, then = (
+                free_of_arcs(of, *x[limited, :2].T)
+                for of, x in ((pin, out), (self.solved.pin, self.places))
+            )
+            times[limited] = now / then
+        out[:, 2] *= times
         return out
 
     @property

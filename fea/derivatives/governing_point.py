@@ -6,8 +6,11 @@ import numpy as np
 
 from fea.derivatives.reading_point import (
     AtJump,
+    Continued,
     FromInside,
+    OnSkin,
     ReadingPoint,
+    Relieved,
     Samples,
     at_node,
     at_rough,
@@ -17,6 +20,7 @@ from fea.derivatives.reading_point import (
 )
 from fea.derivatives.records import SolvedCase
 from fea.harmonic.assembly import Section
+from fea.harmonic.free_surface import surface_points
 from fea.harmonic.model import HarmonicModel
 from fea.harmonic.pressure_edge import DIRECTIONS, jumps
 from fea.harmonic.surface_stress import AT
@@ -27,14 +31,36 @@ from geometry.arrays import Floats
 def point_of(
     model: HarmonicModel, solved: SolvedCase, traction: Floats, number: int
 ) -> ReadingPoint:
-    """The point of a number (fea.harmonic.stress_recovery: Reading). traction: (E, 3, 3, K) Pa."""
+    """The point of a number among those that are read (fea.harmonic.stress_recovery: Reading; where
+    lugs press on the pin, fea.harmonic.free_surface: SurfacePoints). traction: (E, 3, 3, K) Pa.
+    """
+    fields, pressed = solved.solution.fields, solved.loads.pressed
+    if pressed is None:
+        return _of_section(model, solved, traction, number)
+    of = surface_points(fields, pressed.rings, solved.material.poisson_ratio)
+    cusp = of.cusps.get(number)
+    if cusp is not None:
+        edges, at = np.divmod(cusp.near, len(AT))
+        nodes = model.space.nodes
+        ring_end = int(np.hypot(*(nodes - cusp.place).T).argmin())
+        return Continued(on_skin(model.outline, traction, edges, at), cusp, ring_end)
+    point = _of_section(model, solved, traction, int(of.on_skin[number]))
+    if of.relieved[number] < 0:
+        return point
+    assert isinstance(point, OnSkin)
+    return Relieved(point)
+
+
+def _of_section(
+    model: HarmonicModel, solved: SolvedCase, traction: Floats, number: int
+) -> ReadingPoint:
     space, outline, fields = model.space, model.outline, solved.solution.fields
     if number < fields.skin:
         edge, at = divmod(number, len(AT))
         clamped = outline.constrained(model.clamps)[edge]
         if clamped or on_axis(space, float(fields.points[number, 0])):
             return at_rough(space, outline, edge, at)
-        return on_skin(outline, traction, edge, at)
+        return on_skin(outline, traction, np.array([edge]), np.array([at]))
     if number < len(fields.displacement):
         inner = np.setdiff1d(np.arange(len(space.nodes)), outline.nodes)
         return at_node(space, int(inner[number - fields.skin]))

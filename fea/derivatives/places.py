@@ -13,7 +13,8 @@ import numpy as np
 from fea.core.pin_loads import PinLoads
 from fea.derivatives.derivatives import Adjoint
 from fea.derivatives.records import SolvedCase
-from fea.harmonic.superposition import Circumference, Top
+from fea.harmonic.free_surface import reader
+from fea.harmonic.superposition import Top
 from geometry.arrays import Floats, Mask
 from geometry.mesh.moved.outline_motion import NodeMotion, OtherShapeError
 from geometry.shape.dimensions import Dimension
@@ -54,8 +55,8 @@ class PartsOfSection:
 
     def tops(self, solved: SolvedCase, loads: PinLoads, parts: Parts) -> list[PartTop]:
         """Of all parts with points. loads: of all instants."""
-        fields = solved.solution.fields
-        around, outside = Circumference(fields, loads), fields.outside(solved.zones)
+        around = reader(solved.solution.fields, loads, solved.material.poisson_ratio)
+        outside = around.fields.outside(solved.zones)
         return [
             PartTop(part, loads.case, around.top(outside & mask))
             for part, mask in parts

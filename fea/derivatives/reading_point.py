@@ -2,8 +2,9 @@
 
 A point is read as fea.harmonic.stress_recovery reads it: on the surface from the strains of its
 edge and the ones before and after it; inside, on clamped surfaces and on rims of excluded zones
-from the samples of the nearest elements; where a pressure ends from samples further on. Nodes may
-move, and then the point moves with them.
+from the samples of the nearest elements; where a pressure ends from samples further on. Where lugs
+press on the surface it may be a combination of such (fea.harmonic.free_surface). Nodes may move,
+and then the point moves with them.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from fea.core.local_fit import NEIGHBOURS, at_one_place
 from fea.core.material import Material
 from fea.harmonic.assembly import Section, elasticity, strain_map
 from fea.harmonic.boundary import Outline, shapes
+from fea.harmonic.free_surface import Cusp, relief
 from fea.harmonic.pressure_edge import Jump, at_edge
 from fea.harmonic.stress_recovery import AXIS
 from fea.harmonic.surface_stress import AT, on_edges, smooth_neighbours
@@ -55,14 +57,16 @@ class ReadingPoint(Protocol):
 
 @dataclass(frozen=True)
 class OnSkin:
-    """Point `at` of the five of an edge. edges: that one, and of the ones before and after it those
-    that go on smoothly; neighbours: (1 to 3,) each, numbers among these.
+    """Some points (P,) of the skin. edges: those they are on, and the ones before and after these
+    that go on smoothly; neighbours: of each before and after it, numbers among these or -1. of:
+    (P,) the edge of each point, likewise; at: (P,) which of its five it is.
     """
 
     outline: Outline
     edges: Ints
     neighbours: tuple[Ints, Ints]
-    at: int
+    of: Ints
+    at: Ints
 
     @cached_property
     def nodes(self) -> Ints:
@@ -72,27 +76,68 @@ class OnSkin:
     def _local(self) -> Ints:
         return np.searchsorted(self.nodes, self.outline.nodes[self.edges])
 
-    def stress(self, material: Material, state: SectionState, n: Ints, u: Floats) -> Floats:
+    def each(
+        self, material: Material, state: SectionState, n: Ints, u: Floats
+    ) -> tuple[Floats, Floats]:
+        """Where the points are, (P, 2) m, and the stress there, (P, 6, K) Pa."""
         x = state.nodes[self.outline.nodes[self.edges]]
         traction = state.traction[self.edges]
         found = on_edges(material, n, x, u[self._local], traction, self.neighbours)
-        return np.asarray(found.stress[0, self.at])
+        return found.points[self.of, self.at], found.stress[self.of, self.at]
+
+    def stress(self, material: Material, state: SectionState, n: Ints, u: Floats) -> Floats:
+        """Of the only point."""
+        return np.asarray(self.each(material, state, n, u)[1][0])
 
 
-def on_skin(outline: Outline, traction: Floats, edge: int, at: int) -> OnSkin:
-    """traction: (E, 3, 3, K) Pa, whose jumps separate edges."""
+def on_skin(outline: Outline, traction: Floats, edges: Ints, at: Ints) -> OnSkin:
+    """Points `at` of edges. traction: (E, 3, 3, K) Pa, whose jumps separate edges."""
     x = outline.every_node[outline.nodes]
-    before, after = (int(found[edge]) for found in smooth_neighbours(outline, x, traction))
-    edges, first, last = [edge], -1, -1
-    if before >= 0:
-        first = len(edges)
-        edges.append(before)
-    if after >= 0:
-        last = len(edges)
-        edges.append(after)
-    none = [-1] * (len(edges) - 1)
-    neighbours = np.array([first, *none]), np.array([last, *none])
-    return OnSkin(outline, np.array(edges), neighbours, at)
+    both = [found[edges] for found in smooth_neighbours(outline, x, traction)]
+    every = np.unique(np.concatenate([edges, *(some[some >= 0] for some in both)]))
+    local = []
+    for found in smooth_neighbours(outline, x, traction):
+        near = found[every]
+        known = np.isin(near, every) & np.isin(every, edges)
+        local.append(np.where(known, np.searchsorted(every, near), -1))
+    return OnSkin(outline, every, (local[0], local[1]), np.searchsorted(every, edges), at)
+
+
+@dataclass(frozen=True)
+class Relieved:
+    """A point in the middle of a ring, without the local stress of its pressure
+    (fea.harmonic.free_surface).
+    """
+
+    point: OnSkin
+
+    @property
+    def nodes(self) -> Ints:
+        return self.point.nodes
+
+    def stress(self, material: Material, state: SectionState, n: Ints, u: Floats) -> Floats:
+        found = self.point.stress(material, state, n, u)
+        return np.asarray(found - relief(material.poisson_ratio)[:, None] * found[0])
+
+
+@dataclass(frozen=True)
+class Continued:
+    """The edge of a lug, at a node, by points of the skin beside it; exponent: of the pressure
+    there.
+    """
+
+    points: OnSkin
+    cusp: Cusp
+    edge: int
+
+    @property
+    def nodes(self) -> Ints:
+        return self.points.nodes
+
+    def stress(self, material: Material, state: SectionState, n: Ints, u: Floats) -> Floats:
+        at, found = self.points.each(material, state, n, u)
+        weights = self.cusp.weights(at[:, 1], float(state.nodes[self.edge, 1]))
+        return np.asarray(np.einsum("p,pck->ck", weights, found))
 
 
 @dataclass(frozen=True)

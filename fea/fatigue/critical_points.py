@@ -4,8 +4,8 @@ Damage follows the range of stress, not its peak, and is larger where the mean i
 surface is searched for local maxima of `a + 0.3 m` over all cases, zero load included: m is the
 signed von Mises stress of the tensor in the middle of the range of each component, and a the
 largest von Mises stress of the difference from it, which sees stress that changes its sign or its
-direction. Singular zones are left out. The points of the largest von Mises stress are added to
-them.
+direction. Singular zones are left out; where lugs press on the pin, points have the stress that
+fea.fatigue.pressed_points says. The points of the largest von Mises stress are added to them.
 
 One mesh is searched, that of the case with the largest stress; of other cases' meshes the nearest
 node answers.
@@ -113,12 +113,11 @@ def _places(cases: Sequence[_Case]) -> list[_Place]:
 
 
 def _governing(cases: Sequence[_Case]) -> Iterator[_Place]:
-    """Where von Mises stress is largest in each case."""
+    """Where von Mises stress of the surface is largest in each case."""
     for case in cases:
-        at, text = (
-            case.solution.peak.location,
-            f"largest von Mises stress, {case.solution.peak.case}",
-        )
+        peak = case.solution.peak
+        at = peak.location if peak.places is None else peak.places.surface.location
+        text = f"largest von Mises stress, {peak.case}"
         if at is None:
             continue
         x, y, z = at

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,13 +10,14 @@ from fea.beam.model import BeamAnswer
 from fea.core.pin_loads import PinLoads
 from fea.core.solution import Answer
 from fea.cut.evaluate import CutAnswer
+from fea.fatigue.pressed_points import CutStandIns, StandIns, Stress, replaced
 from fea.harmonic.evaluate import HarmonicAnswer
+from fea.harmonic.fields import MeridianFields
+from fea.harmonic.free_surface import surface_points
 from fea.harmonic.superposition import BACK
 from fea.joint.foundation.solve_on_foundations import FoundationAnswer
 from fea.solid.evaluate import SolidAnswer
 from geometry.arrays import Floats, Ints, Mask
-
-Stress = Callable[[Ints, Floats, Ints], Floats]
 
 
 @dataclass(frozen=True)
@@ -43,8 +43,7 @@ def stress_points(answer: Answer | None, loads: PinLoads) -> StressPoints | None
     if isinstance(answer, BeamAnswer | FoundationAnswer):
         return _beam(answer.points, answer.harmonics(loads), len(loads))
     if isinstance(answer, CutAnswer):
-        cut = answer.surface
-        return _solid(cut.points, cut.stress, cut.read, answer.coefficients(loads))
+        return _cut(answer, loads)
     if isinstance(answer, SolidAnswer):
         fields, surface = answer.solution.fields, answer.solution.outside.copy()
         surface[len(fields.surface.nodes) :] = False
@@ -53,7 +52,25 @@ def stress_points(answer: Answer | None, loads: PinLoads) -> StressPoints | None
 
 
 def _harmonic(answer: HarmonicAnswer, loads: PinLoads) -> StressPoints:
-    fields, acting = answer.fields, loads.coefficients()
+    """Of the surface, where lugs press on it as pressed_points has it."""
+    if loads.pressed is None:
+        fields = answer.fields
+        surface = fields.outside(answer.singularities)
+        surface[fields.skin :] = False
+        at = _of_fields(fields, loads)
+        return StressPoints(_at_zero(fields.points), surface, True, len(loads), at)
+    of = surface_points(answer.fields, loads.pressed.rings, answer.solution.nu)
+    stands, own = StandIns(of, loads.pressed), np.flatnonzero(of.relieved < 0)
+    at = replaced(_of_fields(of.fields, loads), stands.rows)
+    surface = of.fields.outside(answer.singularities)[own]
+    return StressPoints(
+        _at_zero(of.fields.points[own]), surface, True, len(loads),
+        lambda rows, angles, instants: at(own[rows], angles, instants),
+    )  # fmt: skip
+
+
+def _of_fields(fields: MeridianFields, loads: PinLoads) -> Stress:
+    acting = loads.coefficients()
     units = [k for k, load in enumerate(fields.loads) if load in acting]
     n = np.array([fields.loads[k].n for k in units])
     amounts = np.zeros((len(loads), len(units), 2))
@@ -69,9 +86,17 @@ def _harmonic(answer: HarmonicAnswer, loads: PinLoads) -> StressPoints:
         second = (unit * np.where(even, s, -c)) @ now[..., 1].T
         return np.asarray((first + second).swapaxes(1, 2))
 
-    surface = fields.outside(answer.singularities)
-    surface[fields.skin :] = False
-    return StressPoints(_at_zero(fields.points), surface, True, len(loads), at)
+    return at
+
+
+def _cut(answer: CutAnswer, loads: PinLoads) -> StressPoints:
+    cut, amounts = answer.surface, answer.coefficients(loads)
+    if loads.pressed is None:
+        return _solid(cut.points, cut.stress, cut.read, amounts)
+    stands = CutStandIns(answer, loads.pressed)
+    every = _solid(stands.points, stands.stress, cut.read, amounts)
+    at = replaced(every.at, lambda rows, _, t: stands.rows(rows, t))
+    return StressPoints(cut.points, cut.read, False, len(amounts), at)
 
 
 def _beam(points: Floats, stress: Floats, count: int) -> StressPoints:

@@ -13,7 +13,7 @@ import numpy as np
 
 from fea.core.pin_loads import AnyLoads, PinLoads
 from fea.core.places import BENEATH
-from fea.core.pressed import ANGLES, BINS, SAME, PressedArcs
+from fea.core.pressed import ANGLES, BINS, SAME, PressedArcs, Rings
 from fea.core.voigt import von_mises
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.superposition import Circumference
@@ -24,6 +24,9 @@ from geometry.arrays import Floats, Ints, Mask
 EVERY = 8  # arcs, of which one is looked at for the reach
 ROUND = 9  # points of a quarter circle about the edge of a lug
 LITTLE = 1e-6  # of the distance: so much farther are points that are meant to be just outside
+
+
+Steps = tuple[tuple[float, float], ...]  # of a stress, Pa, and the distance, m, that it reaches
 
 
 @dataclass(frozen=True)
@@ -42,7 +45,7 @@ class Away:
 
     def __init__(self, points: Floats, pressed: PressedArcs) -> None:
         self.pressed, self._known = pressed, dict[int, Ints]()
-        near = _arcs_within(points, pressed, 2.0 * BENEATH * pressed.rings.radius)
+        near = arcs_within(points, pressed.rings, 2.0 * BENEATH * pressed.rings.radius)
         some = (near >= 0).any(axis=1)
         self._near = near[some]
         self._row = np.full(len(points), -1)
@@ -65,11 +68,10 @@ class Away:
         return out
 
 
-def _arcs_within(points: Floats, pressed: PressedArcs, distance: Floats) -> Ints:
+def arcs_within(points: Floats, rings: Rings, distance: Floats) -> Ints:
     """How many arcs from a pressed one on a ring points (S, 2) are nearer to it than a distance
     (R,), m: (S, R), -1 where they are farther anyway.
     """
-    rings = pressed.rings
     r, z = points[:, :1], points[:, 1:]
     along = np.maximum(0.0, np.maximum(rings.start - z, z - rings.end))
     rest = along**2 + (r - rings.radius) ** 2 - distance**2  # 2 r R (cos a - 1) more with the angle
@@ -104,7 +106,7 @@ def depths(
     instant: int,
     zones: tuple[Singularity, ...],
     least: float,
-) -> tuple[tuple[float, float], ...]:
+) -> Steps:
     """Pairs of a stress, Pa, and the distance, m, from every pressed cell to which it reaches at an
     instant: falling stresses above a least one, each farther than all before.
     """
@@ -118,7 +120,7 @@ def depths(
     return stairs(stress, _distance(fields.points[rows], loads.pressed, instant).ravel(), least)
 
 
-def stairs(stress: Floats, away: Floats, least: float = 0.0) -> tuple[tuple[float, float], ...]:
+def stairs(stress: Floats, away: Floats, least: float = 0.0) -> Steps:
     """Of points with a stress and a distance (N,) each: those that no point with more of both
     covers, by falling stress.
     """

@@ -12,7 +12,7 @@ at the distance d, with s the exponent of pressure, and is continued to d = 0 by
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +27,7 @@ from geometry.arrays import Floats, Ints, Mask
 Floats32 = NDArray[np.float32]
 FAR = 0.06  # of the diameter, to where a cusp is fitted
 FEWEST = 6  # points to which it is
+MOST = 256  # instants whose arcs are kept: some 50 MB
 SPAN = 2.0  # the farthest of them over the nearest
 
 
@@ -34,15 +35,17 @@ SPAN = 2.0  # the farthest of them over the nearest
 class SurfacePoints:
     """Points of a surface and their unit stress: `fields` has no others. middle: (S,) z, m, of the
     middle of the element on which each is. relieved: (S,) the ring in whose middle a point is that
-    has the stress without that of the pressure, -1 for others. beside: by point at the edge of a
-    lug those from which it is continued, and those between both, for which it stands: they feel the
-    last step of the pressure.
+    has the stress without that of the pressure, -1 for others. on_skin: (S,) the point of the
+    section's skin that each is, -1 of others. cusps: by point at the edge of a lug how it is
+    continued. arcs: what FreeSurface has found of what is pressed at an instant.
     """
 
     fields: MeridianFields
     middle: Floats
     relieved: Ints
-    beside: dict[int, tuple[Ints, Ints]]
+    on_skin: Ints
+    cusps: dict[int, Cusp]
+    arcs: dict[tuple[bytes, int], tuple[Floats32, Mask, Mask]] = field(default_factory=dict)
 
 
 def surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfacePoints:
@@ -59,14 +62,13 @@ def _surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfaceP
     middle = x[len(AT) // 2 :: len(AT), 1].repeat(len(AT))
     ring = rings.amid(x[:, 0], x[:, 1], middle)
     rows = np.flatnonzero(ring >= 0)
-    local = np.array([1.0, 2.0 * nu, 1.0, 0.0, 0.0, 0.0])[:, None]
-    relieved = skin[rows] - local * skin[rows, :1]
-    edges = _edges(x, middle, rings)
-    continued = [np.einsum("p,pck->ck", e.weights, skin[e.near]) for e in edges]
-    places = np.array([e.place for e in edges]).reshape(-1, 2)
-    first = len(x) + len(rows)
+    relieved = skin[rows] - relief(nu)[:, None] * skin[rows, :1]
+    cusps = _cusps(x, middle, rings)
+    continued = [np.einsum("p,pck->ck", c.weights(x[c.near, 1]), skin[c.near]) for c in cusps]
+    places = np.array([c.place for c in cusps]).reshape(-1, 2)
+    first, none = len(x) + len(rows), np.full(len(places), -1)
     out = np.isin(np.arange(len(x)), fields.unread)
-    unread = np.concatenate([out, out[rows], [out[e.near].any() for e in edges]]).astype(bool)
+    unread = np.concatenate([out, out[rows], [out[c.near].any() for c in cusps]]).astype(bool)
     return SurfacePoints(
         replace(
             fields,
@@ -77,60 +79,72 @@ def _surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfaceP
             unread=np.flatnonzero(unread),
         ),
         np.concatenate([middle, middle[rows], places[:, 1]]),
-        np.concatenate([np.full(len(x), -1), ring[rows], np.full(len(places), -1)]),
-        {first + k: (e.near, e.between) for k, e in enumerate(edges)},
+        np.concatenate([np.full(len(x), -1), ring[rows], none]),
+        np.concatenate([np.arange(len(x)), rows, none]),
+        {first + k: cusp for k, cusp in enumerate(cusps)},
     )
 
 
+def relief(nu: float) -> Floats:
+    """The stress (6,) of a half-plane's surface over the stress across it, rr: what is local."""
+    return np.array([1.0, 2.0 * nu, 1.0, 0.0, 0.0, 0.0])
+
+
 @dataclass(frozen=True)
-class _Edge:
-    """Where contact ends at the edge of a lug, (2,); points of the outline beside it, from which
-    stress is continued with weights (P,), and those between both.
+class Cusp:
+    """Where contact ends at the edge of a lug, (r, z), on a side (-1: of lower z) and at a ring;
+    points of the skin beside it from which stress is continued, and those between both, for which
+    it stands: they feel the last step of the pressure.
     """
 
-    place: Floats
+    place: tuple[float, float]
+    side: float
+    ring: int
+    exponent: float
     near: Ints
-    weights: Floats
     between: Ints
 
+    def weights(self, z: Floats, edge: float | None = None) -> Floats:
+        """(P,) of the stress at the points beside it, at z (P,), m. edge: its z, if elsewhere."""
+        d = self.side * (z - (self.place[1] if edge is None else edge))
+        powers = np.array([0.0, 1.0 - self.exponent, 2.0 - self.exponent])
+        return np.asarray(np.linalg.pinv((d[:, None] / d.max()) ** powers)[0])
 
-def _edges(x: Floats, middle: Floats, rings: Rings) -> list[_Edge]:
+
+def _cusps(x: Floats, middle: Floats, rings: Rings) -> list[Cusp]:
     """Of all lugs: where rounding begins, since contact hardly reaches into it. Points from two
     distances on, for contact that ends in the rounding and for one that does not.
     """
     out = []
     for b in np.unique(rings.band):
         own = np.flatnonzero(rings.band == b)
-        for side, sign in ((own, -1.0), (own[::-1], 1.0)):
-            flat = int(np.cumprod(rings.edge[side]).sum())
-            last, beyond = side[min(flat, len(side) - 1)], side[:flat][::-1][:1]
-            z = float((rings.start if sign < 0.0 else rings.end)[last])
+        for along, side in ((own, -1.0), (own[::-1], 1.0)):
+            flat = int(np.cumprod(rings.edge[along]).sum())
+            last, beyond = int(along[min(flat, len(along) - 1)]), along[:flat][::-1][:1]
             nearest = [2.0 * float(rings.length[k]) for k in beyond] + [float(rings.length[last])]
             for closest in nearest:
-                edge = float(rings.radius[last]), z, sign
-                found = _beside((x, middle), edge, closest, float(rings.exponent[last]))
-                out += [] if found is None else [found]
+                cusp = _beside((x, middle), rings, (last, side), closest)
+                out += [] if cusp is None else [cusp]
     return out
 
 
 def _beside(
-    skin: tuple[Floats, Floats], edge: tuple[float, float, float], closest: float, exponent: float
-) -> _Edge | None:
-    """At an edge (r, z, sign of the side), by points on the cylinder beside it, from a distance on;
-    None where they are too few.
+    skin: tuple[Floats, Floats], rings: Rings, edge: tuple[int, float], closest: float
+) -> Cusp | None:
+    """At the end of a ring on a side, by points on the cylinder beside it, from a distance on; None
+    where they are too few.
     """
-    (x, middle), (radius, z, sign) = skin, edge
-    d = sign * (x[:, 1] - z)
-    on, beside = np.abs(x[:, 0] - radius) <= SAME * radius, sign * (middle - z) > 0.0
+    (x, middle), (ring, side) = skin, edge
+    radius, z = float(rings.radius[ring]), float((rings.start if side < 0.0 else rings.end)[ring])
+    d = side * (x[:, 1] - z)
+    on, beside = np.abs(x[:, 0] - radius) <= SAME * radius, side * (middle - z) > 0.0
     ends = d[beside & ~on & (d > 0.0)]  # where the cylinder has ended
     far = min(2.0 * FAR * radius, float(ends.min(initial=np.inf)))
     near = np.flatnonzero(on & beside & (d >= closest) & (d <= far))
     if len(near) < FEWEST or d[near].max() < SPAN * d[near].min():
         return None
-    powers = np.array([0.0, 1.0 - exponent, 2.0 - exponent])
-    weights = np.linalg.pinv((d[near, None] / d[near].max()) ** powers)[0]
     between = np.flatnonzero(on & beside & (d < d[near].min()))
-    return _Edge(np.array([radius, z]), near, weights, between)
+    return Cusp((radius, z), side, ring, float(rings.exponent[ring]), near, between)
 
 
 class FreeSurface:
@@ -138,11 +152,11 @@ class FreeSurface:
 
     def __init__(self, of: SurfacePoints, pressed: PressedArcs) -> None:
         self.pressed, self.relieved = pressed, of.relieved
-        self.edges = np.array(list(of.beside), dtype=np.int64)
-        self.beside = [near for near, _ in of.beside.values()]
+        self.edges = np.array(list(of.cusps), dtype=np.int64)
+        self.beside = [cusp.near for cusp in of.cusps.values()]
         self._stands = np.zeros((len(of.relieved), len(self.edges)), dtype=bool)
-        for k, (_, between) in enumerate(of.beside.values()):
-            self._stands[between, k] = True
+        for k, cusp in enumerate(of.cusps.values()):
+            self._stands[cusp.between, k] = True
         r, z = of.fields.points.T
         near = pressed.rings.near(r, z, of.middle) & (of.relieved < 0)[:, None]
         near[self.edges] = False
@@ -151,7 +165,7 @@ class FreeSurface:
         self._near = near[some].astype(np.float32)
         self._row = np.full(len(some), -1)
         self._row[some] = np.arange(some.sum())
-        self._known: dict[int, tuple[Floats32, Mask, Mask]] = {}
+        self._known = of.arcs
 
     def masked(self, points: Ints) -> Mask:
         """Which of some points are read on a part of the circumference only."""
@@ -168,9 +182,12 @@ class FreeSurface:
 
     def _at(self, points: Ints, instant: int, arcs: Ints | slice) -> Mask:
         """Where masked points are read, (P, arcs)."""
-        if instant not in self._known:
-            self._known[instant] = self._arcs(instant)
-        shut, edges, inner = (x[:, arcs] for x in self._known[instant])
+        key = self.pressed.on[instant].tobytes(), self.pressed.sector
+        if key not in self._known:
+            if len(self._known) == MOST:
+                self._known.clear()
+            self._known[key] = self._arcs(instant)
+        shut, edges, inner = (x[:, arcs] for x in self._known[key])
         out = (self._near[self._row[points]] @ shut) == 0.0
         own = self.relieved[points]
         out[own >= 0] = inner[own[own >= 0]]

@@ -29,7 +29,7 @@ PER_CELL = 2  # sectors at least
 CLOSE = 1e-9  # of the length: points that are one
 
 
-class Shown(Protocol):
+class ShownStress(Protocol):
     """What is shown of a surface at the instants of a case. rows: of the skin, the first one (P,)
     at each place; angles: (A,) rad.
     """
@@ -48,7 +48,7 @@ class Shown(Protocol):
         ...
 
 
-def shown_surface(fields: MeridianFields, loads: PinLoads, nu: float) -> Shown:
+def shown_surface(fields: MeridianFields, loads: PinLoads, nu: float) -> ShownStress:
     """Of a pin under loads, with Poisson's ratio."""
     if loads.pressed is None:
         return _Plain(fields, loads)
@@ -97,7 +97,7 @@ class _Free:
         self.pressed, self.arcs = pressed, np.arange(count) * (BINS // count)
         self.angles = np.asarray(np.arange(count) * 2.0 * np.pi / count)
         of = surface_points(fields, pressed.rings, nu)
-        self.x, self.beside = fields.points[: fields.skin], of.beside
+        self.x, self.cusps = fields.points[: fields.skin], of.cusps
         self.skin, first = np.arange(fields.skin), _first(self.x)
         self.rows, self.place = np.flatnonzero(first), np.cumsum(first) - 1
         self.ring = pressed.rings.at(self.x[:, 0], of.middle[: fields.skin])
@@ -138,7 +138,8 @@ class _Free:
 
     def _continue(self, out: Floats, free: Mask, instant: int) -> None:
         """To the edges of lugs, and in a line between them and the first points that are read."""
-        for edge, (near, between) in reversed(self.beside.items()):
+        for edge, cusp in reversed(self.cusps.items()):
+            near, between = cusp.near, cusp.between
             here = self._read(np.array([edge]), instant)[0]
             z = self.around.fields.points[edge, 1]
             off = np.abs(self.x[:, 1] - z)

@@ -47,6 +47,8 @@ FEWER = 16  # the same at all instants and angles, so that they stay in the proc
 LOWEST = 4  # harmonics whose sum is sampled for a closer bound
 FEW = 4  # unit loads of a harmonic: up to so many, quadratic forms of them take less than sums
 EVERY = slice(None)
+CLOSER = 0.1 * float(ANGLES[1])  # rad, of samples about a crest, where those of arcs are 1e-4 off
+ON_SAMPLE = 1e-9  # of an arc
 EVEN = 3  # so many of the five numbers go as cos psi, the others as sin psi
 _EVEN, _ODD = slice(0, EVEN), slice(EVEN, None)
 METRIC = np.zeros((5, 6))  # METRIC^T METRIC is tensor.VON_MISES
@@ -339,9 +341,16 @@ class Circumference:
         assert self.region is not None
         n = self._n[[wave.start for wave in self._waves]]
         read = self.region.read(points, instants)
-        square = at_angles(n, *self._parts(points, instants, self._waves), ANGLES)
+        back, forth = self._parts(points, instants, self._waves)
+        square = at_angles(n, back, forth, ANGLES)
         square[~read] = -1.0
-        return crest_of_samples(square)
+        value, angle = crest_of_samples(square)
+        arcs = angle / ANGLES[1]
+        between = np.flatnonzero(np.abs(arcs - np.rint(arcs)) > ON_SAMPLE)
+        if len(between):
+            here = back[between], forth[between]
+            value[between], angle[between] = closer_crest(n, *here, angle[between], CLOSER)
+        return value, angle
 
     def _round(self, points: Ints, instants: Ints, beat: Floats) -> tuple[Floats, Floats]:
         n = self._n[[wave.start for wave in self._waves]]
@@ -438,6 +447,27 @@ def at_angles(n: Ints, back: Floats, forth: Floats, angles: Floats) -> Floats:
     turns = n[:, None] * angles
     found = np.concatenate([back, forth], axis=2) @ np.concatenate([np.cos(turns), np.sin(turns)])
     return np.asarray(np.square(found, out=found).sum(axis=1))
+
+
+def closer_crest(
+    n: Ints, back: Floats, forth: Floats, angle: Floats, apart: float
+) -> tuple[Floats, Floats]:
+    """Von Mises stress (J,) Pa at crests near angles (J,), rad, and their own angles, by a parabola
+    through samples that are so far apart.
+    """
+    samples = []
+    for step in (-apart, 0.0, apart):
+        turns = n * (angle + step)[:, None]
+        found = np.einsum("jiw,jw->ji", back, np.cos(turns))
+        found += np.einsum("jiw,jw->ji", forth, np.sin(turns))
+        samples.append(np.square(found).sum(axis=1))
+    before, here, after = samples
+    bend = 2.0 * here - before - after
+    good = bend > 0.0
+    bend = np.where(good, bend, 1.0)
+    shift = np.where(good, np.clip(0.5 * (after - before) / bend, -1.0, 1.0), 0.0)
+    square = here + 0.5 * shift * (after - before) - 0.5 * shift**2 * bend
+    return np.sqrt(np.maximum(square, 0.0)), angle + shift * apart
 
 
 def _forms(form: Floats, products: Floats) -> Floats:

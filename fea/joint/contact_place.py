@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.places import BandPressure, ContactPlace, PressedCell
-from fea.harmonic.beneath import Beneath, beneath, depths, stairs
+from fea.cut.evaluate import CutAnswer
+from fea.harmonic.beneath import Beneath, Steps, beneath, depths, stairs
 from fea.harmonic.evaluate import HarmonicAnswer
 from fea.joint.edge_peak import contact_edges
 from fea.joint.solve_joint import JointContact
@@ -19,7 +20,7 @@ from geometry.arrays import Ints
 def contact_place(
     contact: JointContact,
     material: Material,
-    answer: HarmonicAnswer,
+    answer: HarmonicAnswer | CutAnswer,
     loads: PinLoads,
     required: float | None,
     error: float,
@@ -29,12 +30,12 @@ def contact_place(
     what lies beneath, relative. row: the maximum of surface and section, Pa, below which no
     outcome asks how far stress reaches.
     """
-    zones, fields = answer.singularities, answer.fields
-    found = beneath(fields, loads, zones)
+    under = answer if isinstance(answer, CutAnswer) else _Plain(answer)
+    found = under.beneath(loads)
     limits = reached(material, required)
     instants = dict.fromkeys((found.instant, _instant(loads, contact)))
     least = min(row, *limits) if limits else row
-    each = [x for t in instants for x in depths(fields, loads, t, zones, least)]
+    each = [x for t in instants for x in under.depths(loads, t, least)]
     known = stairs(*np.array(each).reshape(-1, 2).T)
     place = ContactPlace(
         found.value,
@@ -49,6 +50,19 @@ def contact_place(
     )
     reach, required_too = (*(place.depth(x) for x in limits), None, None)[:2]
     return replace(place, reach=reach, reach_required=required_too)
+
+
+@dataclass(frozen=True)
+class _Plain:
+    """A pin without cuts, asked as one with them is."""
+
+    answer: HarmonicAnswer
+
+    def beneath(self, loads: PinLoads) -> Beneath:
+        return beneath(self.answer.fields, loads, self.answer.singularities)
+
+    def depths(self, loads: PinLoads, instant: int, least: float) -> Steps:
+        return depths(self.answer.fields, loads, instant, self.answer.singularities, least)
 
 
 def reached(material: Material, required: float | None) -> tuple[float, ...]:

@@ -404,20 +404,25 @@ class _Contact:
         (pressed,) = contact.contact
         pressure = CellPressure(contact.bands, pressed.pressure, pressed.angle)
         cut, answer = self.given.cut, solution.answer
-        if isinstance(answer, HarmonicAnswer):
-            error = known.surface.cells.beneath + self._by_mesh(answer, known.surface)
-            row = peak.max_von_mises or 0.0
-            place = contact_place(contact, material, answer, solved, asked.required, error, row)
-            solution = replace(solution, peak=with_contact(peak, place))
-        if cut is None or not isinstance(answer, CutAnswer):
-            return LugSolution(solution, joint, self.press, pressure, model.pin, model)
-        left = neglected(cut, material, contact, pressure, answer)
-        peak = with_neglected(peak, left, answer, over.variations, asked)
-        return LugSolution(replace(solution, peak=peak), joint, self.press, pressure)
+        assert isinstance(answer, HarmonicAnswer | CutAnswer)
+        error = known.surface.cells.beneath + self._by_mesh(answer, known.surface)
+        if cut is not None and isinstance(answer, CutAnswer):
+            left = neglected(cut, material, contact, pressure, answer)
+            peak = with_neglected(peak, left, answer, over.variations, asked)
+            peak = row_of(peak, None, material, asked.tolerance)
+            largest = peak.max_von_mises or 1.0
+            error += left.error(largest, False, over.variations) / largest
+        row = peak.max_von_mises or 0.0
+        place = contact_place(contact, material, answer, solved, asked.required, error, row)
+        solution = replace(solution, peak=with_contact(peak, place))
+        if cut is not None:
+            return LugSolution(solution, joint, self.press, pressure)
+        return LugSolution(solution, joint, self.press, pressure, model.pin, model)
 
-    def _by_mesh(self, answer: HarmonicAnswer, known: Comparison) -> float:
+    def _by_mesh(self, answer: HarmonicAnswer | CutAnswer, known: Comparison) -> float:
         """By how much what lies beneath contact differs from that on the first mesh, relative."""
-        there = beneath(answer.fields, self.press(known.links), answer.singularities).value
+        fields = answer.solution.uncut if isinstance(answer, CutAnswer) else answer.fields
+        there = beneath(fields, self.press(known.links), answer.singularities).value
         return abs(known.stress.beneath / there - 1.0) if there else 0.0
 
     def _compared_anew(self, asked: Asked) -> Callable[[JointContact], Comparison]:

@@ -27,7 +27,7 @@ from fea.harmonic.fields import MeridianFields
 from fea.harmonic.superposition import Circumference, Top
 from fea.plastic.interaction import plastic_use
 from geometry import Pin
-from geometry.arrays import Floats
+from geometry.arrays import Floats, Mask
 
 ALONG = 9  # sections between two stations, both ends included
 ACROSS = np.linspace(0.0, 1.0, 9)  # of the way from bore to outside, where stress is read
@@ -39,11 +39,13 @@ NEAR = np.radians(2.0)  # of that angle
 @dataclass(frozen=True)
 class AtSection:
     """The largest stress of sections, Pa, at an instant (its number): z, radius (m) and angle (rad)
-    of the point; axial and shear force (N), bending moment and torque (N m) there.
+    of the point, in a cell of the beam; axial and shear force (N), bending moment and torque (N m)
+    there.
     """
 
     value: float
     instant: int
+    cell: int
     z: float
     r: float
     angle: float
@@ -107,7 +109,7 @@ class SectionAnswer:
 
     def maxima(self, loads: AnyLoads, least: float = 0.0) -> Floats:
         """Largest stress (T,) Pa at every instant, `least` where it does not exceed that."""
-        return Circumference(self.fields, self._felt(loads)).maxima(self._all, least)
+        return self.around(loads).maxima(self.all, least)
 
     def largest(self, loads: AnyLoads) -> tuple[float, int]:
         """The largest of these (Pa), and the number of its instant."""
@@ -119,11 +121,16 @@ class SectionAnswer:
         return None
 
     @property
-    def _all(self) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    def all(self) -> Mask:
+        """All points of the sections."""
         return np.ones(len(self.fields.points), dtype=bool)
 
+    def around(self, loads: AnyLoads) -> Circumference:
+        """A case on these points."""
+        return Circumference(self.fields, self._felt(loads))
+
     def _top(self, loads: AnyLoads) -> Top:
-        return Circumference(self.fields, self._felt(loads)).top(self._all)
+        return self.around(loads).top(self.all)
 
     def place(self, loads: AnyLoads) -> AtSection:
         """Where and when the largest is, and what acts there."""
@@ -139,7 +146,7 @@ class SectionAnswer:
         V, M, N, T = (forces[k, q] for q in (SHEAR, MOMENT, AXIAL, TORQUE))
         value, r, angle = found[k]
         return AtSection(
-            value, top.instant, float(z[k]), r, angle, float(N[0]), float(np.hypot(*V)),
+            value, top.instant, int(cell), float(z[k]), r, angle, float(N[0]), float(np.hypot(*V)),
             float(np.hypot(*M)), float(T[1]), section,
         )  # fmt: skip
 

@@ -60,13 +60,22 @@ def edge_exponent(pin: float, lug: float, angle: float = RIGHT) -> float:
             f"compliances must not be negative, nor both zero: {pin:g} and {lug:g}", "not-positive"
         )
     share = lug / (pin + lug)
-
-    def h(s: float) -> float:
-        L = 1.0 - s
-        N = math.sin(2.0 * L * angle) + L * math.sin(2.0 * angle)
-        D = math.sin(L * angle) ** 2 - (L * math.sin(angle)) ** 2
-        return 2.0 * (1.0 - share) * math.cos(L * math.pi) * D + share * math.sin(L * math.pi) * N
-
-    if h(LEAST) >= 0.0:
+    if _h(1.0 - LEAST, share, angle) >= 0.0:
         return 0.0
-    return float(brentq(h, LEAST, 0.5, xtol=1e-15))
+    return float(brentq(lambda s: _h(1.0 - s, share, angle), LEAST, 0.5, xtol=1e-15))
+
+
+def next_power(pin: Material, lug: Material) -> float:
+    """The power of the distance with which the next term of pressure at the edge of a lug, of 90
+    degrees, grows: 0.5 of a rigid lug to 1 of a very soft one; what is regular there has no less.
+    """
+    pin_part, lug_part = pin.plane_compliance, lug.plane_compliance
+    share = lug_part / (pin_part + lug_part)
+    return float(brentq(lambda L: _h(L, share, RIGHT), 1.2, 2.0, xtol=1e-12)) - 1.0
+
+
+def _h(L: float, share: float, angle: float) -> float:
+    """h(L) over the sum of both compliances; share: the lug's part of it."""
+    N = math.sin(2.0 * L * angle) + L * math.sin(2.0 * angle)
+    D = math.sin(L * angle) ** 2 - (L * math.sin(angle)) ** 2
+    return 2.0 * (1.0 - share) * math.cos(L * math.pi) * D + share * math.sin(L * math.pi) * N

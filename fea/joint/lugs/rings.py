@@ -17,7 +17,10 @@ LONGEST = 0.25  # ring, of the diameter, if there are so many
 FINER = 2.5  # times as long each part of an outermost ring that is cut is with the next one
 PEAK = 0.25  # of a fillet's radius from where it begins: its largest stress is not nearer
 LEAST = 1e-3  # ring, of the diameter
-GROWTH = 1.6  # of each ring over the one before, from there on
+# Where the peak at a rounded edge is resolved: rings of one length lie this far from where rounding
+# begins, of its radius, outwards (where contact ends) and inwards (where the peak is); from there
+# on each is so many times longer. Rings that grow from the start on are up to 13 % off.
+OUTWARDS, INWARDS, GROWTH = 0.08, 0.03, 1.6
 
 
 def ring_ends(
@@ -31,9 +34,9 @@ def ring_ends(
     where the bore is straight, but for long bands. Where its edges are rounded, the first rings of
     the rounding are so short that contact may end in them.
 
-    beside: to resolve the peak of pressure where rounding begins, as many rings as lead from there
-    to the middle, the first of `beside` times the radius for the usual count. longest_last: the
-    length, m, of the outermost rings at both ends at most, which are cut in parts for it where
+    beside: to resolve the peak of pressure where rounding begins, rings of `beside` times the
+    radius there, for the usual count, and as many as lead from them to the middle. longest_last:
+    the length, m, of the outermost rings at both ends at most, which are cut in parts for it where
     edges are sharp; where they are rounded contact ends in short ones anyway.
     """
     coarser = USUAL / count
@@ -87,10 +90,18 @@ def _to_the_peak(
     length: float, radius: float, beside: float, growth: float, longest: float
 ) -> Floats:
     first = beside * radius
-    outside = _growing(radius, first, growth, longest)[::-1]
-    flat = _growing(length / 2.0 - radius, first, growth, longest)
+    outside = _from_edge(radius, OUTWARDS * radius, first, growth, longest)[::-1]
+    flat = _from_edge(length / 2.0 - radius, INWARDS * radius, first, growth, longest)
     ends = np.cumsum([0.0, *outside, *flat])
     return np.concatenate([ends[:-1], [length / 2.0], length - ends[-2::-1]])
+
+
+def _from_edge(length: float, even: float, first: float, growth: float, longest: float) -> Floats:
+    """Lengths that add up to `length`, m: alike over `even`, then growing."""
+    even = min(even, length)
+    count = math.ceil(even / first - 1e-9)
+    alike = np.full(count, even / max(count, 1))
+    return np.concatenate([alike, _growing(length - even, first, growth, longest)])
 
 
 def graded(length: float, count: int) -> Floats:

@@ -1,0 +1,123 @@
+"""What the cells of contact and the meshes leave of error in surface, section and beneath contact,
+on pins drawn at random: against cells half as large and meshes half as coarse.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from benchmarks.joints.random_pins import PinTrial, pin_trials
+from benchmarks.timing import table
+from fea.core.pin_loads import Floats
+from fea.harmonic.beneath import beneath
+from fea.harmonic.evaluate import HarmonicAnswer
+from fea.joint.pressure_loads import resultants
+from fea.joint.solve_joint import Cells, JointContact, JointModel
+from fea.joint.variations import ORDER, compare
+from fea.section.answer import SectionAnswer
+from fea.section.place import FLEXIBILITIES
+from fea.solve_pin import Asked, solve_pin
+from fea.verdict import NOISE
+
+COUNT, SEED = 40, 3
+REFERENCE = Cells(16, 72, 16, 16.0)
+FINE_MESHES = Cells(8, 36, 12, 20.0)
+PLACES = "surface", "section", "beneath"
+OFTEN = 0.95
+
+
+@dataclass(frozen=True)
+class CellError:
+    """Of a pin, by place, (3,): how much cells twice as large change it, and by how much it is off
+    on the usual ones, relative; mesh: how much the second mesh changes the surface, and by how much
+    it is off on that one; flexibilities: by how much sections are off for their meshes.
+    """
+
+    name: str
+    change: Floats
+    off: Floats
+    mesh: tuple[float, float] | None = None
+    flexibilities: float | None = None
+
+
+def cells() -> str:
+    """Two tables."""
+    found = list(cell_errors(COUNT, SEED))
+    rows = [(name, *_row(found, k)) for k, name in enumerate(PLACES)]
+    head = ("place", "pins", "off, median [%]", "95 % [%]", "largest [%]", "estimated covers")
+    needed = "95 % of (off / change)", f"assumed, order {ORDER:g}"
+    first = table((*head, *needed), rows)
+    meshes = [x.mesh for x in found if x.mesh]
+    soft = [x.flexibilities for x in found if x.flexibilities is not None]
+    off = np.array([m[1] for m in meshes])
+    estimate = np.maximum([m[0] for m in meshes], NOISE["harmonic"] / 4.0)
+    more = [
+        ("surface, second mesh", str(len(off)), *_spread(off), f"{np.mean(off <= estimate):.0%}"),
+        ("section, meshes of flexibilities", str(len(soft)), *_spread(np.array(soft)),
+         f"{np.mean(np.array(soft) <= FLEXIBILITIES):.0%}"),
+    ]  # fmt: skip
+    return f"{first}\n\n{table((*head[:5], 'estimated covers'), more)}"
+
+
+def _row(found: list[CellError], k: int) -> tuple[str, ...]:
+    off, change = (np.array([getattr(x, name)[k] for x in found]) for name in ("off", "change"))
+    factor = 1.0 / (2.0**ORDER - 1.0)
+    covered = np.mean(off <= factor * change + 1e-3)
+    ratio = np.quantile(off / np.maximum(change, 1e-3), OFTEN)
+    return str(len(off)), *_spread(off), f"{covered:.0%}", f"{ratio:.2f}", f"{factor:.2f}"
+
+
+def _spread(off: Floats) -> tuple[str, ...]:
+    if not len(off):
+        return "-", "-", "-"
+    return tuple(f"{100.0 * x:.2f}" for x in (np.median(off), np.quantile(off, OFTEN), off.max()))
+
+
+def cell_errors(count: int, seed: int) -> Iterator[CellError]:
+    """Of pins at one instant, every fourth also on a third mesh."""
+    trials = [t for t in pin_trials(2 * count, seed) if t.given.cases[0].times is None][:count]
+    for k, trial in enumerate(trials):
+        yield cell_error(trial, k % 4 == 0)
+
+
+def cell_error(trial: PinTrial, meshes: bool) -> CellError:
+    """meshes: whether those are tried, too."""
+    model = _model(trial, Cells())
+    contact = model.solve(trial.given.cases[0])
+    (compared,) = compare(model, [contact], Asked(), vary=(False,))
+    change = (2.0**ORDER - 1.0) * np.array([getattr(compared.cells, name) for name in PLACES])
+    history, here = _stress(model, contact, 3 if meshes else 2)
+    finer = _model(trial, REFERENCE)
+    _, truth = _stress(finer, finer.solve(trial.given.cases[0]), 2)
+    mesh = soft = None
+    if meshes:
+        mesh = abs(history[1] / history[0] - 1.0), abs(history[1] / history[2] - 1.0)
+        other = _model(trial, FINE_MESHES)
+        soft = abs(here[1] / _section(other, other.solve(trial.given.cases[0])) - 1.0)
+        here = np.array([history[1], *here[1:]])
+    return CellError(trial.name, change, np.abs(here / truth - 1.0), mesh, soft)
+
+
+def _model(trial: PinTrial, size: Cells) -> JointModel:
+    given = trial.given
+    return JointModel(given.pin, given.material, given.lugs, size)
+
+
+def _stress(model: JointModel, contact: JointContact, meshes: int) -> tuple[list[float], Floats]:
+    """The surface on each mesh; surface, section and what lies beneath on the last, Pa."""
+    asked = Asked(model="harmonic", meshes=meshes, tolerance=1e-9)
+    (found,) = solve_pin(model.pin, model.material, (), (contact.loads,), asked, first=model.first)
+    assert isinstance(found.answer, HarmonicAnswer)
+    history = [step.max_von_mises for step in found.peak.history]
+    below = beneath(found.answer.fields, contact.loads, found.answer.singularities).value
+    surface = found.peak.places.surface.max_von_mises if found.peak.places else history[-1]
+    return history, np.array([surface, _section(model, contact), below])
+
+
+def _section(model: JointModel, contact: JointContact) -> float:
+    waves = model.waves(contact.contact)
+    loads = resultants(model.pin, model.rings, waves, contact.loads.links)
+    return SectionAnswer(model.pin, model.material, (), [loads]).largest(loads)[0]

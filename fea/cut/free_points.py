@@ -1,0 +1,143 @@
+"""Where the surface of a pin with cuts is read, on which lugs press, by its points in space.
+
+As of a pin without cuts (fea.harmonic.free_surface): what is free, and the middles of rings without
+the local stress of the pressure. The walls of cuts are free everywhere; where they meet a band,
+their own side is read.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea.core.places import BENEATH
+from fea.core.pressed import BINS, PressedArcs, Rings
+from fea.core.voigt import ENTRIES, TENSOR
+from fea.harmonic.beneath import arcs_apart, arcs_within
+from geometry.arrays import Floats, Ints, Mask
+
+ON = 1e-4  # of a radius: a point of the outline this near to a ring's cylinder is on it
+AT_ONCE = 64  # instants
+BESIDE = 1e-6  # of a ring's length: both sides of where two rings meet
+
+
+@dataclass(frozen=True)
+class FreePoints:
+    """Points (P,) on a pin with rings. arc: on which of the arcs about the axis each is; near: (P,
+    3 R) what shuts it (fea.core.pressed); amid: the ring in whose middle it is, -1 in none.
+    """
+
+    arc: Ints
+    near: Mask
+    amid: Ints
+
+    @classmethod
+    def of(cls, points: Floats, outline: Mask, rings: Rings) -> FreePoints:
+        """Of points (P, 3), m. outline: (P,) which are on the outline of the pin without cuts."""
+        r, z = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
+        off = np.abs(r[:, None] - rings.radius)
+        ring = off.argmin(axis=1)
+        on = outline & (off[np.arange(len(r)), ring] <= ON * rings.radius[ring])
+        r = np.where(on, rings.radius[ring], r)
+        near = np.zeros((len(r), 3 * len(rings)), dtype=bool)
+        little = BESIDE * float(rings.length.min())
+        for middle in (z - little, z + little):
+            near[outline] |= rings.near(r[outline], z[outline], middle[outline])
+        amid = np.where(on, rings.amid(r, z, z), -1)
+        return cls(arc_of(points), near, amid)
+
+    def some(self, rows: Ints, plain: int) -> FreePoints:
+        """Of points (Q,), the first `plain` as they are, the others relieved of pressure."""
+        amid, near = self.amid[rows], self.near[rows]
+        amid[:plain], near[plain:] = -1, False
+        return FreePoints(self.arc[rows], near, amid)
+
+    def read(self, pressed: PressedArcs, instant: int) -> Mask:
+        """Which points (P,) are read at an instant."""
+        out = np.ones(len(self.arc), dtype=bool)
+        near, amid = np.flatnonzero(self.near.any(axis=1)), np.flatnonzero(self.amid >= 0)
+        shut, edges = pressed.shut(instant), pressed.widened(pressed.at_edges(instant))
+        out[near] = ~(self.near[near] & shut.T[self.arc[near]]).any(axis=1)
+        out[amid] &= ~edges[self.amid[amid], self.arc[amid]]
+        return out
+
+
+def arc_of(points: Floats) -> Ints:
+    """On which arc points (P, 3) are."""
+    turns = np.arctan2(points[:, 1], points[:, 0]) / (2.0 * np.pi)
+    return np.asarray(np.rint(turns * BINS).astype(np.int64) % BINS)
+
+
+def relieved(stress: Floats, points: Floats, nu: float) -> Floats:
+    """Stress (P, 6, L), along x, y and z at points (P, 3) of the outline, without that of pressure
+    on it (fea.harmonic.free_surface).
+    """
+    out = np.zeros((len(points), 3))
+    out[:, :2] = points[:, :2] / np.hypot(points[:, 0], points[:, 1])[:, None]
+    across = np.einsum("pi,pijl,pj->pl", out, stress[:, TENSOR], out)
+    both = np.einsum("pi,pj->pij", out, out) + np.diag([0.0, 0.0, 1.0])
+    local = both + 2.0 * nu * (np.eye(3) - both)
+    each = np.stack([local[:, a, b] for a, b in ENTRIES], axis=1)
+    return np.asarray(stress - each[:, :, None] * across[:, None])
+
+
+@dataclass(frozen=True)
+class Away:
+    """Points (P,) beneath contact: farther than BENEATH diameters from what is pressed. within: how
+    many arcs from a pressed one on a ring each is nearer than that, (P, R), -1 where it never is.
+    """
+
+    arc: Ints
+    within: Ints
+
+    @classmethod
+    def of(cls, points: Floats, rings: Rings) -> Away:
+        """Of points (P, 3), m."""
+        section = np.stack([np.hypot(points[:, 0], points[:, 1]), points[:, 2]], axis=1)
+        return cls(arc_of(points), arcs_within(section, rings, 2.0 * BENEATH * rings.radius))
+
+    def read(self, pressed: PressedArcs, instant: int) -> Mask:
+        """Which points (P,) are so at an instant."""
+        apart = arcs_apart(pressed.on[instant])[:, self.arc].T
+        return np.asarray((apart > self.within).all(axis=1))
+
+
+@dataclass(frozen=True)
+class Reading:
+    """Rows (Q,) of points where stress is looked for, and von Mises squared there, (Q, T), of
+    amounts of unit loads (T, L). free: where lugs press on them.
+    """
+
+    rows: Ints
+    squares: Callable[[Floats], Floats]
+    free: FreePoints | Away | None = None
+
+    def stress(self, c: Floats, pressed: PressedArcs | None, first: int = 0) -> Floats:
+        """Von Mises stress (Q, T), Pa, at instants from the first on; 0 where it is not read."""
+        found = np.sqrt(np.maximum(self.squares(c), 0.0))
+        if self.free is not None and pressed is not None:
+            for t in range(len(c)):
+                found[~self.free.read(pressed, first + t), t] = 0.0
+        return found
+
+    def largest(self, c: Floats, pressed: PressedArcs | None = None) -> tuple[Floats, Ints]:
+        """The largest von Mises stress (T,) Pa at every instant, and its point (T,)."""
+        value, point = np.zeros(len(c)), np.zeros(len(c), dtype=np.int64)
+        for k in range(0, len(c) if len(self.rows) else 0, AT_ONCE):
+            here = self.stress(c[k : k + AT_ONCE], pressed, k)
+            point[k : k + AT_ONCE] = self.rows[here.argmax(axis=0)]
+            value[k : k + AT_ONCE] = here.max(axis=0)
+        return value, point
+
+
+def distance(points: Floats, pressed: PressedArcs, instant: int) -> Floats:
+    """Of points (P, 3) from the nearest pressed cell, (P,) m."""
+    rings, on = pressed.rings, pressed.on[instant]
+    r, z = np.hypot(points[:, 0], points[:, 1])[:, None], points[:, 2:]
+    angle = 2.0 * np.pi / BINS * np.maximum(arcs_apart(on)[:, arc_of(points)].T - 0.5, 0.0)
+    along = np.maximum(0.0, np.maximum(rings.start - z, z - rings.end))
+    square = along**2 + r**2 + rings.radius**2 - 2.0 * r * rings.radius * np.cos(angle)
+    square = np.where(on.any(axis=1), square, np.inf)
+    return np.asarray(np.sqrt(np.maximum(square, 0.0)).min(axis=1))
