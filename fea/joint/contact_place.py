@@ -66,7 +66,7 @@ class _Plain:
 
 
 def reached(material: Material, required: float | None) -> tuple[float, ...]:
-    """The stresses, Pa, of which it is said how far from contact they reach."""
+    """The stresses, Pa, whose reach from contact is stated."""
     strength = material.yield_strength
     if strength is None:
         return ()

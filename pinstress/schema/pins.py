@@ -241,7 +241,8 @@ class LugTable(StrictTable):
     clearance: Length = 0.0
     """Diameter of the bore minus that of the pin; negative for interference."""
     edge_radius: NotNegativeLength = 0.0
-    """Radius of the edges of the bore. 0 is sharp, where the contact stress is singular."""
+    """Radius of the edges of the bore. 0 is sharp, where pressure has no bound: then
+    results have no peak of pressure there."""
     tilt: Tilt | None = None
     """Resistance of the link to tilting of its eye: "guided" (rigid), "free", or a stiffness.
     Default: the bending stiffness of an eye clamped at a distance of 0.8 outer diameters."""

@@ -43,7 +43,7 @@ SPARE = (
         (
             "outer_diameter = 50\nclearance = 0.05\nedge_radius = 0.5\n",
             "outer_diameter = 50\nclearance = 0.05\nedge_radius = 5.1\n",  # the lug is 10 wide
-            ("study.toml:39", "lug LEFT", "0.51 of the length", "may be at most half"),
+            ("study.toml:", "lug LEFT", "0.51 of the length", "may be at most half"),
         ),
     ],
 )

@@ -308,7 +308,8 @@ bushing = { thickness = 2, material = "bronze" }
 
 def test_cases_in_contact_share_a_surface(tmp_path: Path) -> None:
     """All cases of a pin are solved on the same meshes: at the angle of its maximum the surface has
-    the stress that each case has there.
+    the stress that each case has there, and where lugs press on a part of the circumference, which
+    is not read at their edges, no less.
     """
     path = study(tmp_path, "lug.M = {}")
     more = '[case.push]\nkind = "given"\nforces = { L = [0, -9e3], M = [0, 1e4], R = [0, -1e3] }\n'
@@ -317,6 +318,8 @@ def test_cases_in_contact_share_a_surface(tmp_path: Path) -> None:
     (surface,) = found.surfaces
     assert [case.case for case in surface.cases] == ["pull", "push"]
     turns = np.linspace(0.0, 2.0 * np.pi, 361)
+    free = np.abs(surface.points[:, 2] - 10.77) < 0.2  # mm: the gap from 10 to 11
+    assert free.sum() > 5
     for case in surface.cases:
         first, second = case.amounts[case.instant].T
         even, n = np.array(surface.even[:5]), surface.n[:, None]
@@ -324,7 +327,8 @@ def test_cases_in_contact_share_a_surface(tmp_path: Path) -> None:
         back = surface.stress @ (c * first[:, None] + s * second[:, None])
         forth = surface.stress @ (s * first[:, None] - c * second[:, None])
         stress = np.linalg.norm(np.where(even[:, None], back, forth), axis=1).max(axis=1)
-        assert stress == pytest.approx(case.largest, rel=1e-3)
+        assert (case.largest <= stress * 1.001).all()
+        assert stress[free] == pytest.approx(case.largest[free], rel=1e-3)
 
 
 def test_a_pin_on_a_structure_has_the_hand_checks_of_its_joint(tmp_path: Path) -> None:

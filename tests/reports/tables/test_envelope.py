@@ -74,8 +74,10 @@ def test_many_cases_are_short_on_the_terminal_and_in_files(
     results: Results, tmp_path: Path
 ) -> None:
     made = of_cases(results, 50)
-    only = {"decided": False, "depends_on": (Dependence("tilt", "guided", "joint", 9.0),)}
-    pins = (replace(p, published_max_von_mises=None, **only) for p in made.pins)
+    over = (Dependence("tilt", "guided", "joint", 9.0),)
+    pins = (
+        replace(p, published_max_von_mises=None, decided=False, depends_on=over) for p in made.pins
+    )
     made = replace(made, pins=tuple(pins))
     shown = StringIO()
     print_safety_factors(made, Console(file=shown, width=200))

@@ -1,0 +1,175 @@
+"""A row that meets its factor on surface and section, judged by what lies beneath contact.
+
+118,000 psi of strength and a factor of 1.5 permit 78,667 psi; the row has 59,000 (factor 2.000).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fea.core.places import (
+    ContactEdge,
+    ContactPlace,
+    Places,
+    SectionPlace,
+    SurfacePlace,
+)
+from fea.harmonic.beneath import stairs
+from pinstress import load_study, run
+from pinstress.cli.closing import REQUIREMENT_MISSED, report_violations
+from pinstress.schema.units import SYSTEMS
+from reports.data.decision import outcome
+from reports.data.dependence import depends_on
+from reports.data.in_units import in_units
+from reports.data.results import PinResult, Results
+from reports.format.words import headline, result_words
+from reports.tables.json_results import to_json
+from reports.tables.strength.envelope import envelope_table
+from reports.tables.strength.safety_factors import safety_factor_rows
+from reports.text.pin_sentence import pin_sentence
+from reports.text.summary import summary
+from tests.conftest import ROOT
+from tests.support.results.judged_results import judged, row
+
+SURFACE = SurfacePlace(59000.0, 295.0, "converged", (0.0, 1.0, 2.0))
+SECTION = SectionPlace(50000.0, 250.0, "converged", 2.0, None, 0.0, 1e4, 2e4, 0.0, 0.2)
+# 90,000 at 0.05, 80,000 at 0.3, 70,000 at 0.4 in
+DEPTHS = (90000.0, 0.05), (80000.0, 0.3), (70000.0, 0.4)
+
+
+def contact(beneath: float, error: float = 1000.0) -> ContactPlace:
+    return ContactPlace(
+        beneath, error, (0.0, 0.7, 2.0), None, 0.0, 0.3, (), (), DEPTHS
+    )  # fmt: skip
+
+
+def pin(beneath: float, error: float = 1000.0, **changes: object) -> PinResult:
+    places = Places("surface", SURFACE, SECTION, contact(beneath, error))
+    made = replace(row("x", "converged", 2.0, True), places=places, **changes)  # type: ignore[arg-type]
+    return replace(made, depends_on=depends_on(made, None))
+
+
+def only(made: PinResult) -> Results:
+    return replace(judged(), pins=(made,))
+
+
+@pytest.mark.parametrize(("beneath", "error", "expected"), [
+    (77600.0, 1000.0, "safe"), (77700.0, 1000.0, "depends"), (85000.0, 0.0, "depends"),
+])  # fmt: skip
+def test_it_is_safe_only_if_what_lies_beneath_is_with_its_error(
+    beneath: float, error: float, expected: str
+) -> None:
+    """118,000 / 1.5 = 78,666.7: 78,600 is less, 78,700 is more."""
+    made = pin(beneath, error)
+    assert outcome(made) == expected
+    assert made.meets_required is (expected == "safe")
+
+
+def test_nothing_beneath_changes_a_row_that_fails_or_is_open() -> None:
+    for decided, expected in ((False, "fails"), (None, "not decided")):
+        made = pin(85000.0, decided=decided)
+        assert outcome(made) == expected
+        assert made.depends_on == ()
+
+
+def test_without_a_required_factor_yield_is_the_limit() -> None:
+    assert outcome(pin(117500.0, 600.0, required=None)) == "depends"
+    assert outcome(pin(117500.0, 400.0, required=None)) == "below yield"
+
+
+def test_the_depth_is_that_of_what_is_permitted() -> None:
+    """More than 78,667 psi reach to 0.3 in, more than 85,000 to 0.05; a factor there of
+    118,000 / 85,000 = 1.388.
+    """
+    (found,) = pin(85000.0).depends_on
+    assert (found.what, found.over, found.reach) == ("beneath", "beneath", 0.3)
+    assert found.factor == pytest.approx(118.0 / 85.0)
+    assert contact(1.0).depth(85000.0) == 0.05
+    assert contact(1.0).depth(95000.0) == 0.0
+
+
+def test_it_is_said_wherever_an_outcome_is(capsys: pytest.CaptureFixture[str]) -> None:
+    made = pin(85000.0)
+    results = only(made)
+    clause = "but not beneath contact (FoS 1.39, too low to a depth of 0.30 in)"
+    assert headline(results) == (
+        f"Pin A is safe as described (FoS 2.00 ≥ 1.5 required; x), {clause}."
+    )
+    assert result_words(made) == "depends: beneath contact"
+    assert "0 of 1 pin is safe in all cases" in summary(results)
+    assert "depends: A (beneath contact)" in summary(results)
+    assert clause in pin_sentence(made, results.units)
+    (cells,) = safety_factor_rows(results)
+    assert (cells["outcome"], cells["meets_required"]) == ("depends", "no")
+    assert cells["depends_on"] == "stress beneath contact (FoS 1.39, too low to a depth of 0.30 in)"
+    table = envelope_table(results)
+    said = {line[table.columns.index("outcome")] for line in table.rows}
+    assert said <= {"depends"}
+    assert report_violations(results) == REQUIREMENT_MISSED
+    assert f"Safe as described, {clause}: A (x)." in capsys.readouterr().err
+
+
+def test_what_exceeds_only_with_its_error_has_no_depth_in_words() -> None:
+    made = pin(78000.0, 1000.0)
+    assert "(FoS 1.49 with its error)" in headline(only(made))
+    (entry,) = to_json(only(made))["pins"][0]["depends_on"]
+    assert (entry["what"], entry["reach"]) == ("beneath", 0.3)
+    assert entry["safety_factor"] == pytest.approx(118.0 / 79.0)
+
+
+def test_results_json_has_the_places() -> None:
+    found = to_json(only(pin(85000.0)))["pins"][0]
+    assert found["governs"] == "surface"
+    assert found["surface"]["safety_factor"] == pytest.approx(2.0)
+    assert found["section"]["safety_factor"] == pytest.approx(118.0 / 50.0)
+    assert found["contact"]["beneath"] == 85000.0
+    assert "depths" not in found["contact"]
+    bare = replace(pin(85000.0), places=Places("surface", SURFACE))
+    found = to_json(only(bare))["pins"][0]
+    assert not {"section", "contact"} & set(found)
+
+
+def test_strengths_of_edges_and_depths_are_in_the_units_of_a_study() -> None:
+    """K of p = K d^-s: 1 Pa m^0.25 is 1e-6 MPa (1000 mm)^0.25 = 5.623e-6 MPa mm^0.25."""
+    edge = ContactEdge("L", "start", 1.0, 0.25, 0.001, None, None, None)
+    found = in_units(replace(contact(1e6), edges=(edge,)), SYSTEMS["mm-N-s"].factor)
+    strength = found.edges[0].K
+    assert strength == pytest.approx(1e-6 * 1000.0**0.25, rel=1e-12)
+    assert found.edges[0].yield_distance == pytest.approx(1.0)
+    assert found.depths[0] == pytest.approx((0.09, 50.0))
+    assert found.beneath == pytest.approx(1.0)
+
+
+def test_stairs_have_the_farthest_point_of_every_stress() -> None:
+    """Against a search of all points."""
+    draw = np.random.default_rng(35)
+    stress, away = draw.random(500), draw.random(500) ** 3
+    made = stairs(stress, away, 0.2)
+    assert len(made) < 60
+    place = replace(contact(1.0), depths=made)
+    for limit in (0.2, 0.5, 0.9, 0.99, stress.max()):
+        brute = away[stress > limit].max(initial=0.0)
+        assert place.depth(limit) == brute
+    assert stairs(stress, away, 2.0) == ()
+
+
+@pytest.mark.slow
+def test_the_range_of_a_landing_is_of_surface_and_section() -> None:
+    """Section governs pin F of the landing gear (14.5 ksi, the surface less than 12.5): at the
+    impulse of the case itself the range has the row's maximum, not the surface's. And stress is
+    proportional to the force of the impulse, as there is no clearance.
+    """
+    found = run(load_study(ROOT / "studies" / "landing_gear.toml"), pins=["F"], cases=["landing"])
+    (made,), (over,) = found.pins, found.landing
+    assert made.places is not None
+    assert made.places.governs == "section"
+    here = np.isclose(over.impulse_time, over.nominal[0])
+    here &= np.isclose(over.velocity_change, over.nominal[1])
+    here &= np.array([pulse == over.nominal_pulse for pulse in over.pulses])
+    (at,) = np.flatnonzero(here)
+    assert over.max_von_mises[at] == pytest.approx(made.max_von_mises, rel=5e-3)
+    per_force = over.max_von_mises / over.force
+    assert per_force == pytest.approx(per_force[at], rel=0.02)
