@@ -13,6 +13,7 @@ from fea.section.place import FoundSection
 from fea.verdict import accuracy
 
 IN_SECTION = ("in-section",)
+OF_THE_SURFACE = ("within-tolerance", "above-tolerance", "too-few-meshes", "no-notch-factor")
 
 
 def row_of(
@@ -59,11 +60,17 @@ def _looser(peak: Peak, error: float, tolerance: float) -> Peak:
     if error <= (peak.error_estimate or 0.0) or not largest:
         return peak
     loose = peak.verdict == "converged" and error > tolerance * largest
+    before, after = (
+        accuracy(x / largest, tolerance, peak.verdict == "converged" and not more)
+        for x, more in ((peak.error_estimate or 0.0, False), (error, loose))
+    )
     return replace(
         peak,
         error_estimate=error,
         interval=peak.interval and (peak.interval[0], max(peak.interval[1], largest + error)),
         verdict="unconverged" if loose else peak.verdict,
+        note=peak.note.replace(before.text, after.text),
+        reasons=tuple(after.codes[0] if x == before.codes[0] else x for x in peak.reasons),
     )
 
 
@@ -84,7 +91,9 @@ def _by_section(
     known = section.known(tolerance)
     own = accuracy(relative, tolerance, known)
     singular = surface.verdict == "singular"
-    note = Note("", IN_SECTION) + own
+    _, more, rest = surface.note.partition("; ")
+    others = tuple(code for code in surface.reasons if code not in OF_THE_SURFACE)
+    note = Note("", IN_SECTION) + own + Note(more + rest, others)
     row = replace(
         surface,
         max_von_mises=at.value,
@@ -94,7 +103,7 @@ def _by_section(
         parts=section.parts,
         interval=None,
         verdict="converged" if known else "unconverged",
-        note=own.text,
+        note=note.text,
         reasons=note.codes,
     )
     if singular:  # stress at a clamp or a corner has no bound, whatever the section has

@@ -16,6 +16,7 @@ from benchmarks.timing import table
 from fea.asked import Asked
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
+from fea.core.places import Place
 from fea.derivatives.in_lugs import Joint, JointParameter, joint_derivatives
 from fea.derivatives.records import SolvedCase
 from fea.derivatives.virtual_work import Interior
@@ -28,6 +29,7 @@ from fea.joint.lugs.lug import Bushing, Lug
 from fea.joint.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
 from fea.joint.solve_joint import Cells, JointModel
 from fea.refine import singularities_of
+from fea.section.answer import SectionAnswer
 from geometry import Pin
 from geometry.arrays import Floats
 from geometry.mesh.moved.outline_motion import OutlineNodes, Reach
@@ -73,7 +75,11 @@ def _row(trial: JointTrial) -> tuple[Any, ...]:
     given = InLugs(pin, material, tuple(lugs), (trial.loads,))
     (made,), solving = timed(lambda: solve_in_lugs(given, Asked()))
     every = list(parameters(pin, material, lugs))
-    found, deriving = timed(lambda: joint_derivatives(*solved_in_lugs(made, material), every))
+    places = made.solution.peak.places
+    assert places is not None
+    found, deriving = timed(
+        lambda: joint_derivatives(*solved_in_lugs(made, material), every, place=places.governs)
+    )
     whole = whole_joint(pin, material, lugs, trial.loads, ROUGH)
     ours = joint_derivatives(whole.solved, whole.model, whole.links, every).by_parameter
     most = sorted((p for p in every if p.key in ours), key=lambda p: -abs(p.scale * ours[p.key]))[
@@ -161,11 +167,12 @@ def _made_of(joint: Joint, old: Material, key: str, value: float) -> Joint:
 
 @dataclass(frozen=True)
 class WholeJoint:
-    """A joint, its maximum on the meshes of a solution as they are moved."""
+    """A joint, its maximum on the meshes of a solution as they are moved: of a place."""
 
     solved: SolvedCase
     model: JointModel
     links: PinLoads
+    place: Place = "surface"
 
     def maximum(self, parameter: JointParameter, value: float) -> float:
         """With another value of a parameter, all of it found anew."""
@@ -200,6 +207,9 @@ class WholeJoint:
         waves = other.waves([self._pressed(other)])
         arcs = other.arcs(model.pressed(links))
         loads = other.patterns([(waves, ALL)]).loads(waves, links, arcs)
+        if self.place == "section":
+            on_rings = loads.on_rings
+            return SectionAnswer(other.pin, material, (), [on_rings]).place(on_rings).value
         mesh = self.solved.solution.mesh
         reaches = [Reach((p.r, p.z), p.radius) for p in self.solved.zones]
         shift = _moved(mesh, model.pin, other.pin, reaches).nodes - mesh.nodes
@@ -221,7 +231,12 @@ class WholeJoint:
 
 
 def whole_joint(
-    pin: Pin, material: Material, lugs: Sequence[Lug], links: PinLoads, cells: Cells
+    pin: Pin,
+    material: Material,
+    lugs: Sequence[Lug],
+    links: PinLoads,
+    cells: Cells,
+    place: Place = "surface",
 ) -> WholeJoint:
     """Solved on its first mesh, with all harmonics of contact."""
     model = JointModel(pin, material, lugs, cells)
@@ -231,7 +246,8 @@ def whole_joint(
     zones = singularities_of(model.pin, material, (), (loads,))
     problem = SectionProblem(model.pin, material, (), (loads,), zones, model.first)
     section = harmonic_solution(problem, 0, 1.0)
-    return WholeJoint(SolvedCase(model.pin, material, (), loads, section, zones), model, links)
+    solved = SolvedCase(model.pin, material, (), loads, section, zones)
+    return WholeJoint(solved, model, links, place)
 
 
 def _knots(eye: Pin, lug: Lug) -> tuple[Floats, Floats]:

@@ -66,3 +66,37 @@ def _lug(rng: np.random.Generator, name: str, d: float, thick: float, free: bool
     shank = stiff * thick**3 / (12.0 * arm)  # as wide as the eye, held `arm` widths away
     tilt = (math.inf, shank, 0.0 if free else shank)[int(rng.integers(3))]
     return Lug(name, across, Material("lug", stiff, float(rng.uniform(0.25, 0.34))), tilt=tilt)
+
+
+def filleted_trials(count: int, seed: int) -> list[JointTrial]:
+    """The same with a middle that is 1.05 to 1.4 times as thick, with fillets that are 0.15 to 0.3
+    diameters from the edges of lugs, which are rounded by up to 0.05; guided.
+    """
+    rng = np.random.default_rng(seed)
+    return [_filleted(rng, k) for k in range(count)]
+
+
+def _filleted(rng: np.random.Generator, k: int) -> JointTrial:
+    d, names = 0.005 * 20.0 ** float(rng.random()), "AB" if k % 3 == 2 else "ABC"
+    wide = d * float(rng.uniform(1.05, 1.4))
+    fillet, apart = (
+        0.5 * (wide - d) * float(rng.uniform(0.25, 0.9)),
+        d * float(rng.uniform(0.15, 0.3)),
+    )
+    edge = d * float(rng.uniform(0.005, 0.05))
+    material = Material("pin", 2.1e11, 0.3)
+    segments, lugs = [Segment(0.2 * d, d)], []
+    for name in names:
+        own = wide if name == "B" else d
+        thick = d * 0.3 * 8.0 ** float(rng.random())
+        before = Segment(apart + fillet, d, fillet=fillet), Segment(apart, wide)
+        after = Segment(apart, wide, fillet=fillet), Segment(apart + fillet, d)
+        middle = Segment(thick, own, connection=name)
+        segments += [*before, middle, *after] if name == "B" else [middle]
+        across = own * float(rng.uniform(1.6, 4.0))
+        lugs.append(Lug(name, across, material, edge_radius=min(edge, 0.2 * thick)))
+    segments.append(Segment(0.2 * d, d))
+    forces = [-0.5, 1.0, -0.5] if len(names) == 3 else [-1.0, 1.0]
+    along = FORCE * np.array(forces)[None, :, None] * [1.0, 0.0, 0.0]
+    pin = Pin(f"joint with fillets {k}", tuple(segments))
+    return JointTrial(pin, material, tuple(lugs), PinLoads("pull", tuple(names), along))

@@ -109,10 +109,15 @@ def velocities(of: SolvedCase) -> tuple[list[Dimension], Floats]:
 
 
 def moved_maximum(
-    of: SolvedCase, pin: Pin, moved: Floats, material: Material, loads: PinLoads | None = None
+    of: SolvedCase,
+    pin: Pin,
+    moved: Floats,
+    material: Material,
+    loads: PinLoads | None = None,
+    point: int | None = None,
 ) -> float:
-    """The stress at the governing point on the same mesh with its nodes moved (N, 2), all of it
-    found anew; under other loads than before, if any.
+    """The stress at the governing point, or another one by its number, on the same mesh with its
+    nodes moved (N, 2), all of it found anew; under other loads than before, if any.
     """
     loads = loads or of.loads
     mesh = of.solution.mesh
@@ -121,10 +126,11 @@ def moved_maximum(
     units = tuple(loads.coefficients())
     ends = _ends(pin, of.clamps, units)
     fields = HarmonicModel(pin, mesh, material, of.clamps).solve(units, _rims(pin, zones), ends)
-    before = reader(of.solution.fields, of.loads, of.material.poisson_ratio)
-    old = before.top(before.fields.outside(of.zones))
+    if point is None:
+        before = reader(of.solution.fields, of.loads, of.material.poisson_ratio)
+        point = before.top(before.fields.outside(of.zones)).point
     read = reader(fields, loads, material.poisson_ratio)
-    value, _ = read.round(np.array([old.point]), np.array([0]))
+    value, _ = read.round(np.array([point]), np.array([0]))
     return float(value[0])
 
 

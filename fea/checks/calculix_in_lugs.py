@@ -1,5 +1,6 @@
 """A second opinion on a pin in its lugs: CalculiX's contact at the governing instant, on two
-meshes, compared with our load per length, largest bending moment, and stress at our maximum.
+meshes, compared with our load per length, largest bending moment, and stress at our maximum, of the
+surface or of a section.
 
 CalculiX has its own meshes, which cause most of the differences; the change from the coarser to the
 finer one shows how much they explain.
@@ -15,6 +16,7 @@ import numpy as np
 from fea.checks.calculix import CalculixError
 from fea.checks.calculix_joint import JointOpinion, joint_opinion, plane_of
 from fea.checks.calculix_joint_mesh import Fineness
+from fea.checks.calculix_row import section_of
 from fea.checks.opinions import BandOpinion, ContactOpinion, Opinion
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
@@ -59,7 +61,7 @@ def opinion_in_lugs(
             found.append(joint_opinion(seated.pin, seated.material, seated.lugs, loads, mesh))
     except (ArgumentError, CalculixError, SolveError) as error:
         return replace(answer, failure=str(error))
-    return _compared(answer, seated.pin, peak, joint, found)
+    return _compared(answer, seated, peak, joint, found)
 
 
 def across(seated: Seated, governing: PinLoads | None) -> PinLoads:
@@ -102,11 +104,16 @@ def _meshes(loads: PinLoads) -> Meshes:
 
 
 def _compared(
-    answer: Opinion, pin: Pin, peak: Peak, joint: JointResult, found: Sequence[JointOpinion]
+    answer: Opinion,
+    seated: Seated,
+    peak: Peak,
+    joint: JointResult,
+    found: Sequence[JointOpinion],
 ) -> Opinion:
     assert joint.bending_moment is not None  # contact has one
+    pin = seated.pin
     moments = [largest_moment(x, pin) for x in found]
-    stresses = [float(x.von_mises_at(np.array([peak.location]))[0]) for x in found]
+    stresses = [_stress(x, seated, peak) for x in found]
     coarse, fine = found
     least = UNLOADED * max(band.force for band in joint.bands)
     contact = ContactOpinion(
@@ -119,6 +126,16 @@ def _compared(
         fine.appended,
     )
     return replace(answer, unknowns=fine.unknowns, theirs=stresses[1], contact=contact)
+
+
+def _stress(found: JointOpinion, seated: Seated, peak: Peak) -> float:
+    """At our maximum, Pa: on the surface where that is, or in the section that has it, by the
+    forces of CalculiX's rings.
+    """
+    if peak.places is not None and peak.places.governs == "section":
+        return section_of(found, seated.pin, seated.material).value
+    assert peak.location is not None
+    return found.surface_at(np.array(peak.location), seated.material.poisson_ratio)
 
 
 def largest_moment(found: JointOpinion, pin: Pin) -> float:

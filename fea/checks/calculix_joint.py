@@ -30,6 +30,7 @@ from fea.checks.calculix_joint_mesh import Fineness, Hexahedra, annulus_mesh, pi
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.voigt import von_mises
+from fea.cut.free_points import relieved
 from fea.joint.lugs.lug import Lug
 from fea.joint.lugs.rings import graded
 from geometry import ArgumentError, Pin
@@ -85,6 +86,20 @@ class JointOpinion:
         even = np.einsum("zr,ra->za", arm, self.line_load)
         off = self.force * self.ends.mean(axis=1)[:, None] - self.first
         return np.asarray(even + (z[:, None] >= high) @ off)
+
+    def surface_at(self, point: Floats, nu: float) -> float:
+        """Von Mises stress, Pa, at a point (3,), m, of the surface, without that of pressure on a
+        ring (fea.harmonic.free_surface).
+        """
+        c, s = np.cos(self.angle), np.sin(self.angle)
+        x = point @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        if self.half:
+            x[1] = abs(x[1])
+        stress = self._stress_at(x)
+        on = (x[2] > self.ends[:, 0]) & (x[2] < self.ends[:, 1])
+        if on.any():
+            stress = relieved(stress[None, :, None], x[None], nu)[0, :, 0]
+        return float(von_mises(stress))
 
     def von_mises_at(self, points: Floats) -> Floats:
         """Von Mises stress (P,) Pa at points (P, 3) m of the pin."""

@@ -22,6 +22,7 @@ from fea.cut.local_fields import (
 )
 from fea.cut.region import surface_ends, zone
 from fea.cut.shown import ShownCut, shown
+from fea.cut.shown_free import free_picture
 from fea.cut.supports import ClampMotions, Support, motions, reactions
 from fea.harmonic.beneath import Beneath, Steps, beneath, depths, stairs
 from fea.harmonic.evaluate import (
@@ -229,6 +230,12 @@ class CutAnswer:
     def picture(self, loads: PinLoads, instant: int) -> Picture:
         """The surface at one instant, with its envelope over all."""
         surface, c = self.surface, self.coefficients(loads)
+        if loads.pressed is not None:
+            stress, envelope, pressed = free_picture(surface, c, loads.pressed, instant)
+            moved = surface.displacement @ c[instant]
+            return Picture(
+                surface.points, surface.triangles, "triangle", moved, stress, envelope, pressed
+            )
         largest = np.zeros(len(surface.points))
         found = squares(surface.stress)
         for k in range(0, len(c), 64):

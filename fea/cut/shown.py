@@ -16,7 +16,7 @@ from fea.harmonic.evaluate import HarmonicAnswer
 from fea.solid.nodal_loads import Unit
 from geometry.arrays import Floats, Ints, Mask
 
-SECTORS = 48  # of the surface, away from the pieces
+SECTORS = 72  # of the surface, away from the pieces
 NEAR = 40  # points of another piece to which its displacements are fitted
 ACROSS = 0.1  # of their distance from there across the pin counts
 ON_END = 1e-9  # of a piece's length
@@ -26,7 +26,7 @@ ON_END = 1e-9  # of a piece's length
 class ShownCut:
     """The surface as it is shown: points (P, 3) m, triangles (M, 3), and of L unit loads, each in
     one phase, stress (P, 6, L) Pa and displacement (P, 3, L) m; read: (P,) where the maximum is
-    looked for.
+    looked for. outline: (P,) what is on that of the pin without cuts.
     """
 
     points: Floats
@@ -34,6 +34,7 @@ class ShownCut:
     stress: Floats
     displacement: Floats
     read: Mask
+    outline: Mask
 
 
 def shown(section: HarmonicAnswer, pieces: Sequence[LocalFields], held: Support | None) -> ShownCut:
@@ -42,7 +43,7 @@ def shown(section: HarmonicAnswer, pieces: Sequence[LocalFields], held: Support 
     """
     between = [(p.piece.z0, p.piece.z1) for p in pieces]
     uncut = _revolved(section, pieces[0].units, between)
-    parts = [uncut, *(ShownCut(p.points, p.triangles, p.stress, p.uncut, p.read) for p in pieces)]
+    parts = [uncut, *map(_piece, pieces)]
     starts = np.cumsum([0, *(len(part.points) for part in parts)])
     points = np.concatenate([p.points for p in parts])
     displacement = np.concatenate([p.displacement for p in parts])
@@ -57,7 +58,13 @@ def shown(section: HarmonicAnswer, pieces: Sequence[LocalFields], held: Support 
         np.concatenate([p.stress for p in parts]),
         displacement - rigid(motion, points),
         np.concatenate([p.read for p in parts]),
+        np.concatenate([p.outline for p in parts]),
     )
+
+
+def _piece(piece: LocalFields) -> ShownCut:
+    outline = np.isin(np.arange(len(piece.points)), piece.outer)
+    return ShownCut(piece.points, piece.triangles, piece.stress, piece.uncut, piece.read, outline)
 
 
 def _moved_by(piece: LocalFields, points: Floats, own: int) -> Floats:
@@ -140,6 +147,7 @@ def _revolved(
         np.stack([tensor[:, :, a, b] for a, b in ENTRIES], axis=2).reshape(-1, 6, count),
         np.einsum("sai,psil->psal", turn, moved).reshape(-1, 3, count),
         (read[a] & read[b]).repeat(SECTORS),
+        np.ones(len(a) * SECTORS, dtype=bool),
     )
 
 

@@ -28,6 +28,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import UnitLoad
 from fea.derivatives.governing import by_loads, waves_of
 from fea.derivatives.governing_point import point_of
+from fea.derivatives.in_section import OTHER
 from fea.derivatives.reading_point import Continued, ReadingPoint, SectionState
 from fea.derivatives.records import Derivatives, SolvedCase
 from fea.derivatives.ties import tied_places, tied_times
@@ -37,6 +38,7 @@ from fea.harmonic.boundary import Outline
 from fea.harmonic.free_surface import reader
 from fea.harmonic.model import HarmonicModel, applied, generalised
 from fea.harmonic.stress_recovery import points_of_nodes
+from fea.singular.singularities import free_of_arcs
 from geometry import Pin
 from geometry.arrays import Floats, Ints, Mask
 from geometry.mesh.moved.outline_motion import (
@@ -52,7 +54,6 @@ from geometry.shape.dimensions import Dimension
 
 POISSON = 1e-3  # step of Poisson's ratio
 EXPONENT = 1e-4  # step of a pressure's exponent
-OTHER = "with a little more or less of it the section has other edges"
 
 
 def derivatives(solved: SolvedCase, dimensions: Iterable[Dimension]) -> Derivatives:
@@ -296,7 +297,7 @@ class Adjoint:
             outline = self.outline.moved(nodes)
             integrals = None if grown is None else self.space.integrals + step * grown
             forces, tractions = self._forces(pin, outline, integrals, moved=True)
-            state = SectionState(nodes, tractions, self._places_at(step, velocity))
+            state = SectionState(nodes, tractions, self._places_at(pin, step, velocity))
             rows, own = self._plain_pressures
             work = np.sum(self._lambda * forces) + np.sum(own * outline.weights(rows))
             values.append(np.array(work + self.read(state)))
@@ -308,10 +309,21 @@ class Adjoint:
         nodes = self.space.nodes
         return [int(np.hypot(*(nodes - place[:2]).T).argmin()) for place in self.places]
 
-    def _places_at(self, step: float, velocity: Floats) -> Floats:
-        out = self.places.copy()
+    def _places_at(self, pin: Pin, step: float, velocity: Floats) -> Floats:
+        """On a pin that is moved: zones are as large as the diameter there, or end where the next
+        fillet begins.
+        """
+        out, zones = self.places.copy(), self.solved.zones
         out[:, :2] += step * velocity[self._zone_nodes]
-        out[:, 2] *= out[:, 0] / self.places[:, 0]
+        times = out[:, 0] / self.places[:, 0]
+        limited = np.array([p.radius >= p.limit for p in zones], dtype=bool)
+        if limited.any():
+            now, then = (
+                free_of_arcs(of, *x[limited, :2].T)
+                for of, x in ((pin, out), (self.solved.pin, self.places))
+            )
+            times[limited] = now / then
+        out[:, 2] *= times
         return out
 
     @property

@@ -2,7 +2,8 @@
 
 As long as the same cells are in contact pressures are a smooth function of everything, and stress
 one of these and of the pin. Three adjoints serve all parameters: that of stress under given
-pressures (fea.derivatives.derivatives), on the mesh of the maximum; that of contact
+pressures (fea.derivatives.pressed_stress), of the surface on the mesh of the maximum, of a section
+by its forces; that of contact
 (fea.derivatives.held_contact); and the displacements of pin and lugs under the pressures and under
 the adjoint ones (fea.derivatives.ring_work), on the meshes of their flexibilities. So these are the
 derivatives of the maximum on all meshes as they are moved, with the cells of the solution.
@@ -10,20 +11,21 @@ derivatives of the maximum on all meshes as they are moved, with the cells of th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from fea.core.material import Material
-from fea.core.pin_loads import PinLoads, UnitLoad
-from fea.derivatives.derivatives import OTHER, Adjoint
-from fea.derivatives.governing import By, turned
+from fea.core.pin_loads import PinLoads
+from fea.core.places import Place
+from fea.derivatives.governing import By
 from fea.derivatives.held_contact import HeldContact
+from fea.derivatives.in_section import OTHER
+from fea.derivatives.pressed_stress import Change, OfSections, OfSurface, PressedStress
 from fea.derivatives.records import SolvedCase
 from fea.derivatives.ring_work import RingWork
-from fea.derivatives.ties import tied_places, tied_times
 from fea.derivatives.virtual_work import Interior
 from fea.harmonic.assembly import elasticity
 from fea.joint.lugs.lug import Lug
@@ -34,7 +36,6 @@ from geometry.arrays import Floats
 from geometry.mesh.moved.outline_motion import (
     PLACES,
     STEPS,
-    NodeMotion,
     OtherShapeError,
     OutlineNodes,
     rate_of,
@@ -84,48 +85,23 @@ def joint_derivatives(
     parameters: Iterable[JointParameter] = (),
     *,
     alone: bool = False,
+    place: Place = "surface",
 ) -> JointDerivatives:
-    """Of the maximum under pressures at one instant. solved: the pin with its bands cut into rings
-    under them; links: the loads that they carry; alone: the parameters, without loads and ties.
+    """Of the maximum of a place under pressures at one instant. solved: the pin with its bands cut
+    into rings under them; links: the loads that they carry; alone: the parameters, without loads
+    and ties.
 
     Raises: MeshError, SolveError.
     """
-    return _InLugs(solved, model, links).derivatives(tuple(parameters), alone)
-
-
-@dataclass(frozen=True)
-class _Change:
-    """Of a parameter, by its key: the joint at PLACES times a step (m, or its unit) more of it, and
-    the motions of the outline, None where the pin stays, on the mesh of the maximum and on that of
-    its flexibility.
-    """
-
-    key: str
-    models: tuple[JointModel, ...]
-    step: float
-    motions: tuple[NodeMotion, NodeMotion] | None
-
-    def rate(self, of: Callable[[JointModel], Floats | float]) -> Floats:
-        """Of what the joint has."""
-        return rate_of([np.asarray(of(one)) for one in self.models], self.step)
+    of = OfSections if place == "section" else OfSurface
+    found = _InLugs(of(solved, model, links), model, links)
+    return found.derivatives(tuple(parameters), alone)
 
 
 class _InLugs:
-    def __init__(self, solved: SolvedCase, model: JointModel, links: PinLoads) -> None:
-        self.solved, self.model, self.links = solved, model, links
-        self.adjoint = Adjoint(solved)
-        self.contact = HeldContact(model, links, self._gradient())
-
-    def _gradient(self) -> Floats:
-        """Of the stress by the amplitudes of pressures on the rings, (N + 1, R, 2)."""
-        model, adjoint = self.model, self.adjoint
-        out = np.zeros((model.cells.highest + 1, len(model.rings), 2))
-        for k, wave in enumerate(adjoint.waves):
-            if wave.n < len(out):
-                loads = [UnitLoad("", "pressure", wave.n, ((name, 1.0),)) for name in model.rings]
-                each = turned(wave.n, np.eye(2), adjoint.top.angle)[wave.part]
-                out[wave.n] += adjoint.of_loads(k, loads)[:, None] * each
-        return out
+    def __init__(self, stress: PressedStress, model: JointModel, links: PinLoads) -> None:
+        self.stress, self.model, self.links = stress, model, links
+        self.contact = HeldContact(model, links, stress.by_pressures())
 
     def derivatives(self, parameters: tuple[JointParameter, ...], alone: bool) -> JointDerivatives:
         changes, without = [], {}
@@ -134,17 +110,17 @@ class _InLugs:
                 changes.append(self._change(parameter))
             except OtherShapeError:
                 without[parameter.key] = OTHER
-        adjoint, solved, top = self.adjoint, self.solved, self.adjoint.top
+        stress = self.stress
         if alone:
-            return JointDerivatives(top.value, self._by(changes), without, {}, {})
+            return JointDerivatives(stress.maximum, self._by(changes), without, {}, {})
         return JointDerivatives(
-            top.value,
+            stress.maximum,
             self._by(changes),
             without,
             self._by_forces(),
             self._by_moments(),
-            tied_places(adjoint.around, solved.zones, top, solved.error),
-            tied_times(solved, top.value),
+            stress.tied_places,
+            stress.tied_times,
             self.contact.changing,
         )
 
@@ -166,9 +142,9 @@ class _InLugs:
         """The nodes of the mesh of the pin's flexibility."""
         return OutlineNodes(self.pin_work.space.section, self.model.pin)
 
-    def _change(self, parameter: JointParameter) -> _Change:
+    def _change(self, parameter: JointParameter) -> Change:
         """Raises: OtherShapeError."""
-        model = self.model
+        model, key = self.model, parameter.key
         for part in STEPS:
             step = part * parameter.scale
             values = [parameter.value + x * step for x in PLACES]
@@ -178,73 +154,40 @@ class _InLugs:
                 continue
             if any(one.rings != model.rings for one in models):
                 continue
-            pins = tuple(one.pin for one in models)
-            if all(pin == model.pin for pin in pins):
-                return _Change(parameter.key, models, step, None)
+            change, pins = Change(key, models, step, None), tuple(one.pin for one in models)
             try:
-                first, second = (
-                    nodes.among(parameter.key, pins, step)
-                    for nodes in (self.adjoint.outline_nodes, self._flexible)
-                )
+                if any(pin != model.pin for pin in pins):
+                    change = replace(change, flexible=self._flexible.among(key, pins, step))
+                self.stress.require(change)
             except OtherShapeError:
                 continue
-            return _Change(parameter.key, models, step, (first, second))
+            return change
         raise OtherShapeError
 
-    def _by(self, changes: Sequence[_Change]) -> dict[str, float]:
+    def _by(self, changes: Sequence[Change]) -> dict[str, float]:
         """By key."""
-        shapes = [(x.key, x.motions) for x in changes if x.motions is not None]
-        of_pin = self.adjoint.by_motions([first for _, (first, _) in shapes])
+        out = self.stress.held(changes)
+        shapes = [x.flexible for x in changes if x.flexible is not None]
         if shapes:
-            moved = np.stack([second.velocity for _, (_, second) in shapes], axis=2)
+            moved = np.stack([motion.velocity for motion in shapes], axis=2)
             interior = Interior(self.pin_work.space, self._flexible.rows)
-            for (key, _), v in zip(
-                shapes, np.moveaxis(interior.velocity(moved), 2, 0), strict=True
-            ):
-                of_pin[key] += self.pin_work.by_shape("", v)
-        out = {}
+            each = np.moveaxis(interior.velocity(moved), 2, 0)
+            for motion, velocity in zip(shapes, each, strict=True):
+                out[motion.key] += self.pin_work.by_shape("", velocity)
         for change in changes:
-            total = of_pin.get(change.key, 0.0) + float(change.rate(self.contact.held))
-            total += self._by_material(change) + self._by_shares(change)
+            total = float(change.rate(self.contact.held))
+            if any(one.material != self.model.material for one in change.models):
+                D = change.rate(lambda one: elasticity(one.material))
+                total += self.pin_work.by_material("", [D])
             total += sum(self._by_lug(change, lug) for lug in self.model.lugs)
-            out[change.key] = total
+            out[change.key] += total
         return out
-
-    def _by_material(self, change: _Change) -> float:
-        """Of the pin."""
-        if all(one.material == self.model.material for one in change.models):
-            return 0.0
-        D = change.rate(lambda one: elasticity(one.material))
-        total = self.pin_work.by_material("", [D])
-        if poisson := float(change.rate(lambda one: one.material.poisson_ratio)):
-            total += poisson * self.adjoint.by_poisson()
-        if density := float(change.rate(lambda one: one.material.density or 0.0)):
-            total += density * self.adjoint.by_density()
-        return total
-
-    def _by_shares(self, change: _Change) -> float:
-        """Of what acts along the axis and about it, which rings take by their lengths."""
-        if change.motions is None or not (self._acts("forces") or self._acts("moments")):
-            return 0.0
-        each = [others_along(x.pin, x.rings, self.links).coefficients() for x in change.models]
-        rates = {load: rate_of([x[load][0] for x in each], change.step) for load in each[0]}
-        return self._of_amounts(rates)
 
     def _acts(self, what: str) -> bool:
         """Whether there is any along the axis."""
         return bool(getattr(self.links, what)[..., 2].any())
 
-    def _of_amounts(self, amounts: Mapping[UnitLoad, Floats]) -> float:
-        """What amounts (2,) of unit loads, by phase, add to the stress."""
-        total, adjoint = 0.0, self.adjoint
-        for load, both in amounts.items():
-            parts = turned(load.n, both, adjoint.top.angle)
-            for k, wave in enumerate(adjoint.waves):
-                if wave.n == load.n and parts[wave.part]:
-                    total += float(parts[wave.part] * adjoint.of_loads(k, [load])[0])
-        return total
-
-    def _by_lug(self, change: _Change, lug: Lug) -> float:
+    def _by_lug(self, change: Change, lug: Lug) -> float:
         """What the elasticity of a lug adds."""
         name = lug.connection
         number = self.model.lugs.index(lug)
@@ -298,7 +241,7 @@ class _InLugs:
         both = (one, none) if what == "forces" else (none, one)
         given = replace(self.links, forces=both[0], moments=both[1], body=none[:, 0])
         along = others_along(self.model.pin, self.model.rings, given).coefficients()
-        return self._of_amounts({load: both[0] for load, both in along.items()})
+        return self.stress.of_amounts({load: both[0] for load, both in along.items()})
 
 
 def _made_of(lug: Lug) -> tuple[Material, ...]:

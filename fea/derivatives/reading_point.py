@@ -57,9 +57,9 @@ class ReadingPoint(Protocol):
 
 @dataclass(frozen=True)
 class OnSkin:
-    """Some points (P,) of the skin. edges: those they are on, and of those before and after them
-    those that go on smoothly; neighbours: (1 to 3 P,) each, numbers among these. of: (P,) the edge
-    of each point, likewise; at: (P,) which of its five it is.
+    """Some points (P,) of the skin. edges: those they are on, and the ones before and after these
+    that go on smoothly; neighbours: of each before and after it, numbers among these or -1. of:
+    (P,) the edge of each point, likewise; at: (P,) which of its five it is.
     """
 
     outline: Outline

@@ -7,7 +7,7 @@ import numpy as np
 from fea.core.pin_loads import PinLoads
 from fea.core.solution import Picture
 from fea.harmonic.fields import MeridianFields
-from fea.harmonic.shown_surface import Shown, shown_surface
+from fea.harmonic.shown_surface import ShownStress, shown_surface
 from fea.harmonic.superposition import Circumference
 from geometry.arrays import Floats, Ints
 
@@ -54,7 +54,12 @@ def revolve_solid(fields: MeridianFields, loads: PinLoads, instant: int, nu: flo
 
 
 def _turned(
-    fields: MeridianFields, loads: PinLoads, shown: Shown, rows: Ints, instant: int, stress: Floats
+    fields: MeridianFields,
+    loads: PinLoads,
+    shown: ShownStress,
+    rows: Ints,
+    instant: int,
+    stress: Floats,
 ) -> tuple[Floats, Floats, Floats]:
     """Of every point on all meridians: x, y, z (P, 3), displacement (P, 3), stress (P, 6), which is
     (rows, A, 6) in cylindrical coordinates.

@@ -29,7 +29,7 @@ PER_CELL = 2  # sectors at least
 CLOSE = 1e-9  # of the length: points that are one
 
 
-class Shown(Protocol):
+class ShownStress(Protocol):
     """What is shown of a surface at the instants of a case. rows: of the skin, the first one (P,)
     at each place; angles: (A,) rad.
     """
@@ -48,7 +48,7 @@ class Shown(Protocol):
         ...
 
 
-def shown_surface(fields: MeridianFields, loads: PinLoads, nu: float) -> Shown:
+def shown_surface(fields: MeridianFields, loads: PinLoads, nu: float) -> ShownStress:
     """Of a pin under loads, with Poisson's ratio."""
     if loads.pressed is None:
         return _Plain(fields, loads)

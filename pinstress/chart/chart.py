@@ -132,6 +132,7 @@ def _plan_in_lugs(study: Study, task: Task, asked: Asked) -> ChartPlan:
         loads.links if isinstance(loads, PressureLoads) else loads,
         solution.instant,
         asked.distance,
+        loads.pressed,
     )
     end = chosen_in_lugs(problem, solution.peak, found.joint)
     limit = limit_problem(study, task, found)

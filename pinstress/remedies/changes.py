@@ -32,7 +32,7 @@ SIZED_BY_COMMAND = "diameters are found by pinstress size"
 @dataclass(frozen=True)
 class Failing:
     """A case whose factor is too small: its solution, and what part of all loads is permissible, by
-    the upper end of its stress where that is a range.
+    the upper end of its stress where that is a range, and by what lies beneath contact.
     """
 
     task: Task
@@ -42,16 +42,17 @@ class Failing:
 
 def change(asked: Asked, task: Task, solutions: tuple[Solution, ...]) -> Change | None:
     """What to change of a pin, for the worst of its cases; None where none is below the required
-    factor (below yield where none is required) with its error.
+    factor (below yield where none is required) with its error, nor beneath contact.
     """
     strength, required = task.material.yield_strength, asked.required or 1.0
-    worst = max(solutions, key=lambda s: s.peak.max_von_mises or 0.0)
+    worst = max(solutions, key=lambda s: max(s.peak.max_von_mises or 0.0, _beneath(s)))
     peak = worst.peak
     if strength is None or not peak.max_von_mises:
         return None
-    high = peak.upper_end
-    if (peak.max_von_mises if peak.verdict == "singular" else high) <= strength / required:
+    own = peak.max_von_mises if peak.verdict == "singular" else peak.upper_end
+    if max(own, _beneath(worst)) <= strength / required:
         return None
+    high = max(peak.upper_end, _beneath(worst))
     failing = Failing(task, worst, strength / required / high)
     impulse = task.impulses.get(peak.case)
     problem = _problem(asked, failing)
@@ -70,6 +71,12 @@ def change(asked: Asked, task: Task, solutions: tuple[Solution, ...]) -> Change 
         given_time=None if impulse is None else impulse.time,
         singular=peak.verdict == "singular",
     )
+
+
+def _beneath(solution: Solution) -> float:
+    """What lies beneath contact with its error, Pa; 0 without any."""
+    contact = solution.peak.places and solution.peak.places.contact
+    return contact.upper_end if contact else 0.0
 
 
 def _share(failing: Failing, loads: PinLoads) -> float | None:

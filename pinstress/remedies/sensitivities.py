@@ -1,7 +1,8 @@
 """What a little more of anything does to a pin's factor of safety: true derivatives.
 
-They are of the reported maximum on its own mesh (fea.derivatives). Where a beam answers, those of
-the harmonic model's first mesh are taken, relative to its own maximum.
+They are of the row's number: of the stress of a section where that governs, otherwise of the
+surface's on its own mesh (fea.derivatives). Where a beam answers, those of the harmonic model's
+first mesh are taken, relative to its own maximum.
 """
 
 from __future__ import annotations
@@ -15,9 +16,12 @@ from fea.asked import Asked
 from fea.beam.model import BeamAnswer
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
+from fea.core.peak import Peak
 from fea.core.pin_loads import PinLoads
+from fea.core.places import Place
 from fea.derivatives.derivatives import derivatives
 from fea.derivatives.in_lugs import JointDerivatives, JointParameter, joint_derivatives
+from fea.derivatives.in_section import section_derivatives
 from fea.derivatives.records import Derivatives, SolvedCase
 from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
 from fea.joint.solve_in_lugs import LugSolution
@@ -71,7 +75,10 @@ def _largest(found: Solution | LugSolution) -> float:
 
 
 def by_length(
-    study: Study, task: Task, joined: LugSolution, keys: Collection[str] | None = None
+    study: Study,
+    task: Task,
+    joined: LugSolution,
+    keys: Collection[str] | None = None,
 ) -> dict[str, float] | None:
     """The derivative of the largest von Mises stress of a pin in contact, solved, with respect to
     each of its lengths, Pa/m, by their keys in the pin's table: "profile[2].diameter", "fillet",
@@ -86,10 +93,15 @@ def by_length(
 
 
 def differentiated_in_lugs(
-    joined: LugSolution, task: Task, parameters: Iterable[JointParameter], *, alone: bool = False
+    joined: LugSolution,
+    task: Task,
+    parameters: Iterable[JointParameter],
+    *,
+    alone: bool = False,
+    place: Place | None = None,
 ) -> JointDerivatives | None:
-    """Of the maximum of a pin in contact; None where it has none. alone: by the parameters only,
-    not by loads. Raises: MeshError, SolveError.
+    """Of the maximum of a pin in contact, or of a place at the row's instant; None where it has
+    none. alone: by the parameters only, not by loads. Raises: MeshError, SolveError.
     """
     solution, model, rings = joined.solution, joined.model, joined.rings
     peak, answer = solution.peak, solution.answer
@@ -107,7 +119,15 @@ def differentiated_in_lugs(
         (peak.own_error or 0.0) / peak.max_von_mises,
         solution.loads,
     )
-    return joint_derivatives(solved, model, peak.governing, parameters, alone=alone)
+    links = peak.governing
+    return joint_derivatives(
+        solved, model, links, parameters, alone=alone, place=place or governing_place(peak)
+    )
+
+
+def governing_place(peak: Peak) -> Place:
+    """Of which place the maximum is."""
+    return "surface" if peak.places is None else peak.places.governs
 
 
 def differentiated(
@@ -119,6 +139,7 @@ def differentiated(
         return None
     clamps = tuple(pin.surface(name) for name in task.clamps)
     error, history = (peak.own_error or 0.0) / peak.max_von_mises, None
+    by_section = governing_place(peak) == "section"
     if isinstance(answer, HarmonicAnswer):
         section, zones, history = answer.solution, answer.singularities, solution.loads
     elif isinstance(answer, BeamAnswer):
@@ -130,6 +151,8 @@ def differentiated(
     else:
         return None
     solved = SolvedCase(pin, task.material, clamps, peak.governing, section, zones, error, history)
+    if by_section:
+        return section_derivatives(solved, dimensions)
     return scaled(derivatives(solved, dimensions), peak.max_von_mises)
 
 

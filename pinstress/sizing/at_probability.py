@@ -20,7 +20,8 @@ from pinstress.processes.pool import Progress
 from pinstress.reliability.designs import SolvedDesigns, random_numbers
 from pinstress.reliability.form import NOISY, SMOOTH, Array, form_quantile
 from pinstress.remedies.secant import CLOSE
-from pinstress.sizing.least_weight import LightStudy, lighten, low_factor
+from pinstress.sizing.counted import low_factor
+from pinstress.sizing.least_weight import LightStudy, lighten
 from pinstress.sizing.lightest_pin import Aim
 from pinstress.sizing.pin_shape import kind_of
 from pinstress.study.file import Study

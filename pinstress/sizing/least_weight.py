@@ -11,13 +11,14 @@ from pinstress.analysis.results import run
 from pinstress.model.pins import pin as pin_of
 from pinstress.processes.pool import Died, Job, Progress, preload, side_by_side
 from pinstress.remedies.secant import CLOSE
+from pinstress.sizing.counted import low_factor
 from pinstress.sizing.lightest_pin import Aim, Lightest, Start, as_it_is, lightest_pin
 from pinstress.sizing.other_dimensions import written_study
 from pinstress.sizing.pin_shape import VariedShape
 from pinstress.sizing.scaled_study import resized_study
 from pinstress.study.file import Study
-from reports.data.decision import ORDER, SAFE, as_described, factor_ends
-from reports.data.results import PinResult, Results
+from reports.data.decision import ORDER, SAFE, as_described
+from reports.data.results import Results
 
 PASSES = 5
 SOLVERS = ("fea.solve_pin", "fea.derivatives.places", "scipy.optimize")
@@ -95,11 +96,6 @@ def _worse(
         if p.pin in doubtful and was is not None and ORDER[now] < ORDER[was]:
             out[p.pin] = f"the lightest pin that was found is {now} in {p.case}, this one {was}"
     return out
-
-
-def low_factor(pin: PinResult) -> float | None:
-    """The factor that counts: that of the maximum with its error."""
-    return factor_ends(pin)[0] if pin.safety_factor is not None and pin.max_von_mises else None
 
 
 def _all(

@@ -17,6 +17,7 @@ from pinstress.analysis.plan import Plan
 from pinstress.model.pins import pin as pin_of
 from pinstress.remedies.dimensions import dimensions_of
 from pinstress.remedies.secant import CLOSE, LEAP, NoSizeError, smallest
+from pinstress.sizing.contact_slopes import UndifferentiatedError
 from pinstress.sizing.optimise import (
     NEAR,
     ImpossibleError,
@@ -31,7 +32,6 @@ from pinstress.sizing.pin_stress import (
     PinProblem,
     PinStress,
     SolvedPin,
-    UndifferentiatedError,
 )
 from pinstress.sizing.scaled_study import resized_study
 from pinstress.sizing.singular_places import decided

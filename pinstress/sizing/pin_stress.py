@@ -1,9 +1,11 @@
 """The stresses of a pin with other dimensions, in all cases, and their derivatives where they may
 govern: solved as a run solves them, so that what they say is what a run says.
 
-Of a body of revolution the largest stress is found in both halves of each segment. In a row that is
-singular stress is read half the excluded distance away, where the upper end of the reported range
-is. All stresses of a row are raised by the ratio of what counts of it to the largest of them.
+Of a body of revolution the largest stress is found in both halves of each segment, and that of its
+sections; of a pin in contact that of the surface, of sections, and beneath contact, all of which
+must meet the factor. In a row that is singular stress is read half the excluded distance away,
+where the upper end of the reported range is. All stresses of a surface are raised by the ratio of
+what counts of it to the largest of them.
 
 A pin in contact is searched on rough cells, which take a fifth or less of the time of the finest;
 by how much usual cells differ is found where it matters (`sure`), and added to all that is found on
@@ -23,6 +25,7 @@ from fea.asked import Asked
 from fea.core.linear_solver import SolveError
 from fea.core.peak import Peak
 from fea.core.pin_loads import PinLoads
+from fea.derivatives.in_section import section_derivatives
 from fea.derivatives.places import PartsOfSection, PartTop, halves
 from fea.derivatives.records import SolvedCase
 from fea.harmonic.evaluate import HarmonicAnswer
@@ -37,11 +40,13 @@ from pinstress.model.cases import CaseLoads
 from pinstress.model.pins import pin as pin_of
 from pinstress.model.tasks import Task, tasks
 from pinstress.remedies.dimensions import dimensions_of
-from pinstress.remedies.sensitivities import by_length, differentiated
+from pinstress.remedies.sensitivities import differentiated
+from pinstress.sizing.contact_slopes import UndifferentiatedError, by_contact
+from pinstress.sizing.counted import surface_and_section
 from pinstress.sizing.optimise import ImpossibleError, StressPlace, worst
 from pinstress.sizing.other_dimensions import paths_of, study_with
 from pinstress.sizing.pin_shape import VariedShape
-from pinstress.sizing.scaled_study import hole_in_eye, wider_eyes
+from pinstress.sizing.scaled_study import wider_eyes
 from pinstress.sizing.singular_places import BENDING, CasePlace, SingularPlaces
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study, raw_study
@@ -107,10 +112,6 @@ class _Found:
     stress: float
     slopes: Callable[[], Floats]
     guess: Floats | None = None
-
-
-class UndifferentiatedError(Exception):
-    """Stress has no derivatives by dimensions: of a pin with cuts, or of some in contact."""
 
 
 class PinStress:
@@ -200,6 +201,7 @@ class PinStress:
         peaks: list[Peak] = []
         found: list[tuple[_Found, float]] = []
         singular: list[CasePlace] = []
+        under: list[CasePlace] = []
         asked = replace(self.problem.asked, cells=cells)
         try:
             for task in self._tasks(study, values):
@@ -208,15 +210,18 @@ class PinStress:
                     allowed = self._allowed(task, peak)
                     found += [(part, allowed) for part in parts]
                     singular += self._singular.of(task.pin, peak, allowed, values)
+                    below = self._singular.beneath(task.pin, peak, allowed, values)
+                    under += [(peak.case, place) for place in below]
         except (InputError, ArgumentError, ArithmeticError, MemoryError) as error:
             raise ImpossibleError(str(error) or "out of memory") from None
         if not peaks:
             raise ImpossibleError("no case loads it")
         logs = [float(np.log(part.stress / allowed)) for part, allowed in found]
-        top = max(logs)
-        near = (part.case for (part, _), log in zip(found, logs, strict=True) if log > top - BELOW)
-        self._cases = tuple(dict.fromkeys(near))
-        places = []
+        top = max([*logs, *(place.value for _, place in under)])
+        of_case = [(part.case, log) for (part, _), log in zip(found, logs, strict=True)]
+        of_case += [(case, place.value) for case, place in under]
+        self._cases = tuple(dict.fromkeys(case for case, log in of_case if log > top - BELOW))
+        places = [place for _, place in under]
         for (part, _), value in zip(found, logs, strict=True):
             window = WINDOW if part.name in self._known else UNKNOWN
             slope = None
@@ -270,39 +275,20 @@ class PinStress:
             _require_solved(peak)
             if not peak.max_von_mises:
                 continue
-            if not differentiated:
-                yield peak, [_Found(peak.case, peak.case, peak.upper_end, lambda: np.zeros(0))]
-            elif isinstance(each, LugSolution):
-                slopes = partial(self._by_contact, study, task, each, peak.max_von_mises)
-                yield peak, [_Found(peak.case, peak.case, peak.upper_end, slopes)]
+            if isinstance(each, LugSolution):
+                before = self.problem.study
+                yield peak, [
+                    _Found(
+                        f"{peak.case}, {place}", peak.case, stress,
+                        partial(by_contact, before, study, (task, each, place), dimensions),
+                    )
+                    for place, stress in surface_and_section(peak)
+                    if stress
+                ]  # fmt: skip
+            elif not differentiated:
+                yield peak, [_Found(peak.case, peak.case, peak.upper_end, _none)]
             else:
                 yield peak, self._parts(task, each, dimensions, section)
-
-    def _by_contact(self, study: Study, task: Task, joined: LugSolution, maximum: float) -> Floats:
-        """Relative derivatives of the largest stress, 1/m; eyes that became too narrow grow with
-        the pin. Raises: UndifferentiatedError.
-        """
-        keys, name = self.problem.shape.keys, self.problem.name
-        before, now = (x.table.pin[name].lug for x in (self.problem.study, study))
-        grown = {at for at in now if now[at].outer_diameter != before[at].outer_diameter}
-        eyes = {at: f"lug.{at}.outer_diameter" for at in grown}
-        by = by_length(study, task, joined, {*keys, *eyes.values()})
-        if by is None:
-            raise UndifferentiatedError
-        slopes = np.array([by.get(key, 0.0) for key in keys])
-        for at, key in eyes.items():
-            ratio = (now[at].outer_diameter or 0.0) / hole_in_eye(study, name, at)
-            slopes += by.get(key, 0.0) * ratio * self._band_rates(study, task, at)
-        return slopes / maximum
-
-    def _band_rates(self, study: Study, task: Task, connection: str) -> Floats:
-        """Of the diameter on which a link bears, by the dimensions."""
-        assert isinstance(task.pin, Pin)  # others are not differentiated
-        now, out = task.pin.band(connection).radius, []
-        for d in self._dimensions(study, task):
-            less = d.changed(d.value * (1.0 - EQUAL**0.5)).band(connection).radius
-            out.append(2.0 * (now - less) / (d.value * EQUAL**0.5))
-        return np.array(out)
 
     def _dimensions(self, study: Study, task: Task) -> tuple[Dimension, ...]:
         by = {d.key: d for d in dimensions_of(study, task.pin)}
@@ -338,13 +324,29 @@ class PinStress:
         solved = SolvedCase(pin, task.material, clamps, solution.loads, answer.solution, zones)
         masks = halves(pin.stations, answer.fields.points)
         tops = parts.tops(solved, solution.loads, masks)
-        times = peak.upper_end / max(top.top.value for top in tops)
+        ends = dict(surface_and_section(peak))
+        times = ends["surface"] / max(top.top.value for top in tops)
 
         def slopes(top: PartTop, mask: Mask) -> Callable[[], Floats]:
             return lambda: parts.slopes(solved, solution.loads, top, mask) / top.top.value
 
+        def of_section() -> Floats:
+            assert peak.places is not None
+            assert peak.places.section is not None
+            times, now = solution.loads.times, peak.places.section.time
+            instant = 0 if times is None or now is None else int(np.abs(times - now).argmin())
+            at = replace(solved, loads=solution.loads.at(np.array([instant])), history=None)
+            made = section_derivatives(at, dimensions)
+            slope = np.array([made.by_dimension.get(d.key, 0.0) for d in dimensions])
+            return slope / made.maximum
+
+        section = [
+            _Found(f"{peak.case}, section", peak.case, stress, of_section)
+            for place, stress in ends.items()
+            if place == "section" and stress
+        ]
         named = {name: (mask, k // 2) for k, (name, mask) in enumerate(masks)}
-        return [
+        return section + [
             _Found(
                 f"{peak.case}, {top.part}",
                 peak.case,
@@ -355,6 +357,11 @@ class PinStress:
             for top in tops
             if top.top.value > 0.0
         ]
+
+
+def _none() -> Floats:
+    """Derivatives that are not asked for."""
+    return np.zeros(0)
 
 
 def _among(found: Sequence[SolvedPin], values: Floats) -> SolvedPin | None:

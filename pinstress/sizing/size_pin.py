@@ -19,6 +19,7 @@ from pinstress.model.pins import material as material_of
 from pinstress.model.pins import pin as pin_of
 from pinstress.model.tasks import tasks
 from pinstress.remedies.secant import NoSizeError, smallest
+from pinstress.sizing.counted import beneath
 from pinstress.sizing.scaled_study import resized_study
 from pinstress.study.errors import InputError
 from pinstress.study.file import Study
@@ -89,12 +90,22 @@ def size_pin(
             least = min(study.table.pin[pin].diameters)
             scale, factor = _stepped(factor_at, scale, wish.step, least, wish.required)
     except NoSizeError as error:
-        return Sized(pin, None, before, None, None, str(error))
+        return Sized(pin, None, before, None, None, str(error) + _where(found))
     except (InputError, ArithmeticError, ArgumentError) as error:
         tried = ", ".join(f"{factor:.4g} at {s:.3g}" for s, factor in factors.items()) or "none"
         why = f"a trial fails (factors by times its diameters: {tried}): {error}"
         return Sized(pin, None, before, None, None, why)
     return Sized(pin, scale, before, factor, found[scale].verdict)
+
+
+def _where(found: Mapping[float, Peak]) -> str:
+    """What the factor is by, where that is not the row's own number, for a pin that was solved."""
+    if not found:
+        return ""
+    last = list(found.values())[-1]
+    if beneath(last) < counts(last):
+        return ""
+    return f"; it is by what lies beneath the contact with its lugs in case {last.case}"
 
 
 def _stepped(
@@ -114,7 +125,7 @@ def _stepped(
 
 
 def governing(plan: Plan, study: Study, pin: str, tell: Tell = lambda _: None) -> Peak:
-    """The peak with the lowest factor of a pin of `study` in the cases of the plan.
+    """The peak with the lowest factor, as it counts, of a pin of `study` in the cases of the plan.
 
     Raises: InputError for a shape that cannot be, NoSizeError when the pin is not solved.
     """
@@ -132,15 +143,21 @@ def governing(plan: Plan, study: Study, pin: str, tell: Tell = lambda _: None) -
     acting = [peak for peak in peaks if peak.max_von_mises]
     if not acting:
         raise NoSizeError("no case loads it")
-    return max(acting, key=lambda peak: peak.max_von_mises or 0.0)
+    return max(acting, key=counts)
+
+
+def counts(peak: Peak) -> float:
+    """The stress, Pa, that has to decide: of the maximum with its error, or what lies beneath
+    contact with its own, the larger; of a singular maximum, which decides nothing, that outside the
+    excluded zones.
+    """
+    own = peak.max_von_mises if peak.verdict == "singular" else peak.upper_end
+    return max(own or 0.0, beneath(peak))
 
 
 def _factor(study: Study, peak: Peak) -> float:
-    """Of the maximum with its error, which has to decide; of a singular one, which decides nothing,
-    of the maximum outside the excluded zones.
-    """
-    factor, stress = _nominal(study, peak), peak.max_von_mises or 0.0
-    return factor if peak.verdict == "singular" else factor * stress / peak.upper_end
+    """Of that stress."""
+    return _nominal(study, peak) * (peak.max_von_mises or 0.0) / counts(peak)
 
 
 def _nominal(study: Study, peak: Peak) -> float:

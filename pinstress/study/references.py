@@ -54,6 +54,7 @@ def cross_references(table: StudyTable) -> Iterator[Wrong]:
                     code="duplicate-connection",
                 )
             bears[connection] = name
+    yield from _of_bearing(table)
     limited = table.analysis.limit_load
     for pin_name in limited if isinstance(limited, list) else ():
         yield from _known("analysis.limit_load", "pin", pin_name, table.pin)
@@ -72,6 +73,27 @@ def cross_references(table: StudyTable) -> Iterator[Wrong]:
         for field, pool in pools:
             if check is not None:
                 yield from _known(f"{key}.{field}", field, getattr(check, field), pool)
+
+
+def _of_bearing(table: StudyTable) -> Iterator[Wrong]:
+    """Bearing strengths with which no pressure is compared: of materials of no pin on which a link
+    bears, and of no lug or bushing.
+    """
+    bears: set[str | None] = set()
+    for pin in table.pin.values():
+        lugs = pin.lug.values()
+        bears |= {lug.material for lug in lugs}
+        bears |= {lug.bushing.material for lug in lugs if lug.bushing is not None}
+        if pin.connections or lugs:
+            bears.add(pin.material)
+    for name, material in table.material.items():
+        if material.bearing_strength is not None and name not in bears:
+            yield Wrong(
+                f"material.{name}.bearing_strength: no lug bears on a pin of this material, and no "
+                "lug or bushing is made of it; give pin.NAME.lug.CONNECTION.material, or remove "
+                "this",
+                code="bearing-strength-without-lug",
+            )
 
 
 def _known(where: str, what: str, name: str, names: Mapping[str, object]) -> Iterator[Wrong]:

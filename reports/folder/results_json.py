@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field
 
@@ -43,6 +43,25 @@ class _Units(JsonPart):
     time: str
 
 
+class _AtPlace(JsonPart):
+    max_von_mises: Positive
+    error_estimate: Positive
+    verdict: str
+
+
+class _Band(JsonPart):
+    name: str
+    mean_pressure: Positive
+    pressed: list[Annotated[list[Number], Field(min_length=4, max_length=4)]]
+
+
+class _Contact(JsonPart):
+    beneath: Positive
+    beneath_error: Positive
+    reach: Positive | None
+    bands: list[_Band]
+
+
 class _Row(JsonPart):
     pin: Name
     case: Name
@@ -55,6 +74,10 @@ class _Row(JsonPart):
     safety_factor: Positive | None
     yields: bool | None
     outcome: str
+    governs: Literal["surface", "section"] | None
+    surface: _AtPlace | None = None
+    section: _AtPlace | None = None
+    contact: _Contact | None = None
     singular_at: list[dict[str, Any]]
 
 

@@ -134,7 +134,7 @@ def _reach(pin: PinResult, contact: ContactPlace | None, units: Units) -> str:
 
 
 def _edges(edges: tuple[ContactEdge, ...], units: Units, least: float) -> Grid:
-    """least: the smallest distance that is told from none."""
+    """least: a smaller distance is none."""
     peaks = any(edge.max_pressure is not None for edge in edges)
     head = [
         "lug", "edge", f"K [{units.stress}·{units.length}^exponent]", "exponent",

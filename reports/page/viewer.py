@@ -18,7 +18,6 @@ from reports.format.packed import packed
 from reports.format.ranges import error_words, factor_range
 from reports.format.script_json import script_json
 from reports.format.words import verdict_words
-from reports.text.place_words import section_governs
 
 WHOLE = 32767  # loads are integers up to this, scaled by the largest
 FINE = 4095  # the same of stresses, scaled by the largest at a point; thinning leaves 8e-3 of it
@@ -151,13 +150,13 @@ def _case(case: SurfaceCase, pin: PinResult, number: int, surface: Surface) -> d
 
 
 def _row(pin: PinResult, results: Results) -> dict[str, str]:
-    """What is said of the row at its instant: error and factor of the surface's largest stress, and
-    in a sentence the section where that is larger.
+    """Error and factor of the surface's largest stress at the row's instant, and in a sentence the
+    section where that is larger.
     """
-    by_section = section_governs(pin)
-    if by_section is None or pin.places is None:
+    places = pin.places
+    if places is None or places.section is None or places.governs == "surface":
         return {"error": error_words(pin), "factor": factor_range(pin), "row": ""}
-    units, surface = results.units, pin.places.surface
+    units, surface, by_section = results.units, places.surface, places.section
     return {
         "error": f"± {engineering(surface.error_estimate, 2)}",
         "factor": "",

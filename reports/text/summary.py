@@ -86,7 +86,7 @@ def _at_edges(results: Results) -> str:
     """Where contact at the edges of lugs is found, which no factor counts."""
     if not any(p.places and p.places.contact and p.places.contact.edges for p in results.pins):
         return ""
-    return "Contact stress at the edges of lugs is reported by itself (contact_edges.csv)."
+    return "Contact stress at lug edges is reported separately (contact_edges.csv)."
 
 
 def _yielding(results: Results) -> str:

@@ -32,6 +32,7 @@ PLUMBING = {  # without any rule of the physics, and not named on the page
     "fea/fatigue/quiet.py",
     "fea/fatigue/records.py",
     "fea/harmonic/revolve.py",
+    "fea/cut/shown_free.py",
     "fea/harmonic/shown_surface.py",
     "fea/joint/records.py",
     "fea/plastic/records.py",

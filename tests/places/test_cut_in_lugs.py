@@ -62,7 +62,7 @@ def test_a_prick_changes_nothing() -> None:
 
 def test_free_points_by_brute_force() -> None:
     """Which points on and beside rings with random cells are free, cell by cell by their distance:
-    a sector more on both sides, and beyond the last ring its own length.
+    a sector more on both sides, and beyond the last ring its own length, or that of the next one.
     """
     rng = np.random.default_rng(5)
     ends, sectors = np.array([0.0, 0.1, 0.25, 0.45, 0.7]), 36
@@ -79,8 +79,10 @@ def test_free_points_by_brute_force() -> None:
         for ring, sector in np.argwhere(cells):
             middle = 2.0 * np.pi * sector / sectors
             off = abs((angle - middle + np.pi) % (2.0 * np.pi) - np.pi)
-            length = rings.length[ring]
-            low, high = rings.start[ring] - length, rings.end[ring] + length
+            length = rings.length[max(ring - 1, 0) : ring + 2]
+            own = rings.length[ring]
+            low = rings.start[ring] - min(own, length[0])
+            high = rings.end[ring] + min(own, length[-1])
             if np.degrees(off) < 14.5 and low < z < high:
                 return True
         return False

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from fea.core.material import Material
-from fea.core.peak import ErrorParts, Peak
+from fea.core.peak import ErrorParts
 from fea.core.pin_loads import Floats, PinLoads
 from fea.plastic.hinge import beam_bounds
-from fea.row import row_of
 from fea.section.answer import AtSection, SectionAnswer
-from fea.section.place import FLEXIBILITIES, FoundSection, found_section
+from fea.section.place import FLEXIBILITIES, found_section
 from geometry import Pin, Segment
 
 STEEL = Material("steel", 205e9, 0.3, yield_strength=400e6)
@@ -285,110 +283,3 @@ def test_maxima_are_those_of_each_instant() -> None:
     value, instant = answer.largest(case)
     assert value == pytest.approx(max(every))
     assert instant == int(np.argmax(every))
-
-
-# What follows is of rows: the larger of surface and section.
-
-
-def surface(value: float, error: float, **more: object) -> Peak:
-    row = Peak(
-        "P", "c", "harmonic", "converged", "estimated error", value, error, (0.01, 0.0, 0.1),
-        parts=ErrorParts(error),
-    )  # fmt: skip
-    return replace(row, **more)  # type: ignore[arg-type]
-
-
-def section(share: float = 0.0) -> tuple[FoundSection, float]:
-    """With an error of so much of it by cells, and its value."""
-    case = loads("E", np.array([[1e3, 0.0, 0.0]]))
-    answer = SectionAnswer(cantilever(), STEEL, ("start",), (case,))
-    found = found_section(answer, case, None, 0.02)
-    found = replace(found, parts=ErrorParts(0.0, cells=share * found.at.value))
-    return found, found.at.value
-
-
-def test_a_row_is_the_larger_of_both() -> None:
-    found, value = section(0.01)
-    above = row_of(surface(2.0 * value, 0.03 * value), found, STEEL, 0.02)
-    assert above.places is not None
-    assert above.places.governs == "surface"
-    assert (above.max_von_mises, above.error_estimate) == (2.0 * value, 0.03 * value)
-    assert (above.verdict, above.location) == ("converged", (0.01, 0.0, 0.1))
-    below = row_of(surface(0.5 * value, 0.03 * value), found, STEEL, 0.02)
-    assert below.places is not None
-    assert below.places.governs == "section"
-    assert (below.max_von_mises, below.error_estimate) == (value, 0.01 * value)
-    assert below.location is not None
-    assert np.abs(below.location) == pytest.approx([0.01, 0.0, 0.0])
-    assert below.parts == found.parts
-    assert "in-section" in below.reasons
-    for row in (above, below):
-        assert row.places is not None
-        assert row.places.section is not None
-        assert row.places.section.max_von_mises == value
-        use = found.at.plastic_use(400e6)
-        assert row.places.section.plastic_utilisation == pytest.approx(use)
-        assert row.places.contact is None
-    assert below.places.surface.max_von_mises == 0.5 * value
-
-
-def test_a_row_is_as_uncertain_as_the_larger_may_be() -> None:
-    """Surface and section nearly alike: the upper end of either is that of the row, and a verdict
-    that only one of them has is not kept.
-    """
-    found, value = section(0.05)
-    row = row_of(surface(1.01 * value, 0.005 * value), found, STEEL, 0.02)
-    assert row.places is not None
-    assert row.places.governs == "surface"
-    assert row.upper_end == pytest.approx(1.05 * value)
-    assert row.verdict == "unconverged"
-    assert row.places.surface.verdict == "converged"
-    sure, value = section(0.001)
-    row = row_of(surface(0.99 * value, 0.08 * value, verdict="unconverged"), sure, STEEL, 0.02)
-    assert row.places is not None
-    assert row.places.governs == "section"
-    assert row.upper_end == pytest.approx(1.07 * value)
-    assert row.verdict == "unconverged"
-    row = row_of(surface(0.9 * value, 0.08 * value, verdict="unconverged"), sure, STEEL, 0.02)
-    assert row.verdict == "converged"  # the surface is surely below
-
-
-@pytest.mark.parametrize(
-    ("surfaces", "expected"),
-    [
-        ((0.9, (0.8, 1.2)), (1.0, 1.2)),  # the section governs, and the surface may have more
-        ((0.5, (0.4, 0.7)), (1.0, 1.0)),  # it surely has less
-        ((1.1, (0.7, 1.5)), (1.0, 1.5)),  # it governs: at half the distance; not below the section
-        ((2.0, (1.5, 3.0)), (1.5, 3.0)),
-    ],
-)
-def test_a_singular_surface_stays_singular(
-    surfaces: tuple[float, tuple[float, float]], expected: tuple[float, float]
-) -> None:
-    found, value = section()
-    own, (low, high) = surfaces
-    error = max(own - low, high - own) * value
-    singular = surface(
-        own * value, error, verdict="singular", interval=(low * value, high * value), note="no"
-    )
-    row = row_of(singular, found, STEEL, 0.02)
-    assert row.verdict == "singular"
-    assert row.max_von_mises == pytest.approx(max(own, 1.0) * value)
-    assert row.interval == pytest.approx((expected[0] * value, expected[1] * value))
-    largest = row.max_von_mises or 0.0
-    assert row.interval is not None
-    assert row.error_estimate == pytest.approx(
-        max(largest - row.interval[0], row.interval[1] - largest)
-    )
-    assert row.places is not None
-    assert row.places.surface.verdict == "singular"
-    assert row.places.section is not None
-    assert row.places.section.verdict == "converged"
-
-
-def test_bodies_without_sections_and_rows_without_numbers() -> None:
-    row = row_of(surface(1e8, 1e6), None, STEEL, 0.02)
-    assert row.places is not None
-    assert (row.places.governs, row.places.section) == ("surface", None)
-    rigid = Peak("P", "c", "auto", "rigid", "not held")
-    assert row_of(rigid, None, STEEL, 0.02) is rigid

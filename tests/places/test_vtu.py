@@ -119,3 +119,14 @@ def test_the_envelope_has_what_is_read_at_some_instant(tmp_path: Path) -> None:
     assert (envelope[pressed == 0] >= now[pressed == 0] * (1.0 - 1e-6)).all()
     assert np.isnan(envelope).any()
     assert np.isfinite(envelope[pressed == 1]).any()  # pressed now, but not always
+
+
+@pytest.mark.slow
+def test_a_pin_with_a_hole_is_shown_like_others(tmp_path: Path) -> None:
+    """By the local solid about its hole and beside it, under a lug and beside its edges."""
+    hole = 'material = "steel"\nhole = [{ z = 40.0, diameter = 3.0, angle = "90 deg" }]'
+    text = CLEVIS.replace('material = "steel"', hole, 1)
+    (tmp_path / "clevis.toml").write_text(text, encoding="utf-8")
+    ((row, read, _),) = written(prepare(load_study(tmp_path / "clevis.toml")), tmp_path, False)
+    assert row.model == "harmonic+local"
+    require_free_of_steps(row, read, "MPa")

@@ -14,13 +14,18 @@ from hypothesis import strategies as st
 
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
+from fea.derivatives.derivatives import Adjoint
+from fea.derivatives.records import SolvedCase
+from fea.harmonic.evaluate import SectionProblem, harmonic_solution
 from fea.singular.singularities import VARIED, find_singularities, free_of_arcs
 from fea.solid.sharp_edges import SharpEdges
-from fea.solve_pin import Asked, Solution, solve_pin
+from fea.solve_pin import Asked, Solution, singularities_of, solve_pin
 from geometry import Arc, CutPin, GeometryError, Hole, Pin, Segment, meridian
 from geometry.arrays import Floats
+from geometry.mesh.moved.outline_motion import PLACES
 from geometry.mesh.section_mesh import meridian_mesh
 from geometry.mesh.sizing import SectionSize, Spot
+from geometry.shape.dimensions import dimensions
 
 D, FORCE, NU, E = 0.02, 1e5, 0.3, 205e9
 WITHIN = 0.03  # of what is read in the fillet: the requirement; found: 0.5 %
@@ -206,3 +211,23 @@ def test_zones_of_solids_end_at_the_fillets_of_their_profile() -> None:
         ((zone, within),) = edges.singularities(read, distance)
         assert zone.radius == pytest.approx(0.05 * D)
         assert within.tolist() == [True, False, False]
+
+
+def test_a_zone_moves_with_the_fillet_that_ends_it(steel: Material) -> None:
+    """Zones on pins with a dimension a little larger or smaller, as derivatives have them, are
+    those that are found on such pins: one as large as the diameter says, one up to a fillet.
+    """
+    pin = Pin("C", (Segment(D, D, name="held"), *shoulder(0.05, 0.1).segments[1:]), 0.1 * D)
+    clamps, loads = ("held",), PinLoads("t", ("L",), np.array([[[0.0, 1e3, 0.0]]]))
+    zones = singularities_of(pin, steel, clamps, (loads,))
+    assert {zone.radius < zone.limit for zone in zones} == {True, False}
+    section = harmonic_solution(SectionProblem(pin, steel, clamps, (loads,), zones), 0, 1.0)
+    of = Adjoint(SolvedCase(pin, steel, clamps, loads, section, zones))
+    for dimension in dimensions(pin):
+        motion = of.outline_nodes.motion(dimension)
+        velocity = of.interior.velocity(motion.velocity[:, :, None])[:, :, 0]
+        for x, moved in zip(PLACES, motion.pins, strict=True):
+            found = of._places_at(moved, x * motion.step, velocity)
+            there = singularities_of(moved, steel, clamps, (loads,))
+            expected = [[p.r, p.z, p.radius] for p in there]
+            assert found == pytest.approx(np.array(expected), rel=1e-6, abs=1e-12)

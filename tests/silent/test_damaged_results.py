@@ -223,7 +223,7 @@ def test_what_is_wrong_is_said_and_where(way: str, folder: Path) -> None:
 
 TEXTS = {
     b"": "results.json is empty",
-    b'{"schema": "pinstress-results/1",\n "title": x}': "line 2, column 11: Expecting value",
+    b'{"schema": "pinstress-results/2",\n "title": x}': "line 2, column 11: Expecting value",
     b"[" * DEEP: "nested too deeply",
     b'{"a": ' + b"[" * 200 + b"]" * 200 + b"}": "nested too deeply",
     b'{"a": ' + b"7" * 5000 + b"}": "a number of thousands of digits",

@@ -275,7 +275,7 @@ def test_what_unpacks_to_more_than_it_may_is_not_unpacked(folder: Path) -> None:
 # Other versions.
 
 
-@pytest.mark.parametrize(("number", "words"), [(0, "an older"), (2, "a newer"), (17, "a newer")])
+@pytest.mark.parametrize(("number", "words"), [(1, "an older"), (3, "a newer"), (17, "a newer")])
 def test_another_schema_is_said(number: int, words: str, folder: Path) -> None:
     content = json.loads((folder / "results.json").read_text(encoding="utf-8"))
     content = {"schema": f"pinstress-results/{number}", "rows": content}
@@ -286,6 +286,9 @@ def test_another_schema_is_said(number: int, words: str, folder: Path) -> None:
         made = run_here(*command, cwd=folder.parent)
         assert made.returncode == 2
         assert f"{words} version of pinstress (schema pinstress-results/{number};" in made.stderr
+        assert "out: results.json" in made.stderr
+        assert "run the study again" in made.stderr
+        assert "Traceback" not in made.stderr
 
 
 # Sweeps.

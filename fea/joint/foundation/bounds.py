@@ -10,8 +10,11 @@ SHOULDER at shoulders. p = q / d, for a tube times radius over wall, is the pres
 there; q is its load per length, at most that farther than EDGE diameters from the lug's edges. With
 clearance p is larger in the ratio of the largest pressures of plane contact.
 
-19 in 20 of 100 random pins have their largest stress within the bounds, farther than a tenth of
-the diameter from sharp edges and corners (python -m benchmarks foundation).
+What is bounded is the row's number by contact, the larger of surface and section (fea.core.places).
+The upper bound holds for what lies beneath contact as well, of which a beam knows nothing: so what
+is safe by it is safe by contact. It held for 77 of 77 random pins with two to four lugs, clearance,
+rounded edges, bores and steps, the lower one for all, too (python -m benchmarks foundation). There
+is none for a fillet beside the edge of a lug (FoundationStress.lacking).
 """
 
 from __future__ import annotations
@@ -39,7 +42,8 @@ MOST_ROUNDING = 0.05  # of the diameter
 @dataclass(frozen=True)
 class Bounded:
     """The largest von Mises stress, Pa, at (r, z) in m and theta, at the instant of that index.
-    bounds: of that with contact; None where nothing is known of them, and `why`.
+    bounds: of that with contact; None where nothing is known of them, and `why`. moment_part: error
+    of the largest moment, relative, inf where nothing is known of it.
     """
 
     maximum: float
@@ -48,6 +52,7 @@ class Bounded:
     theta: float
     instant: int
     why: str = ""
+    moment_part: float = math.inf
 
     @property
     def error(self) -> float | None:
@@ -78,7 +83,7 @@ def bounded(stress: FoundationStress, found: JointFoundation) -> Bounded:
     pressed, alone = _contact_stress(stress, found, loose)
     high = (s * (1.0 + PLAIN + stress.near)[:, None] + moved + pressed).max()
     low = max(0.0, out.maximum * (1.0 - PLAIN) - float(moved[point, t]))
-    return replace(out, bounds=(low, max(float(high), alone)))
+    return replace(out, bounds=(low, max(float(high), alone)), moment_part=part)
 
 
 def _diameters(model: FoundationModel) -> Floats:

@@ -2,6 +2,8 @@
 where its error is within the tolerance, or leaves no doubt that the required factor is reached.
 
 A maximum has the error of the model alone (fea.joint.foundation.bounds), which is at least a tenth.
+Its upper end is above what lies beneath contact, too, of which a foundation knows nothing else: so
+whatever is safe by it is safe by contact. Its rows have the places surface and section.
 """
 
 from __future__ import annotations
@@ -9,7 +11,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -22,6 +24,7 @@ from fea.core.material import Material
 from fea.core.over_time import rise_between, through_time
 from fea.core.peak import ErrorParts, Note, Peak, Refinement
 from fea.core.pin_loads import Amounts, AnyLoads, Floats, PinLoads, UnitLoad
+from fea.core.places import Place, Places, SurfacePlace
 from fea.core.solution import Picture
 from fea.joint.bending import joint_forces, stations
 from fea.joint.foundation.bounds import LOCAL, Bounded, bounded
@@ -32,6 +35,8 @@ from fea.joint.foundation.variations import FoundationRange
 from fea.joint.lugs.fit import beyond_foundations
 from fea.joint.records import BandContact, JointRange, JointResult
 from fea.joint.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
+from fea.section.answer import AtSection, SectionAnswer
+from fea.section.place import FoundSection
 from fea.singular.singularities import find_singularities
 from fea.solve_pin import Solution
 from fea.verdict import accuracy
@@ -44,7 +49,7 @@ ENOUGH = Note("foundation: its error is within the tolerance", ("foundation-with
 DECIDES = Note(f"foundation: {DECIDED}", ("foundation-decides",))
 LEAVES_OUT = (
     "A beam on foundations leaves out local stress at lugs and shoulders; the error includes its "
-    "measured effect, but not the peaks at the edges of lugs."
+    "measured effect on the surface and beneath contact, but not the peaks at the edges of lugs."
 )
 GOVERNS = 2.0  # times LOCAL of the largest pressure: a smaller stress may not govern
 
@@ -209,24 +214,77 @@ def _of_case(
     if between := given.between.get(case.case):
         case = through_time(answer, case, between, asked.tolerance)
         rise = rise_between(answer, case, between)
-    found = bounded(stress, stress.model.solve(case))
-    peak = _peak(over, case.case, found, rise, asked, why)
-    here = case.at(np.array([found.instant]))
+    every = stress.model.solve(case)
+    places = FoundPlaces.of(stress, every)
+    found = places.row
+    peak, here = _peak(over, case.case, found, rise, asked, why), case.at(np.array([found.instant]))
     history = (Refinement(0, found.maximum, time.perf_counter() - start),)
-    solution = Solution(replace(peak, governing=here, history=history), answer, case, found.instant)
+    peak = replace(peak, governing=here, history=history)
+    peak = replace(peak, places=places.said(peak, case, given.material, asked.tolerance))
+    solution = Solution(peak, answer, case, found.instant)
     whole, remark = over.at(here)
-    model, every = over.own.model, over.own.model.solve(case)
-    joint = _joint(model.solve(here), model, whole, remark)
+    joint = _joint(stress.model.solve(here), stress.model, whole, remark)
     along = joint_forces(every.pin, every.mass, every.bands, every.loads, every.lugs)
     joint = replace(joint, along=along)
     return LugSolution(solution, joint, lambda links: links)
+
+
+@dataclass(frozen=True)
+class FoundPlaces:
+    """The largest stress of the surface and of the sections; bounds of the row are those of both,
+    and of what lies beneath contact.
+    """
+
+    surface: Bounded
+    section: AtSection
+    both: Bounded
+
+    @classmethod
+    def of(cls, stress: FoundationStress, every: JointFoundation) -> FoundPlaces:
+        """Of a case at all its instants; sections by the line loads of the foundations."""
+        sections = SectionAnswer(every.pin, stress.model.material, (), [every.loads])
+        both, surface = (bounded(x, every) for x in (stress, stress.on_surface))
+        return cls(surface, sections.place(every.loads), both)
+
+    @property
+    def governs(self) -> Place:
+        return "section" if self.section.value > self.surface.maximum else "surface"
+
+    @property
+    def row(self) -> Bounded:
+        """Of the larger one."""
+        of, at = self.surface, self.section
+        if self.governs == "surface":
+            return replace(of, bounds=self.both.bounds)
+        place, theta = (at.r, at.z), at.angle
+        both = self.both
+        return replace(both, maximum=at.value, place=place, theta=theta, instant=at.instant)
+
+    def said(self, peak: Peak, case: PinLoads, material: Material, tolerance: float) -> Places:
+        """As results have them; peak: of the row."""
+        of, at, strength = self.surface, self.section, material.yield_strength
+        error = of.maximum if of.error is None else of.error
+        known = "converged" if error <= tolerance * of.maximum else "unconverged"
+        surface = SurfacePlace(of.maximum, error, known, point_of(of), _time(case, of.instant))
+        parts = ErrorParts(0.0, model=min(of.moment_part, 1.0) * at.value)
+        section = FoundSection(at, parts, case.at(np.array([at.instant])))
+        used = None if strength is None else at.plastic_use(strength)
+        return Places(self.governs, surface, section.place(tolerance, used))
+
+
+def point_of(of: Bounded) -> tuple[float, float, float]:
+    r, z = of.place
+    return r * math.cos(of.theta), r * math.sin(of.theta), z
+
+
+def _time(case: PinLoads, instant: int) -> float | None:
+    return None if case.times is None else float(case.times[instant])
 
 
 def _peak(
     over: FoundationRange, case: str, found: Bounded, rise: float, asked: Asked, why: Note
 ) -> Peak:
     """With an error of the whole value where it is not known."""
-    r, z = found.place
     parts = ErrorParts(0.0, rise, model=found.maximum if found.error is None else found.error)
     relative = parts.total / found.maximum if found.maximum else 0.0
     known = found.error is not None and relative <= asked.tolerance
@@ -242,7 +300,7 @@ def _peak(
         note=own.text,
         max_von_mises=found.maximum,
         error_estimate=parts.total,
-        location=(r * math.cos(found.theta), r * math.sin(found.theta), z),
+        location=point_of(found),
         why=why.text,
         parts=parts,
         reasons=own.codes + why.codes,

@@ -106,7 +106,7 @@ def _require_gap(lug: Lug, band: Band) -> None:
     if lug.edge_radius > band.length / 2.0:
         raise ArgumentError(
             f"{what}: the radius of its edges is {lug.edge_radius / band.length:.3g} of the length "
-            "on which it bears; at most half of it has room",
+            "on which it bears; edge_radius may be at most half of that",
             "edge-radius-too-large",
         )
 

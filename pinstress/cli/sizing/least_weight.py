@@ -17,7 +17,8 @@ from pinstress.model.pins import pin as pin_of
 from pinstress.model.pins import weight
 from pinstress.processes.pool import processes
 from pinstress.sizing.at_probability import lighten_at
-from pinstress.sizing.least_weight import LightStudy, lighten, low_factor
+from pinstress.sizing.counted import low_factor
+from pinstress.sizing.least_weight import LightStudy, lighten
 from pinstress.sizing.lightest_pin import Aim, Lightest
 from pinstress.sizing.pin_shape import KINDS, Proportions
 from pinstress.sizing.scaled_study import moved

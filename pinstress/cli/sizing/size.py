@@ -18,6 +18,7 @@ from pinstress.model.pins import pin as pin_of
 from pinstress.model.pins import slenderness, weight
 from pinstress.processes.pool import Died, Job, Progress, preload, processes, side_by_side
 from pinstress.remedies.secant import CLOSE
+from pinstress.sizing.counted import beneath_factor
 from pinstress.sizing.scaled_study import moved, resized_study
 from pinstress.sizing.size_pin import Sized, Wish, size_pin
 from pinstress.study.choices import require_positive
@@ -114,7 +115,7 @@ def _agree(sized: list[Sized], results: Results, required: float) -> bool:
 def _factors(results: Results, pin: str) -> list[float]:
     """As size_pin counts them: with the error, but for singular rows."""
     return [
-        p.safety_factor if p.verdict == "singular" else factor_ends(p)[0]
+        min(p.safety_factor if p.verdict == "singular" else factor_ends(p)[0], beneath_factor(p))
         for p in results.pins
         if p.pin == pin and p.safety_factor is not None
     ]

@@ -20,7 +20,6 @@ REMEDIES = {
     "sharp corner": "give the sharp corner a radius",
     "edge of a clamp": "replace the clamp by its hub, or by loads in equilibrium",
     "edge of a load": 'spread the load by distribution = "cosine", a pressure without such an edge',
-    "edge of a lug": "give the bore of the lug an edge_radius",
 }
 
 

@@ -54,14 +54,15 @@ def test_check_says_what_holds_the_pin(
 
 @pytest.mark.slow
 def test_the_note_has_the_error_of_the_table(row: dict[str, Any]) -> None:
-    stated = re.search(r"; estimated error ([\d.]+)%", row["note"])
+    stated = re.search(r"\bestimated error ([\d.]+)%", row["note"])
     assert stated is not None
     parts = sum(row["error_parts"].values())
     assert float(stated[1]) == pytest.approx(100.0 * parts / row["max_von_mises"], abs=0.051)
-    assert parts <= row["error_estimate"]  # which reaches the ends of the interval
-    low, high = row["max_von_mises_interval"]
-    ends = max(row["max_von_mises"] - low, high - row["max_von_mises"])
-    assert ends == pytest.approx(row["error_estimate"])
+    # the error reaches what the other place may have; there is no distance, and so no interval
+    other = row["section" if row["governs"] == "surface" else "surface"]
+    upper = other["max_von_mises"] + other["error_estimate"]
+    assert row["error_estimate"] == pytest.approx(max(parts, upper - row["max_von_mises"]))
+    assert row["max_von_mises_interval"] is None
 
 
 @pytest.mark.slow
@@ -83,26 +84,34 @@ def test_rings_fill_their_bands_and_carry_the_force(row: dict[str, Any]) -> None
 
 
 @pytest.mark.slow
-def test_the_field_has_the_pressure_of_the_table(out: Path, row: dict[str, Any]) -> None:
+def test_the_field_has_pressure_in_the_pressed_cells(out: Path, row: dict[str, Any]) -> None:
     mesh = meshio.read(out / "vtk" / "P_pull.vtu")
     pressure = mesh.point_data["contact pressure [MPa]"]
-    z = mesh.points[:, 2]
-    for band in row["joint"]["bands"]:
-        on = (z >= band["ends"][0]) & (z <= band["ends"][-1])
-        assert pressure[on].max() == pytest.approx(band["largest_pressure"], rel=0.02)
-    assert pressure.min() == 0.0
+    pressed = mesh.point_data["pressed"]
+    x, y, z = mesh.points.T
+    angle, cells = np.degrees(np.arctan2(y, x)), np.zeros(len(z), dtype=bool)
+    for z0, z1, a0, a1 in (cell for band in row["contact"]["bands"] for cell in band["pressed"]):
+        off = np.abs((angle - (a0 + a1) / 2 + 180) % 360 - 180)
+        cells |= (z > z0 - 1e-3) & (z < z1 + 1e-3) & (off < (a1 - a0) / 2 + 1e-3)
+    assert (pressure[cells] > 0.0).mean() > 0.8  # but for points at the edges of cells
+    assert not pressure[~cells].any()
+    assert not pressed[~cells].any()
+    assert set(np.unique(pressed)) == {0, 1}
     assert pressure[(z > 12.1) & (z < 12.9)].max() == 0.0
+    # the force over diameter and length, as on the page
+    for band, wide in zip(row["contact"]["bands"], (10, 20, 10), strict=True):
+        force = next(b["force"] for b in row["joint"]["bands"] if b["name"] == band["name"])
+        assert band["mean_pressure"] == pytest.approx(force / (20.0 * wide), rel=1e-6)
 
 
 @pytest.mark.slow
 def test_stress_next_to_the_edges_of_lugs_does_not_depend_on_the_mesh() -> None:
     """Steps of pressure between cells are not read: with them it moved by a tenth."""
     gear = load_study(ROOT / "studies" / "landing_gear.toml")
-    changes = {"goal": "value", "tolerance": 0.05, "lug_edges": "varied"}
+    changes = {"goal": "value", "tolerance": 0.05}
     value = changed_study(gear, {f"analysis.{key}": x for key, x in changes.items()})
     (row,) = solve(prepare(value, pins=["G"], cases=["landing"])).pins
     maxima = [step.max_von_mises for step in row.history]
-    assert len(maxima) >= 3
+    assert len(maxima) >= 2
     assert maxima == pytest.approx([maxima[-1]] * len(maxima), rel=0.02)
-    low, high = row.max_von_mises_interval or (0.0, 0.0)
-    assert high < 1.5 * low
+    assert row.max_von_mises_interval is None

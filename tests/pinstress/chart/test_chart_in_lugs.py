@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from fea.checks import calculix
 from fea.core.mesh_result import MeshResult
 from fea.joint.solve_joint import Cells
 from fea.single_joint import JointProblem, JointRung, joint_result_on
-from fea.singular.singularities import outside
 from geometry import ArgumentError
 from pinstress import load_study
 from pinstress.chart.chart import ChartPlan, chart, plan_chart
@@ -133,13 +131,15 @@ def test_calculix_ends_at_a_limit_and_is_run_once(plan: ChartPlan) -> None:
     assert all(j.reference for j in measure.jobs[-3:])
 
 
-def test_results_leave_out_the_same_places(plan: ChartPlan) -> None:
-    """All models of a clevis find their largest stress at mid-span; contact on a coarse mesh as a
-    run does.
+def test_results_are_of_the_same_places(plan: ChartPlan) -> None:
+    """All models of a clevis find their largest stress at mid-span, on the surface that contact
+    leaves free or in the section; contact on a coarse mesh as a run does. Nothing of a plain pin is
+    left out.
     """
     problem = plan.problem
     assert isinstance(problem, JointProblem)
-    assert len(problem.singularities) == 6
+    assert not problem.singularities
+    assert problem.pressed is not None
     rungs = (
         JointRung("foundation", ""),
         JointRung("prescribed", "", -2),
@@ -147,8 +147,7 @@ def test_results_leave_out_the_same_places(plan: ChartPlan) -> None:
     )
     found = [joint_result_on(problem, rung) for rung in rungs]
     for result in found:
-        x, y, z = result.location
-        assert outside(problem.singularities, np.array([np.hypot(x, y)]), np.array([z]))[0]
+        z = result.location[2]
         assert z == pytest.approx(0.023, abs=2e-3)
     largest = plan.peak.max_von_mises
     assert largest is not None

@@ -69,7 +69,7 @@ def test_a_run_and_itself(folders: tuple[Path, Path], capsys: pytest.CaptureFixt
     assert "The inputs are the same." in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("content", [None, "{", "[]", '{"schema": "pinstress-results/1"}', "null"])
+@pytest.mark.parametrize("content", [None, "{", "[]", '{"schema": "pinstress-results/2"}', "null"])
 def test_what_is_no_run_is_refused(
     folders: tuple[Path, Path],
     content: str | None,

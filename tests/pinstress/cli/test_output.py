@@ -286,7 +286,7 @@ def test_a_link_that_the_user_names_leads_to_his_folder(tmp_path: Path) -> None:
 
 def test_results_json_alone_does_not_make_a_folder_ours(tmp_path: Path) -> None:
     """`--out .` where another program's results.json lies beside the study."""
-    (tmp_path / "results.json").write_text('{"schema": "pinstress-results/1"}')
+    (tmp_path / "results.json").write_text('{"schema": "pinstress-results/2"}')
     (tmp_path / "study.toml").write_text(SLOW)
     refused(tmp_path, r"contains results\.json, study\.toml, but no list of what pinstress wrote")
     assert names(tmp_path) == ["results.json", "study.toml"]

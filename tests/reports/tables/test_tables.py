@@ -79,7 +79,7 @@ def test_json_is_strict_and_comes_back_as_it_was(results: Results, tmp_path: Pat
 
 def test_json_holds_the_contract(results: Results) -> None:
     found = to_json(results)
-    assert found["schema"] == "pinstress-results/1"
+    assert found["schema"] == "pinstress-results/2"
     assert found["units"] == {"length": "in", "force": "lbf", "stress": "psi", "time": "s"}
     assert list(found["versions"]) == sorted(results.versions)
     assert set(found["pins"][0]) == {
@@ -97,6 +97,7 @@ def test_json_holds_the_contract(results: Results) -> None:
         "location",
         "time",
         "safety_factor",
+        "governs",
         "yields",
         "meets_required",
         "outcome",

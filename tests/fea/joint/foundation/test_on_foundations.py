@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.joints.foundation import bounds_of, clevis, contact_maximum, played
+from benchmarks.joints.foundation import bounds_of, clevis, contact_places, played
 from benchmarks.joints.joint import TRUTH
 from benchmarks.joints.random_joints import joint_trials
 from fea.asked import Asked
@@ -24,7 +24,6 @@ from fea.joint.foundation.stress import FoundationStress
 from fea.joint.foundation.variations import FoundationRange, prescribed_ranges
 from fea.joint.lugs.lug import Bushing, Lug
 from fea.joint.solve_in_lugs import InLugs, LugSolution
-from fea.joint.solve_joint import JointModel
 from geometry import Pin, Segment
 from tests.fea.joint.test_contact import PERSSON
 
@@ -135,12 +134,14 @@ def test_plane_contact_is_perssons(gap: float) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("play", [0.0, 3.0])
 def test_contact_is_within_the_bounds_of_most_pins(play: float) -> None:
-    """9 in 10 of 20, on pins that had no part in any constant."""
+    """9 in 10 of 20, on pins that had no part in any constant: the larger of surface and section,
+    and what lies beneath contact.
+    """
     inside = 0
     for trial in (played(x, play) for x in joint_trials(20, 25)):
         low, high = bounds_of(trial).bounds or (0.0, 0.0)
-        model = JointModel(trial.pin, trial.material, trial.lugs)
-        inside += low <= contact_maximum(model, trial.loads) <= high
+        found = contact_places(trial)
+        inside += low <= found.row <= max(found.row, found.beneath) <= high
     assert inside >= 18
 
 

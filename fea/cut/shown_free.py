@@ -1,0 +1,54 @@
+"""The stress of a cut pin's surface as it is shown where lugs press on it: as that of other pins
+(fea.harmonic.shown_surface), by its points in space.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from fea.core.pressed import PressedArcs
+from fea.core.voigt import von_mises
+from fea.cut.free_points import BESIDE, ON, FreePoints
+from fea.cut.shown import ShownCut
+from fea.solid.superposition import squares
+from geometry.arrays import Floats, Ints, Mask
+
+AT_ONCE = 64  # instants
+
+
+def free_picture(
+    surface: ShownCut, c: Floats, pressed: PressedArcs, instant: int
+) -> tuple[Floats, Floats, Mask]:
+    """Stress (P, 6) Pa at an instant, the envelope (P,) Pa over all, of amounts (T, L) of the unit
+    loads, and where (P,) lugs press at this one: there the envelope has the others, NaN if none.
+    """
+    free = FreePoints.of(surface.points, surface.outline, pressed.rings)
+    most = np.full(len(surface.points), -1.0)
+    found = squares(surface.stress)
+    for k in range(0, len(c), AT_ONCE):
+        here = np.sqrt(found(c[k : k + AT_ONCE]))
+        for t in range(here.shape[1]):
+            here[~free.read(pressed, k + t), t] = -1.0
+        np.maximum(most, here.max(axis=1), out=most)
+    stress, read = surface.stress @ c[instant], free.read(pressed, instant)
+    on = _on(surface, free.arc, pressed, instant) & ~read
+    left = ~read & ~on
+    if left.any() and read.any():
+        near = cKDTree(surface.points[read]).query(surface.points[left])[1]
+        stress[left] = stress[read][near]
+    most = np.maximum(most, np.where(on, -1.0, von_mises(stress)))
+    return stress, np.where(most < 0.0, np.nan, most), on
+
+
+def _on(surface: ShownCut, arc: Ints, pressed: PressedArcs, instant: int) -> Mask:
+    """On which points (P,) a lug presses, at the end of a ring on both sides of it."""
+    rings, (x, y, z) = pressed.rings, surface.points.T
+    off = np.abs(np.hypot(x, y)[:, None] - rings.radius) <= ON * rings.radius
+    on = surface.outline.copy()
+    for side in (-1.0, 1.0):
+        at = (z + side * BESIDE * float(rings.length.min()))[:, None]
+        here = off & (at > rings.start) & (at < rings.end)
+        ring = here.argmax(axis=1)
+        on &= here.any(axis=1) & pressed.on[instant][ring, arc]
+    return np.asarray(on)

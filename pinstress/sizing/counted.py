@@ -1,0 +1,46 @@
+"""What counts of a row when a pin is sized: the largest stress of surface, section and beneath
+contact, each with its error. Only a row of which all three meet a factor is safe.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from fea.core.peak import Peak
+from fea.core.places import Place
+from reports.data.decision import factor_ends
+from reports.data.results import PinResult
+
+
+def surface_and_section(peak: Peak) -> Iterator[tuple[Place, float]]:
+    """Both, with the upper end of what is known of each, Pa; of a row without places, and of a
+    singular surface, that of the row.
+    """
+    places = peak.places
+    if places is None or peak.verdict == "singular":
+        yield "surface", peak.upper_end
+    else:
+        yield "surface", places.surface.max_von_mises + places.surface.error_estimate
+    if places is not None and places.section is not None:
+        yield "section", places.section.max_von_mises + places.section.error_estimate
+
+
+def beneath(peak: Peak) -> float:
+    """What lies beneath contact with its error, Pa; 0 without any."""
+    contact = peak.places and peak.places.contact
+    return contact.upper_end if contact else 0.0
+
+
+def low_factor(pin: PinResult) -> float | None:
+    """The factor that counts of a row: by the largest of these stresses; None without one."""
+    if pin.safety_factor is None or not pin.max_von_mises:
+        return None
+    return min(factor_ends(pin)[0], beneath_factor(pin))
+
+
+def beneath_factor(pin: PinResult) -> float:
+    """The factor by what lies beneath contact with its error; inf without any."""
+    contact = pin.places and pin.places.contact
+    if not contact or not contact.upper_end or pin.yield_strength is None:
+        return float("inf")
+    return pin.yield_strength / contact.upper_end
