@@ -12,7 +12,9 @@ from fea.core.pin_loads import PinLoads
 from fea.core.places import SectionPlace
 from fea.section.answer import AtSection, SectionAnswer
 
-FLEXIBILITIES = 0.004  # of a moment in contact, by the meshes of pin and lugs (docs/lugs.md)
+# Of stress by the forces of a contact, by the meshes of the flexibilities of pin and lugs: elements
+# half as long change it by 0.0002 at most (benchmarks/joints/cells.py).
+FLEXIBILITIES = 0.001
 
 
 @dataclass(frozen=True)
