@@ -155,6 +155,7 @@ def add_pdf(directory: Path) -> dict[str, Failed]:
     try:
         is_inside(directory, PDF)  # a link is refused before the work
         page = _page(directory)
+        open_results(directory)  # those of another version have other words
         content = document_of(page)
         shown = set() if content is None else set(shown_plots(content))
         found = {plot.name: plot for plot in plots_of(page) if plot.name in shown}

@@ -281,7 +281,8 @@ def test_another_schema_is_said(number: int, words: str, folder: Path) -> None:
     content = {"schema": f"pinstress-results/{number}", "rows": content}
     (folder / "results.json").write_text(json.dumps(content), encoding="utf-8")
     for command in (
-        ["view", "out", "--screenshot", "a.png"], ["compare", "out", "out"], ["plots", "out"]
+        ["view", "out", "--screenshot", "a.png"], ["compare", "out", "out"], ["plots", "out"],
+        ["pdf", "out"],
     ):  # fmt: skip
         made = run_here(*command, cwd=folder.parent)
         assert made.returncode == 2
