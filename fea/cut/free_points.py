@@ -84,7 +84,7 @@ def relieved(stress: Floats, points: Floats, nu: float) -> Floats:
 
 
 @dataclass(frozen=True)
-class Away:
+class AwayFromPressed:
     """Points (P,) beneath contact: farther than BENEATH diameters from what is pressed. within: how
     many arcs from a pressed one on a ring each is nearer than that, (P, R), -1 where it never is.
     """
@@ -93,7 +93,7 @@ class Away:
     within: Ints
 
     @classmethod
-    def of(cls, points: Floats, rings: Rings) -> Away:
+    def of(cls, points: Floats, rings: Rings) -> AwayFromPressed:
         """Of points (P, 3), m."""
         section = np.stack([np.hypot(points[:, 0], points[:, 1]), points[:, 2]], axis=1)
         return cls(arc_of(points), arcs_within(section, rings, 2.0 * BENEATH * rings.radius))
@@ -105,14 +105,14 @@ class Away:
 
 
 @dataclass(frozen=True)
-class Reading:
+class CutReading:
     """Rows (Q,) of points where stress is looked for, and von Mises squared there, (Q, T), of
     amounts of unit loads (T, L). free: where lugs press on them.
     """
 
     rows: Ints
     squares: Callable[[Floats], Floats]
-    free: FreePoints | Away | None = None
+    free: FreePoints | AwayFromPressed | None = None
 
     def stress(self, c: Floats, pressed: PressedArcs | None, first: int = 0) -> Floats:
         """Von Mises stress (Q, T), Pa, at instants from the first on; 0 where it is not read."""

@@ -14,7 +14,7 @@ from fea.core.mesh_result import FELT, AtSingularity, Point
 from fea.core.pin_loads import AnyLoads, require_solved
 from fea.core.pressed import PressedArcs, Rings
 from fea.core.voigt import ENTRIES, TENSOR
-from fea.cut.free_points import Away, FreePoints, Reading, distance, relieved
+from fea.cut.free_points import AwayFromPressed, CutReading, FreePoints, distance, relieved
 from fea.cut.inner_corners import InnerCorner, inner_corners
 from fea.cut.local_model import LocalModel, turned
 from fea.cut.lost_loads import bearings
@@ -104,10 +104,10 @@ class LocalFields:
         return out
 
     @cached_property
-    def _readings(self) -> dict[object, Reading]:
+    def _readings(self) -> dict[object, CutReading]:
         return {}
 
-    def _reading(self, loads: AnyLoads, times: float = 1.0) -> Reading:
+    def _reading(self, loads: AnyLoads, times: float = 1.0) -> CutReading:
         """What is read under loads, if so many times the distance from inner corners is left out;
         found once.
         """
@@ -118,16 +118,16 @@ class LocalFields:
             self._readings[key] = self._free(rows, rings) if rings else self._plain(rows)
         return self._readings[key]
 
-    def _plain(self, rows: Ints) -> Reading:
-        return Reading(rows, squares(self.stress[rows]))
+    def _plain(self, rows: Ints) -> CutReading:
+        return CutReading(rows, squares(self.stress[rows]))
 
-    def _free(self, rows: Ints, rings: Rings) -> Reading:
+    def _free(self, rows: Ints, rings: Rings) -> CutReading:
         free = FreePoints.of(self.points, np.isin(np.arange(len(self.points)), self.outer), rings)
         amid = rows[free.amid[rows] >= 0]
         more = relieved(self.stress[amid], self.points[amid], self.nu)
         found = squares(np.concatenate([self.stress[rows], more]))
         both = np.concatenate([rows, amid])
-        return Reading(both, found, free.some(both, len(rows)))
+        return CutReading(both, found, free.some(both, len(rows)))
 
     def largest(self, loads: AnyLoads) -> tuple[Floats, Ints]:
         """The largest von Mises stress (T,) Pa at every instant, and its point (T,)."""
@@ -141,7 +141,7 @@ class LocalFields:
     def beneath(self, loads: AnyLoads, pressed: PressedArcs) -> tuple[Floats, Ints]:
         """As `largest`, of what lies beneath the contact (fea.core.places)."""
         rows = np.flatnonzero(self.outside())
-        of = replace(self._plain(rows), free=Away.of(self.points[rows], pressed.rings))
+        of = replace(self._plain(rows), free=AwayFromPressed.of(self.points[rows], pressed.rings))
         return of.largest(self.coefficients(loads), pressed)
 
     def depths(self, loads: AnyLoads, pressed: PressedArcs, instant: int, least: float) -> Steps:

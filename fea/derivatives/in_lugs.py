@@ -23,7 +23,7 @@ from fea.core.places import Place
 from fea.derivatives.governing import By
 from fea.derivatives.held_contact import HeldContact
 from fea.derivatives.in_section import OTHER
-from fea.derivatives.pressed_stress import Change, OfSections, OfSurface, PressedStress
+from fea.derivatives.pressed_stress import JointStep, OfSections, OfSurface, PressedStress
 from fea.derivatives.records import SolvedCase
 from fea.derivatives.ring_work import RingWork
 from fea.derivatives.virtual_work import Interior
@@ -142,7 +142,7 @@ class _InLugs:
         """The nodes of the mesh of the pin's flexibility."""
         return OutlineNodes(self.pin_work.space.section, self.model.pin)
 
-    def _change(self, parameter: JointParameter) -> Change:
+    def _change(self, parameter: JointParameter) -> JointStep:
         """Raises: OtherShapeError."""
         model, key = self.model, parameter.key
         for part in STEPS:
@@ -154,7 +154,10 @@ class _InLugs:
                 continue
             if any(one.rings != model.rings for one in models):
                 continue
-            change, pins = Change(key, models, step, None), tuple(one.pin for one in models)
+            change, pins = (
+                JointStep(key, models, step, None),
+                tuple(one.pin for one in models),
+            )
             try:
                 if any(pin != model.pin for pin in pins):
                     change = replace(change, flexible=self._flexible.among(key, pins, step))
@@ -164,7 +167,7 @@ class _InLugs:
             return change
         raise OtherShapeError
 
-    def _by(self, changes: Sequence[Change]) -> dict[str, float]:
+    def _by(self, changes: Sequence[JointStep]) -> dict[str, float]:
         """By key."""
         out = self.stress.held(changes)
         shapes = [x.flexible for x in changes if x.flexible is not None]
@@ -187,7 +190,7 @@ class _InLugs:
         """Whether there is any along the axis."""
         return bool(getattr(self.links, what)[..., 2].any())
 
-    def _by_lug(self, change: Change, lug: Lug) -> float:
+    def _by_lug(self, change: JointStep, lug: Lug) -> float:
         """What the elasticity of a lug adds."""
         name = lug.connection
         number = self.model.lugs.index(lug)

@@ -23,7 +23,7 @@ from fea.derivatives.records import Derivatives, SolvedCase
 from fea.derivatives.ties import crests, tied_places
 from fea.harmonic.superposition import Top
 from fea.joint.pressure_loads import PressureLoads
-from fea.section.answer import AtSection, SectionAnswer
+from fea.section.answer import AtSection, SectionAnswer, sections_at
 from geometry import GeometryError, Pin
 from geometry.arrays import Floats
 from geometry.mesh.moved.outline_motion import PLACES, STEPS, OtherShapeError, rate, rate_of
@@ -54,14 +54,14 @@ class SectionPoint:
             at.cell, len(forces.sections), (at.z - a) / (b - a), (at.r - inner) / wall, at.angle
         )
 
-    def per_unit(self, forces: InternalForces, nu: float) -> dict[UnitLoad, Floats]:
+    def per_unit(self, pin: Pin, forces: InternalForces, nu: float) -> dict[UnitLoad, Floats]:
         """Stress (6,) Pa of each unit load: rr, tt, zz, tz, rz, rt. Raises: OtherShapeError."""
         if len(forces.sections) != self.cells:
             raise OtherShapeError
         a, b = forces.stations[self.cell : self.cell + 2].tolist()
-        section = forces.sections[self.cell]
+        here, z = np.array([self.cell]), np.array([a + self.along * (b - a)])
+        (section,), inside = sections_at(pin, forces, here, z), forces.inside(here, z)[0]
         r = section.inner + self.across * (section.outer - section.inner)
-        inside = forces.inside(np.array([self.cell]), np.array([a + self.along * (b - a)]))[0]
         stress = section_stress(section, r, nu) @ inside
         return {load: stress[:, k] for k, load in enumerate(forces.loads)}
 
@@ -92,7 +92,7 @@ class GoverningSection:
         self.answer = SectionAnswer(solved.pin, solved.material, solved.clamps, both)
         self.found = self.answer.place(loads)
         self.point = SectionPoint.of(self.found, self.answer.forces)
-        self.at = self.point.per_unit(self.answer.forces, solved.material.poisson_ratio)
+        self.at = self.point.per_unit(solved.pin, self.answer.forces, solved.material.poisson_ratio)
         units = dict.fromkeys(u for one in both for u in one.coefficients())
         self.at |= {u: np.zeros(6) for u in units if not loads_sections(u)}
         self.top = Top(self.found.value, 0, 0, self.point.angle)
@@ -114,7 +114,7 @@ class GoverningSection:
         OtherShapeError.
         """
         forces = stepped_beam(pin, material, acting(loads), self.solved.clamps)
-        at = self.point.per_unit(forces, material.poisson_ratio)
+        at = self.point.per_unit(pin, forces, material.poisson_ratio)
         return float(self.weight @ self.point.stress(at, loads))
 
     def of_amounts(self, amounts: dict[UnitLoad, Floats]) -> float:

@@ -25,7 +25,7 @@ from geometry.mesh.moved.outline_motion import NodeMotion, rate_of
 
 
 @dataclass(frozen=True)
-class Change:
+class JointStep:
     """Of a parameter, by its key: the joint at PLACES times a step (m, or its unit) more of it.
     flexible: the motion of the outline on the mesh of the pin's flexibility, None where the pin
     stays.
@@ -61,10 +61,10 @@ class PressedStress(Protocol):
     def by_pressures(self) -> Floats:
         """Gradient by the amplitudes of pressures on the rings, (N + 1, R, 2)."""
 
-    def require(self, change: Change) -> None:
+    def require(self, change: JointStep) -> None:
         """Raises: OtherShapeError where a change gives another shape."""
 
-    def held(self, changes: Sequence[Change]) -> dict[str, float]:
+    def held(self, changes: Sequence[JointStep]) -> dict[str, float]:
         """Of each change, by its key, what it does under the same pressures."""
 
     def of_amounts(self, amounts: Mapping[UnitLoad, Floats]) -> float:
@@ -102,19 +102,19 @@ class OfSurface:
                 out[wave.n] += adjoint.of_loads(k, loads)[:, None] * each
         return out
 
-    def require(self, change: Change) -> None:
+    def require(self, change: JointStep) -> None:
         if change.flexible is not None:
             nodes = self._adjoint.outline_nodes
             self._motions[change.key] = nodes.among(change.key, change.pins, change.step)
 
-    def held(self, changes: Sequence[Change]) -> dict[str, float]:
+    def held(self, changes: Sequence[JointStep]) -> dict[str, float]:
         moved = [self._motions[x.key] for x in changes if x.flexible is not None]
         out = self._adjoint.by_motions(moved)
         for x in changes:
             out[x.key] = out.get(x.key, 0.0) + self._by_material(x) + self._by_shares(x)
         return out
 
-    def _by_material(self, change: Change) -> float:
+    def _by_material(self, change: JointStep) -> float:
         """Of the pin; and of a lug, by the exponent of the pressure at its edge."""
         adjoint, point, total = self._adjoint, self._adjoint.point, 0.0
         if isinstance(point, Continued):
@@ -127,7 +127,7 @@ class OfSurface:
             total += density * adjoint.by_density()
         return total
 
-    def _by_shares(self, change: Change) -> float:
+    def _by_shares(self, change: JointStep) -> float:
         """Of what acts along the axis and about it, which rings take by their lengths."""
         links = self._links
         along = links.forces[..., 2].any() or links.moments[..., 2].any()
@@ -173,10 +173,10 @@ class OfSections:
             out[1, c] = -0.5 * area[c] * np.array(each)
         return out
 
-    def require(self, change: Change) -> None:
+    def require(self, change: JointStep) -> None:
         self._value(change.models[0])
 
-    def held(self, changes: Sequence[Change]) -> dict[str, float]:
+    def held(self, changes: Sequence[JointStep]) -> dict[str, float]:
         return {x.key: float(x.rate(self._value)) for x in changes}
 
     def _value(self, model: JointModel) -> float:

@@ -15,11 +15,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fea.beam.line_load import acting, shares
-from fea.beam.round_section import Circle
+from fea.beam.round_section import Circle, weakest
 from fea.beam.stress import RZ, TZ, ZZ, section_stress
-from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, stepped_beam
+from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, stepped_beam
 from fea.core.material import Material
 from fea.core.pin_loads import Amounts, AnyLoads, PinLoads
 from fea.core.solution import Picture
@@ -72,7 +73,7 @@ class SectionAnswer:
         self, pin: Pin, material: Material, clamps: tuple[str, ...], cases: Sequence[AnyLoads]
     ) -> None:
         units = tuple(dict.fromkeys(load for case in cases for load in acting(case)))
-        self.forces = stepped_beam(pin, material, units, clamps)
+        self.forces, self.pin = stepped_beam(pin, material, units, clamps), pin
         self.nu = material.poisson_ratio
         stations = self.forces.stations
         free = np.array(self.forces.free, dtype=np.intp)
@@ -84,7 +85,7 @@ class SectionAnswer:
     def fields(self) -> MeridianFields:
         """Stress of each unit load at points of the sections, section by section."""
         inside = self.forces.inside(self._cells, self._z)
-        sections = [self.forces.sections[c] for c in self._cells]
+        sections = sections_at(self.pin, self.forces, self._cells, self._z)
         each = {s: _at_radii(s, ACROSS, self.nu) for s in set(sections)}
         radii = np.array([each[s][0] for s in sections])
         per_force = np.array([each[s][1] for s in sections])
@@ -137,17 +138,20 @@ class SectionAnswer:
         top = self._top(loads)
         row = top.point // len(ACROSS)
         cell = self._cells[row]
-        section, z = self.forces.sections[cell], self._closer_z(row)
-        inside = self.forces.inside(np.full(len(z), cell), z)
+        z = self._closer_z(row)
+        cells = np.full(len(z), cell)
+        sections = sections_at(self.pin, self.forces, cells, z)
+        inside = self.forces.inside(cells, z)
         forces = inside @ shares(self.forces.loads, self._felt(loads))[top.instant].T
-        found = [self._closer(section, tuple(x), top) for x in forces]
+        both = zip(sections, forces, strict=True)
+        found = [self._closer(section, tuple(x), top) for section, x in both]
         values = np.array([value for value, _, _ in found])
         k = int(values.argmax()) if values.max() > (1.0 + SAME) * values[0] else 0
         V, M, N, T = (forces[k, q] for q in (SHEAR, MOMENT, AXIAL, TORQUE))
         value, r, angle = found[k]
         return AtSection(
             value, top.instant, int(cell), float(z[k]), r, angle, float(N[0]), float(np.hypot(*V)),
-            float(np.hypot(*M)), float(T[1]), section,
+            float(np.hypot(*M)), float(T[1]), sections[k],
         )  # fmt: skip
 
     def _closer_z(self, row: int) -> Floats:
@@ -186,3 +190,16 @@ def _at_radii(section: Circle, parts: Floats, nu: float) -> tuple[Floats, Floats
     """
     radii = section.inner + parts * (section.outer - section.inner)
     return radii, np.array([section_stress(section, float(r), nu) for r in radii])
+
+
+def sections_at(
+    pin: Pin, forces: InternalForces, cells: NDArray[np.intp], z: Floats
+) -> list[Circle]:
+    """Of a pin at z (S,), m, each as seen from the cell (S,) of the beam that it is in; those of a
+    cone as they are there.
+    """
+    starts, stations = np.array(pin.stations), forces.stations
+    middle = 0.5 * (stations[cells] + stations[cells + 1])
+    which = np.clip(np.searchsorted(starts, middle) - 1, 0, len(pin.segments) - 1)
+    each = zip(which.tolist(), (z - starts[which]).tolist(), strict=True)
+    return [weakest(pin.segments[i], x, x) for i, x in each]
