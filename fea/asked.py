@@ -14,6 +14,7 @@ from fea.verdict import Seen
 Model = Literal["auto", "beam", "harmonic", "solid"]
 Goal = Literal["value", "decide"]
 
+LEAST = 0.4  # of the tolerance
 DECIDED = "its error does not affect whether the required factor is reached"
 
 
@@ -26,7 +27,8 @@ class Asked:
     model, where this package does not choose it. near: whether sections have the meshes of near
     shapes with their nodes moved. cells: of contact with lugs, these alone; None: until they are
     fine enough. elsewhere: by case, stress (Pa) that sections have: a surface that surely has less
-    needs no finer mesh.
+    needs no finer mesh. besides: by case, the error, relative, that is known to come to that of
+    meshes and instants.
     """
 
     tolerance: float = 0.02
@@ -40,6 +42,11 @@ class Asked:
     near: bool = False
     cells: Literal["rough", "usual"] | None = None
     elsewhere: Mapping[str, float] = field(default_factory=dict)
+    besides: Mapping[str, float] = field(default_factory=dict)
+
+    def left(self, case: str) -> float:
+        """What meshes and instants of a case may take of the tolerance, LEAST of it in any case."""
+        return max(self.tolerance - self.besides.get(case, 0.0), LEAST * self.tolerance)
 
 
 def decided(asked: Asked, material: Material, low: float, high: float) -> bool:
@@ -63,7 +70,7 @@ def enough(asked: Asked, material: Material, seen: Seen) -> bool:
     if len(seen.results) < seen.fewest:
         return False
     return (
-        seen.known(asked.tolerance)
+        seen.known(asked.left(seen.case))
         or decided(asked, material, *seen.range)
         or below_sections(asked, seen)
     )

@@ -24,7 +24,7 @@ ANGLES = 2.0 * np.pi * np.arange(BINS) / BINS  # of their middles
 ON = 1e-3  # of a ring's length: nearer to its cylinder a point is on it
 SAME = 1e-9  # of the radius: ends of rings this near are one
 MIDDLE = 0.3, 0.7  # of a ring, where the surface under pressure is read
-EDGE = 2  # pressed rings beyond the rounding of a lug's edge, whose pressed surface is not read
+EDGE = 1  # pressed ring beyond the rounding of a lug's edge, whose pressed surface is not read
 
 
 @dataclass(frozen=True)
@@ -148,11 +148,12 @@ class PressedArcs:
         return self.widened(np.concatenate([self.on[instant], first, last]))
 
     def at_edges(self, instant: int) -> Mask:
-        """Which arcs (R, BINS) are the outermost pressed ones next to an edge of a lug: those under
-        its rounding and EDGE more, unless contact has receded from there.
+        """Which arcs (R, BINS) of rings are at the edge of a lug: all under its rounding, whose
+        rings are as short as steps of the pressure are high, and the outermost EDGE pressed ones
+        beside them, unless contact has receded from there.
         """
         on, rings = self.on[instant], self.rings
-        out: Mask = np.zeros_like(on)
+        out = np.tile(rings.edge[:, None], on.shape[1])
         for b in np.unique(rings.band):
             own = np.flatnonzero(rings.band == b)
             for side in (own, own[::-1]):

@@ -4,8 +4,8 @@ Three kinds of points. Those of the outline itself, on the part of the circumfer
 (fea.core.pressed). In the middle of a ring, pressed or not, the stress without the local one of the
 pressure, -p along the pin, -p across the surface and -2 nu p around, that of a half-plane under any
 pressure that changes little around it: it has the tension of a fibre that is bent under its lug,
-and leaves to contact what is contact's. It is not read on the outermost pressed rings at the edge
-of a lug, whose steps are larger than what is looked for. And the edges of lugs themselves, seen
+and leaves to contact what is contact's. It is not read under the rounding of a lug's edge and
+on the outermost pressed ring beside it, whose steps are larger than what is looked for. And the edges of lugs themselves, seen
 from where the surface beside them is free: stress there has a cusp, s_0 + a d^(1 - s) + b d^(2 - s)
 at the distance d, with s the exponent of pressure, and is continued to d = 0 by these.
 """

@@ -340,13 +340,15 @@ class _Contact:
             return lambda times: self.press(of_links(times))
 
         why = CUT_CONTACT if self.given.cut else CONTACT
+        cells = {case: x.surface.cells.surface for case, x in compared.items()}
+        asked = replace(asked, model="harmonic", because=why, besides=cells)
         try:
             found = solve_pin(
                 self._pin,
                 self.given.material,
                 (),
                 tuple(self.press(self.instants[case.case]) for case in live),
-                replace(asked, model="harmonic", because=why, elsewhere=self._in_sections()),
+                replace(asked, elsewhere=self._in_sections()),
                 progress,
                 {case: between(links) for case, links in self.given.between.items()},
                 self.model.first,

@@ -155,8 +155,8 @@ def test_the_edges_of_lugs_are_read_where_all_beside_them_is(solved: Solved) -> 
 
 
 def test_pressed_surface_is_read_away_from_the_edges_of_lugs(solved: Solved) -> None:
-    """Amid rings, as the stress without the pressure's own: all round, but for the outermost
-    pressed rings of a lug, two beyond its rounding, where contact has not receded from them.
+    """Amid rings, as the stress without the pressure's own: all round, but for those
+    under the rounding of a lug, and the pressed ones beside it, from which contact has not receded.
     """
     of, free, rings = solved.of, solved.free, solved.pressed.rings
     points = np.flatnonzero(of.relieved >= 0)
@@ -170,7 +170,7 @@ def test_pressed_surface_is_read_away_from_the_edges_of_lugs(solved: Solved) -> 
         for k, read in zip(points.tolist(), found, strict=True):
             ring = int(of.relieved[k])
             own = np.flatnonzero(rings.band == rings.band[ring])
-            shut = np.zeros(pressed.shape[1], dtype=bool)
+            shut = np.full(pressed.shape[1], rings.edge[ring])
             for side in (own.tolist(), own[::-1].tolist()):
                 rounded = 0
                 while rounded < len(side) and rings.edge[side[rounded]]:
