@@ -32,8 +32,9 @@ OFTEN = 0.95
 @dataclass(frozen=True)
 class CellError:
     """Of a pin, by place, (3,): the error of the usual cells as estimated from cells twice as
-    large, and by how much it is off on them, relative; mesh: how much the second mesh changes the surface, and by how much
-    it is off on that one; flexibilities: by how much sections are off for their meshes.
+    large, and by how much it is off on them, relative; mesh: how much the second mesh changes the
+    surface, and by how much it is off on that one; flexibilities: by how much sections are off for
+    their meshes.
     """
 
     name: str

@@ -5,9 +5,10 @@ Three kinds of points. Those of the outline itself, on the part of the circumfer
 pressure, -p along the pin, -p across the surface and -2 nu p around, that of a half-plane under any
 pressure that changes little around it: it has the tension of a fibre that is bent under its lug,
 and leaves to contact what is contact's. It is not read under the rounding of a lug's edge and
-on the outermost pressed ring beside it, whose steps are larger than what is looked for. And the edges of lugs themselves, seen
-from where the surface beside them is free: stress there has a cusp, s_0 + a d^(1 - s) + b d^(2 - s)
-at the distance d, with s the exponent of pressure, and is continued to d = 0 by these.
+on the outermost pressed ring beside it, whose steps are larger than what is looked for. And the
+edges of lugs themselves, seen from where the surface beside them is free: stress there has a cusp,
+s_0 + a d^(1 - s) + b d^(2 - s) at the distance d, with s the exponent of pressure, and is continued
+to d = 0 by these.
 """
 
 from __future__ import annotations
