@@ -11,20 +11,20 @@ import pytest
 
 from benchmarks.joints.joint import STEEL, D
 from benchmarks.joints.named_pins import (
+    BORE,
     GROOVE,
     INTERFERENCE,
     NAMED,
     NamedPin,
     clevis,
+    grooved,
     peak_of,
     row_of_named,
 )
-from benchmarks.joints.named_pins import grooved as grooved_clevis
-from benchmarks.joints.turned_ccx import turned_opinion
+from benchmarks.joints.turned_ccx import DENSER, turned_opinion
 from fea.checks.calculix_joint import JointOpinion, joint_opinion
 from fea.checks.calculix_joint_mesh import Fineness
 from fea.checks.calculix_row import free, section_of
-from fea.core.peak import Peak
 from fea.core.voigt import von_mises
 from fea.joint.solve_in_lugs import InLugs
 from geometry import Segment
@@ -72,50 +72,50 @@ def test_the_outline_of_a_groove() -> None:
     assert (np.diff(stations) > 5e-5).all()
 
 
-def theirs(given: InLugs, found: JointOpinion) -> tuple[float, float]:
-    """Largest stress of its surface without what is pressed, and of its sections, Pa."""
-    surface = np.where(free(found), von_mises(found.stress), 0.0).max()
-    return float(surface), section_of(found, given.pin, given.material).value
-
-
-def ours(given: InLugs) -> Peak:
+def same(given: InLugs, found: JointOpinion, within: float) -> None:
+    """The row is the largest stress of their surface without what is pressed; the moment at
+    mid-span is theirs to 2 %.
+    """
     peak = peak_of(given)
+    surface = np.where(free(found), von_mises(found.stress), 0.0).max()
+    assert peak.max_von_mises == pytest.approx(float(surface), rel=within)
     assert peak.places is not None
     assert peak.places.section is not None
-    return peak
+    section = section_of(found, given.pin, given.material)
+    assert peak.places.section.max_von_mises == pytest.approx(section.value, rel=0.02)
 
 
 @pytest.mark.peers
 def test_calculix_agrees_on_grooves() -> None:
-    """On coarse meshes. (On finer ones its moment at mid-span is 356.7 N m, as ours; 698 MPa, ours
-    709 +- 1.5 %.)
+    """681 and 698 MPa with 3 and 4 layers across the pin, ours 709 +- 1.5 %; both have a moment of
+    356.7 N m at mid-span.
     """
-    given = grooved_clevis()
+    given = grooved()
     plain = clevis(gap=(Segment(GROOVE.length, D),))
-    starts = 0.012, 0.032 + GROOVE.length
-    found = turned_opinion(
-        plain.pin, [(z, GROOVE) for z in starts], STEEL, given.lugs, given.cases[0],
-        Fineness(rings=4, sectors=16, layers=3, eye=2),
-    )  # fmt: skip
-    peak = ours(given)
-    middle = 0.5 * given.pin.length
-    bending = float(found.bending_moment(np.array([middle]))[0, 0])
-    assert peak.places is not None
-    assert peak.places.section is not None
-    assert peak.places.section.bending_moment == pytest.approx(abs(bending), rel=0.02)
-    surface = float(np.where(free(found), von_mises(found.stress), 0.0).max())
-    assert surface == pytest.approx(peak.max_von_mises, rel=0.04)
+    at = [(0.012, GROOVE), (0.032 + GROOVE.length, GROOVE)]
+    fineness = Fineness(rings=4, sectors=16, layers=5, eye=2)
+    found = turned_opinion(plain.pin, at, STEEL, given.lugs, given.cases[0], fineness)
+    same(given, found, 0.03)
+
+
+@pytest.mark.peers
+def test_calculix_agrees_on_a_tube() -> None:
+    """In the gap, where its bore becomes oval. (583.7 MPa on a finer mesh, ours 577.2 +- 0.8 %.)"""
+    given = clevis(bore=BORE)
+    fineness = Fineness(rings=6, sectors=16, layers=4, eye=2)
+    found = turned_opinion(given.pin, [], STEEL, given.lugs, given.cases[0], fineness, -DENSER)
+    same(given, found, 0.03)
 
 
 @pytest.mark.peers
 def test_calculix_agrees_on_a_shrink_fit() -> None:
-    """The pressed tension fibre, far from edges: as it is, it has no more than the row; with
-    the stress of its pressure p taken off, p times (1, 2 nu, 1), the row. Moments within 1 %. (On
-    finer meshes 319.7 and 331.1 MPa, ours 323.2 +- 0.9 %.)
+    """The pressed tension fibre, far from edges: as it is, it has no more than the row; with the
+    stress of its pressure p taken off, p times (1, 2 nu, 1), the row. (On a finer mesh 319.7 and
+    331.1 MPa, on a coarser one 337, ours 323.2 +- 0.9 %.)
     """
     given = clevis(interference=INTERFERENCE)
     found = joint_opinion(
-        given.pin, STEEL, given.lugs, given.cases[0], Fineness(rings=6, sectors=16, eye=2)
+        given.pin, STEEL, given.lugs, given.cases[0], Fineness(rings=8, sectors=24, eye=2)
     )
     at = np.linalg.norm(found.nodes - [0.5 * D, 0.0, 0.5 * given.pin.length], axis=1).argmin()
     fibre = found.stress[at]
@@ -123,7 +123,7 @@ def test_calculix_agrees_on_a_shrink_fit() -> None:
     assert pressure > 40e6
     relieved = fibre + pressure * np.array([1.0, 0.6, 1.0, 0.0, 0.0, 0.0])
     as_is, less = von_mises(np.stack([fibre, relieved]))
-    peak = ours(given)
+    peak = peak_of(given)
     assert peak.max_von_mises is not None
     assert peak.error_estimate is not None
     assert as_is < 1.02 * (peak.max_von_mises + peak.error_estimate)
