@@ -100,11 +100,14 @@ def test_calculix_agrees_on_grooves() -> None:
 
 @pytest.mark.peers
 def test_calculix_agrees_on_a_tube() -> None:
-    """In the gap, where its bore becomes oval. (583.7 MPa on a finer mesh, ours 577.2 +- 0.8 %.)"""
+    """In the gap, where its bore becomes oval; ours 577.2 +- 0.8 % MPa. Theirs comes from above on
+    layers that are thin at the bore, 600 here and 583.7 with twice the sectors and 5 layers, and
+    from below on others, 537 and 562: so 5 % here.
+    """
     given = clevis(bore=BORE)
     fineness = Fineness(rings=6, sectors=16, layers=4, eye=2)
     found = turned_opinion(given.pin, [], STEEL, given.lugs, given.cases[0], fineness, -DENSER)
-    same(given, found, 0.03)
+    same(given, found, 0.05)
 
 
 @pytest.mark.peers
