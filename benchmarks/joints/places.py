@@ -9,6 +9,7 @@ import math
 
 from benchmarks import ROOT
 from benchmarks.joints.joint import ARM, EYE, FORCE, NAMES, SHARE, STEEL, TRUTH, D, E
+from benchmarks.joints.named_pins import named_pins
 from benchmarks.joints.random_pins import Checked, check, pin_trials
 from benchmarks.timing import table
 from fea.core.peak import Peak
@@ -36,8 +37,8 @@ GEAR: dict[str, tuple[tuple[float, float], float]] = {
 
 
 def places(pins: int = PINS) -> str:
-    """Three tables; pins: how many are drawn."""
-    return "\n\n".join((_gear(), _clevises(), _random(pins)))
+    """Four tables; pins: how many are drawn."""
+    return "\n\n".join((_gear(), named_pins(), _clevises(), _random(pins)))
 
 
 def _gear() -> str:

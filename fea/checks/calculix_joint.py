@@ -138,11 +138,19 @@ def joint_opinion(
     Raises: ArgumentError for loads or shapes that this model lacks; CalculixError.
     """
     deck, angle = joint_deck(pin, material, lugs, loads, fineness)
+    return deck_opinion(pin, deck, angle, fineness.scale)
+
+
+def deck_opinion(pin: Pin, deck: JointDeck, angle: float, scale: float) -> JointOpinion:
+    """Of a deck whose axes are turned by an angle, rad, with forces and gaps times `scale`.
+
+    Raises: CalculixError.
+    """
     with tempfile.TemporaryDirectory(prefix="pinstress-ccx-") as name:
         folder = Path(name)
         deck.write(folder / f"{calculix.JOB}.inp")
         printed = calculix.run(folder)
-        return _read(pin, deck, angle, folder, printed, fineness.scale)
+        return _read(pin, deck, angle, folder, printed, scale)
 
 
 def joint_deck(

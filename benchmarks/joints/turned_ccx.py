@@ -1,0 +1,132 @@
+"""Contact in three dimensions, by CalculiX, of pins that are more than cylinders: a groove with
+flanks of 45 degrees and rounded corners in each gap of a clevis, a bore, interference.
+
+The mesh is that of fea.checks.calculix_joint for a plain pin with layers where the groove has
+nodes; nodes are moved inwards with an outline that is written here, and towards the surface.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fea.checks.calculix_joint import JointOpinion, deck_opinion, joint_deck
+from fea.checks.calculix_joint_mesh import Fineness
+from fea.core.material import Material
+from fea.core.pin_loads import PinLoads
+from fea.joint.lugs.lug import Lug
+from geometry import Pin, Segment
+from geometry.arrays import Floats
+
+LAYERS = 3  # pairs of layers of elements along each rounded corner
+FLAT = 2  # such pairs along half of the floor
+DENSER = 0.6  # elements at the surface, or at the bore, are 1 - DENSER as thick as on even circles
+LITTLE = 1e-9  # of a radius
+
+
+@dataclass(frozen=True)
+class Groove:
+    """In a shaft of a diameter, m: how deep, the length of its floor between the corners that are
+    rounded, and their radius; rim: of the shaft left on either side.
+    """
+
+    diameter: float
+    depth: float
+    floor: float
+    radius: float
+    rim: float
+
+    @property
+    def segments(self) -> tuple[Segment, ...]:
+        """Of a pin's profile."""
+        d, inner = self.diameter, self.diameter - 2.0 * self.depth
+        return (
+            Segment(self.rim, d, fillet=0.0),
+            Segment(self.depth, d, end_diameter=inner, fillet=self.radius),
+            Segment(self.floor, inner, fillet=self.radius),
+            Segment(self.depth, inner, end_diameter=d, fillet=0.0),
+            Segment(self.rim, d, fillet=0.0),
+        )
+
+    @property
+    def length(self) -> float:
+        return 2.0 * (self.rim + self.depth) + self.floor
+
+    def radius_at(self, z: Floats) -> Floats:
+        """Of the outline, m, at z (m) from its start on."""
+        off = np.abs(z - 0.5 * self.length)  # from the middle of the floor
+        tangent = self.radius * math.tan(math.pi / 8.0)
+        start = 0.5 * self.floor - tangent
+        within = np.clip(off - start, 0.0, self.radius * math.sin(math.pi / 4.0))
+        round_ = self.radius - np.sqrt(self.radius**2 - within**2)
+        flank = np.maximum(off - start - self.radius * math.sin(math.pi / 4.0), 0.0)
+        floor = 0.5 * self.diameter - self.depth
+        return np.asarray(np.minimum(floor + round_ + flank, 0.5 * self.diameter))
+
+    def stations(self) -> Floats:
+        """From its start on, m: ends of layers, one mid-node between any two."""
+        start = 0.5 * self.floor - self.radius * math.tan(math.pi / 8.0)
+        turn = np.linspace(0.0, math.pi / 4.0, LAYERS + 1)
+        arc = start + self.radius * np.sin(turn)
+        end = 0.5 * self.length
+        edge = end - self.rim
+        flank, rim = np.linspace(arc[-1], edge, 3)[1:], np.linspace(edge, end, 3)[1:]
+        half = np.concatenate([np.linspace(0.0, start, FLAT + 1)[1:], arc[1:], flank, rim])
+        return np.asarray(end + np.concatenate([-half[::-1], [0.0], half]))
+
+
+def turned_opinion(
+    pin: Pin,
+    grooves: Sequence[tuple[float, Groove]],
+    material: Material,
+    lugs: Sequence[Lug],
+    loads: PinLoads,
+    fineness: Fineness,
+    denser: float = DENSER,
+) -> JointOpinion:
+    """pin: as if it had no grooves. grooves: with the z, m, of their starts. denser: at the
+    surface; negative: at the bore.
+
+    Raises: as fea.checks.calculix_joint.joint_opinion.
+    """
+    cuts = [z for z0, groove in grooves for z in z0 + groove.stations()]
+    plain = _cut(pin, np.array(cuts))
+    along = replace(fineness, along=1e-3 if cuts else fineness.along)
+    deck, angle = joint_deck(plain, material, lugs, loads, along)
+    mesh = deck.pin.mesh
+    moved = replace(mesh, nodes=_moved(mesh.nodes, pin, grooves, denser))
+    deck = replace(deck, pin=replace(deck.pin, mesh=moved))
+    return deck_opinion(plain, deck, angle, fineness.scale)
+
+
+def _moved(
+    nodes: Floats, pin: Pin, grooves: Sequence[tuple[float, Groove]], denser: float
+) -> Floats:
+    """Of a pin of one diameter and one bore."""
+    x, shaft = nodes.copy(), pin.segments[0]
+    r, z = np.hypot(x[:, 0], x[:, 1]), x[:, 2]
+    bore, full = 0.5 * shaft.bore, 0.5 * shaft.diameter
+    outer = np.full(len(x), full)
+    for z0, groove in grooves:
+        on = (z > z0) & (z < z0 + groove.length)
+        outer[on] = groove.radius_at(z[on] - z0)
+    s = (r - bore) / (full - bore)
+    s *= 1.0 + denser * (1.0 - s)
+    x[:, :2] *= ((bore + s * (outer - bore)) / np.maximum(r, LITTLE * full))[:, None]
+    return x
+
+
+def _cut(pin: Pin, at: Floats) -> Pin:
+    """Segments without lugs cut there."""
+    out: list[Segment] = []
+    for segment, start in zip(pin.segments, pin.stations, strict=False):
+        inside = at[(at > start + 1e-9) & (at < start + segment.length - 1e-9)]
+        if segment.connection or not len(inside):
+            out.append(segment)
+            continue
+        ends = np.concatenate([[start], np.unique(inside.round(12)), [start + segment.length]])
+        out += [replace(segment, length=float(x)) for x in np.diff(ends)]
+    return replace(pin, segments=tuple(out))
