@@ -60,9 +60,10 @@ def surface_plot(
     dot += "an excluded zone"
     if case.unread is not None:
         dot = f"the dot is the {'section that governs' if section else 'maximum'}"
+    free = " outside what lugs press on" if case.unread is not None else ""
     caption = (
         f"Pin {pin.pin}, {pin.case}: von Mises stress along the pin, maximum over the "
-        f"circumference{' outside what lugs press on' if case.unread is not None else ''}{when}; {dot}{note}"
+        f"circumference{free}{when}; {dot}{note}"
     )
     return Plot(plot_name("surface", pin.case, pin.pin), caption, spec)
 
