@@ -25,7 +25,7 @@ from fea.core.over_time import Between, rise_between, through_time
 from fea.core.peak import NOTHING, Note, Peak
 from fea.core.pin_loads import PinLoads
 from fea.cut.region import RingedCutPin, at_corner, loaded_bands, refused, unringed
-from fea.harmonic.evaluate import FirstMesh
+from fea.harmonic.kept_fields import FirstMesh
 from fea.refine import (
     LOCAL,
     NO_MOTION,

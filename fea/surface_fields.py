@@ -12,7 +12,7 @@ from fea.core.pressed import BINS
 from fea.core.solution import Answer
 from fea.cut.evaluate import CutAnswer
 from fea.harmonic.evaluate import HarmonicAnswer
-from fea.harmonic.superposition import EVEN, METRIC
+from fea.harmonic.five_numbers import EVEN, METRIC
 from fea.singular.singularities import outside
 from fea.solid.boundary import QUARTERS, SurfaceMesh
 from fea.solid.evaluate import SolidAnswer

@@ -7,13 +7,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from fea.core.material import Material
 from fea.core.mesh_result import FELT, AtSingularity, Point
 from fea.core.pin_loads import AnyLoads, require_solved
 from fea.core.pressed import PressedArcs, Rings
-from fea.core.voigt import ENTRIES, TENSOR
+from fea.cut.frames import cartesian, in_pin, on_skin, turn_of
 from fea.cut.free_points import AwayFromPressed, CutReading, FreePoints, distance, relieved
 from fea.cut.inner_corners import InnerCorner, inner_corners
 from fea.cut.local_model import LocalModel, turned
@@ -241,7 +240,7 @@ def _point(x: Floats) -> Point:
 
 def _in_piece(piece: Piece, x: Floats) -> Floats:
     """Points (P, 3) in the frame of a piece."""
-    return np.asarray((x - [0.0, 0.0, piece.origin]) @ _turn(piece.angle))
+    return np.asarray((x - [0.0, 0.0, piece.origin]) @ turn_of(piece.angle))
 
 
 def _unmirrored(piece: Piece, x: Floats) -> Floats:
@@ -310,13 +309,13 @@ def local_fields(
     amplitude = np.zeros((*r.shape, *fields.stress.shape[1:]))
     amplitude[:, model.cut] = at_points.reshape(len(x), -1, *at_points.shape[1:])
     profile = ~model.cut
-    amplitude[:, profile] = _on_skin(fields, r[:, profile], z[:, profile])
+    amplitude[:, profile] = on_skin(fields, r[:, profile], z[:, profile])
     angle = np.arctan2(x[..., 1], x[..., 0])
     own = [fields.loads.index(load) for load, _ in units]
-    stress = _cartesian(amplitude[..., own], angle, model.piece.angle, units)
+    stress = cartesian(amplitude[..., own], angle, model.piece.angle, units)
     largest = np.abs(fields.stress[..., own]).max(axis=(0, 1))
     read = model.solve(stress, largest, [load.shears for load, _ in units], weight)
-    points = read.points @ _turn(model.piece.angle).T + [0.0, 0.0, model.piece.origin]
+    points = read.points @ turn_of(model.piece.angle).T + [0.0, 0.0, model.piece.origin]
     flat_r, flat_z = r.ravel(), z.ravel()
     ends = [
         e
@@ -329,14 +328,14 @@ def local_fields(
         at_end |= np.abs(points[:, 2] - end) < ON_END * length
     outer = np.flatnonzero(~read.cut)
     uncut = displacement(fields, flat_r, flat_z, np.arctan2(points[:, 1], points[:, 0]), units)
-    moved = _in_pin(read.moved, model.piece)
-    displaced = np.einsum("ab,pbl->pal", _turn(model.piece.angle), read.displaced)
+    moved = in_pin(read.moved, model.piece)
+    displaced = np.einsum("ab,pbl->pal", turn_of(model.piece.angle), read.displaced)
     return LocalFields(
         model.piece,
         units,
         points,
         model.triangles,
-        turned(read.stress, np.broadcast_to(_turn(model.piece.angle), (len(points), 3, 3))),
+        turned(read.stress, np.broadcast_to(turn_of(model.piece.angle), (len(points), 3, 3))),
         uncut,
         displaced - rigid(moved[0], points),
         outside(singularities, flat_r, flat_z),
@@ -353,55 +352,3 @@ def local_fields(
         model.finer,
         model.material.poisson_ratio,
     )
-
-
-def _in_pin(moved: Floats, piece: Piece) -> Floats:
-    """In the pin's frame, about its origin, rigid motions (2, 6, L) about that of a piece."""
-    turn = _turn(piece.angle)
-    shift, spin = (np.einsum("ab,ebl->eal", turn, x) for x in np.split(moved, 2, axis=1))
-    arm = np.array([0.0, 0.0, piece.origin])
-    shift = shift - np.cross(spin, arm[:, None], axisa=1, axisb=0, axisc=1)
-    return np.concatenate([shift, spin], axis=1)
-
-
-def _turn(angle: float) -> Floats:
-    c, s = np.cos(angle), np.sin(angle)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-
-
-def _on_skin(fields: MeridianFields, r: Floats, z: Floats) -> Floats:
-    """Amplitudes (.., 6, K) on the outline at points (r, z), between the two nearest ones on it."""
-    skin = fields.points[: fields.skin]
-    at = np.stack([r, z], axis=-1)
-    near = np.asarray(cKDTree(skin).query(at, 4)[1])
-    first = near[..., 0]
-    step = skin[near] - skin[first][..., None, :]
-    apart = np.linalg.norm(step, axis=-1)
-    other = np.take_along_axis(
-        near, (apart > 1e-9 * np.ptp(skin[:, 1])).argmax(axis=-1)[..., None], -1
-    )[..., 0]
-    along = skin[other] - skin[first]
-    part = np.sum((at - skin[first]) * along, axis=-1) / np.maximum(
-        np.sum(along**2, axis=-1), 1e-300
-    )
-    part = np.clip(part, 0.0, 1.0)[..., None, None]
-    stress = fields.stress[: fields.skin]
-    return np.asarray((1.0 - part) * stress[first] + part * stress[other])
-
-
-def _cartesian(amplitude: Floats, angle: Floats, turned: float, units: tuple[Unit, ...]) -> Floats:
-    """Stress (.., 6, L) along x, y and z of a frame turned by an angle, at angles in that frame, of
-    amplitudes (.., 6, L) along r, theta and z.
-    """
-    n, phase = (np.array(found) for found in ([load.n for load, _ in units], [p for _, p in units]))
-    psi = n * (angle[..., None] + turned) - phase * np.pi / 2.0
-    polar = amplitude * np.cos(psi)[..., None, :]
-    polar[..., [3, 5], :] = amplitude[..., [3, 5], :] * np.sin(psi)[..., None, :]
-    turn = np.zeros((*angle.shape, 3, 3))
-    turn[..., 0, 0] = turn[..., 1, 1] = np.cos(angle)
-    turn[..., 1, 0] = np.sin(angle)
-    turn[..., 0, 1] = -np.sin(angle)
-    turn[..., 2, 2] = 1.0
-    tensor = polar[..., TENSOR, :]
-    found = np.einsum("...ai,...ijl,...bj->...abl", turn, tensor, turn, optimize=True)
-    return np.stack([found[..., a, b, :] for a, b in ENTRIES], axis=-2)

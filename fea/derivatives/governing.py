@@ -9,7 +9,8 @@ from functools import partial
 import numpy as np
 
 from fea.core.pin_loads import PinLoads, UnitLoad
-from fea.harmonic.superposition import BACK, Top
+from fea.harmonic.five_numbers import BACK
+from fea.harmonic.superposition import Top
 from geometry.arrays import Floats
 from geometry.mesh.moved.outline_motion import rate
 

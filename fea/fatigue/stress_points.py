@@ -13,8 +13,8 @@ from fea.cut.evaluate import CutAnswer
 from fea.fatigue.pressed_points import CutStandIns, StandIns, Stress, replaced
 from fea.harmonic.evaluate import HarmonicAnswer
 from fea.harmonic.fields import MeridianFields
+from fea.harmonic.five_numbers import BACK
 from fea.harmonic.free_surface import surface_points
-from fea.harmonic.superposition import BACK
 from fea.joint.foundation.solve_on_foundations import FoundationAnswer
 from fea.solid.evaluate import SolidAnswer
 from geometry.arrays import Floats, Ints, Mask

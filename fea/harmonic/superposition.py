@@ -26,20 +26,14 @@ from typing import Protocol
 import numpy as np
 
 from fea.core.pin_loads import AnyLoads, require_solved
-from fea.core.pressed import ANGLES
 from fea.harmonic.fields import MeridianFields
-from fea.harmonic.trigonometric_maximum import (
-    at_most,
-    closed,
-    crest_of_samples,
-    highest_crest,
-    one_wave,
-)
+from fea.harmonic.five_numbers import BACK, COS, EVEN, SIN, numbers
+from fea.harmonic.sampled_waves import crest_all_round, crest_where_read, sampled
+from fea.harmonic.trigonometric_maximum import at_most, closed
 from geometry.arrays import Floats, Ints, Mask
 
 Instants = slice | Ints
 
-SAMPLES_PER_WAVE = 5  # of von Mises squared
 FIRST = 16  # pairs of points and instants that are sampled to begin with
 CHUNK = 4096  # pairs sampled at once
 POINTS = 64  # points looked at together
@@ -47,15 +41,6 @@ FEWER = 16  # the same at all instants and angles, so that they stay in the proc
 LOWEST = 4  # harmonics whose sum is sampled for a closer bound
 FEW = 4  # unit loads of a harmonic: up to so many, quadratic forms of them take less than sums
 EVERY = slice(None)
-CLOSER = 0.1 * float(ANGLES[1])  # rad, of samples about a crest, where those of arcs are 1e-4 off
-ON_SAMPLE = 1e-9  # of an arc
-EVEN = 3  # so many of the five numbers go as cos psi, the others as sin psi
-_EVEN, _ODD = slice(0, EVEN), slice(EVEN, None)
-METRIC = np.zeros((5, 6))  # METRIC^T METRIC is tensor.VON_MISES
-METRIC[0, :3] = np.array([1.0, -1.0, 0.0]) * np.sqrt(0.75)
-METRIC[1, :3] = [-0.5, -0.5, 1.0]
-METRIC[[2, 3, 4], [4, 3, 5]] = np.sqrt(3.0)
-BACK = np.array([True, True, True, False, True, False])  # stresses that go as cos psi
 
 
 @dataclass(frozen=True)
@@ -66,26 +51,6 @@ class Top:
     point: int
     instant: int
     angle: float
-
-
-@dataclass(frozen=True)
-class _Numbers:
-    """Of K unit loads at points: their five numbers (S, 5, K) and the most that each of the loads
-    does, (S, K), Pa.
-    """
-
-    five: Floats
-    each: Floats
-
-
-def _numbers(fields: MeridianFields, at: tuple[int, ...]) -> _Numbers:
-    """Of some of the unit loads, by their numbers; found once for all instants of a case."""
-    found: _Numbers | None = fields.found.get(at)
-    if found is None:
-        five = METRIC @ fields.stress[:, :, at]
-        even, odd = (np.square(five[:, part]).sum(axis=1) for part in (_EVEN, _ODD))
-        found = fields.found[at] = _Numbers(five, np.sqrt(np.maximum(even, odd)))
-    return found
 
 
 class Region(Protocol):
@@ -117,7 +82,7 @@ class Circumference:
         self.points = len(fields.points)
         self._first, self._second = by_phase[..., 0], by_phase[..., 1]  # (T, K)
         self._at = tuple(fields.loads.index(load) for load in units)
-        found = _numbers(fields, self._at)
+        found = numbers(fields, self._at)
         self.fields, self._five, self._each = fields, found.five, found.each
         self._n = np.array([load.n for load in units], dtype=np.int64)
         starts = np.flatnonzero(np.diff(self._n, prepend=-1))
@@ -158,7 +123,7 @@ class Circumference:
         if wave.stop - wave.start > FEW:
             return self._summed(five, wave, instants)
         first, second, mixed = (x[instants] for x in self._products(wave))
-        even, odd = (x.swapaxes(1, 2) @ x for x in (five[:, _EVEN], five[:, _ODD]))
+        even, odd = (x.swapaxes(1, 2) @ x for x in (five[:, COS], five[:, SIN]))
         if self._n[wave.start] == 0:
             square = _forms(even, first) + _forms(odd, second)
         else:
@@ -174,9 +139,9 @@ class Circumference:
         shape = (len(five), 5, first.shape[1])
         one, other = ((flat @ x).reshape(shape) for x in (first, second))
         if self._n[wave.start] == 0:
-            square = np.square(one[:, _EVEN]).sum(axis=1) + np.square(other[:, _ODD]).sum(axis=1)
+            square = np.square(one[:, COS]).sum(axis=1) + np.square(other[:, SIN]).sum(axis=1)
         else:
-            one[:, _ODD], other[:, _ODD] = -other[:, _ODD], one[:, _ODD].copy()
+            one[:, SIN], other[:, SIN] = -other[:, SIN], one[:, SIN].copy()
             A, C = np.square(one).sum(axis=1), np.square(other).sum(axis=1)
             square = closed(A + C, A - C, np.einsum("jit,jit->jt", one, other))
         return np.asarray(np.sqrt(np.maximum(square, 0.0)))
@@ -342,32 +307,17 @@ class Circumference:
         n = self._n[[wave.start for wave in self._waves]]
         read = self.region.read(points, instants)
         back, forth = self._parts(points, instants, self._waves)
-        square = at_angles(n, back, forth, ANGLES)
-        square[~read] = -1.0
-        value, angle = crest_of_samples(square)
-        arcs = angle / ANGLES[1]
-        between = np.flatnonzero(np.abs(arcs - np.rint(arcs)) > ON_SAMPLE)
-        if len(between):
-            here = back[between], forth[between]
-            value[between], angle[between] = closer_crest(n, *here, angle[between], CLOSER)
-        return value, angle
+        return crest_where_read(n, back, forth, read)
 
     def _round(self, points: Ints, instants: Ints, beat: Floats) -> tuple[Floats, Floats]:
         n = self._n[[wave.start for wave in self._waves]]
         back, forth = self._parts(points, instants, self._waves)  # (J, 5, W)
-        if len(n) < 2:
-            return one_wave(n, back, forth)
-        degree = 2 * int(n[-1])  # of von Mises squared
-        angle = highest_crest(_sampled(n, back, forth, degree), degree, beat**2)
-        there = n * angle[:, None]
-        found = np.einsum("jiw,jw->ji", back, np.cos(there))
-        found += np.einsum("jiw,jw->ji", forth, np.sin(there))
-        return np.linalg.norm(found, axis=1), angle
+        return crest_all_round(n, back, forth, beat)
 
     def _samples(self, points: Ints, instants: Ints, waves: Sequence[slice], degree: int) -> Floats:
         """Von Mises squared (J, A), Pa^2, of some harmonics at even angles."""
         n = self._n[[wave.start for wave in waves]]
-        return _sampled(n, *self._parts(points, instants, waves), degree)
+        return sampled(n, *self._parts(points, instants, waves), degree)
 
     def _parts(self, points: Ints, instants: Ints, waves: Sequence[slice]) -> tuple[Floats, Floats]:
         """Of pairs of points and instants what goes as cos n theta and as sin n theta, by wave,
@@ -400,7 +350,7 @@ class Circumference:
         turns = np.outer(angles, self._n[[wave.start for wave in self._waves]])
         c, s = np.cos(turns), np.sin(turns)
         total = np.zeros((len(angles), len(points), self.count))
-        for part, signed in ((_EVEN, (c, s)), (_ODD, (s, -c))):
+        for part, signed in ((COS, (c, s)), (SIN, (s, -c))):
             five = self._five[points, part]
             amounts = [
                 five[:, :, wave] @ phase[:, wave].T
@@ -434,40 +384,6 @@ def _raise(best: Floats, point: Ints, t: Ints, value: Floats, at: Ints) -> None:
     t, value, at = t[order], value[order], at[order]
     more = value > best[t]
     best[t[more]], point[t[more]] = value[more], at[more]  # the last one stays
-
-
-def _sampled(n: Ints, back: Floats, forth: Floats, degree: int) -> Floats:
-    """Von Mises squared (J, A) at even angles, of what goes as cos and sin n theta (J, 5, W)."""
-    angles = np.linspace(0.0, 2.0 * np.pi, SAMPLES_PER_WAVE * degree, endpoint=False)
-    return at_angles(n, back, forth, angles)
-
-
-def at_angles(n: Ints, back: Floats, forth: Floats, angles: Floats) -> Floats:
-    """The same at any angles (A,), rad."""
-    turns = n[:, None] * angles
-    found = np.concatenate([back, forth], axis=2) @ np.concatenate([np.cos(turns), np.sin(turns)])
-    return np.asarray(np.square(found, out=found).sum(axis=1))
-
-
-def closer_crest(
-    n: Ints, back: Floats, forth: Floats, angle: Floats, apart: float
-) -> tuple[Floats, Floats]:
-    """Von Mises stress (J,) Pa at crests near angles (J,), rad, and their own angles, by a parabola
-    through samples that are so far apart.
-    """
-    samples = []
-    for step in (-apart, 0.0, apart):
-        turns = n * (angle + step)[:, None]
-        found = np.einsum("jiw,jw->ji", back, np.cos(turns))
-        found += np.einsum("jiw,jw->ji", forth, np.sin(turns))
-        samples.append(np.square(found).sum(axis=1))
-    before, here, after = samples
-    bend = 2.0 * here - before - after
-    good = bend > 0.0
-    bend = np.where(good, bend, 1.0)
-    shift = np.where(good, np.clip(0.5 * (after - before) / bend, -1.0, 1.0), 0.0)
-    square = here + 0.5 * shift * (after - before) - 0.5 * shift**2 * bend
-    return np.sqrt(np.maximum(square, 0.0)), angle + shift * apart
 
 
 def _forms(form: Floats, products: Floats) -> Floats:

@@ -11,26 +11,23 @@ and are enough if they decide it with their error, also for what lies beneath th
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fea.asked import Asked, decided
+from fea.asked import Asked
 from fea.core.equilibrium import out_of_balance
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
-from fea.core.over_time import Between, knots
+from fea.core.over_time import Between
 from fea.core.peak import Note, Peak, decides
-from fea.core.pin_loads import Floats, PinLoads
+from fea.core.pin_loads import PinLoads
 from fea.cut.evaluate import CutAnswer
 from fea.cut.region import RingedCutPin
 from fea.harmonic.beneath import beneath
-from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
+from fea.harmonic.evaluate import HarmonicAnswer
 from fea.joint.cell_pressure import CellPressure
-from fea.joint.contact import Pressed
 from fea.joint.contact_place import contact_place
 from fea.joint.cut_in_lugs import neglected, with_neglected
 from fea.joint.error_parts import with_cells
@@ -38,22 +35,18 @@ from fea.joint.lugs.fit import fitted, on_structure
 from fea.joint.lugs.links import link_forces
 from fea.joint.lugs.lug import Lug
 from fea.joint.lugs.rings import whole_names
-from fea.joint.pressure_loads import NEGLIGIBLE, ROUGH, Patterns, PressureLoads, resultants
+from fea.joint.pressed_cases import Compared, Near, PressedCases
 from fea.joint.records import JointResult
 from fea.joint.solve_joint import Cells, JointContact, JointModel
-from fea.joint.variations import CELLS, Comparison, compare
+from fea.joint.variations import Comparison, compare
 from fea.joint.what_contact_says import joint_result
 from fea.row import row_of, with_contact
-from fea.section.answer import SectionAnswer
 from fea.section.place import FoundSection, found_section
-from fea.solve_pin import Progress, Solution, imbalance, singularities_of, solve_pin
+from fea.solve_pin import Progress, Solution, imbalance, solve_pin
 from geometry import ArgumentError, CutPin, Pin, PinLike
 
 SETS = Cells(), Cells(12, 48, 16), Cells(16, 64, 20)  # until one is fine enough
 ROUGH_CELLS = Cells(4, 24, 8)  # may decide a required factor
-MAY = 0.8  # of the largest on the first mesh: from there on an instant may govern on finer ones
-STRAIGHT = 0.01  # of the largest load: what an instant left out to begin with may be off its chord
-FEWEST = 16  # intervals to begin with
 MOST_CELLS = 6000  # a dense matrix of them takes 300 MB
 CONTACT = Note("contact, harmonic: the pin is held by its lugs", ("contact",))
 CUT_CONTACT = Note(
@@ -110,14 +103,14 @@ def solve_in_lugs(
         progress(f"pin {given.pin.name}, flexibility of {cells.rings} rings of each lug")
         model = JointModel(given.pin, given.material, given.lugs, cells)
         progress(f"pin {given.pin.name}, contact")
-        contact = _Contact(model, replace(given, cases=left))
+        contact = PressedCases(model, left, given.between, given.besides, cut=given.cut is not None)
         if not contact.instants.keys() <= near.keys():
             near = contact.near(asked)
         contact.follow(near)
         compared = contact.compared(near, asked)
         last = finer is None or _count(model, finer) > MOST_CELLS
         fine = {c: x for c, x in compared.items() if last or x.fine(given.material, asked)}
-        for case, found in contact.solved(fine, asked, progress).items():
+        for case, found in _Stress(given, contact).solved(fine, asked, progress).items():
             if last or _enough(found.solution.peak, given.material, asked):
                 done[case] = found
         if finer is None or cells is not ROUGH_CELLS:
@@ -177,156 +170,11 @@ def _failed(given: InLugs, name: str, why: str) -> LugSolution:
 
 
 @dataclass(frozen=True)
-class Near:
-    """On the first mesh: the instant of a case's largest stress of the surface, this (Pa, where it
-    is known), and which (T,) are so near to it that they may govern.
-    """
+class _Stress:
+    """Under the pressures of a pin's cases, which contact found on some cells."""
 
-    instant: int
-    may: NDArray[np.bool_]
-    largest: float = 0.0
-
-
-@dataclass(frozen=True)
-class Compared:
-    """Of a case, at the instants of the surface's largest stress and of the sections'."""
-
-    surface: Comparison
-    section: Comparison
-
-    @property
-    def row(self) -> Comparison:
-        """That of the larger one, of which the joint was varied."""
-        return max(self.surface, self.section, key=lambda x: (bool(x.over), x.stress.row))
-
-    def fine(self, material: Material, asked: Asked) -> bool:
-        """Whether finer cells would not help: they take little of the tolerance, or the required
-        factor is decided whatever they do, for what lies beneath the contact, too.
-        """
-        both = (self.surface, "surface"), (self.section, "section")
-        stress = {name: float(getattr(x.stress, name)) for x, name in both}
-        cells = {name: float(getattr(x.cells, name)) for x, name in both}
-        largest = max(stress.values()) or 1.0
-        own = cells[max(stress, key=lambda name: stress[name])]
-        most = max(stress[name] * (1.0 + cells[name]) for name in stress) / largest - 1.0
-        off = max(own, most)
-        if off <= CELLS * asked.tolerance:
-            return True
-        low, high = largest / (1.0 + off), largest * (1.0 + off)
-        below, error = self.surface.stress.beneath, 1.0 + self.surface.cells.beneath
-        return decided(asked, material, low, high) and (
-            decided(asked, material, below / error, below * error)
-            or decided(asked, material, low, math.inf)
-        )
-
-    def near(
-        self, contact: JointContact, case: PinLoads, anew: Callable[[JointContact], Comparison]
-    ) -> Compared:
-        """With the surface at another instant, if that is not near."""
-        if self.surface.is_at(contact.loads.links, case):
-            return self
-        return replace(self, surface=anew(contact))
-
-
-class _Contact:
-    """The pressures of all cases at any time, each found once; those made of the same patterns act
-    on one mesh. instants: by case, those of which the patterns are made; failed: why a case has no
-    contact.
-    """
-
-    def __init__(self, model: JointModel, given: InLugs) -> None:
-        self.model, self.given = model, given
-        self.failed: dict[str, str] = {}
-        self.instants: dict[str, PinLoads] = {}
-        self._known: dict[tuple[str, float], Pressed] = {}
-        self._besides: dict[str, Floats] = {}
-        self._patterns: Patterns | None = None
-        self.sections: dict[str, SectionAnswer] = {}
-        for case in given.cases:
-            instants = _instants(case, given.between.get(case.case))
-            try:
-                self._at(instants)
-                if case.case in given.besides:
-                    found = model.pressed(given.besides[case.case])
-                    self._besides[case.case] = model.waves(found)
-            except SolveError as error:
-                self.failed[case.case] = str(error)
-                continue
-            self.instants[case.case] = instants
-            rings = [self.on_rings(instants)]
-            self.sections[case.case] = SectionAnswer(model.pin, given.material, (), rings)
-
-    def near(self, asked: Asked) -> dict[str, Near]:
-        """By the stress of all instants, roughly, on the first mesh."""
-        if all(len(links) == 1 for links in self.instants.values()):
-            return {case: Near(0, np.ones(1, dtype=bool)) for case in self.instants}
-        self.follow({case: Near(0, np.zeros(len(x), bool)) for case, x in self.instants.items()})
-        loads = [self.press(links) for links in self.instants.values()]
-        model, out = self.model, {}
-        own = [singularities_of(model.pin, model.material, (), (x,), asked.distance) for x in loads]
-        both = tuple(dict.fromkeys(zone for zones in own for zone in zones))
-        problem = SectionProblem(model.pin, model.material, (), tuple(loads), both, model.first)
-        section = harmonic_solution(problem, 0, 1.0)
-        for x, zones in zip(loads, own, strict=True):
-            answer = HarmonicAnswer(section, zones)
-            largest, instant = answer.largest(x)
-            may = answer.maxima(x, MAY * largest) > MAY * largest
-            if self.given.cut is not None:  # any may govern where it is cut
-                may[:] = True
-            out[x.case] = Near(instant, may, largest)
-        return out
-
-    def follow(self, near: Mapping[str, Near]) -> None:
-        """Make the patterns: good ones of what may govern, rough ones of other instants."""
-        parts = [(waves, NEGLIGIBLE) for waves in self._besides.values()]
-        for case, links in self.instants.items():
-            waves, may = self.model.waves(self._at(links)), near[case].may
-            parts += [(waves[:, may], NEGLIGIBLE), (waves[:, ~may], ROUGH)]
-        if parts:
-            self._patterns = self.model.patterns(parts, self._patterns)
-
-    def _at(self, links: PinLoads) -> list[Pressed]:
-        """Contact at the loads' instants."""
-        if links.times is None:
-            return self.model.pressed(links)
-        keys = [(links.case, t) for t in links.times.tolist()]
-        new = [i for i, key in enumerate(keys) if key not in self._known]
-        if new:
-            found = self.model.pressed(links.at(np.array(new)))
-            self._known |= {keys[i]: x for i, x in zip(new, found, strict=True)}
-        return [self._known[key] for key in keys]
-
-    def press(self, links: PinLoads) -> PressureLoads:
-        """What presses on the pin under loads of its links."""
-        assert self._patterns is not None
-        found = self._at(links)
-        return self._patterns.loads(self.model.waves(found), links, self.model.arcs(found))
-
-    def on_rings(self, links: PinLoads) -> PinLoads:
-        """The resultants of what presses on the rings under loads of the links."""
-        found = self._at(links)
-        return resultants(self.model.pin, self.model.rings, self.model.waves(found), links)
-
-    def _joined(self, links: PinLoads, instant: int) -> JointContact:
-        here = links.at(np.array([instant]))
-        return self.model.joined(self._at(here), self.press(here))
-
-    def compared(self, near: Mapping[str, Near], asked: Asked) -> dict[str, Compared]:
-        """By case, at the instants of the largest stress of the surface on the first mesh and of
-        sections.
-        """
-        at, vary, which = list[JointContact](), list[bool](), dict[str, tuple[int, int]]()
-        for case, links in self.instants.items():
-            stress, instant = self.sections[case].largest(self.on_rings(links))
-            both = near[case].instant, instant
-            each = dict.fromkeys(both)
-            first, second = (len(at) + list(each).index(t) for t in both)
-            which[case] = first, second
-            at += [self._joined(links, t) for t in each]
-            governs = both[stress > near[case].largest]
-            vary += [t == governs for t in each]
-        found = compare(self.model, at, asked, self._patterns, vary)
-        return {case: Compared(found[a], found[b]) for case, (a, b) in which.items()}
+    given: InLugs
+    contact: PressedCases
 
     def solved(
         self, compared: dict[str, Compared], asked: Asked, progress: Progress
@@ -337,7 +185,7 @@ class _Contact:
             return {}
 
         def between(of_links: Between) -> Between:
-            return lambda times: self.press(of_links(times))
+            return lambda times: self.contact.press(of_links(times))
 
         why = CUT_CONTACT if self.given.cut else CONTACT
         cells = {case: x.surface.cells.surface for case, x in compared.items()}
@@ -347,11 +195,11 @@ class _Contact:
                 self._pin,
                 self.given.material,
                 (),
-                tuple(self.press(self.instants[case.case]) for case in live),
+                tuple(self.contact.press(self.contact.instants[case.case]) for case in live),
                 replace(asked, elsewhere=self._in_sections()),
                 progress,
                 {case: between(links) for case, links in self.given.between.items()},
-                self.model.first,
+                self.contact.model.first,
             )
         except ArgumentError as error:  # of a hole where no local solid will do
             raise SolveError(str(error), error.code) from error
@@ -365,14 +213,14 @@ class _Contact:
         if self.given.cut is not None:
             return {}
         return {
-            case: self.sections[case].largest(self.on_rings(links))[0]
-            for case, links in self.instants.items()
+            case: self.contact.sections[case].largest(self.contact.on_rings(links))[0]
+            for case, links in self.contact.instants.items()
         }
 
     @property
     def _pin(self) -> PinLike:
         """On which the pressures act, with its cuts."""
-        model, cut = self.model, self.given.cut
+        model, cut = self.contact.model, self.given.cut
         if cut is None:
             return model.pin
         whole = replace(cut, profile=model.whole)
@@ -384,13 +232,13 @@ class _Contact:
     def _solution(
         self, case: PinLoads, solution: Solution, known: Compared, asked: Asked
     ) -> LugSolution:
-        model, material = self.model, self.given.material
+        model, material = self.contact.model, self.given.material
         if solution.answer is None:
-            return LugSolution(solution, None, self.press)
-        assert self._patterns is not None
-        at_surface = self._joined(solution.loads.links, solution.instant)
+            return LugSolution(solution, None, self.contact.press)
+        assert self.contact.patterns is not None
+        at_surface = self.contact.joined(solution.loads.links, solution.instant)
         known = known.near(at_surface, case, self._compared_anew(asked))
-        missed = self._patterns.left_out(model.waves(at_surface.contact))
+        missed = self.contact.patterns.left_out(model.waves(at_surface.contact))
         peak = with_cells(_named(model, solution.peak), known.surface.cells.surface + missed, asked)
         peak = replace(peak, governing=at_surface.loads.links, imbalance=_imbalance(model, case))
         section = None
@@ -400,7 +248,7 @@ class _Contact:
         peak = row_of(peak, section, material, asked.tolerance, links)
         solved = solution.loads
         solution = self._at_row(solution, peak, case)
-        contact = self._joined(solution.loads.links, solution.instant)
+        contact = self.contact.joined(solution.loads.links, solution.instant)
         over = known.row.range(peak.max_von_mises or 0.0)
         joint = joint_result(contact, over, solution.loads, known.row.left_out)
         (pressed,) = contact.contact
@@ -418,34 +266,39 @@ class _Contact:
         place = contact_place(contact, material, answer, solved, asked.required, error, row)
         solution = replace(solution, peak=with_contact(peak, place))
         if cut is not None:
-            return LugSolution(solution, joint, self.press, pressure)
-        return LugSolution(solution, joint, self.press, pressure, model.pin, model)
+            return LugSolution(solution, joint, self.contact.press, pressure)
+        return LugSolution(solution, joint, self.contact.press, pressure, model.pin, model)
 
     def _by_mesh(self, answer: HarmonicAnswer | CutAnswer, known: Comparison) -> float:
         """By how much what lies beneath contact differs from that on the first mesh, relative."""
         fields = answer.solution.uncut if isinstance(answer, CutAnswer) else answer.fields
-        there = beneath(fields, self.press(known.links), answer.singularities).value
+        there = beneath(fields, self.contact.press(known.links), answer.singularities).value
         return abs(known.stress.beneath / there - 1.0) if there else 0.0
 
     def _compared_anew(self, asked: Asked) -> Callable[[JointContact], Comparison]:
-        return lambda contact: compare(self.model, [contact], asked, self._patterns)[0]
+        of = self.contact
+        return lambda contact: compare(of.model, [contact], asked, of.patterns)[0]
 
     def _section(self, case: PinLoads, cells: float, asked: Asked) -> FoundSection:
         """The largest stress of sections of a case; cells: its error by these, relative."""
-        between, loads = self.given.between.get(case.case), self.instants[case.case]
-        on_rings = None if between is None else lambda times: self.on_rings(between(times))
+        between, loads = self.given.between.get(case.case), self.contact.instants[case.case]
+        on_rings = None if between is None else lambda times: self.contact.on_rings(between(times))
         return found_section(
-            self.sections[case.case], self.on_rings(loads), on_rings, asked.tolerance, cells
+            self.contact.sections[case.case],
+            self.contact.on_rings(loads),
+            on_rings,
+            asked.tolerance,
+            cells,
         )
 
     def _at_row(self, solution: Solution, peak: Peak, case: PinLoads) -> Solution:
         """With the loads at all samples of a case, at the instant of its row."""
-        loads, links = solution.loads, self.press(case)
+        loads, links = solution.loads, self.contact.press(case)
         if loads.times is None:
             return replace(solution, peak=peak)
         assert peak.governing is not None
         assert peak.time is not None
-        loads = links.merged(loads).merged(self.press(peak.governing))
+        loads = links.merged(loads).merged(self.contact.press(peak.governing))
         assert loads.times is not None
         instant = int(np.searchsorted(loads.times, peak.time))
         return replace(solution, peak=peak, loads=loads, instant=instant)
@@ -459,17 +312,6 @@ def links_at(given: InLugs, case: PinLoads, section: FoundSection) -> PinLoads:
     if between is not None:
         return between(np.array([time]))
     return case.at(np.flatnonzero(case.times == time)[:1])
-
-
-def _instants(case: PinLoads, between: Between | None) -> PinLoads:
-    """Those of a case; of a motion those between which its loads go straight, and those amid each
-    two. More are added where the maximum may be between them (fea.core.over_time).
-    """
-    if between is None or case.times is None or len(case) < 2:
-        return case
-    case = case.at(knots(case, STRAIGHT, FEWEST))
-    assert case.times is not None
-    return case.merged(between(0.5 * (case.times[1:] + case.times[:-1])))
 
 
 def _named(model: JointModel, peak: Peak) -> Peak:

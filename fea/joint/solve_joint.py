@@ -18,7 +18,7 @@ from fea.core.equilibrium import centre_of_volume
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.pressed import PressedArcs, Rings
-from fea.harmonic.evaluate import FirstMesh
+from fea.harmonic.kept_fields import FirstMesh
 from fea.joint.bending import bending_moment, mass_per_length
 from fea.joint.contact import Bands, ContactProblem, Pressed, rotation
 from fea.joint.flexibility import RingBody, half_plane, lug_rings, pin_rings, wavy_flexibility

@@ -12,7 +12,7 @@ from fea.core.memory import allowed_memory, solid_memory
 from fea.core.peak import Peak
 from fea.fatigue.critical_points import stress_histories
 from fea.fatigue.records import PointHistory
-from fea.harmonic.evaluate import FirstMesh
+from fea.harmonic.kept_fields import FirstMesh
 from fea.joint.foundation.solve_on_foundations import solve_joints
 from fea.joint.foundation.variations import prescribed_ranges
 from fea.joint.records import JointResult

@@ -19,7 +19,7 @@ from typing import Generic, TypeVar
 from fea.asked import Asked
 from fea.core.material import Material
 from fea.core.peak import Peak, Verdict
-from fea.harmonic.evaluate import EveryMesh
+from fea.harmonic.kept_fields import EveryMesh
 from geometry import ArgumentError
 from loads import Linkage
 from pinstress.analysis.plan import asked_of, prepare

@@ -14,8 +14,8 @@ from reports.tables.stress.places import factor_at
 LEAST = 1e-6  # of the place of the largest stress: no distance is smaller
 INTRODUCTION = (
     "The row's stress is the larger of surface and section. Beneath contact: the largest von Mises "
-    f"stress inside the pin, farther than {BENEATH:g} diameters from where lugs press on it; the "
-    "pin is safe only if that meets the required factor, too."
+    f"stress of the pin, inside or on its surface, farther than {BENEATH:g} diameters from where "
+    "lugs press on it; the pin is safe only if that meets the required factor, too."
 )
 EDGES = (
     "At the distance d from the edge of a lug, pressure rises as K / d^exponent; the distance at "

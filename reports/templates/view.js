@@ -67,7 +67,7 @@ const startView = (root, paint, data) => {
     toMaximum();
   };
 
-  // The section and the contact pressure are known at the governing instant alone.
+  // The section and the pressure of cells are known at the governing instant alone.
   const compute = () => {
     if (pressed() && !(chosen.pressure && governs())) one("colour").value = "stress";
     if (pressed() || !governs()) one("cut").checked = false;
@@ -110,7 +110,7 @@ const startView = (root, paint, data) => {
   // Where a stress is on the colour bar, of its length.
   const along = (stress) => (factors() ? 1 + Math.log10(stress / top()) / DECADES : stress / top());
   const scale = () => {
-    const shown = pressed() ? "contact pressure" : "von Mises stress", least = strength / top();
+    const shown = pressed() ? "cell mean pressure" : "von Mises stress", least = strength / top();
     one("unit").textContent = factors() ? `safety factor (${chosen.verdict})` : `${shown} [${units.stress}]`;
     const ticks = factors() ? decadeTicks(least, least * 10 ** DECADES).map((f) => [along(strength / f), short(f, 3)]) : roundTicks(0, top()).map((s) => [along(s), short(s, 4)]);
     const clear = ticks.filter(([at]) => at < 0.8).map(([at, text]) => tick(at, text));
@@ -228,11 +228,13 @@ const startView = (root, paint, data) => {
     chosen.zones.some(([r, height, radius]) => Math.hypot(Math.hypot(x, y) - r, z - height) < radius * (1 - 1e-6))
     || Boolean(chosen.excluded && !inside && corners.some((v) => chosen.excluded[v])));
   const byLugs = ({ corners, inside }) => Boolean(!pressed() && mesh.unread && !inside && corners.some((v) => mesh.unread[v]));
+  // From the maximum, of the pin's size.
+  const apart = ({ place }) => Math.hypot(...place.map((x, i) => x - chosen.location[i])) / data.size;
   // The largest stress beside a lug is read up to the edge, from where vertices are hidden.
-  const atMaximum = ({ place }) => Boolean(mesh.unread && governs() && !pressed() && Math.hypot(...place.map((x, i) => x - chosen.location[i])) < 1e-3 * data.size);
+  const atMaximum = (found) => Boolean(mesh.unread && governs() && !pressed() && apart(found) < 1e-3);
   const read = (found) => {
     const [x, y, z] = found.place, degrees = (Math.atan2(y, x) * 180) / Math.PI, radius = Math.hypot(x, y);
-    const most = atMaximum(found), value = most ? chosen.maxima[chosen.instant] : found.value, shown = pressed() ? "contact pressure" : "von Mises stress";
+    const most = atMaximum(found), value = most ? chosen.maxima[chosen.instant] : found.value, shown = pressed() ? "cell mean pressure" : "von Mises stress";
     const factor = strength && !pressed() ? `, safety factor ${written(strength / value, 3)}` : "";
     const what = !most && byLugs(found) ? "pressed by a lug: contact is judged by itself" : excluded(found) ? "excluded zone, stress not evaluated" : `${shown} ${written(value)} ${units.stress}${factor}`;
     return { value, z, angle: degrees, radius, place: found.place, text: `${what}; z = ${short(z, 4)} ${units.length}, angle ${short(Number(degrees.toFixed(1)), 4)}°, radius ${short(radius, 4)} ${units.length}` };
@@ -274,6 +276,8 @@ const startView = (root, paint, data) => {
   const toMaximum = () => {
     const [x, y, z] = chosen.location;
     place(z, (Math.atan2(y, x) * 180) / Math.PI, Math.hypot(x, y));
+    // A bore is not struck from outside.
+    if (governs() && !pressed() && !opened() && !chosen.beneath && !(probe && apart(probe) < 1e-2)) show({ place: chosen.location, value: chosen.maxima[chosen.instant], inside: true });
     tell();
   };
   const cursor = (ink) => {

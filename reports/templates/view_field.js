@@ -95,7 +95,7 @@ const sectionOf = (data) => {
   };
 };
 
-// Contact pressure of all vertices at the governing instant of a case.
+// Pressure of all vertices, the mean of their cell, at the governing instant of a case.
 const pressing = (surface, { start, pressure: { sectors, first, rings, cells } }) => {
   const turns = angles(surface, start);
   return Float32Array.from({ length: surface.count * surface.around }, (_, v) => {

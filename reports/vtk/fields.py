@@ -43,7 +43,7 @@ def point_data(field: Field, units: Units) -> Arrays:
     """Arrays at the nodes under names with units: displacement (N, 3), stress (N, 6: XX, YY, ZZ,
     XY, YZ, XZ, as ParaView names the components of a symmetric tensor), von Mises (N,), von Mises
     envelope (N,; NaN inside), with a yield strength the factor of safety that follows from it, and
-    of a pin in lugs the contact pressure and where it is pressed (0 or 1).
+    of a pin in lugs the mean pressure of each cell of contact and where it is pressed (0 or 1).
     """
     stress = units.stress
     data: Arrays = {
@@ -56,7 +56,7 @@ def point_data(field: Field, units: Units) -> Arrays:
         lowest = np.finfo(np.float32).tiny * field.yield_strength  # a factor that is no infinity
         data["factor of safety"] = field.yield_strength / np.maximum(field.envelope, lowest)
     if field.contact_pressure is not None:
-        data[f"contact pressure [{stress}]"] = field.contact_pressure
+        data[f"cell mean pressure [{stress}]"] = field.contact_pressure
     return data | _pressed(field.pressed)
 
 

@@ -52,9 +52,9 @@ def test_the_view_can_show_the_pressure(page: Any, clevis_run: Path) -> None:
 
     root = view(page, "P")
     before = pixels(page, root)
-    Select(part(root, "colour")).select_by_visible_text("contact pressure")
+    Select(part(root, "colour")).select_by_visible_text("cell mean pressure")
     wait(page, lambda: pixels(page, root) != before)
-    assert part(root, "unit").text == "contact pressure [MPa]"
+    assert part(root, "unit").text == "cell mean pressure [MPa]"
     found = page.execute_script(PRESSURES, root)
     assert f"≥ {engineering(found['top'], 3)}" in part(root, "ticks").text
     # most of what is pressed is below the last colour, and all of it is in cells with pressure
@@ -88,7 +88,7 @@ def test_at_another_instant_stress_is_shown_again(page: Any) -> None:
     time, colour = part(root, "time"), Select(part(root, "colour"))
     governing = time.get_property("value")
     slide(page, time, 0)
-    colour.select_by_visible_text("contact pressure")
+    colour.select_by_visible_text("cell mean pressure")
     assert time.get_property("value") == governing != "0"
     slide(page, time, 0)
     assert colour.first_selected_option.text == "von Mises stress"

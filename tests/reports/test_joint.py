@@ -257,8 +257,8 @@ def test_plots_of_odd_contacts(small: Results, tmp_path: Path) -> None:
 
 def test_the_pressure_is_a_field_of_the_surface(solid: Field, small: Results) -> None:
     pressed = replace(solid, contact_pressure=np.arange(10.0))
-    assert "contact pressure [psi]" not in point_data(solid, small.units)
-    assert point_data(pressed, small.units)["contact pressure [psi]"].tolist() == list(range(10))
+    assert "cell mean pressure [psi]" not in point_data(solid, small.units)
+    assert point_data(pressed, small.units)["cell mean pressure [psi]"].tolist() == list(range(10))
     outside = surface(pressed)
     assert outside.contact_pressure is not None
     assert len(outside.contact_pressure) == len(outside.points)

@@ -52,17 +52,18 @@ def surface_plot(
         ],
     }  # fmt: skip
     what = ["excluded zones"] * bool(case.excluded.any())
-    what += ["lugs press all round, or their edges are beside"] * bool(lugs.any())
+    what += ["nothing is read: lugs press, or their edges are near"] * bool(lugs.any())
     note = f"; shaded: {'; '.join(what)}" if what else ""
     section = pin.places is not None and pin.places.governs == "section"
     when = ", at the governing instant" if pin.time is not None else ""
     dot = "a dot above the curve marks a maximum inside the pin or on the boundary of "
     dot += "an excluded zone"
     if case.unread is not None:
-        dot = f"the dot is the {'section that governs' if section else 'largest'}"
+        dot = f"the dot is the {'section that governs' if section else 'maximum'}"
+    free = " outside what lugs press on" if case.unread is not None else ""
     caption = (
         f"Pin {pin.pin}, {pin.case}: von Mises stress along the pin, maximum over the "
-        f"circumference{' of what is read' if case.unread is not None else ''}{when}; {dot}{note}"
+        f"circumference{free}{when}; {dot}{note}"
     )
     return Plot(plot_name("surface", pin.case, pin.pin), caption, spec)
 

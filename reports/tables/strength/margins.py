@@ -102,7 +102,7 @@ def not_made_words(results: Results) -> list[str]:
         own = list(dict.fromkeys(m.pin for m in of))
         where = "" if len(own) == len(pins) else f" (pin{'s' * (len(own) > 1)} {', '.join(own)})"
         methods = "; ".join(dict.fromkeys(m.margin.method for m in of))
-        lines.append(f"Not made{where}, for want of {needs}: {methods}.")
+        lines.append(f"Skipped{where}, {needs} missing: {methods}.")
     return lines
 
 
@@ -111,7 +111,7 @@ def not_made_briefly(results: Results) -> str:
     every = not_made(results)
     alone = [x for x in every if x.count(", ") == 0 or not all(p in every for p in x.split(", "))]
     needs = ", ".join(alone)
-    return f"Checks not made, for want of: {needs}." if needs else ""
+    return f"Checks skipped, missing: {needs}." if needs else ""
 
 
 def arms_table(results: Results) -> Table:

@@ -7,7 +7,7 @@ import pytest
 
 from fea.core.pin_loads import Floats
 from fea.harmonic import trigonometric_maximum as crest
-from fea.harmonic.superposition import SAMPLES_PER_WAVE
+from fea.harmonic.sampled_waves import SAMPLES_PER_WAVE
 
 
 def even(degree: int) -> Floats:

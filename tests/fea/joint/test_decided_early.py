@@ -11,7 +11,7 @@ from fea.asked import Asked, enough, reasons
 from fea.core.material import Material
 from fea.core.mesh_result import AtSingularity, MeshResult
 from fea.core.pin_loads import PinLoads
-from fea.joint.solve_in_lugs import Compared
+from fea.joint.pressed_cases import Compared
 from fea.joint.variations import AtPlaces, Comparison
 from fea.singular.singularities import Singularity
 from fea.verdict import FEWEST, Seen, judge

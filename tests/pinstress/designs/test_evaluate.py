@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import pinstress
-from fea.harmonic.evaluate import EveryMesh
+from fea.harmonic.kept_fields import EveryMesh
 from geometry import Pin
 from geometry.mesh.moved import near_mesh
 from geometry.mesh.section_mesh import MeridianMesh, meridian_mesh

@@ -84,5 +84,5 @@ def test_the_worst_check_of_each_pin_is_first(results: Results) -> None:
     ]
     assert [row[:3] for row in worst.body] == [["B", "one", "shear"], ["A", "two", "shear"]]
     (line,) = not_made_words(made)
-    assert "(pin B), for want of material.steel.ultimate_strength: rupture" in line
+    assert "(pin B), material.steel.ultimate_strength missing: rupture" in line
     assert worst_grid(replace(results, margins=margins[-1:])) is None

@@ -1,0 +1,66 @@
+"""The uncut pin's stress in the frame of a piece about its cuts, and motions of a piece in the
+frame of the pin.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from fea.core.voigt import ENTRIES, TENSOR
+from fea.harmonic.fields import MeridianFields
+from fea.solid.nodal_loads import Unit
+from geometry.arrays import Floats
+from geometry.mesh.cut_piece import Piece
+
+
+def in_pin(moved: Floats, piece: Piece) -> Floats:
+    """In the pin's frame, about its origin, rigid motions (2, 6, L) about that of a piece."""
+    turn = turn_of(piece.angle)
+    shift, spin = (np.einsum("ab,ebl->eal", turn, x) for x in np.split(moved, 2, axis=1))
+    arm = np.array([0.0, 0.0, piece.origin])
+    shift = shift - np.cross(spin, arm[:, None], axisa=1, axisb=0, axisc=1)
+    return np.concatenate([shift, spin], axis=1)
+
+
+def turn_of(angle: float) -> Floats:
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def on_skin(fields: MeridianFields, r: Floats, z: Floats) -> Floats:
+    """Amplitudes (.., 6, K) on the outline at points (r, z), between the two nearest ones on it."""
+    skin = fields.points[: fields.skin]
+    at = np.stack([r, z], axis=-1)
+    near = np.asarray(cKDTree(skin).query(at, 4)[1])
+    first = near[..., 0]
+    step = skin[near] - skin[first][..., None, :]
+    apart = np.linalg.norm(step, axis=-1)
+    other = np.take_along_axis(
+        near, (apart > 1e-9 * np.ptp(skin[:, 1])).argmax(axis=-1)[..., None], -1
+    )[..., 0]
+    along = skin[other] - skin[first]
+    part = np.sum((at - skin[first]) * along, axis=-1) / np.maximum(
+        np.sum(along**2, axis=-1), 1e-300
+    )
+    part = np.clip(part, 0.0, 1.0)[..., None, None]
+    stress = fields.stress[: fields.skin]
+    return np.asarray((1.0 - part) * stress[first] + part * stress[other])
+
+
+def cartesian(amplitude: Floats, angle: Floats, turned: float, units: tuple[Unit, ...]) -> Floats:
+    """Stress (.., 6, L) along x, y and z of a frame turned by an angle, at angles in that frame, of
+    amplitudes (.., 6, L) along r, theta and z.
+    """
+    n, phase = (np.array(found) for found in ([load.n for load, _ in units], [p for _, p in units]))
+    psi = n * (angle[..., None] + turned) - phase * np.pi / 2.0
+    polar = amplitude * np.cos(psi)[..., None, :]
+    polar[..., [3, 5], :] = amplitude[..., [3, 5], :] * np.sin(psi)[..., None, :]
+    turn = np.zeros((*angle.shape, 3, 3))
+    turn[..., 0, 0] = turn[..., 1, 1] = np.cos(angle)
+    turn[..., 1, 0] = np.sin(angle)
+    turn[..., 0, 1] = -np.sin(angle)
+    turn[..., 2, 2] = 1.0
+    tensor = polar[..., TENSOR, :]
+    found = np.einsum("...ai,...ijl,...bj->...abl", turn, tensor, turn, optimize=True)
+    return np.stack([found[..., a, b, :] for a, b in ENTRIES], axis=-2)
