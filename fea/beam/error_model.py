@@ -30,6 +30,7 @@ import numpy as np
 
 from fea.beam.maximum import harmonics, highest
 from fea.beam.stress import TZ, ZZ, BeamStress
+from fea.beam.timoshenko import InternalForces, Span
 from fea.core.pin_loads import PinLoads
 from fea.core.tractions import pressure_amplitude
 from geometry import Band, Pin
@@ -104,10 +105,18 @@ def _relative(beam: BeamStress) -> Floats:
             if clamped:
                 here = np.abs(z - edge) <= 2.0 * sections[cell].outer
                 near[here] = np.maximum(near[here], ROOT)
-        if span.left and span.right:
-            thickest = 2.0 * max(s.outer for s in sections[span.first : span.last])
-            between[(z >= first) & (z <= last)] = TWICE * min(1.0, thickest / float(last - first))
+        between[(z >= first) & (z <= last)] = between_clamps(beam.forces, span)
     return np.asarray(PLAIN + near + between)
+
+
+def between_clamps(forces: InternalForces, span: Span) -> float:
+    """The relative error of moments in a span between two clamps, as a beam has them; else 0."""
+    if not (span.left and span.right):
+        return 0.0
+    thickest = 2.0 * max(s.outer for s in forces.sections[span.first : span.last])
+    return TWICE * min(
+        1.0, thickest / float(forces.stations[span.last] - forces.stations[span.first])
+    )
 
 
 def _local(pin: Pin, loads: PinLoads) -> Floats:

@@ -17,6 +17,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.beam.error_model import between_clamps
 from fea.beam.line_load import acting, shares
 from fea.beam.round_section import Circle, weakest
 from fea.beam.stress import RZ, TZ, ZZ, section_stress
@@ -153,6 +154,12 @@ class SectionAnswer:
             value, top.instant, int(cell), float(z[k]), r, angle, float(N[0]), float(np.hypot(*V)),
             float(np.hypot(*M)), float(T[1]), sections[k],
         )  # fmt: skip
+
+    def held_twice(self, at: AtSection) -> float:
+        """The relative error of what acts there since it is between two clamps; else 0."""
+        spans = self.forces.spans
+        (span,) = (s for s in spans if s.first <= at.cell < s.last)
+        return between_clamps(self.forces, span)
 
     def _closer_z(self, row: int) -> Floats:
         """A section by its number, and others near it between the same stations, m."""

@@ -255,6 +255,25 @@ def test_a_motion_is_largest_between_its_samples() -> None:
     assert steps.parts.total == 0.0
 
 
+@pytest.mark.parametrize(("gap", "solid"), [(0.005, 105.9), (0.02, 233.6)])
+def test_between_two_clamps_moments_have_the_error_of_a_beam(gap: float, solid: float) -> None:
+    """solid: N m at the clamps, from a quarter of the pin in 27-node hexahedra (scikit-fem, 21,000
+    unknowns, the bands held rigidly): its residual in the middle and statics. A beam has W (3 L^2 -
+    b^2) / (24 L), 13 and 5 % more, since the pin's core gives way in the clamps.
+    """
+    widths = (("A", 0.015), ("", gap), ("B", 0.03), ("", gap), ("C", 0.015))
+    pin = Pin("P", tuple(Segment(w, D, connection=name or None) for name, w in widths))
+    case = loads("B", np.array([[0.0, -30e3, 0.0]]))
+    answer = SectionAnswer(pin, STEEL, ("A", "C"), (case,))
+    found = found_section(answer, case, None, 0.02)
+    long, section = 0.03 + 2.0 * gap, math.pi * D**3 / 32.0
+    beam = 30e3 * (3.0 * long**2 - 0.03**2) / (24.0 * long)
+    assert found.at.value == pytest.approx(beam / section, rel=1e-9)
+    assert found.parts == ErrorParts(0.0, model=0.5 * D / long * found.at.value)
+    assert found.lower_end < solid / section < found.upper_end
+    assert not found.known(0.02)
+
+
 def test_forces_of_contact_bring_its_errors() -> None:
     case = loads("E", np.array([[1e3, 0.0, 0.0]]))
     answer = SectionAnswer(cantilever(), STEEL, ("start",), (case,))
