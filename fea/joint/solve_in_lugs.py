@@ -250,7 +250,6 @@ class _Stress:
         solution = self._at_row(solution, peak, case)
         contact = self.contact.joined(solution.loads.links, solution.instant)
         over = known.row.range(peak.max_von_mises or 0.0)
-        joint = joint_result(contact, over, solution.loads, known.row.left_out)
         (pressed,) = contact.contact
         pressure = CellPressure(contact.bands, pressed.pressure, pressed.angle)
         cut, answer = self.given.cut, solution.answer
@@ -265,6 +264,8 @@ class _Stress:
         row = peak.max_von_mises or 0.0
         place = contact_place(contact, material, answer, solved, asked.required, error, row)
         solution = replace(solution, peak=with_contact(peak, place))
+        over = known.row.range(row, place.beneath)
+        joint = joint_result(contact, over, solution.loads, known.row.left_out)
         if cut is not None:
             return LugSolution(solution, joint, self.contact.press, pressure)
         return LugSolution(solution, joint, self.contact.press, pressure, model.pin, model)

@@ -54,7 +54,7 @@ class DesignRow:
     None without a density. reason, code: why the verdict is not `converged`, for people and for
     programs. outcome, depends_on: as of a run (pinstress.designs.outcomes). governs: "surface" or
     "section", empty where the model has no places; the largest stress of these and beneath contact,
-    Pa, None where there is none.
+    this with its error, Pa, None where there is none.
     """
 
     pin: str
@@ -73,6 +73,7 @@ class DesignRow:
     surface: float | None = None
     section: float | None = None
     beneath: float | None = None
+    beneath_error: float | None = None
 
 
 class Recent(Generic[K, V]):
