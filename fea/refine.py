@@ -23,12 +23,12 @@ from fea.cut.evaluate import CutAnswer, CutSolution, cut_result, cut_solution
 from fea.cut.local_fields import RATIO, LocalFields
 from fea.cut.region import BEYOND, LONGER, pieces
 from fea.harmonic.evaluate import (
-    FirstMesh,
     HarmonicAnswer,
     SectionProblem,
     harmonic_result,
     harmonic_solution,
 )
+from fea.harmonic.kept_fields import FirstMesh
 from fea.singular.singularities import Singularity, begins, find_singularities
 from fea.solid.evaluate import SolidAnswer, solid_result, solid_solution
 from fea.verdict import FEWEST, Seen, judge

@@ -44,7 +44,6 @@ class Answers:
     @property
     def system(self) -> Answers:
         """Of the row that is used most, as (n, 1); unknown where any row is."""
-
         worst, deepest = (
             np.argmax(np.where(np.isnan(x), np.inf, x), axis=1)[:, None]
             for x in (self.used, self.deep)
