@@ -18,7 +18,9 @@ def summary(results: Results) -> str:
     """How many pins are safe, which are not, and the rows without a maximum."""
     if not results.pins:
         return "No pin was solved."
-    ways = (_against_required, _depending, _at_edges, _yielding, _negative, _unknown)
+    ways = (
+        _against_required, _depending, _without_range, _at_edges, _yielding, _negative, _unknown,
+    )  # fmt: skip
     return " ".join(part for part in (way(results) for way in ways) if part)
 
 
@@ -87,6 +89,20 @@ def _at_edges(results: Results) -> str:
     if not any(p.places and p.places.contact and p.places.contact.edges for p in results.pins):
         return ""
     return "Contact stress at lug edges is reported separately (contact_edges.csv)."
+
+
+def _without_range(results: Results) -> str:
+    """The pins that no range over the joint is known of, though what holds them is prescribed."""
+    pins = dict.fromkeys(
+        p.pin
+        for p in results.pins
+        if p.joint is not None and p.joint.remark and not p.joint.range and not p.joint.bands
+    )
+    if not pins:
+        return ""
+    return (
+        f"The range over the joint is not known, for reasons in the report: {_names(list(pins))}."
+    )
 
 
 def _yielding(results: Results) -> str:
