@@ -36,7 +36,8 @@ class BandContact:
 class Variation:
     """The maximum with something of the joint changed: what, and to what value or way, in words;
     length: the value where it is one, the largest if it differs from lug to lug. interval: of the
-    maximum with the error of the model, where that is part of the range.
+    maximum with the error of the model, where that is part of the range. beneath: the largest
+    stress beneath the contact then (fea.core.places), None where only the maximum is known.
     """
 
     what: str
@@ -44,6 +45,7 @@ class Variation:
     max_von_mises: Stress
     length: Length | None = None
     interval: tuple[Stress, Stress] | None = None
+    beneath: Stress | None = None
 
 
 @dataclass(frozen=True)

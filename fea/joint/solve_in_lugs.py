@@ -400,7 +400,6 @@ class _Contact:
         solution = self._at_row(solution, peak, case)
         contact = self._joined(solution.loads.links, solution.instant)
         over = known.row.range(peak.max_von_mises or 0.0)
-        joint = joint_result(contact, over, solution.loads, known.row.left_out)
         (pressed,) = contact.contact
         pressure = CellPressure(contact.bands, pressed.pressure, pressed.angle)
         cut, answer = self.given.cut, solution.answer
@@ -415,6 +414,8 @@ class _Contact:
         row = peak.max_von_mises or 0.0
         place = contact_place(contact, material, answer, solved, asked.required, error, row)
         solution = replace(solution, peak=with_contact(peak, place))
+        over = known.row.range(row, place.beneath)
+        joint = joint_result(contact, over, solution.loads, known.row.left_out)
         if cut is not None:
             return LugSolution(solution, joint, self.press, pressure)
         return LugSolution(solution, joint, self.press, pressure, model.pin, model)

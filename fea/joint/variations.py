@@ -34,7 +34,6 @@ CELLS = 0.6  # of the tolerance: what the cells may take
 ORDER = 1.4
 CHANCE = 0.06  # at least, of cells larger than the usual ones: two such can agree by chance (pin D
 # of the landing gear to 2 %, while both are 4 to 5 % off)
-BOTH = "own cells", "cells twice as large"
 ROUGHLY = 1e-2  # of the largest amplitude: what a pattern must add to that of a changed joint
 
 
@@ -56,7 +55,8 @@ class AtPlaces:
 class Comparison:
     """At one instant, on the first mesh: stress there, and by how much, relative, it may differ for
     the cells. links: the loads. over: what is changed of the joint, the larger of surface and
-    section relative to that of the joint as given; left_out: what could not be, and why.
+    section and what lies beneath contact relative to those of the joint as given; left_out: what
+    could not be, and why.
     """
 
     stress: AtPlaces
@@ -65,9 +65,12 @@ class Comparison:
     over: tuple[Variation, ...]
     left_out: str = ""
 
-    def range(self, largest: float) -> JointRange:
-        """Over the joint, of a maximum in Pa."""
-        over = tuple(replace(x, max_von_mises=largest * x.max_von_mises) for x in self.over)
+    def range(self, largest: float, below: float = 0.0) -> JointRange:
+        """Over the joint, of a maximum and of what lies beneath contact, Pa."""
+        over = tuple(
+            replace(x, max_von_mises=largest * x.max_von_mises, beneath=below * (x.beneath or 0.0))
+            for x in self.over
+        )
         ends = [largest, *(x.max_von_mises for x in over)]
         return JointRange((min(ends), max(ends)), over)
 
@@ -116,9 +119,14 @@ def compare(
     stress = _at_places(model, asked, every)
     for contact, names, loads, why in zip(at, over, every, missing, strict=True):
         first, twice, *others = (stress.pop(0) for _ in loads)
-        like = (first if few else twice).row or 1.0  # on the same cells as the others
+        like = first if few else twice  # on the same cells as the others
         ratios = tuple(
-            replace(x, max_von_mises=y.row / like) for x, y in zip(names, others, strict=True)
+            replace(
+                x,
+                max_von_mises=y.row / (like.row or 1.0),
+                beneath=y.beneath / (like.beneath or 1.0),
+            )
+            for x, y in zip(names, others, strict=True)
         )
         least = CHANCE * few
         cells = AtPlaces(*(
@@ -143,11 +151,8 @@ def _loads(
 def _at_places(
     model: JointModel, asked: Asked, every: Sequence[Sequence[PressureLoads]]
 ) -> list[AtPlaces]:
-    """On the first mesh, of loads of one instant each; beneath the contact only of the first two of
-    each joint, on both cells.
-    """
+    """On the first mesh, of loads of one instant each."""
     each = list(itertools.chain(*every))
-    below = [k < len(BOTH) for loads in every for k in range(len(loads))]
     whole = stacked(each)
     singular = singularities_of(model.pin, model.material, (), (whole,), asked.distance)
     problem = SectionProblem(model.pin, model.material, (), (whole,), singular, model.first)
@@ -159,9 +164,9 @@ def _at_places(
         AtPlaces(
             answer.largest(one)[0],
             sections.largest(other)[0],
-            beneath(section.fields, one, singular).value if deep else 0.0,
+            beneath(section.fields, one, singular).value,
         )
-        for one, other, deep in zip(each, on_rings, below, strict=True)
+        for one, other in zip(each, on_rings, strict=True)
     ]
 
 

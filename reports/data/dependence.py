@@ -57,7 +57,7 @@ def dependences(
     """
     if judged.maximum <= 0.0:
         return ()
-    found = [*_beneath(judged, contact), *_over_joint(judged, joint)]
+    found = [*_beneath(judged, contact), *_over_joint(judged, contact, joint)]
     if landing is not None:
         found += _over_landing(judged, landing)
     return tuple(found)
@@ -90,12 +90,22 @@ def _beneath(judged: Judged, contact: ContactPlace | None) -> Iterator[Dependenc
     )  # fmt: skip
 
 
-def _over_joint(judged: Judged, joint: JointResult | None) -> Iterator[Dependence]:
+def _over_joint(
+    judged: Judged, contact: ContactPlace | None, joint: JointResult | None
+) -> Iterator[Dependence]:
+    """A row that fails is safe at another value only if what lies beneath is, too; one that is
+    safe, beneath, too, may no longer be so there.
+    """
     over = joint.range if joint else None
     if joint is None or over is None:
         return
     given = max((band.clearance for band in joint.bands), default=None)
-    found = [v for v in over.variations if judged.turns(v.max_von_mises, v.interval)]
+    deep = [v for v in over.variations if _upper_end(contact, v) > judged.permitted]
+    found = [
+        v
+        for v in over.variations
+        if judged.turns(v.max_von_mises, v.interval) and (judged.safe or v not in deep)
+    ]
     for v in found:
         yield Dependence(
             v.what, v.value, "joint", judged.strength / _counted(judged, v),
@@ -106,6 +116,25 @@ def _over_joint(judged: Judged, joint: JointResult | None) -> Iterator[Dependenc
         lugs = "assumed lugs" if over.assumed else "its lugs"
         factor = judged.strength / over.max_von_mises[1]
         yield Dependence("joint", f"contact with {lugs}", "joint", factor)
+    if contact is None or not judged.safe or contact.upper_end > judged.permitted:
+        return
+    for v in (v for v in deep if v not in found):
+        end = _upper_end(contact, v)
+        what = f"{v.what} {v.value}" if v.length is None else v.what
+        yield Dependence(
+            BENEATH, what, "joint", judged.strength / end,
+            given=given if v.length is not None else None, at=v.length,
+            flips_at=_on_the_way(judged, v, given, (contact.upper_end, end)), dimension="length",
+        )  # fmt: skip
+
+
+def _upper_end(contact: ContactPlace | None, v: Variation) -> float:
+    """Of what lies beneath contact with something of the joint changed, with the relative error
+    that it has as the study has the joint.
+    """
+    if contact is None or not contact.beneath or v.beneath is None:
+        return 0.0
+    return v.beneath * contact.upper_end / contact.beneath
 
 
 def _counted(judged: Judged, v: Variation) -> float:
@@ -117,11 +146,16 @@ def _crossing(judged: Judged, v: Variation, given: float | None) -> float | None
     """Where between the given length and the varied one the permitted stress is reached, linearly;
     the varied one where the maximum as given is not of the same model.
     """
-    if v.length is None or given is None or v.interval is not None:
-        return v.length
     end = judged.high if judged.safe else judged.low
-    first, last = end, v.max_von_mises * end / judged.maximum
-    if first == last:
+    return _on_the_way(judged, v, given, (end, v.max_von_mises * end / judged.maximum))
+
+
+def _on_the_way(
+    judged: Judged, v: Variation, given: float | None, ends: tuple[float, float]
+) -> float | None:
+    """The same of stresses as given and as varied."""
+    (first, last) = ends
+    if v.length is None or given is None or v.interval is not None or first == last:
         return v.length
     part = (judged.permitted - first) / (last - first)
     return given + min(max(part, 0.0), 1.0) * (v.length - given)

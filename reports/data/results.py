@@ -97,7 +97,8 @@ class Dependence:
     outcome of a row.
 
     what: "clearance", "impulse time", "beneath"; value: in words where it is not a number
-    ("guided"). over: whose range, or "beneath" of what lies beneath contact. factor: of safety
+    ("guided"). over: whose range, or "beneath" of what lies beneath contact as the study has it;
+    of what lies beneath over a range, value is what changes ("clearance"). factor: of safety
     there. given, at, flips_at: as the study has it, where the outcome is another, and between them
     where it changes (interpolated), of `dimension`; None where it is not a number. reach: how far
     from pressed cells stress beneath contact exceeds what is permitted.

@@ -155,12 +155,13 @@ def _beneath(d: Dependence, units: Units) -> str:
 
 
 def _dependence(d: Dependence, units: Units) -> str:
+    what, value = (f"beneath contact at {d.value}", "") if d.what == BENEATH else (d.what, d.value)
     if d.at is None:
-        return f"{d.what} {d.value}".strip()
+        return f"{what} {value}".strip()
     unit = unit_name(d.dimension, units)
     flips = d.at if d.flips_at is None else d.flips_at
     side = "" if d.given is None else "above " if d.at > d.given else "below "
-    return f"{d.what} {side}{flips:.3g} {unit}"
+    return f"{what} {side}{flips:.3g} {unit}"
 
 
 def headline(results: Results) -> str:

@@ -94,17 +94,16 @@ def _range(joint: JointResult, units: Units) -> Grid | None:
     if joint.range is None or not joint.range.variations:
         return None
     body = [[v.what, value_words(v, units), *_maximum(v)] for v in joint.range.variations]
-    head = ["changed", "to", f"max von Mises [{units.stress}]", "with error"]
-    if joint.range.model == "contact":
-        head.pop()
+    last = "beneath contact" if joint.range.model == "contact" else "with error"
+    head = ["changed", "to", f"max von Mises [{units.stress}]", last]
     return Grid(head, body, [False, False, *[True] * (len(head) - 2)])
 
 
 def _maximum(variation: Variation) -> list[str]:
-    """With its range, where it has one."""
+    """With its range, where it has one, otherwise with what lies beneath contact."""
     size = engineering(variation.max_von_mises)
     if variation.interval is None:
-        return [size]
+        return [size, engineering(variation.beneath)]
     return [size, " to ".join(engineering(end, END) for end in variation.interval)]
 
 

@@ -23,6 +23,7 @@ LINES = (
 RANGES = (
     *("pin", "case", "what", "value", "max_von_mises", "stress_unit"),
     *("length", "length_unit", "model", "lugs", "max_von_mises_low", "max_von_mises_high"),
+    "beneath",
 )
 
 
@@ -73,6 +74,7 @@ def joint_json(joint: JointResult | None) -> dict[str, Any] | None:
                     "length": finite(v.length),
                     "max_von_mises": finite(v.max_von_mises),
                     "max_von_mises_interval": v.interval and [finite(x) for x in v.interval],
+                    "beneath": finite(v.beneath),
                 }
                 for v in over.variations
             ],
@@ -122,5 +124,5 @@ def _ranges(results: Results) -> Iterator[list[Cell]]:
             unit = None if v.length is None else u.length
             yield [
                 *(pin.pin, pin.case, v.what, v.value, v.max_von_mises, u.stress, v.length, unit),
-                *(*by, *(v.interval or (None, None))),
+                *(*by, *(v.interval or (None, None)), v.beneath),
             ]
