@@ -71,12 +71,13 @@ def outcome_of(
     return (f"{found} {AS_DESCRIBED}" if joint_open else found), ""
 
 
-def stress_at(peak: Peak) -> tuple[float | None, float | None, float | None]:
-    """The largest stress of surface and section and beneath contact, Pa."""
+def stress_at(peak: Peak) -> tuple[float | None, float | None, float | None, float | None]:
+    """The largest stress of surface and section and beneath contact, this with its error, Pa."""
     places = peak.places
     section, contact = (places.section, places.contact) if places else (None, None)
     return (
         places.surface.max_von_mises if places else None,
         section.max_von_mises if section else None,
         contact.beneath if contact else None,
+        contact.beneath_error if contact else None,
     )

@@ -37,6 +37,7 @@ RESULTS = {  # by column: the dimension, or None of a text; SI in a DesignRow
     "surface": "stress",
     "section": "stress",
     "beneath": "stress",
+    "beneath_error": "stress",
 }
 
 

@@ -33,6 +33,7 @@ TITLES = {
     "surface": "surface von Mises",
     "section": "section von Mises",
     "beneath": "beneath contact",
+    "beneath_error": "± of beneath contact",
 }
 
 
