@@ -8,7 +8,7 @@ one of designs that were solved as a run solves them: nothing is fitted or inter
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -139,8 +139,12 @@ def _first_orders(
     for pin in dict.fromkeys(pin for pin, _ in table):
         alone = designs.of_pin(Evaluator(study, parameters, [pin], cases))
         for k, row in enumerate(alone.evaluator.table):
-            starts = starts_of(sampled, table.index(row), study.table.reliability.factor)
-            found[row] = first_order(alone, k, starts, study.table.reliability)
+            place, asked = table.index(row), study.table.reliability
+            starts = starts_of(sampled, place, asked.factor)
+            found[row] = first_order(alone, k, starts, asked)
+            if sampled.answers.depends[place]:
+                about = found[row].centres + _beneath(alone, k, asked)
+                found[row] = replace(found[row], centres=about)
     return [found[row] for row in table]
 
 
@@ -169,6 +173,14 @@ def first_order(
     nearest = kept[0]
     result = FirstOrder(nearest.index, nearest.probability, value, len(kept))
     return _Form(result, tuple(centres), nearest)
+
+
+def _beneath(designs: SolvedDesigns, row: int, asked: ReliabilityTable) -> tuple[Array, ...]:
+    """Where what lies beneath contact is most likely to be too much, to sample there, too."""
+    close = NOISY if any(map(shapes, designs.evaluator.numbers)) else SMOOTH
+    limit = designs.limit(row, asked.factor, deep=True)
+    point = design_point(limit, np.zeros(designs.space.size), close)
+    return tuple(p.u for p in distinct([point]))
 
 
 def starts_of(sampled: Sample, row: int, factor: float) -> list[Array]:

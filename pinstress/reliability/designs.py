@@ -27,11 +27,13 @@ FEW = 30  # designs that this process solves itself, as FORM's, one step after a
 @dataclass(frozen=True)
 class Answers:
     """Of n designs, for each of r rows: used (n, r), one over the factor of safety, NaN where there
-    is no result; errors (n, r) of the stress, relative.
+    is no result; errors (n, r) of the stress, relative; deep (n, r): as used, or as much as what
+    lies beneath contact uses with its error, if that is more, on which a row then depends.
     """
 
     used: Array
     errors: Array
+    deep: Array
 
     @property
     def factors(self) -> Array:
@@ -42,9 +44,17 @@ class Answers:
     @property
     def system(self) -> Answers:
         """Of the row that is used most, as (n, 1); unknown where any row is."""
-        known = np.where(np.isnan(self.used), np.inf, self.used)
-        worst = np.argmax(known, axis=1)[:, None]
-        return Answers(*(np.take_along_axis(x, worst, axis=1) for x in (self.used, self.errors)))
+        worst, deepest = (
+            np.argmax(np.where(np.isnan(x), np.inf, x), axis=1)[:, None]
+            for x in (self.used, self.deep)
+        )
+        used, errors = (np.take_along_axis(x, worst, axis=1) for x in (self.used, self.errors))
+        return Answers(used, errors, np.take_along_axis(self.deep, deepest, axis=1))
+
+    @property
+    def depends(self) -> NDArray[np.bool_]:
+        """Of which rows (r,) what lies beneath contact ever is the most."""
+        return np.asarray((self.deep > self.used).any(axis=0))
 
 
 def for_values(study: Study) -> Study:
@@ -106,21 +116,25 @@ class SolvedDesigns:
             )
         return self._answers([rows for part in found for rows in part])
 
-    def limit(self, row: int, factor: float) -> LimitState:
-        """Of a row: one less factor times what is used, negative where it fails."""
+    def limit(self, row: int, factor: float, deep: bool = False) -> LimitState:
+        """Of a row: one less factor times what is used, negative where it fails; deep: where it
+        fails or depends on what lies beneath contact.
+        """
 
         def at(u: Array) -> Array:
-            return np.asarray(1.0 - factor * self.at(u, "FORM").used[:, row])
+            answers = self.at(u, "FORM")
+            return np.asarray(1.0 - factor * (answers.deep if deep else answers.used)[:, row])
 
         return at
 
     def _answers(self, designs: list[list[DesignRow]]) -> Answers:
         used = np.array([[_used(row) for row in rows] for rows in designs])
         errors = np.array([[_error(row) for row in rows] for rows in designs])
+        below = np.array([[_beneath(row) for row in rows] for rows in designs])
         for rows in designs:
             for reason in {row.reason for row in rows if np.isnan(_used(row))}:
                 self.reasons[reason or "no result"] += 1
-        return Answers(used, errors)
+        return Answers(used, errors, used * np.maximum(1.0, below))
 
 
 def _solved(evaluator: Evaluator, values: Array, _: object) -> list[list[DesignRow]]:
@@ -140,6 +154,13 @@ def _used(row: DesignRow) -> float:
     if row.max_von_mises == 0.0:
         return 0.0
     return 1.0 / row.safety_factor if row.safety_factor else np.nan
+
+
+def _beneath(row: DesignRow) -> float:
+    """What lies beneath contact, with its error, over the row's stress; 0 where nothing does."""
+    if row.beneath is None or not row.max_von_mises:
+        return 0.0
+    return (row.beneath + (row.beneath_error or 0.0)) / row.max_von_mises
 
 
 def _error(row: DesignRow) -> float:

@@ -31,6 +31,15 @@ class RiskColumn:
         found = answers.system if self.row is None else answers
         return found.used[:, self.row or 0], found.errors[:, self.row or 0]
 
+    def deep(self, answers: Answers) -> Array:
+        """What is used, or used beneath contact, if that is more, (n,)."""
+        found = answers.system if self.row is None else answers
+        return found.deep[:, self.row or 0]
+
+    def depends(self, answers: Answers) -> bool:
+        """Whether what lies beneath contact is ever more."""
+        return bool(answers.depends.any() if self.row is None else answers.depends[self.row])
+
 
 @dataclass(frozen=True)
 class Sample:
@@ -45,6 +54,11 @@ class Sample:
         """Of failure. part: of its error by which each stress is larger."""
         used, errors = column.of(self.answers)
         margin = 1.0 - asked.factor * used * (1.0 + part * errors)
+        return probability(self.draws, margin, 0.0, asked.confidence)
+
+    def deep(self, asked: ReliabilityTable, column: RiskColumn) -> Estimate:
+        """The probability of failure or of dependence on what lies beneath contact."""
+        margin = 1.0 - asked.factor * column.deep(self.answers)
         return probability(self.draws, margin, 0.0, asked.confidence)
 
     def quantile(self, asked: ReliabilityTable, column: RiskColumn) -> Estimate:
@@ -93,8 +107,19 @@ def risk_of(
         bare,
         mesh=_by_errors(best, row, asked),
         joint=_by_joint(best, row, asked),
+        beneath=_beneath(sampled, weighted, row, asked),
         curve=(*_curve(sampled, row, 0), *(_curve(weighted, row, 1) if weighted else ())),
     )
+
+
+def _beneath(
+    sampled: Sample, weighted: Sample | None, row: AssessedRow, asked: ReliabilityTable
+) -> Spread | None:
+    """None where nothing beneath contact is ever more than the row."""
+    if not any(row.column.depends(x.answers) for x in (sampled, weighted) if x):
+        return None
+    plain = _bounded(sampled.deep(asked, row.column))
+    return plain.or_narrower(_bounded(weighted.deep(asked, row.column)) if weighted else None)
 
 
 def _by_errors(best: Sample, row: AssessedRow, asked: ReliabilityTable) -> ByErrors | None:

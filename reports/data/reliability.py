@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from reports.data.decision import FAILS, NOT_DECIDED, SAFE
+from reports.data.decision import DEPENDS, FAILS, NOT_DECIDED, SAFE
 
 SYSTEM = "all"  # the pin and the case of the row for the lowest factor of all rows
 
@@ -22,6 +22,15 @@ class Spread:
     def apart(self, other: Spread) -> bool:
         """Whether the intervals do not overlap."""
         return self.high < other.low or other.high < self.low
+
+    def or_narrower(self, weighted: Spread | None) -> Spread:
+        """Of a probability: that of weighted samples, where it is surer and no contradiction."""
+        if weighted is None or weighted.apart(self) or weighted.value <= 0.0:
+            return self
+        surer = self.low <= 0.0 or (
+            math.log(weighted.high / weighted.low) < math.log(self.high / self.low)
+        )
+        return weighted if surer else self
 
 
 @dataclass(frozen=True)
@@ -71,7 +80,8 @@ class Risk:
     failures: of the plain samples; unknown: of them without a result. quantile_sampled,
     quantile_weighted: the factor of safety that is not reached with the stated probability. mesh:
     by the estimated error of the stress, joint: by the range over the joint; None where not known.
-    curve: of the distribution
+    beneath: the probability that it fails or depends on what lies beneath contact, with its error;
+    None where that is never more than the row. curve: of the distribution
     (factor, probability to be lower, by plain (0) or importance sampling (1)).
     """
 
@@ -88,6 +98,7 @@ class Risk:
     form: FirstOrder | None = None
     mesh: ByErrors | None = None
     joint: ByErrors | None = None
+    beneath: Spread | None = None
     drivers: tuple[Driver, ...] = ()
     curve: tuple[tuple[float, float, int], ...] = ()
 
@@ -99,12 +110,7 @@ class Risk:
     @property
     def by_weights(self) -> bool:
         """Whether importance sampling is the better estimate of the probability."""
-        best = self.weighted
-        if best is None or self.disagrees or best.value <= 0.0:
-            return False
-        return self.sampled.low <= 0.0 or (
-            math.log(best.high / best.low) < math.log(self.sampled.high / self.sampled.low)
-        )
+        return self.sampled.or_narrower(self.weighted) is not self.sampled
 
     @property
     def probability(self) -> Spread:
@@ -123,7 +129,8 @@ class Risk:
 
     def result(self, allowed: float) -> str:
         """Whether the probability of failure is within the allowed one: decided by the interval,
-        with the error of the stress. A singular row cannot be safe.
+        with the error of the stress. A singular row cannot be safe; one that is safe by surface and
+        section depends on what lies beneath contact, where that may take more than is allowed.
         """
         ends = self.probability
         low, high = ends.low, ends.high
@@ -131,7 +138,14 @@ class Risk:
             low, high = min(low, self.mesh.lower.low), max(high, self.mesh.higher.high)
         if self.disagrees or (high <= allowed and self.verdict == "singular"):
             return NOT_DECIDED
+        if high <= allowed and self.beneath is not None and self.beneath.high > allowed:
+            return DEPENDS
         return SAFE if high <= allowed else FAILS if low > allowed else NOT_DECIDED
+
+    @property
+    def most(self) -> float:
+        """The larger of both probabilities."""
+        return max(self.probability.value, self.beneath.value if self.beneath else 0.0)
 
 
 @dataclass(frozen=True)
@@ -155,3 +169,8 @@ class Reliability:
     solved: Mapping[str, int] = field(default_factory=dict)
     reasons: Mapping[str, int] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+
+    @property
+    def deep(self) -> bool:
+        """Whether what lies beneath contact is ever more than a row."""
+        return any(risk.beneath is not None for risk in self.risks)

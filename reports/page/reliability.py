@@ -11,7 +11,7 @@ from reports.plots.draw import svg
 from reports.plots.reliability import distribution_plot
 from reports.plots.theme import on_paper
 from reports.tables.reliability import drivers_grid, risks_grid, ways_grid
-from reports.text.reliability import remarks, sentence, solved
+from reports.text.reliability import remarks, sentence, solved, ways_title
 
 MOST = 12  # plots
 
@@ -28,7 +28,7 @@ def write_reliability_page(found: Reliability, path: Path) -> None:
             sentence=sentence(found, found.risks[0]) if found.risks else "",
             sections=[
                 ("Pins and cases", risks_grid(found)),
-                ("By each way of finding it", ways_grid(found)),
+                (ways_title(found), ways_grid(found)),
                 ("What drives it", drivers_grid(found)),
                 ("Random numbers", laws),
             ],
@@ -42,4 +42,4 @@ def write_reliability_page(found: Reliability, path: Path) -> None:
 
 
 def _worst_first(found: Reliability) -> list[Risk]:
-    return sorted(found.risks, key=lambda risk: -risk.probability.value)
+    return sorted(found.risks, key=lambda risk: -risk.most)

@@ -16,9 +16,11 @@ from reports.format.numbers import DASH, engineering, finite
 
 SCHEMA = "pinstress-reliability/1"
 DIGITS = 3
+OR_BENEATH = "or beneath contact"  # probability that a row fails, or depends on that
 COLUMNS = (
     "pin", "case", "result", "verdict", "safety_factor", "limit_factor",
     "probability", "probability_low", "probability_high", "probability_by",
+    "beneath", "beneath_low", "beneath_high",
     "sampled", "sampled_low", "sampled_high", "failures", "samples", "unknown",
     "weighted", "weighted_low", "weighted_high",
     "form", "form_index", "form_design_points",
@@ -67,6 +69,7 @@ def _cells(found: Reliability, risk: Risk) -> list[Cell]:
         found.limit,
         *_ends(risk.probability),
         "importance sampling" if risk.by_weights else "plain sampling",
+        *_ends(risk.beneath),
         *_ends(risk.sampled),
         risk.failures,
         found.samples,
@@ -144,11 +147,12 @@ def factor_interval(value: Spread | None) -> str:
 
 
 def risks_grid(found: Reliability) -> Grid:
-    """A row per pin and case."""
+    """A row per pin and case; with what lies beneath contact, where that is ever more."""
+    deep = found.deep
     per_cent, p = f"{100.0 * found.confidence:g} %", chance(found.probability)
     head = ["pin", "case", "result", "FoS", f"FoS at probability {p} ({per_cent})",
-            f"P(FoS < {engineering(found.limit, DIGITS)}) ({per_cent})", "by mesh error",
-            "over joint"]  # fmt: skip
+            f"P(FoS < {engineering(found.limit, DIGITS)}) ({per_cent})",
+            *[OR_BENEATH] * deep, "by mesh error", "over joint"]  # fmt: skip
     body = [
         [
             risk.pin,
@@ -157,11 +161,12 @@ def risks_grid(found: Reliability) -> Grid:
             engineering(risk.factor),
             factor_interval(risk.quantile),
             chance_range(risk.probability),
+            *[chance_range(risk.beneath or risk.probability)] * deep,
             *(_by_errors(each) for each in (risk.mesh, risk.joint)),
         ]
         for risk in found.risks
     ]
-    return Grid(head, body, [False, False, False, *[True] * 5])
+    return Grid(head, body, [False, False, False, *[True] * (len(head) - 3)])
 
 
 def ways_grid(found: Reliability) -> Grid:

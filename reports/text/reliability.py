@@ -8,14 +8,23 @@ from typing import TYPE_CHECKING
 from reports.data.reliability import Reliability, Risk
 from reports.format.grid import Grid
 from reports.format.numbers import engineering
-from reports.tables.reliability import chance, change, drivers_grid, remark, risks_grid, ways_grid
+from reports.tables.reliability import (
+    chance,
+    chance_range,
+    change,
+    drivers_grid,
+    remark,
+    risks_grid,
+    ways_grid,
+)
 from reports.text.fitted_table import Column, fitted_table
 
 if TYPE_CHECKING:
     from rich.console import Console
 
 # Of the columns: which are left out first.
-RISKS, WAYS, DRIVERS = (0, 0, 0, 1, 2, 0, 3, 4), (0, 0, 0, 0, 0, 0, 1, 4, 3, 2), (0, 0, 0, 0, 1, 2)
+RISKS, DEEP = (0, 0, 0, 1, 2, 0, 3, 4), (0, 0, 0, 1, 2, 0, 0, 3, 4)
+WAYS, DRIVERS = (0, 0, 0, 0, 0, 0, 1, 4, 3, 2), (0, 0, 0, 0, 1, 2)
 
 
 def sentence(found: Reliability, risk: Risk) -> str:
@@ -31,8 +40,10 @@ def sentence(found: Reliability, risk: Risk) -> str:
             low, high = chance(errors.lower.value), chance(errors.higher.value)
             text += f"; {what}, {change(errors)} of stress: {low} to {high}"
     limit = engineering(found.limit, 3)
-    text += "; model form not included)."
-    return f"{name(risk)}: the probability of a factor below {limit} is {text}"
+    text += "; model form not included)"
+    if risk.beneath is not None:
+        text += f", and {chance_range(risk.beneath)} with what lies beneath contact"
+    return f"{name(risk)}: the probability of a factor below {limit} is {text}."
 
 
 def name(risk: Risk) -> str:
@@ -65,8 +76,8 @@ def print_reliability(found: Reliability, console: Console) -> None:
     for risk in found.risks[:1]:
         console.print(Text(sentence(found, risk), "bold"))
     for title, grid, ranks in (
-        ("", risks_grid(found), RISKS),
-        ("By each way of finding it", ways_grid(found), WAYS),
+        ("", risks_grid(found), DEEP if found.deep else RISKS),
+        (ways_title(found), ways_grid(found), WAYS),
         ("What drives it", drivers_grid(found), DRIVERS),
     ):
         if not grid.body:
@@ -76,6 +87,11 @@ def print_reliability(found: Reliability, console: Console) -> None:
         console.print(fitted_table(_columns(grid, ranks), console.width))
     for line in (*remarks(found), solved(found)):
         console.print(Text(line))
+
+
+def ways_title(found: Reliability) -> str:
+    """Of the table of all ways: what lies beneath contact is no part of it."""
+    return "By each way of finding it" + ", of surface and section" * found.deep
 
 
 def _columns(grid: Grid, ranks: tuple[int, ...]) -> list[Column]:

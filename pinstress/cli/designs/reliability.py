@@ -14,11 +14,11 @@ from pinstress.processes.pool import preload, processes
 from pinstress.reliability.assess import assess
 from pinstress.reliability.designs import for_values, random_numbers
 from pinstress.study.file import Study
-from reports.data.decision import NOT_DECIDED
+from reports.data.decision import DEPENDS, NOT_DECIDED
 from reports.data.reliability import Reliability
 from reports.page.reliability import write_reliability_page
 from reports.tables.reliability import write_reliability
-from reports.text.reliability import print_reliability
+from reports.text.reliability import name, print_reliability
 
 MARK = "reliability.json"
 PAGE = "reliability.html"
@@ -33,7 +33,8 @@ def reliability_and_write(
     quiet: bool,
 ) -> int:
     """Assess a study into a folder; returns the exit status: 1 if for any row it is not decided
-    whether its probability of failure is within the allowed one. Raises: InputError.
+    whether its probability of failure is within the allowed one, or where that is so only without
+    what lies beneath contact. Raises: InputError.
     """
     require_replaceable(directory, MARK)
     most = processes(jobs)
@@ -58,4 +59,7 @@ def _status(found: Reliability) -> int:
     open_ones = [r for r in found.risks if r.result(found.probability) == NOT_DECIDED]
     for risk in open_ones:
         click.echo(f"Not decided: pin {risk.pin}, case {risk.case}.", err=True)
-    return int(bool(open_ones))
+    deep = [r for r in found.risks if r.result(found.probability) == DEPENDS]
+    for risk in deep:
+        click.echo(f"Depends on what lies beneath contact: {name(risk)}.", err=True)
+    return int(bool(open_ones or deep))

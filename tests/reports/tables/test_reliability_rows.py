@@ -66,11 +66,11 @@ def test_the_sentence_and_the_plot() -> None:
 def test_the_worst_row_of_each_design() -> None:
     used = np.array([[0.5, 0.9], [0.8, 0.1], [np.nan, 0.3], [0.0, 0.0]])
     errors = np.array([[0.1, 0.2], [0.3, 0.4], [0.0, 0.0], [0.0, 0.0]])
-    worst = Answers(used, errors).system
+    worst = Answers(used, errors, used).system
     assert worst.used[:2, 0].tolist() == [0.9, 0.8]
     assert worst.errors[:2, 0].tolist() == [0.2, 0.3]
     assert np.isnan(worst.used[2, 0])
-    assert Answers(used, errors).factors[3].tolist() == [np.inf, np.inf]
+    assert Answers(used, errors, used).factors[3].tolist() == [np.inf, np.inf]
 
 
 def test_a_range_that_does_not_contain_the_maximum_is_not_a_plus_or_minus() -> None:
