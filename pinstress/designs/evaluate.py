@@ -20,6 +20,7 @@ from fea.asked import Asked
 from fea.core.material import Material
 from fea.core.peak import Peak, Verdict
 from fea.harmonic.kept_fields import EveryMesh
+from fea.joint.lugs.lug import Lug
 from geometry import ArgumentError
 from loads import Linkage
 from pinstress.analysis.plan import asked_of, prepare
@@ -279,6 +280,12 @@ def elastic(material: Material) -> Material:
     )
 
 
+def _elastic_lug(lug: Lug) -> Lug:
+    """A lug without strengths, by which only its own share is judged (bare_answer drops that)."""
+    bushing = lug.bushing and replace(lug.bushing, material=elastic(lug.bushing.material))
+    return replace(lug, material=elastic(lug.material), bushing=bushing)
+
+
 def _question(study: Study, task: Task, asked: Asked, ranges: Sequence[ImpulseLoads | None]) -> str:
     """Hash of all on which a pin's answers depend in a study whose mechanism does not change.
     ranges: of impulses by case, as other ones may have the same forces.
@@ -287,7 +294,7 @@ def _question(study: Study, task: Task, asked: Asked, ranges: Sequence[ImpulseLo
     asks = (
         shape_of(task.pin),
         task.clamps,
-        task.lugs,
+        task.lugs if decides else tuple(map(_elastic_lug, task.lugs)),
         study.table.analysis.joints,
         study.table.fatigue is not None,
         task.loads,

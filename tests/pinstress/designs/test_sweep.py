@@ -62,7 +62,7 @@ def test_a_row_for_each_design_pin_and_case(table: pa.Table) -> None:
     assert table.column_names == [
         "design", "pin", "case", DIAMETER, FORCE, STRENGTH, "max_von_mises", "error_estimate",
         "safety_factor", "outcome", "depends_on", "verdict", "governing_time", "mass", "reason",
-        "code", "governs", "surface", "section", "beneath",
+        "code", "governs", "surface", "section", "beneath", "beneath_error",
     ]  # fmt: skip
     np.testing.assert_allclose(np.unique(table[DIAMETER]), [1.5, 3.0, 4.5])
     factor = np.array(table["safety_factor"].to_pylist()[:8], float)
