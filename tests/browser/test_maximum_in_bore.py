@@ -27,7 +27,7 @@ def tube_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_the_probe_reads_it_where_it_is(browser: Any, tube_run: Path) -> None:
     (row,) = json.loads((tube_run / "results.json").read_text(encoding="utf-8"))["pins"]
-    x, y, z = row["surface"]["location"]
+    x, y, _ = row["surface"]["location"]
     assert abs((x * x + y * y) ** 0.5 - 6.0) < 1e-6  # what the test is about
     opened(browser, tube_run)
     root = view(browser, "P")
