@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -59,7 +59,7 @@ def dependences(
         return ()
     found = [*_beneath(judged, contact), *_over_joint(judged, contact, joint)]
     if landing is not None:
-        found += _over_landing(judged, landing)
+        found += _with_beneath(judged, contact, landing)
     return tuple(found)
 
 
@@ -159,6 +159,26 @@ def _on_the_way(
         return v.length
     part = (judged.permitted - first) / (last - first)
     return given + min(max(part, 0.0), 1.0) * (v.length - given)
+
+
+def _with_beneath(
+    judged: Judged, contact: ContactPlace | None, r: LandingRange
+) -> list[Dependence]:
+    """Over the landing, what lies beneath contact with the row: both go with the load. A row that
+    fails is safe at another value only if what lies beneath is, too.
+    """
+    if contact is None or contact.beneath <= 0.0:
+        return list(_over_landing(judged, r))
+    if not judged.safe:
+        return list(_over_landing(replace(judged, high=max(judged.high, contact.upper_end)), r))
+    if (found := list(_over_landing(judged, r))) or contact.upper_end > judged.permitted:
+        return found
+    deep = replace(judged, low=contact.beneath, maximum=contact.beneath, high=contact.upper_end)
+    scaled = replace(r, max_von_mises=r.max_von_mises * (contact.beneath / judged.maximum))
+    return [
+        replace(d, what=BENEATH, value=f"{d.what} {d.value}".strip())
+        for d in _over_landing(deep, scaled)
+    ]
 
 
 def _over_landing(judged: Judged, r: LandingRange) -> Iterator[Dependence]:

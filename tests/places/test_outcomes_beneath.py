@@ -24,7 +24,7 @@ from pinstress.schema.units import SYSTEMS
 from reports.data.decision import outcome
 from reports.data.dependence import depends_on
 from reports.data.in_units import in_units
-from reports.data.results import PinResult, Results
+from reports.data.results import LandingRange, PinResult, Results
 from reports.format.words import headline, result_words
 from reports.tables.json_results import to_json
 from reports.tables.strength.envelope import envelope_table
@@ -154,6 +154,40 @@ def test_stairs_have_the_farthest_point_of_every_stress() -> None:
         brute = away[stress > limit].max(initial=0.0)
         assert place.depth(limit) == brute
     assert stairs(stress, away, 2.0) == ()
+
+
+def test_what_lies_beneath_goes_with_the_impulse() -> None:
+    """59,000 psi of the row are 68,077 at 0.13 s instead of 0.15, safe; 75,000 beneath are 86,538.
+    In proportion to 1 / time, 78,667 are reached at 0.143 s.
+    """
+    times = np.array([0.15, 0.13])
+    stress = 59000.0 * 0.15 / times
+    over = LandingRange(
+        "A", "x", times, np.full(2, 25.0), stress, stress, 118000.0 / stress, (0.15, 25.0),
+        "converged", pulses=("rectangular",) * 2, nominal_pulse="rectangular",
+    )  # fmt: skip
+    made = pin(75000.0, 0.0)
+    assert made.depends_on == ()
+    (found,) = depends_on(made, over)
+    assert (found.what, found.value, found.over) == ("beneath", "impulse time", "landing")
+    assert found.flips_at == pytest.approx(0.15 * 75000.0 / (118000.0 / 1.5))
+    assert found.factor == pytest.approx(118000.0 / 75000.0 * 0.13 / 0.15)
+    text = headline(only(replace(made, depends_on=(found,))))
+    assert "range of the landing (beneath contact at impulse time below 0.143 s)" in text
+    assert depends_on(pin(50000.0, 0.0), over) == ()
+
+
+def test_a_row_that_fails_is_safe_at_a_longer_impulse_only_if_what_lies_beneath_is() -> None:
+    """84,286 psi at 0.15 s are 74,370 at 0.17 s, safe; 90,000 beneath are 79,412, too much."""
+    times = np.array([0.15, 0.17])
+    stress = 118000.0 / 1.4 * 0.15 / times
+    over = LandingRange(
+        "A", "x", times, np.full(2, 25.0), stress, stress, 118000.0 / stress, (0.15, 25.0),
+        "converged", pulses=("rectangular",) * 2, nominal_pulse="rectangular",
+    )  # fmt: skip
+    for beneath, expected in ((75000.0, ["impulse time"]), (90000.0, [])):
+        failing = replace(row("x", "converged", 1.4, False), places=pin(beneath, 0.0).places)
+        assert [d.what for d in depends_on(failing, over)] == expected
 
 
 @pytest.mark.slow
