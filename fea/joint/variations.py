@@ -30,7 +30,7 @@ from fea.solve_pin import singularities_of
 
 CELLS = 0.6  # of the tolerance: what the cells may take
 # Orders of the error in the length of cells, on the surface and beneath, and in sections: what is
-# off is 0.52, 0.66 and 0.25 at most of the change by cells twice as large, where that is noticeable
+# off is 0.52, 0.66 and 0.25 at most of the change by cells twice as large, where that is noticed
 # (benchmarks/joints/cells.py).
 ORDER, IN_SECTIONS = 1.4, 2.0
 # Relative, of the usual number of rings, and less of more: by so much the stress beside the edges
