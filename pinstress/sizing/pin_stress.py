@@ -22,6 +22,7 @@ from typing import Any, Literal
 import numpy as np
 
 from fea.asked import Asked
+from fea.beam.error_model import TWICE
 from fea.core.linear_solver import SolveError
 from fea.core.peak import Peak
 from fea.core.pin_loads import PinLoads
@@ -105,13 +106,16 @@ class SolvedPin:
 
 @dataclass(frozen=True)
 class _Found:
-    """The largest stress of a part, Pa as it counts, and what its derivatives need."""
+    """The largest stress of a part, Pa as it counts, and what its derivatives need; besides: of its
+    logarithm by those of the dimensions, what comes to them.
+    """
 
     name: str
     case: str
     stress: float
     slopes: Callable[[], Floats]
     guess: Floats | None = None
+    besides: Floats | float = 0.0
 
 
 class PinStress:
@@ -226,7 +230,7 @@ class PinStress:
             window = WINDOW if part.name in self._known else UNKNOWN
             slope = None
             if values is not None and value >= top - (window if abs(top) < far else 0.0):
-                slope = values * self._slope(part)
+                slope = values * self._slope(part) + part.besides
                 self._known.add(part.name)
             places.append(StressPlace(part.name, value, slope, part.guess))
         at = np.zeros(0) if values is None else values
@@ -340,8 +344,9 @@ class PinStress:
             slope = np.array([made.by_dimension.get(d.key, 0.0) for d in dimensions])
             return slope / made.maximum
 
+        besides = self._by_clamps(peak, ends.get("section", 0.0)) if len(clamps) > 1 else 0.0
         section = [
-            _Found(f"{peak.case}, section", peak.case, stress, of_section)
+            _Found(f"{peak.case}, section", peak.case, stress, of_section, besides=besides)
             for place, stress in ends.items()
             if place == "section" and stress
         ]
@@ -357,6 +362,18 @@ class PinStress:
             for top in tops
             if top.top.value > 0.0
         ]
+
+    def _by_clamps(self, peak: Peak, stress: float) -> Floats | float:
+        """Of the logarithm of a section's stress with the error of a beam between two clamps, which
+        goes with the largest diameter until it is TWICE: its derivatives by that.
+        """
+        place = peak.places.section if peak.places else None
+        error = stress / place.max_von_mises - 1.0 if place and place.max_von_mises else 0.0
+        if error >= TWICE:
+            return 0.0
+        outer = [max(s.diameters) for s in self.problem.shape.pin.segments]
+        thickest = int(np.argmax(outer))
+        return error / (1.0 + error) * self.problem.shape.part_of_diameter(thickest)
 
 
 def _none() -> Floats:
