@@ -96,6 +96,10 @@ def outcome_again(row: Row, required: float | None) -> str:
         own = 1.0 if varied["max_von_mises_interval"] else high / row["max_von_mises"]
         if stress * own > permitted:
             return "depends"
+        if contact and contact["beneath"]:
+            upper = 1.0 + contact["beneath_error"] / contact["beneath"]
+            if (varied["beneath"] or 0.0) * upper > permitted:
+                return "depends"
     if any(
         d["over"] == "landing" for d in row["depends_on"]
     ):  # its ranges are in landing_range.csv
@@ -115,7 +119,10 @@ def wrong_row(row: Row, required: float | None) -> Iterator[str]:
         yield "it depends on something and does not, or the other way round"
     contact = row.get("contact") or {}
     for on in row["depends_on"]:
-        if on["what"] == "beneath":
+        if on["what"] == "beneath" and on["over"] != "beneath":  # over a range, of which it is said
+            if on["safety_factor"] >= (required or 1.0) or not on["value"]:
+                yield "what lies beneath does not change its outcome"
+        elif on["what"] == "beneath":
             if on["reach"] != contact["reach_required" if required else "reach"]:
                 yield "it depends on another depth than that of contact"
             most = contact["beneath"] + contact["beneath_error"]
@@ -235,7 +242,7 @@ def wrong_sentence(
     below = re.search(
         rf"not beneath contact \({FACTOR}(?:, too low to a depth of ([\d.,]+))?", text
     )
-    on = next((d for d in row["depends_on"] if d["what"] == "beneath"), None)
+    on = next((d for d in row["depends_on"] if d["over"] == "beneath"), None)
     if (below is None) != (on is None or state != "depends"):
         yield "beneath contact is said where it is not so, or the other way round"
     if below is not None and on is not None:
