@@ -47,7 +47,8 @@ def test_the_whole_pipeline(tmp_path: Path, study: str, pin: str, verdict: str) 
         assert result["pin"] == pin
         assert result["verdict"] == verdict
         assert result["meets_required"] is (True if verdict == "converged" else None)
-        assert result["error_estimate"] <= 0.1 * result["max_von_mises"]
+        surface = result["surface"]  # sections between two clamps have the error of a beam
+        assert surface["error_estimate"] <= 0.1 * surface["max_von_mises"]
         assert result["safety_factor"] > found["required_safety_factor"]
         assert ("at the edge of a load" in result["note"]) == (verdict == "singular")
     assert (out / "report.html").is_file()
