@@ -6,11 +6,10 @@ import math
 from dataclasses import replace
 
 from fea.core.material import Material
-from fea.core.peak import Note, Peak
+from fea.core.peak import Note, Peak, accuracy
 from fea.core.pin_loads import PinLoads
 from fea.core.places import ContactPlace, Place, Places, SurfacePlace
 from fea.section.place import FoundSection
-from fea.verdict import accuracy
 
 IN_SECTION = ("in-section",)
 OF_THE_SURFACE = ("within-tolerance", "above-tolerance", "too-few-meshes", "no-notch-factor")

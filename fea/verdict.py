@@ -15,6 +15,7 @@ from fea.core.peak import (
     Refinement,
     SingularZone,
     Verdict,
+    accuracy,
     discretisation_error,
 )
 from fea.core.pin_loads import PinLoads
@@ -186,14 +187,6 @@ def judge(
         parts=seen.parts,
         reasons=own.codes,
     )
-
-
-def accuracy(relative: float, tolerance: float, known: bool) -> Note:
-    """The relative error, and whether it is within the tolerance."""
-    if known:
-        return Note(f"estimated error {relative:.1%}", ("within-tolerance",))
-    text = f"estimated error {relative:.1%}, above the tolerance of {tolerance:.1%}"
-    return Note(text, ("above-tolerance",))
 
 
 def _nowhere(zone: SingularZone) -> str:

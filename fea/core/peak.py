@@ -210,3 +210,11 @@ def discretisation_error(
     if change <= 2.0 * scatter or (values[-1] - values[-2]) * (values[-2] - values[-3]) < 0.0:
         return formal
     return 3.0 * change / math.expm1(least_order * math.log(ratio))
+
+
+def accuracy(relative: float, tolerance: float, known: bool) -> Note:
+    """The relative error, and whether it is within the tolerance."""
+    if known:
+        return Note(f"estimated error {relative:.1%}", ("within-tolerance",))
+    text = f"estimated error {relative:.1%}, above the tolerance of {tolerance:.1%}"
+    return Note(text, ("above-tolerance",))

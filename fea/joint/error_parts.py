@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from fea.asked import Asked
-from fea.core.peak import ErrorParts, Peak
-from fea.verdict import accuracy
+from fea.core.peak import ErrorParts, Peak, accuracy
 
 
 def with_parts(peak: Peak, parts: ErrorParts, asked: Asked) -> Peak:

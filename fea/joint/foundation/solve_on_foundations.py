@@ -22,7 +22,7 @@ from fea.beam.maximum import Highest
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.over_time import rise_between, through_time
-from fea.core.peak import ErrorParts, Note, Peak, Refinement
+from fea.core.peak import ErrorParts, Note, Peak, Refinement, accuracy
 from fea.core.pin_loads import Amounts, AnyLoads, Floats, PinLoads, UnitLoad
 from fea.core.places import Place, Places, SurfacePlace
 from fea.core.solution import Picture
@@ -39,7 +39,6 @@ from fea.section.answer import AtSection, SectionAnswer
 from fea.section.place import FoundSection
 from fea.singular.singularities import find_singularities
 from fea.solve_pin import Solution
-from fea.verdict import accuracy
 
 Joints = Literal["auto", "contact", "foundation"]
 Progress = Callable[[str], None]
