@@ -19,7 +19,7 @@ from fea.core.pin_loads import Amounts, AnyLoads, PinLoads
 from fea.core.solution import Picture
 from fea.singular.singularities import Singularity, outside
 from geometry import Pin
-from geometry.arrays import Floats
+from pinbase.arrays import Floats
 
 
 class BeamAnswer:

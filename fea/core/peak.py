@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from fea.core.dimensions import Energy, Length, Point, Stress
 from fea.core.mesh_result import Strength
 from fea.core.pin_loads import PinLoads
 from fea.core.places import Places
+from pinbase.dimensions import Energy, Length, Point, Stress
 
 Verdict = Literal["converged", "unconverged", "singular", "rigid", "failed"]
 
