@@ -9,7 +9,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from fea.core.zone import Kind, Zone
+from fea.core.zone import MESH_SCALE_RATIO, Kind, Zone
 from fea.singular.williams import Side, antiplane_exponent, plane_exponent
 from geometry import Arc, Pin, Vertex, meridian, vertices
 from geometry.shape.polygon import SMOOTH_ANGLE_TOLERANCE
