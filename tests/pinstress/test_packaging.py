@@ -21,7 +21,7 @@ import pytest
 
 from tests.conftest import ROOT
 
-PACKAGES = ("pinstress", "loads", "geometry", "fea", "reports")
+PACKAGES = ("pinstress", "pinbase", "loads", "geometry", "fea", "assess", "reports")
 LIBRARIES = os.pathsep.join(dict.fromkeys(sysconfig.get_paths()[k] for k in ("purelib", "platlib")))
 OFFLINE = ("--no-index", "--no-deps", "--no-build-isolation", "--ignore-installed", "--quiet")
 
@@ -97,7 +97,7 @@ def test_an_install_initialises_checks_and_runs(ending: str, dist: Path, tmp_pat
         tmp_path,
         bin_ / "python",
         "-c",
-        f"import {', '.join(PACKAGES)}; from pinstress.study.shipped import shipped\n"
+        f"import {', '.join(PACKAGES)}; from pinstress.study.reading.shipped import shipped\n"
         f"print(*(m.__file__ for m in ({', '.join(PACKAGES)})))\n"
         "print(shipped('grenier2008.toml'))",
     ).split()

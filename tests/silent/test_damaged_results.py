@@ -21,12 +21,12 @@ from typing import Any
 
 import pytest
 
+import pinbase.processes.apart as apart_module
 import pinstress.cli.compare as compare_command
 import pinstress.cli.plots as plots_command
 import pinstress.cli.view as view_command
-import pinstress.processes.apart as apart_module
 import reports.vtk.render as render
-from pinstress.processes.apart import Failed
+from pinbase.processes.apart import Failed
 from tests.support.programs.command_line import pinstress, run_here
 from tests.support.results.mutants import (
     DEEP,

@@ -11,8 +11,8 @@ import pytest
 
 import pinstress
 from fea.core.voigt import von_mises
-from fea.solve_pin import Model
-from pinstress.study.errors import InputError
+from fea.solve.solve_pin import Model
+from pinstress.study.reading.errors import InputError
 from tests.pinstress.test_import import loaded_by
 
 PIN = """
@@ -181,7 +181,7 @@ def test_the_first_point_has_the_largest_range_not_the_largest_stress(write: Wri
 def test_without_pylife_histories_are_all_there_is(
     write: Write, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("pinstress.analysis.gather_fatigue.find_spec", lambda _: None)
+    monkeypatch.setattr("pinstress.analysis.gather.gather_fatigue.find_spec", lambda _: None)
     results = pinstress.run(pinstress.load_study(write(PIN + FATIGUE)))
     assert results.histories
     assert results.fatigue is not None
