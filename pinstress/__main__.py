@@ -6,7 +6,7 @@ import os
 import sys
 from collections.abc import Callable
 
-NOT_WRITTEN = 2
+EXIT_NOT_WRITTEN = 2
 
 
 def main() -> None:
@@ -34,7 +34,7 @@ def main() -> None:
     interrupts.ignore()  # it is done; an interrupt is no part of the answer now
     if why := lost():
         print(f"Error: {why}", file=sys.stderr)
-        status = max(status, NOT_WRITTEN)
+        status = max(status, EXIT_NOT_WRITTEN)
     if status == interrupts.INTERRUPTED:
         # If the interrupt came while exec() ran a string (an import of dataclasses, say), CPython
         # ends the process by the signal, whoever caught it; everything is cleaned up by now.

@@ -14,7 +14,7 @@ from typing import Any
 from pinbase.processes.current_folder import trusted_path
 
 
-def started_anew(target: Callable[..., None], *args: Any) -> BaseProcess:
+def spawned(target: Callable[..., None], *args: Any) -> BaseProcess:
     """A new Python that calls `target`, a function of a module, with arguments that pickle."""
     process = multiprocessing.get_context("spawn").Process(target=target, args=args)
     with _without_main(), _trusting():

@@ -12,11 +12,11 @@ from functools import partial
 from typing import Generic, TypeVar
 
 from pinbase.errors import Damaged
-from pinbase.processes.pool import Died, Job, Tell, can_fork, ended, side_by_side
+from pinbase.processes.pool import Job, ProcessDied, Tell, can_fork, ended, in_parallel
 
 T = TypeVar("T")
 
-NO_MEMORY = "there was not enough memory"
+NO_MEMORY_REASON = "there was not enough memory"
 
 
 @dataclass(frozen=True)
@@ -44,13 +44,13 @@ def apart(work: Sequence[tuple[str, Callable[[], T]]], seconds: int) -> list[T |
     ]
     try:
         # Two at a time: one would be this process.
-        found = side_by_side(jobs, 2, anew=not can_fork())
+        found = in_parallel(jobs, 2, anew=not can_fork())
     except (OSError, MemoryError) as error:  # no further process can be started
-        why = NO_MEMORY if isinstance(error, MemoryError) else str(error.strerror)
+        why = NO_MEMORY_REASON if isinstance(error, MemoryError) else str(error.strerror)
         return [Failed(f"no process could be started for it ({why})") for _ in jobs]
     told: list[T | Failed] = []
     for one in found:
-        if isinstance(one, Died):
+        if isinstance(one, ProcessDied):
             told.append(Failed(_reason(one.status, seconds)))
         else:
             told.append(one.value if isinstance(one, _Made) else one)
@@ -75,7 +75,7 @@ def _guarded(work: Callable[[], T], seconds: int, _: Tell) -> _Made[T] | Failed:
     except (KeyboardInterrupt, SystemExit):
         raise
     except MemoryError:
-        return Failed(NO_MEMORY)
+        return Failed(NO_MEMORY_REASON)
     except Damaged as error:
         return Failed(str(error), damaged=True)
     except BaseException as error:  # also a panic of Rust, which is no Exception

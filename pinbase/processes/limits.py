@@ -12,8 +12,11 @@ from pathlib import Path
 from pinbase.processes.system import portable
 
 MB = 2**20
-TICK = 0.1  # s between two looks at the time
-SECONDS_PASSED, CLOCK_PASSED = 124, 125  # exit statuses of a process that a thread has ended
+TIME_CHECK_INTERVAL = 0.1  # s between two looks at the time
+EXIT_SECONDS_PASSED, EXIT_CLOCK_PASSED = (
+    124,
+    125,
+)  # exit statuses of a process that a thread has ended
 
 
 @dataclass(frozen=True)
@@ -43,7 +46,7 @@ def keep_within(limits: Limits) -> None:
 
 def passed(status: int, limits: Limits) -> str:
     """Which limit a process passed that ended with this status; empty if none."""
-    seconds, clock = {SECONDS_PASSED}, {CLOCK_PASSED}
+    seconds, clock = {EXIT_SECONDS_PASSED}, {EXIT_CLOCK_PASSED}
     if not portable():
         seconds, clock = {-signal.SIGXCPU}, {-signal.SIGALRM}
     if status in seconds:
@@ -63,7 +66,7 @@ def _watch(limits: Limits) -> None:
     spent, began = time.process_time(), time.monotonic()
     while True:
         if time.process_time() - spent > limits.seconds:
-            os._exit(SECONDS_PASSED)
+            os._exit(EXIT_SECONDS_PASSED)
         if time.monotonic() - began > limits.clock:
-            os._exit(CLOCK_PASSED)
-        time.sleep(TICK)
+            os._exit(EXIT_CLOCK_PASSED)
+        time.sleep(TIME_CHECK_INTERVAL)

@@ -10,7 +10,7 @@ import threading
 
 from pinbase.processes.system import portable
 
-PARENT_DEATH = 1  # PR_SET_PDEATHSIG
+PR_SET_PDEATHSIG = 1  # PR_SET_PDEATHSIG
 
 
 def end_with_parent(parent: int) -> None:
@@ -20,7 +20,7 @@ def end_with_parent(parent: int) -> None:
         return
     import ctypes
 
-    ctypes.CDLL(None).prctl(PARENT_DEATH, signal.SIGKILL)
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
     if os.getppid() != parent:  # it was gone before
         sys.exit(1)
 

@@ -29,7 +29,7 @@ from multiprocessing.process import BaseProcess
 from typing import Any, Generic, TypeVar
 
 from pinbase.processes import interrupts
-from pinbase.processes.anew import started_anew
+from pinbase.processes.anew import spawned
 from pinbase.processes.current_folder import elsewhere
 from pinbase.processes.parent import end_with_parent
 from pinbase.processes.system import portable
@@ -42,10 +42,10 @@ Progress = Callable[[str, float], None]
 Item = TypeVar("Item")
 Serve = Callable[[Item, Tell], T]
 
-TICK = 0.2  # s between two calls of progress at most, for its clock
-GRACE = 0.5  # s for a process to clean up once asked to end
+PROGRESS_INTERVAL = 0.2  # s between two calls of progress at most, for its clock
+GRACE_SECONDS = 0.5  # s for a process to clean up once asked to end
 
-KILLED = 9  # SIGKILL, which Windows has not
+KILL_SIGNAL = 9  # SIGKILL, which Windows has not
 
 _preloaded: list[str] = []
 
@@ -61,7 +61,7 @@ class Job(Generic[T_co]):
 
 
 @dataclass(frozen=True)
-class Died:
+class ProcessDied:
     """What comes of a job during which its process ended by itself, and why. status: as
     subprocess has it, negative for a signal.
     """
@@ -104,12 +104,12 @@ def preload(*modules: str) -> None:
                 import_module(name)
 
 
-def side_by_side(
+def in_parallel(
     jobs: Sequence[Job[T]],
     most: int,
     progress: Progress = lambda _, __: None,
     anew: bool = False,
-) -> list[T | Died]:
+) -> list[T | ProcessDied]:
     """What the jobs return, in their order; they start in that order, at most so many at a time.
 
     With `most` 1 they are done in this process. progress: called with what is being done and the
@@ -120,7 +120,7 @@ def side_by_side(
     if most == 1:
         return [job.work(_teller(progress, i / len(jobs))) for i, job in enumerate(jobs)]
     waiting = list(reversed(range(len(jobs))))
-    found: dict[int, T | Died] = {}
+    found: dict[int, T | ProcessDied] = {}
     sends = anew or portable()
 
     def take() -> tuple[str, int | tuple[int, Job[T]]] | None:
@@ -129,7 +129,7 @@ def side_by_side(
         number = waiting.pop()
         return jobs[number].name, (number, jobs[number]) if sends else number
 
-    def give(item: int | tuple[int, Job[T]], value: T | Died) -> None:
+    def give(item: int | tuple[int, Job[T]], value: T | ProcessDied) -> None:
         found[item if isinstance(item, int) else item[0]] = value
 
     serve: Serve[Any, T] = _sent_job if sends else partial(_numbered_job, jobs)
@@ -144,7 +144,7 @@ def side_by_side(
 def served(
     serve: Serve[Item, T],
     take: Callable[[], tuple[str, Item] | None],
-    give: Callable[[Item, T | Died], None],
+    give: Callable[[Item, T | ProcessDied], None],
     most: int,
     progress: Callable[[str], None] = lambda _: None,
     forks: Callable[[], bool] = can_fork,
@@ -167,7 +167,7 @@ def served(
                 child.take(*item)
             if not running:
                 return
-            for pipe in wait(list(running), TICK):
+            for pipe in wait(list(running), PROGRESS_INTERVAL):
                 assert isinstance(pipe, Connection)
                 child = running[pipe]
                 kind, value = child.next()
@@ -224,7 +224,7 @@ class _Child:
         except (EOFError, OSError):  # OSError: in the middle of a message
             self.process.join()
             status = self.process.exitcode or 0
-            return "dies", Died(ended(status), status)
+            return "dies", ProcessDied(ended(status), status)
 
     def close(self) -> None:
         """Have it end, and wait for that."""
@@ -240,14 +240,14 @@ def ended(status: int) -> str:
     if status >= 0:
         return f"its process ended with status {status}"
     text = f"its process was ended by signal {-status} ({signal.strsignal(-status)})"
-    return text + "; it may have run out of memory" * (status == -KILLED)
+    return text + "; it may have run out of memory" * (status == -KILL_SIGNAL)
 
 
 def _start(serve: Serve[Item, T], forks: bool) -> _Child:
     ours, theirs = multiprocessing.Pipe()
     process: BaseProcess
     if not forks:
-        process = started_anew(_serve, serve, theirs, os.getpid(), tuple(_preloaded))
+        process = spawned(_serve, serve, theirs, os.getpid(), tuple(_preloaded))
     else:
         process = multiprocessing.get_context("fork").Process(
             target=_serve, args=(serve, theirs, os.getpid()), daemon=False
@@ -305,6 +305,6 @@ def _end(children: list[_Child]) -> None:
     for child in children:
         child.process.terminate()
     for child in children:
-        child.process.join(GRACE / len(children))
+        child.process.join(GRACE_SECONDS / len(children))
         child.process.kill()
         child.close()

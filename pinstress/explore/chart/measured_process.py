@@ -18,15 +18,17 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from assess.opinion.calculix import CalculixError
-from fea.core.mesh_result import MeshResult
+from fea.core.mesh_result import MeshMaximum
 from fea.solve.single_mesh import Problem, Rung, result_on
 from pinbase.processes.current_folder import trusting_python
 from pinstress.explore.chart.single_joint import JointProblem, JointRung, joint_result_on
 from pinstress.explore.chart.single_limit import LimitFound, LimitProblem, LimitRung, limit_found_on
 
-POLL = 0.02  # s between two readings
-CODE = "import sys; from pinstress.explore.chart.measured_process import serve; serve(sys.argv[1])"
-LEAST = 0.1  # MB: less cannot be distinguished from the libraries' own
+MEMORY_POLL_INTERVAL = 0.02  # s between two readings
+CHILD_CODE = (
+    "import sys; from pinstress.explore.chart.measured_process import serve; serve(sys.argv[1])"
+)
+MIN_MEASURED_MEMORY = 0.1  # MB: less cannot be distinguished from the libraries' own
 
 
 @dataclass(frozen=True)
@@ -47,7 +49,7 @@ class Measured:
     finer meshes would.
     """
 
-    result: MeshResult | None
+    result: MeshMaximum | None
     seconds: float = 0.0
     memory: float = 0.0
     bare: float = 0.0
@@ -64,7 +66,7 @@ class MeasureJob:
 
     problem: Problem | JointProblem | LimitProblem
     rung: Rung | JointRung | LimitRung
-    before: tuple[MeshResult, ...] = ()
+    before: tuple[MeshMaximum, ...] = ()
     runs: int = 1
     reference: bool = False
 
@@ -79,7 +81,7 @@ def measure(job: MeasureJob, limits: MeasureLimits) -> Measured:
     with tempfile.TemporaryDirectory(prefix="pinstress-") as folder:
         place = Path(folder)
         (place / "job").write_bytes(pickle.dumps(job))
-        command, environment = trusting_python(CODE, folder)
+        command, environment = trusting_python(CHILD_CODE, folder)
         with (place / "messages").open("wb") as messages:
             process = subprocess.Popen(
                 command,
@@ -115,7 +117,7 @@ def _watch(process: subprocess.Popen[bytes], limits: MeasureLimits, place: Path)
             (place / "bare").read_text() or 0.0
         ):
             return f"exceeded the limit of {limits.memory:g} MB"
-        time.sleep(POLL)
+        time.sleep(MEMORY_POLL_INTERVAL)
     return ""
 
 
@@ -147,13 +149,13 @@ def climb(job: MeasureJob) -> Measured:
 
             others = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024.0
             result, peak = found, memory("self", "VmHWM") + others
-    cost = statistics.median(spent), max(peak - bare, LEAST), bare
+    cost = statistics.median(spent), max(peak - bare, MIN_MEASURED_MEMORY), bare
     if isinstance(result, LimitFound):
         return Measured(None, *cost, limit=result)
     return Measured(result, *cost)
 
 
-def _result(job: MeasureJob) -> MeshResult | LimitFound:
+def _result(job: MeasureJob) -> MeshMaximum | LimitFound:
     if isinstance(job.problem, LimitProblem):
         assert isinstance(job.rung, LimitRung)
         return limit_found_on(job.problem, job.rung)

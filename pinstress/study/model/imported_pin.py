@@ -19,26 +19,26 @@ from typing import Any
 
 from geometry import CutPin, GeometryError, Pin, PinLike
 from geometry.imported.body_file import BodyFile
-from geometry.imported.imported_pin import MEASURE, SolidBody
-from geometry.imported.recognise import NotTurnedError, Turned, turned
+from geometry.imported.imported_pin import MEASURING_MESH_SIZE, SolidBody
+from geometry.imported.recognise import NotTurnedError, RecognisedProfile, recognised_profile
 from geometry.mesh.solid_mesh import MeshError
 from geometry.shape.polyline import Stripe, with_stripes
 from loads import MB, FileError, require_regular
 from pinbase.processes.current_folder import trusting_python
 from pinbase.processes.limits import Limits, keep_within, passed
 from pinbase.processes.parent import end_with_parent
-from pinbase.processes.pool import Died, Job, Tell, ended, processes, side_by_side
+from pinbase.processes.pool import Job, ProcessDied, Tell, ended, in_parallel, processes
 from pinbase.processes.system import portable
 
-KINDS = "hole", "flat", "slot", "passage"
-LARGEST_BODY = 1024 * MB
-CODE = "import sys; from pinstress.study.model.imported_pin import serve; serve(sys.argv[1])"
+CUT_KINDS = "hole", "flat", "slot", "passage"
+MAX_BODY_SIZE = 1024 * MB
+CHILD_CODE = "import sys; from pinstress.study.model.imported_pin import serve; serve(sys.argv[1])"
 
 Work = Callable[..., Any]
 
 
-CAD = Limits(30, 300)  # to measure it; a sound pin takes about a second
-LARGE = Limits(600, 6000)  # for a mesh file, and to mesh a CAD file more finely
+CAD_LIMITS = Limits(30, 300)  # to measure it; a sound pin takes about a second
+LONG_LIMITS = Limits(600, 6000)  # for a mesh file, and to mesh a CAD_LIMITS file more finely
 
 
 def read_body(file: BodyFile, clamps: Iterable[str] = ()) -> PinLike:
@@ -57,19 +57,19 @@ def read_body(file: BodyFile, clamps: Iterable[str] = ()) -> PinLike:
         return SolidBody(file, apart, f"{file.path.name} is taken as a solid, since {error.why}")
 
 
-def turned_apart(file: BodyFile, upright: bool = True) -> Turned:
-    """As `geometry.imported.recognise.turned`, in another process.
+def turned_apart(file: BodyFile, upright: bool = True) -> RecognisedProfile:
+    """As `geometry.imported.recognise.recognised_profile`, in another process.
 
     Raises: as that and `apart`.
     """
-    found: Turned = apart(turned, file, upright)
+    found: RecognisedProfile = apart(recognised_profile, file, upright)
     return found
 
 
 def require_readable(file: BodyFile) -> None:
     """Raises: GeometryError if the file cannot be read, or is too large."""
     try:
-        require_regular(file.path, LARGEST_BODY)
+        require_regular(file.path, MAX_BODY_SIZE)
     except FileError as error:
         raise GeometryError(f"pin {file.name}: {file.path.name} {error}", error.code) from None
     except FileNotFoundError:
@@ -80,7 +80,7 @@ def require_readable(file: BodyFile) -> None:
         ) from None
 
 
-def _profiled(file: BodyFile, found: Turned, clamps: set[str]) -> Pin | CutPin:
+def _profiled(file: BodyFile, found: RecognisedProfile, clamps: set[str]) -> Pin | CutPin:
     """Raises: NotTurnedError where a band or a clamp is not one of the profile."""
     start, stripes = found.start * file.unit, []
     for place in file.places:
@@ -102,7 +102,7 @@ def _profiled(file: BodyFile, found: Turned, clamps: set[str]) -> Pin | CutPin:
         raise NotTurnedError(file.name, file.path.name, str(error)) from None
     counted = (
         (len(profile.segments), "segment"),
-        *((sum(c.what == kind for c in found.cuts), kind) for kind in KINDS),
+        *((sum(c.what == kind for c in found.cuts), kind) for kind in CUT_KINDS),
     )
     parts = ", ".join(f"{n} {what}{'s' * (n > 1)}" for n, what in counted if n)
     source = f"{file.path.name} is taken as a profile: {parts}"
@@ -117,14 +117,14 @@ def apart(work: Work, file: BodyFile, *arguments: object) -> Any:
 
     Raises: what it raises; GeometryError if that process crashes or exceeds its limits.
     """
-    quick = work is turned or arguments in ((), (MEASURE,))
-    limits = CAD if quick and not file.meshed else LARGE
+    quick = work is recognised_profile or arguments in ((), (MEASURING_MESH_SIZE,))
+    limits = CAD_LIMITS if quick and not file.meshed else LONG_LIMITS
     job = partial(_limited, limits, work, file, *arguments)
     if processes(2) == 1:  # with other threads running no process can be forked
         made = _started(job)
     else:
-        (made,) = side_by_side([Job(f"pin {file.name}", partial(_silent, job))], 2)
-    if isinstance(made, Died):
+        (made,) = in_parallel([Job(f"pin {file.name}", partial(_silent, job))], 2)
+    if isinstance(made, ProcessDied):
         raise GeometryError(
             f"pin {file.name}: reading {file.path.name} failed ({_why(made, limits)}): it is "
             "damaged, too large, or has very small faces or edges; repair and export it again, "
@@ -155,7 +155,7 @@ def _limited(limits: Limits, work: Work, file: BodyFile, *arguments: object) -> 
         ) from None
 
 
-def _why(died: Died, limits: Limits) -> str:
+def _why(died: ProcessDied, limits: Limits) -> str:
     if died.status == -signal.SIGABRT and not portable():
         return f"{died.reason}; its memory limit is {limits.memory / 2**30:g} GB"
     return passed(died.status, limits) or died.reason
@@ -166,14 +166,14 @@ def _started(job: Work) -> Any:
     with TemporaryDirectory(prefix="pinstress-") as folder:
         place = Path(folder)
         (place / "job").write_bytes(pickle.dumps((os.getpid(), job)))
-        command, environment = trusting_python(CODE, folder)
+        command, environment = trusting_python(CHILD_CODE, folder)
         done = subprocess.run(
             command, env=environment, stdin=subprocess.DEVNULL, capture_output=True, check=False
         )
         try:
             raised, found = pickle.loads((place / "result").read_bytes())
         except (OSError, EOFError):
-            return Died(ended(done.returncode), done.returncode)
+            return ProcessDied(ended(done.returncode), done.returncode)
     if raised:
         raise found
     return found
