@@ -30,6 +30,7 @@ from pinstress.cli.commands import run_command_line
 from pinstress.study.model.balance import given_warnings
 from pinstress.study.model.pins import pin as pin_of
 from tests.conftest import ROOT
+from tests.support.each import each
 
 CLEVIS = Pin(
     "P",
@@ -76,7 +77,7 @@ FORCES = [50.0 * y for y in (0.009, 0.011, 0.09, 0.11, 0.3)]
 OUTCOMES = ["silent", "warned", "warned", "refused", "refused"]
 
 
-@pytest.mark.parametrize(
+@each(
     ("left", "right", "outcome"),
     [
         *((25.0 + x, 25.0 - x, o) for x, o in zip(COUPLES, OUTCOMES, strict=True)),
@@ -132,7 +133,7 @@ def test_a_couple_is_not_solved_either(steel: Material) -> None:
     assert closing(pin, cases[0], 0) is None  # only no load at all would
 
 
-@pytest.mark.parametrize(
+@each(
     ("held", "outcome"),
     [
         ({"lug": {"M": {"tilt": "guided"}}}, ""),  # one that cannot tilt carries the couple

@@ -16,6 +16,7 @@ from fea.singular.singularities import find_singularities
 from fea.singular.williams import notch_factor, plane_exponent
 from fea.solve.solve import solve_pin
 from geometry import Pin, Segment
+from tests.support.each import each
 
 ROOT = Pin("R", (Segment(0.04, 0.02, connection="R1"), Segment(0.01, 0.02, name="head")))
 HELD = Pin("H", (Segment(0.02, 0.02, name="held"), *ROOT.segments))
@@ -120,7 +121,7 @@ def test_a_converged_row_has_no_interval(steel: Material) -> None:
     assert found.peak.error_estimate == found.peak.parts.total
 
 
-@pytest.mark.parametrize(
+@each(
     ("verdict", "interval", "limit", "expected"),
     [
         ("singular", (90.0, 120.0), 80.0, False),
@@ -152,7 +153,7 @@ def test_what_decides(
     assert meets_limit(peak, limit) is expected
 
 
-@pytest.mark.parametrize("step", [1e-2, 1e-3, 1e-5, 1e-8])
+@each("step", [1e-2, 1e-3, 1e-5, 1e-8])
 def test_a_sharp_corner_is_singular_however_small_its_step(step: float, steel: Material) -> None:
     """Its stress grows without bound within the step's height, wherever the nominal stress is the
     largest; the stress elsewhere is that of the plain shaft, to their errors.
@@ -224,7 +225,7 @@ def test_strength_of_a_power_that_is_known() -> None:
     assert millimetres == pytest.approx(3.0 * 1e3**0.45, rel=1e-9)
 
 
-@pytest.mark.parametrize("angle", [200.0, 225.0, 270.0, 300.0])
+@each("angle", [200.0, 225.0, 270.0, 300.0])
 def test_notch_factor_is_that_of_the_stress_function(angle: float) -> None:
     """Beside Williams' stress function r^(L+1) (a cos (L+1) t + b cos (L-1) t), whose constants are
     those of a side without traction; its second derivatives are the stresses. To 1e-8.
