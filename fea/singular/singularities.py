@@ -1,4 +1,6 @@
-"""The stress singularities of a pin, and their remedies."""
+"""The stress singularities of a pin: where they are, how stress grows towards them, their
+remedies.
+"""
 
 from __future__ import annotations
 
@@ -18,27 +20,28 @@ from pinbase.arrays import Floats, Mask
 Kind = Literal["sharp corner", "edge of a clamp", "edge of a load"]
 
 DISTANCE_VARIATIONS = (0.5, 2.0)  # times the excluded distance, which is a convention
+# Chosen by judgement:
 MIN_ADVISED_FILLET = 0.1  # of the smaller diameter: the radius to try
-LOGARITHM_DISTANCE_RATIO = (
-    0.1  # of the distance of a power: a logarithm is felt that much closer only
-)
-STRAIGHT_ARC_SHARE = (
-    0.25  # of the radius of an arc that begins at a singularity: so far it is nearly straight
-)
-MESH_SCALE_RATIO = 10.0  # what meshes are scaled by over the reach of a singular field
+# Excluded distance at a logarithm over that at a power: a logarithm is felt that much closer only.
+LOGARITHM_DISTANCE_RATIO = 0.1
+# Of the radius of an arc that begins at a singularity: up to there it is nearly straight.
+STRAIGHT_ARC_SHARE = 0.25
+MESH_SCALE_RATIO = 10.0  # length by which meshes are scaled, over the reach of a singular field
 
 
 @dataclass(frozen=True)
 class Zone:
-    """A circle at (r, z), m, near which stress grows like d^-theory at the distance d.
+    """A circle at (r, z), m, in which stress grows like d^-theory at the distance d and is not
+    read.
 
     between: the surfaces that meet there. theory: the exponent in plane strain, so for axial and
-    bending loads; 0 at the edge of a load, where it grows like log(1/d); None where the angle is
-    not known. torsion_theory: the exponent in torsion; bending has this part too. radius: how far
-    (m) stress is not to be read. feature: how far (m) the singular field reaches at most, the
-    height of a small step, say; at most the radius. angle: of the material, rad. limit: of the
-    radius, m, where the next fillet or groove begins. scale: the length (m) by which meshes are
-    scaled near it, at most the diameter. advice: what would make it finite, for people.
+    bending loads; 0 at the edge of a load, where stress grows like log(1/d); None where the angle
+    is not known. torsion_theory: the exponent in torsion; bending has this part too.
+    radius: m, within which stress is not read. limit: m, of the radius, where the next fillet or
+    groove begins. feature: m, how far the singular field reaches at most (the height of a small
+    step, say), no more than the radius.
+    angle: of the material, rad. scale: m, the length by which meshes are scaled near it, at most
+    the diameter. advice: what would make stress finite, for people.
     """
 
     r: float
@@ -60,28 +63,29 @@ class Zone:
         object.__setattr__(self, "scale", min(self.scale, 2.0 * self.r))
 
     def varied(self, times: float) -> Zone:
-        """With so many times the distance left out, but no farther than where the next feature
-        begins.
-        """
+        """The zone with so many times the radius, but not beyond where the next feature begins."""
         return replace(self, radius=times * self.radius)
 
     def up_to(self, *distances: float) -> Zone:
-        """With features whose stress counts from these distances, m, on."""
+        """The zone limited by features whose stress counts from these distances, m, on."""
         limit = min(self.limit, *distances, math.inf)
         return replace(self, limit=limit, scale=min(self.scale, MESH_SCALE_RATIO * limit))
 
     @property
     def measured(self) -> bool:
-        """Whether meshes are graded so closely towards it that the growth of stress is measured:
-        not where that is a logarithm, nor under a lug, whose pressure is even on each ring.
+        """Whether the growth of stress is measured, on meshes graded closely towards the
+        singularity.
+
+        Not where the growth is a logarithm, nor under a lug, whose pressure is even on each ring.
         """
         return self.kind in ("sharp corner", "edge of a clamp")
 
     @property
     def following(self) -> float:
-        """Exponent q of the term d^q that stands for all that follows in plane strain: theirs where
-        one side of a smooth surface is clamped; at inner corners what fits twenty of them best
-        (`python -m benchmarks corners`).
+        """Exponent q of the term d^q that stands for all regular terms in plane strain.
+
+        The theoretical one where one side of a smooth surface is clamped; at inner corners the
+        value that fits twenty of them best (`python -m benchmarks corners`).
         """
         if self.kind == "sharp corner":
             return 0.2
@@ -104,40 +108,47 @@ def find_singularities(
     nu: float,
     distance: float = 0.1,
 ) -> tuple[Zone, ...]:
-    """Every such singularity, in the order of `vertices`. The zone of each ends where a fillet or a
-    groove begins: farther away, its term K d^-theory is not what governs stress. Those of other
-    singularities may overlap it, since neither has stress that counts.
+    """Every stress singularity of a pin, in the order of `vertices`.
 
+    The zone of each ends where a fillet or a groove begins: farther away its term K d^-theory does
+    not govern stress. Zones of other singularities may overlap it, since neither has stress that
+    counts.
     clamps: surfaces (by the pin's names) that are clamped. loaded: those under a traction that does
-    not fade towards their edges; a bearing pressure's shear does. nu: Poisson's ratio. distance: of
-    the local diameter, that is not to be read; a tenth of it at the edge of a load.
+    not fade towards their edges; a bearing pressure's shear does. nu: Poisson's ratio.
+    distance: of the local diameter, within which stress is not read; a tenth of it at the edge of a
+    load.
 
-    Raises: GeometryError for a surface that the pin has not; ValueError outside -1 < nu < 0.5.
+    Raises: GeometryError for a surface that the pin does not have; ValueError outside -1 < nu <
+    0.5.
     """
     constrained = {pin.surface(name) for name in clamps}
     pushed = {pin.surface(name) for name in loaded}
     every = vertices(pin)
-    arcs, found = _inner_arcs(pin), []
+    arcs, zones = _inner_arcs(pin), []
     for k, v in enumerate(every):
         singularity = _singularity(pin, v, constrained, pushed, nu, distance)
         if singularity is not None:
             feature = _feature(every, k, constrained)
             here = replace(singularity, feature=feature, scale=MESH_SCALE_RATIO * feature)
-            found.append(here.up_to(*(_free_of(arc, (v.r, v.z)) for arc in arcs)))
-    return tuple(found)
+            zones.append(here.up_to(*(_free_of(arc, (v.r, v.z)) for arc in arcs)))
+    return tuple(zones)
 
 
 def free_of_arcs(pin: Pin, r: Floats, z: Floats) -> Floats:
-    """How far (m) from points at r, z (S,), m, the first of the pin's fillets and grooves is."""
+    """Distances (S,), m, from points at r, z (S,), m, to the nearest fillet or groove of the
+    pin.
+    """
     arcs = _inner_arcs(pin)
     at = zip(r.tolist(), z.tolist(), strict=True)
     return np.array([min((_free_of(arc, x) for arc in arcs), default=math.inf) for x in at])
 
 
 def begins(gap: float, radius: float) -> float:
-    """How far (m) from a singularity stress is still its own beside a fillet, a groove or a hole of
-    some radius (m): up to it, or, where it begins there or nearly so, STRAIGHT_ARC_SHARE of its
-    radius.
+    """Distance (m) from a singularity up to which stress is its own beside a fillet, groove or
+    hole.
+
+    gap: m, to the feature. radius: m, of the feature. Where the feature begins at the singularity
+    or nearly so, it is STRAIGHT_ARC_SHARE of the radius.
     """
     return max(gap, STRAIGHT_ARC_SHARE * radius)
 
@@ -148,7 +159,7 @@ def _inner_arcs(pin: Pin) -> tuple[Arc, ...]:
 
 
 def outside(singularities: Iterable[Zone], r: Floats, z: Floats) -> Mask:
-    """Which of the points at r, z (S,), m, are in none of the singularities."""
+    """Which of the points at r, z (S,), m, lie in none of the singularities."""
     out = np.ones(len(r), dtype=bool)
     for p in singularities:
         out &= np.hypot(r - p.r, z - p.z) >= p.radius * (1.0 - 1e-9)
@@ -158,10 +169,14 @@ def outside(singularities: Iterable[Zone], r: Floats, z: Floats) -> Mask:
 def smooth_edges(
     pin: Pin, surfaces: Collection[str], clamps: Collection[str], cells: Collection[str] = ()
 ) -> tuple[tuple[float, float], ...]:
-    """Rims (r, z), m, of surfaces (by the pin's names) that go on smoothly, neither side clamped;
-    not between two cells of one pressure.
+    """Rims (r, z), m, of surfaces across which the outline goes on smoothly, neither side clamped.
+
+    surfaces, clamps: by the pin's names. cells: surfaces of one pressure, between which there is no
+    rim.
     """
-    names, constrained = ({pin.surface(name) for name in found} for found in (surfaces, clamps))
+    names, constrained = (
+        {pin.surface(name) for name in surface_names} for surface_names in (surfaces, clamps)
+    )
     return tuple(
         (v.r, v.z)
         for v in vertices(pin)
@@ -181,6 +196,11 @@ def clamp_rims(pin: Pin, clamps: tuple[str, ...]) -> tuple[tuple[float, float], 
 def _singularity(
     pin: Pin, v: Vertex, constrained: set[str], pushed: set[str], nu: float, distance: float
 ) -> Zone | None:
+    """The singularity at a vertex, or None where stress stays finite.
+
+    constrained, pushed: surfaces that are clamped, or loaded up to their edges. distance: as in
+    `find_singularities`.
+    """
     first, second = (_side(name, constrained) for name in v.between)
     smooth = abs(v.angle - math.pi) <= SMOOTH_ANGLE_TOLERANCE
     omega = math.pi if smooth else v.angle
@@ -191,7 +211,7 @@ def _singularity(
     if max(plane, torsion) > 0.0:
         clamped = "clamped" in (first, second)
         kind = "edge of a clamp" if clamped else "sharp corner"
-        advice = CLAMP_ADVICE if clamped else _fillet(pin, v)
+        advice = CLAMP_ADVICE if clamped else _fillet_advice(pin, v)
     elif smooth and "clamped" not in (first, second) and pushed & set(v.between):
         kind, advice, reach = "edge of a load", _TRACTION_ADVICE, reach * LOGARITHM_DISTANCE_RATIO
     else:
@@ -200,7 +220,7 @@ def _singularity(
 
 
 def _free_of(arc: Arc, at: tuple[float, float]) -> float:
-    """How far (m) from (r, z) an arc begins."""
+    """Distance (m) from (r, z) to where an arc begins."""
     r, z = at[0] - arc.centre[0], at[1] - arc.centre[1]
     a, b = arc.start[0] - arc.centre[0], arc.start[1] - arc.centre[1]
     part = math.atan2(a * z - b * r, a * r + b * z) / arc.turn
@@ -210,8 +230,9 @@ def _free_of(arc: Arc, at: tuple[float, float]) -> float:
 
 
 def _feature(every: tuple[Vertex, ...], k: int, constrained: set[str]) -> float:
-    """The shorter of the two surfaces that meet at vertex k, m: on each side as far as the outline
-    goes on smoothly, all of it clamped or all of it free.
+    """The shorter of the two surfaces that meet at vertex k, m.
+
+    Each is measured as far as the outline goes on smoothly, all of it clamped or all of it free.
     """
 
     def length(step: int) -> float:
@@ -238,15 +259,15 @@ _TRACTION_ADVICE = (
 _BORE_ADVICE = "a radius here would make it finite: the bore_radius of the wider segment"
 
 
-def _fillet(pin: Pin, v: Vertex) -> str:
-    """What fillet to try at an inner corner, and why not a larger one."""
+def _fillet_advice(pin: Pin, v: Vertex) -> str:
+    """The fillet to try at an inner corner, and why not a larger one, for people."""
     i = min(range(len(pin.segments) - 1), key=lambda i: abs(pin.stations[i + 1] - v.z))
     left, right = pin.segments[i], pin.segments[i + 1]
-    here, there = left.diameters[1], right.diameter
-    thin, d = (i, here) if here < there else (i + 1, there)
+    before, after = left.diameters[1], right.diameter
+    thin, d = (i, before) if before < after else (i + 1, after)
     if abs(2.0 * v.r - d) > abs(2.0 * v.r - max(left.bores[1], right.bore)):
         return _BORE_ADVICE
-    step = abs(here - there) / 2.0 or math.inf
+    step = abs(before - after) / 2.0 or math.inf
     band = pin.bands[thin]
     limit, what = min(
         (step, "the height of the step"), (band.length / 2.0, f"half the length of {band.name}")
