@@ -60,9 +60,7 @@ def cartesian(amplitude: Floats, angle: Floats, turned: float, units: tuple[Unit
     amplitude: (.., 6, L) along r, theta and z. angle: (..) rad of the points in that frame. turned:
     rad, of the frame.
     """
-    n, phase = (
-        np.array(x) for x in ([load.n for load, _ in units], [p for _, p in units])
-    )
+    n, phase = (np.array(x) for x in ([load.n for load, _ in units], [p for _, p in units]))
     psi = n * (angle[..., None] + turned) - phase * np.pi / 2.0
     polar = amplitude * np.cos(psi)[..., None, :]
     polar[..., [3, 5], :] = amplitude[..., [3, 5], :] * np.sin(psi)[..., None, :]
