@@ -36,7 +36,7 @@ SINGLE_FORCE_TOLERANCE = 1e-6
 
 
 class Carried(NamedTuple):
-    """What the supports react besides the bands' small share.
+    """The loads that supports react besides the bands' small share.
 
     force, couple: across the axis. along: forces and torques along the axis. lugs: whether the pin
     sits in lugs.

@@ -33,7 +33,7 @@ CREST_REPEATS = 2  # passes without gain after which the search ends
 
 
 def rise_between(answer: StressField, loads: PinLoads, between: Between) -> float:
-    """How far the maximum between instants may exceed that at the instants, Pa."""
+    """The possible excess of the maximum between instants over that at the instants, Pa."""
     if len(loads) < 2:
         return 0.0
     largest = answer.largest(loads)[0]

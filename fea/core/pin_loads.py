@@ -115,7 +115,9 @@ class PinLoads:
 
     @property
     def links(self) -> PinLoads:
-        """What the links do to the pin: these loads themselves, unless contact carries them."""
+        """The loads of the links on the pin: these loads themselves, unless contact carries
+        them.
+        """
         return self
 
     @property

@@ -75,8 +75,8 @@ class Rings:
         return np.where((part >= READ_RING_RANGE[0]) & (part <= READ_RING_RANGE[1]), ring, -1)
 
     def near(self, r: Floats, z: Floats, middle: Floats) -> Mask:
-        """Which points each ring shuts when it is pressed, (P, 3 R): under it, before it, and after
-        it.
+        """Mask (P, 3 R) of the points that each ring shuts when it is pressed: under, before and
+        after it.
 
         Before and after, up to the ring's own length or that of the next one, if that is shorter.
         r, z: (P,) m. middle: (P,) m, z of the middle of the element on which each point is.
@@ -112,7 +112,7 @@ class Rings:
 
 @dataclass(frozen=True)
 class PressedArcs:
-    """Which of the ARC_COUNT arcs of each ring are pressed at each instant, (T, R, ARC_COUNT).
+    """The pressed arcs of each ring at each instant, as a mask `on` (T, R, ARC_COUNT).
 
     sector: width of the cells of contact in arcs, rounded up.
     """
@@ -166,7 +166,7 @@ class PressedArcs:
         return self.widened(np.concatenate([self.on[instant], first, last]))
 
     def at_edges(self, instant: int) -> Mask:
-        """Which arcs (R, ARC_COUNT) of rings are at the edge of a lug.
+        """Mask (R, ARC_COUNT) of the arcs of rings at the edge of a lug.
 
         These are all arcs under its rounding, whose rings are as short as the steps of pressure are
         high, and the outermost UNREAD_EDGE_RINGS pressed ones beside them, unless contact has

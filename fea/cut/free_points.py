@@ -61,7 +61,7 @@ class FreePoints:
         return FreePoints(self.arc[rows], near, amid)
 
     def read(self, pressed: PressedArcs, instant: int) -> Mask:
-        """Which points (P,) are read at an instant."""
+        """Mask (P,) of the points that are read at an instant."""
         out = np.ones(len(self.arc), dtype=bool)
         near, amid = np.flatnonzero(self.near.any(axis=1)), np.flatnonzero(self.amid >= 0)
         shut, edges = pressed.shut(instant), pressed.widened(pressed.at_edges(instant))
@@ -111,7 +111,7 @@ class AwayFromPressed:
         )
 
     def read(self, pressed: PressedArcs, instant: int) -> Mask:
-        """Which points (P,) are away from all pressed arcs at an instant."""
+        """Mask (P,) of the points that are away from all pressed arcs at an instant."""
         apart = arcs_apart(pressed.on[instant])[:, self.arc].T
         return np.asarray((apart > self.within).all(axis=1))
 

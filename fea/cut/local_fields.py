@@ -103,8 +103,9 @@ class LocalFields:
         return coefficients_of(loads, self.units)
 
     def outside(self, times: float = 1.0) -> Mask:
-        """Where the maximum is looked for, (P,). times: factor of the usual distance from inner
-        corners.
+        """Mask (P,) of the points at which the maximum is looked for.
+
+        times: factor of the usual distance from inner corners.
         """
         out = self.read.copy()
         for corner in self.corners:

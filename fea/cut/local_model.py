@@ -114,7 +114,7 @@ class LocalModel:
 
     @cached_property
     def cut(self) -> Mask:
-        """Which points are on cuts, (P,)."""
+        """Mask (P,) of the points on cuts."""
         parts = [np.full(len(r.nodes), r.face.cut) for r in self.readings]
         return np.concatenate(parts)
 

@@ -36,7 +36,7 @@ class Bearing:
     cuts: tuple[str, ...]
 
     def on(self, x: Floats, normal: Floats) -> Mask:
-        """Which points (..., 3) with outward normals (..., 3) are on the band."""
+        """Mask (...) of the points (..., 3) with outward normals (..., 3) that are on the band."""
         near = ON_BAND_TOLERANCE * (self.z1 - self.z0)
         between = (x[..., 2] >= self.z0 - near) & (x[..., 2] <= self.z1 + near)
         radial = np.sum(x[..., :2] * normal[..., :2], axis=-1)

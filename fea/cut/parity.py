@@ -86,9 +86,7 @@ class Parities:
         return out
 
     def rigid(self, parity: tuple[int, ...]) -> Mask:
-        """Which rigid motions belong to a class, (6,): shifts along the axes and turns about
-        them.
-        """
+        """Mask (6,) of the rigid motions of a class: shifts along the axes and turns about them."""
         out = np.ones(6, dtype=bool)
         for mirror, sign in zip(self.mirrors, parity, strict=True):
             across = np.arange(3) == AXIS_NAMES.index(mirror)

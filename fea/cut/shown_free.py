@@ -45,7 +45,7 @@ def free_picture(
 
 
 def _on(surface: ShownCut, arc: Ints, pressed: PressedArcs, instant: int) -> Mask:
-    """Which points (P,) a lug presses; at the end of a ring, on both sides of it."""
+    """Mask (P,) of the points that a lug presses on; at the end of a ring, on both sides of it."""
     rings, (x, y, z) = pressed.rings, surface.points.T
     off = np.abs(np.hypot(x, y)[:, None] - rings.radius) <= ON_CYLINDER_TOLERANCE * rings.radius
     on = surface.outline.copy()

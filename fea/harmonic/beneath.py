@@ -58,7 +58,7 @@ class Away:
         self._row[some] = np.arange(some.sum())
 
     def masked(self, points: Ints) -> Mask:
-        """Which of the points are read on a part of the circumference only."""
+        """Mask of the points that are read on a part of the circumference only."""
         return np.asarray(self._row[points] >= 0)
 
     def read(self, points: Ints, instants: Ints) -> Mask:
@@ -153,7 +153,7 @@ def stairs(stress: Floats, away: Floats, least: float = 0.0) -> Steps:
 
 
 def _away_from(zones: tuple[Zone, ...], fields: MeridianFields) -> Mask:
-    """Which points of the fields may be read: outside of zones and not marked as unread."""
+    """Mask (S,) of the points that may be read: outside of zones and not marked as unread."""
     out = outside(zones, *fields.points.T)
     out[fields.unread] = False
     return out

@@ -54,7 +54,7 @@ class Outline:
         return self._nodes
 
     def constrained(self, surfaces: tuple[str, ...]) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-        """Which edges (E,) are on one of the surfaces."""
+        """Mask (E,) of the edges on any of the surfaces."""
         out = np.zeros(len(self.nodes), dtype=bool)
         for name in surfaces:
             out[self.rows[name]] = True

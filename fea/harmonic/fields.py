@@ -80,9 +80,7 @@ class MeridianFields:
         return {}
 
     def outside(self, singularities: Iterable[Zone]) -> Mask:
-        """Which points (S,) may have the maximum: those that are read and lie in no singular
-        zone.
-        """
+        """Mask (S,) of the points that may have the maximum: read, and in no singular zone."""
         out = outside(singularities, *self.points.T)
         out[self.unread] = False
         return out

@@ -25,11 +25,11 @@ COSINE_COMPONENTS = np.array([True, True, True, False, True, False])  # stresses
 class Numbers:
     """The five numbers of K unit loads at points.
 
-    five: (S, 5, K) Pa. each: (S, K) Pa, the largest von Mises stress of each load by itself.
+    five: (S, 5, K) Pa. reach: (S, K) Pa, the largest von Mises stress of each load by itself.
     """
 
     five: Floats
-    each: Floats
+    reach: Floats
 
 
 def numbers(fields: MeridianFields, at: tuple[int, ...]) -> Numbers:

@@ -190,7 +190,7 @@ class FreeSurface:
         self._known = of.arcs
 
     def masked(self, points: Ints) -> Mask:
-        """Which of the points are read on a part of the circumference only."""
+        """Mask of the points that are read on a part of the circumference only."""
         return np.asarray(self._row[points] >= 0)
 
     def read(self, points: Ints, instants: Ints, arcs: Ints | slice = ALL_INSTANTS) -> Mask:
@@ -224,7 +224,8 @@ class FreeSurface:
         return np.asarray(out)
 
     def _arcs(self, instant: int) -> tuple[Floats32, Mask, Mask]:
-        """What each ring shuts, (3 R, ARC_COUNT), and where edges and middles of rings are read.
+        """The arcs that each ring shuts, (3 R, ARC_COUNT), and those read at edges and middles of
+        rings.
 
         Edges: (E, ARC_COUNT); middles: (R, ARC_COUNT).
         """

@@ -47,7 +47,7 @@ class MeridianPlane:
         return inner, outer
 
     def outside(self, points: Floats) -> Mask:
-        """Which of the points (.., 2) are in no excluded zone."""
+        """Mask (..) of the points (.., 2) that are in no excluded zone."""
         r, z = points.reshape(-1, 2).T
         return outside(self.zones, r, z).reshape(points.shape[:-1])
 

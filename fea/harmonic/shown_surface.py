@@ -72,7 +72,9 @@ def sectors_of(pressed: PressedArcs | None) -> int:
 
 
 def _first(x: Floats) -> Mask:
-    """Which points (S,) of the skin are the first ones in their place, in their order."""
+    """Mask (S,) of the points of the skin that are the first ones in their place, in their
+    order.
+    """
     step = np.linalg.norm(np.diff(x, axis=0), axis=1)
     return np.concatenate([[True], step > POINT_TOLERANCE * np.ptp(x[:, 1])])
 
@@ -142,7 +144,7 @@ class _Free:
         return self.free.read(points, np.full(len(points), instant), self.arcs)
 
     def _on(self, instant: int) -> Mask:
-        """Which points of the skin (S, A) a lug presses on."""
+        """Mask (S, A) of the points of the skin on which a lug presses."""
         on = self.pressed.on[instant][:, self.arcs]
         return np.asarray(on[self.ring] & (self.ring >= 0)[:, None])
 

@@ -121,7 +121,7 @@ def points_of_nodes(outline: Outline, count: int) -> Ints:
 
 
 def _mask(count: int, *nodes: Ints) -> Mask:
-    """Which of `count` nodes are among the given ones."""
+    """Mask (N,) of the given nodes among `count`."""
     marked = np.zeros(count, dtype=bool)
     for some in nodes:
         marked[some] = True

@@ -68,7 +68,7 @@ class Region(Protocol):
     """The part of the circumference on which each point is read, instant by instant."""
 
     def masked(self, points: Ints) -> Mask:
-        """Which of the points (J,) are read on a part of the circumference only, (J,)."""
+        """Mask (J,) of the points (J,) that are read on a part of the circumference only."""
         ...
 
     def read(self, points: Ints, instants: Ints) -> Mask:
@@ -101,7 +101,7 @@ class Circumference:
         self._first, self._second = by_phase[..., 0], by_phase[..., 1]  # (T, K)
         self._at = tuple(fields.loads.index(load) for load in units)
         unit_numbers = numbers(fields, self._at)
-        self.fields, self._five, self._unit_reach = fields, unit_numbers.five, unit_numbers.each
+        self.fields, self._five, self._unit_reach = fields, unit_numbers.five, unit_numbers.reach
         self._n = np.array([load.n for load in units], dtype=np.int64)
         starts = np.flatnonzero(np.diff(self._n, prepend=-1))
         self._amount_products: dict[int, tuple[Floats, Floats, Floats]] = {}
@@ -300,7 +300,7 @@ class Circumference:
 
     @cached_property
     def _reach(self) -> Floats:
-        """What each point can reach at most at any instant, (S,) Pa."""
+        """The largest `reach` of each point over all instants, (S,) Pa."""
         rows = np.arange(self.points)
         parts = [rows[k : k + PAIR_BATCH] for k in range(0, self.points, PAIR_BATCH)]
         return np.concatenate([self.reach(part).max(axis=1, initial=0.0) for part in parts])

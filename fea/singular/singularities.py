@@ -159,7 +159,7 @@ def _inner_arcs(pin: Pin) -> tuple[Arc, ...]:
 
 
 def outside(singularities: Iterable[Zone], r: Floats, z: Floats) -> Mask:
-    """Which of the points at r, z (S,), m, lie in none of the singularities."""
+    """Mask (S,) of the points at r, z (S,), m, that lie in none of the singularities."""
     out = np.ones(len(r), dtype=bool)
     for p in singularities:
         out &= np.hypot(r - p.r, z - p.z) >= p.radius * (1.0 - 1e-9)

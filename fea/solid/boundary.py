@@ -78,7 +78,7 @@ class SurfaceMesh:
         return not np.allclose(self.normals, self.normals[:, :1], atol=_PLANE_TOLERANCE)
 
     def on(self, space: Discretisation, surfaces: Iterable[str]) -> Mask:
-        """Which facets (F,) are on one of the named surfaces."""
+        """Mask (F,) of the facets on any of the named surfaces."""
         named = [space.mesh.boundaries[name] for name in surfaces]
         return np.isin(self.facets, np.concatenate([*named, np.zeros(0, dtype=np.int64)]))
 
