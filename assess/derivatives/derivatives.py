@@ -132,9 +132,7 @@ class Adjoint:
 
     @cached_property
     def _harmonics(self) -> list[tuple[int, tuple[UnitLoad, ...], Floats, Ints]]:
-        """The waves by harmonic: n, unit loads (L), their amounts in the waves (L, W), the waves'
-        numbers.
-        """
+        """The waves by harmonic: n, loads (L), amounts in the waves (L, W), waves' numbers."""
         out = []
         for n in np.unique(self.n):
             here = np.flatnonzero(self.n == n)
@@ -162,9 +160,7 @@ class Adjoint:
 
     @cached_property
     def _plain_pressures(self) -> tuple[Ints, Floats]:
-        """The edges (E,) under plain pressures, and the adjoint work per weight of their nodes, (E,
-        3).
-        """
+        """Edges (E,) under plain pressures, and adjoint work per nodal weight, (E, 3)."""
         by_edge = np.zeros(self.outline.nodes.shape)
         for n, loads, amounts, here in self._harmonics:
             if not _plain(n, loads):
@@ -312,9 +308,9 @@ class Adjoint:
         return out
 
     def _direct(self, motion: NodeMotion, velocity: Floats, grown: Floats | None) -> float:
-        """The direct part of a derivative: by forces, tractions and the reading, displacements as
-        they are.
+        """The direct part of a derivative, with displacements as they are.
 
+        It is by forces, tractions and the reading.
         velocity: (N, 2) of the nodes. grown: (N,) rate of the shape functions' integrals, None
         without body loads.
         """

@@ -22,8 +22,7 @@ By = dict[tuple[str, str], float]
 
 @dataclass(frozen=True)
 class Wave:
-    """The part of one harmonic that varies as cos psi (part 0) or as sin psi (1) at the governing
-    angle.
+    """The part of one harmonic that varies as cos psi (part 0) or sin psi (1) at an angle.
 
     amounts: of unit loads. weight: (6,) derivative of von Mises stress by its stress components.
     """
@@ -62,16 +61,15 @@ def waves_of(
 
 
 def rotated(n: int, both: Floats, angle: float) -> Floats:
-    """The cosine and the sine part (2, ..) at an angle (rad) of the phases (2, ..) of harmonic
-    n.
-    """
+    """The cosine and the sine part (2, ..), at an angle (rad), of phases (2, ..) of harmonic n."""
     c, s = np.cos(n * angle), np.sin(n * angle)
     return np.asarray(np.stack([both[0] * c + both[1] * s, both[0] * s - both[1] * c]))
 
 
 def von_mises_gradient(stress: Floats) -> Floats:
-    """The gradient (6,) of von Mises stress by stress (6,), Pa: rr, tt, zz, tz, rz, rt; zero
-    without any.
+    """The gradient (6,) of von Mises stress by stress (6,), Pa; zero for no stress.
+
+    Components are rr, tt, zz, tz, rz, rt.
     """
     normal, shear = stress[:3], stress[3:]
     deviator = normal - normal.mean()
@@ -110,8 +108,7 @@ def _of_change(
     change: tuple[int, Floats],
     times: float,
 ) -> Floats:
-    """The change of von Mises stress, Pa, at an angle, by `times` more of a force (0) or moment
-    (1).
+    """The change of von Mises stress, Pa, by `times` more of a force (0) or moment (1).
 
     NaN where a unit load that is needed was not solved.
     """

@@ -179,9 +179,7 @@ class _InLugs:
         raise OtherShapeError
 
     def _by(self, changes: Sequence[JointStep]) -> dict[str, float]:
-        """Derivatives by parameter: under fixed pressures, by the pin's flexibility, by contact, by
-        the lugs'.
-        """
+        """Derivatives by parameter, by its key."""
         # Under fixed pressures; then what changes the pressures: flexibility of the pin by shape
         # and material, gaps and equilibrium, flexibility of the lugs.
         out = self.stress.held(changes)

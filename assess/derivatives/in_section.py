@@ -167,9 +167,7 @@ class GoverningSection:
 
     @property
     def tied_places(self) -> tuple[tuple[float, float], ...]:
-        """Other places with nearly the same stress, as in
-        assess.derivatives.records.Derivatives.
-        """
+        """Other places (r, z), m, with nearly the same stress."""
         around = self.answer.around(self.loads)
         return competing_places(around, (), around.top(self.answer.all), self.solved.error)
 

@@ -33,8 +33,9 @@ class PartTop:
 
 
 def halves(stations: Sequence[float], points: Floats) -> Parts:
-    """The near and the far half of every segment between stations (m), with the points (S, 2) in
-    each.
+    """The near and the far half of every segment, with the points (S, 2) in each.
+
+    stations: m, ends of the segments.
     """
     out = []
     last = len(stations) - 2
@@ -70,8 +71,7 @@ class PartsOfSection:
         ]
 
     def slopes(self, solved: SolvedCase, loads: PinLoads, part_top: PartTop, mask: Mask) -> Floats:
-        """Derivatives (n,), Pa/m, of a part's largest stress by the dimensions; 0 where there is
-        none.
+        """Derivatives (n,), Pa/m, of a part's largest stress by the dimensions, or 0.
 
         Raises: SolveError.
         """

@@ -72,8 +72,9 @@ class PressedStress(Protocol):
         """The derivative by each change, by its key, under the same pressures."""
 
     def of_amounts(self, amounts: Mapping[UnitLoad, Floats]) -> float:
-        """The stress, Pa, that amounts (2,) of unit loads along the axis and about it, by phase,
-        add.
+        """The stress, Pa, that amounts (2,) of unit loads, by phase, add.
+
+        They act along the axis and about it.
         """
 
 

@@ -133,9 +133,7 @@ class Relieved:
 
 @dataclass(frozen=True)
 class Continued:
-    """The edge of a lug, at a node, to which stress is extrapolated from points of the skin beside
-    it.
-    """
+    """The edge of a lug, at a node, to which stress is extrapolated from beside it."""
 
     points: OnSkin
     cusp: Cusp

@@ -35,9 +35,7 @@ class Pair:
 
 @dataclass(frozen=True)
 class _SolvedPair:
-    """A pair's forces without reactions, and its displacements, of p and of l, (unknowns, 2)
-    each.
-    """
+    """A pair's forces without reactions, and displacements, (unknowns, 2) each, of p and l."""
 
     n: int
     times: float

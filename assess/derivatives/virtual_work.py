@@ -63,9 +63,7 @@ def work(space: Section, D: Floats, n: int, u: Floats, adjoint: Floats) -> float
 def _parts(
     space: Section, unknowns: tuple[Floats, ...]
 ) -> Iterator[tuple[slice, Floats, Floats, list[Floats]]]:
-    """Batches of elements with gradients, weights, and G (M, Q, 3, 3) of each vector of
-    unknowns.
-    """
+    """Batches of elements with gradients, weights, and G (M, Q, 3, 3) of each vector."""
     gradients, weights = space.quadrature
     at_nodes = [x.reshape(-1, 3)[space.elements] for x in unknowns]
     for k in range(0, len(weights), ELEMENT_BATCH):

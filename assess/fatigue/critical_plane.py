@@ -66,8 +66,7 @@ def findley_k(sensitivity: float) -> float:
 
 
 def worst_plane(cases: Sequence[Floats], flight: Flight, k: float, life: Life) -> PlaneCycles:
-    """The plane and the direction in it with the largest damage, or without damage the largest
-    cycle.
+    """The plane and direction with the largest damage, or without damage the largest cycle.
 
     cases: stress (T, 6), Pa, of each case. life: S-N curve.
     """

@@ -83,8 +83,7 @@ def _components(normals: Floats, ways: Floats | None = None) -> Floats:
 
 
 def _turns(shear: Floats, normal: Floats) -> tuple[Floats, Floats]:
-    """Turning points of shear stress and the largest normal stress from each up to the next, (K,
-    M).
+    """Turning points of shear stress and the largest normal stress up to the next, (K, M).
 
     shear, normal: (M, T) Pa. They start from zero and return to it, without the last zero; shorter
     rows are filled up with the last point.
@@ -120,9 +119,7 @@ def _blocks(flight: Flight) -> Iterator[tuple[int, int]]:
 
 
 def _thrice(items: Iterable[T]) -> Iterator[tuple[T, int]]:
-    """Each item of a run once, but no more than three of them, the last of which stands for the
-    rest.
-    """
+    """Each item of a run once, at most three of them, the last of which stands for the rest."""
     for item, run in groupby(items):
         n = sum(1 for _ in run)
         yield from ((item, 1) for _ in range(min(n, 2)))

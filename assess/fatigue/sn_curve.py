@@ -49,9 +49,7 @@ class Life:
         return np.asarray(np.where(ratio >= 1.0, ratio**above, low) / self.knee[1])
 
     def softer(self, equivalent: Floats) -> Floats:
-        """The damage (C,) if the slope above the knee continued down to SOFTENED_KNEE_RATIO of
-        it.
-        """
+        """The damage (C,) if the slope above the knee went on to SOFTENED_KNEE_RATIO of it."""
         ratio, damage = equivalent / self.knee[0], self.damage(equivalent)
         near = ratio ** self.slopes[0] / self.knee[1]
         return np.asarray(np.where((ratio >= SOFTENED_KNEE_RATIO) & (ratio < 1.0), near, damage))
@@ -115,8 +113,9 @@ class SnCurve:
     def damage(
         self, equivalent: Floats, counts: Floats | float = 1.0, probability: float | None = None
     ) -> float:
-        """The damage of cycles with equivalent amplitudes (C,), Pa, each occurring `counts`
-        times.
+        """The damage of cycles with equivalent amplitudes (C,), Pa.
+
+        counts: occurrences of each. probability: of failure, by default that of the curve.
         """
         if not len(equivalent):
             return 0.0

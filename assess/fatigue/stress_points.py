@@ -22,8 +22,7 @@ from pinbase.arrays import Floats, Ints, Mask
 
 @dataclass(frozen=True)
 class StressPoints:
-    """Points (S, 3), m, where a model knows the stress; for a body of revolution those at theta =
-    0.
+    """Points (S, 3), m, where a model knows the stress, of a body of revolution at theta = 0.
 
     surface: (S,) those at which fatigue is looked for: on the surface, outside of singularities.
     count: of instants.
@@ -39,9 +38,7 @@ class StressPoints:
 
 
 def stress_points(answer: StressField | None, loads: PinLoads) -> StressPoints | None:
-    """The stress points of a solution under the loads of its case; None where nothing was
-    solved.
-    """
+    """The stress points of a solution in its case; None where nothing was solved."""
     if isinstance(answer, HarmonicField):
         return _harmonic(answer, loads)
     if isinstance(answer, BeamField | FoundationField):

@@ -145,8 +145,10 @@ class FlowingBody:
 
     @cached_property
     def _pattern(self) -> tuple[Ints, Mask, Ints, Ints]:
-        """The sparsity pattern of the matrix: place of each free entry of the elements, which
-        entries are free, columns, row pointer.
+        """The sparsity pattern of the matrix.
+
+        It is the place of each free entry of the elements, the mask of free entries, columns, and
+        row pointer.
         """
         unknown = self.ties.unknown[self._dofs].astype(np.int64)
         row = np.broadcast_to(unknown[:, :, None], (*unknown.shape, unknown.shape[1]))

@@ -16,8 +16,9 @@ from pinbase.arrays import Floats
 
 
 def flow_field(pin: PinBody, state: State, angle: float) -> FlowField:
-    """The flow in a state, in the pin's axes. angle: rad, by which the state's axes are turned from
-    them.
+    """The flow in a state, in the pin's axes.
+
+    angle: rad, by which the state's axes are turned from them.
     """
     c, s = math.cos(angle), math.sin(angle)
     turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])

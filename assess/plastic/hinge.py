@@ -124,8 +124,7 @@ def _torque(section: Circle) -> float:
 
 
 def _bending_and_axial(sections: list[Circle], across: Floats) -> tuple[Floats, Floats]:
-    """The use of each section by bending with an axial force, an upper and a lower estimate, (T,
-    S).
+    """The use of sections by bending and axial force, upper and lower estimate, (T, S).
 
     The lower one includes torsion: the work of flow is no more than that by the mean square of its
     strain.
@@ -150,8 +149,9 @@ def _bending_and_axial(sections: list[Circle], across: Floats) -> tuple[Floats, 
 
 
 def _static(sections: list[Circle], across: Floats, bent: Floats) -> Floats:
-    """Lower bounds (T,) per Pa of yield stress. bent: the use by bending and axial force, (T,
-    S).
+    """Lower bounds (T,) per Pa of yield stress.
+
+    across: (T, S, 4) used parts. bent: (T, S) use by bending and axial force.
     """
     peak = np.array([s.vq_it for s in sections])
     sheared = across[..., SHEAR] * peak + across[..., TORQUE]
@@ -197,8 +197,9 @@ def _room(span: Span, sections: list[Circle], z: Floats) -> Floats:
 
 
 def _three_hinges(z: Floats, away: Mask, strong: Floats, moment: Floats) -> Floats:
-    """Power over work (T,) of a hinge near each end of a span and one between. moment: (T, 2,
-    S).
+    """Power over work (T,) of a hinge near each end of a span and one between.
+
+    z: (S,) m. away: (S,) where a hinge may be. strong: (S,) plastic moments. moment: (T, 2, S).
     """
     places = np.flatnonzero(away)
     if len(places) < 3:

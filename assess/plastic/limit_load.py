@@ -57,9 +57,7 @@ class MeshBracket:
     last: State
 
     def permanent_at(self, factor: float) -> float:
-        """The permanent part of the largest displacement (m) after a load factor, linear between
-        steps.
-        """
+        """The permanent part of the largest displacement (m) after a load factor."""
         rising = np.maximum.accumulate(self.curve.factor)
         return float(np.interp(factor, rising, self.curve.permanent))
 

@@ -140,8 +140,9 @@ def refine(elements: Elements) -> RefinedElements:
 
 
 def reading(local: Floats) -> Floats:
-    """The matrix (P, 8) that takes values at quadrature points to places (P, 3) in an element, 0 to
-    1.
+    """The matrix (P, 8) that takes values at quadrature points to places in an element.
+
+    local: (P, 3) coordinates of the places, 0 to 1.
     """
     two = _gauss(2)[0]
     right = (local - two[0]) / (two[1] - two[0])

@@ -116,8 +116,7 @@ def _meshes(
     loads: PinLoads,
     most: tuple[float | None, Budget],
 ) -> tuple[list[MeshBracket], PinBody | None, str]:
-    """The limit loads on at least the two finest affordable meshes, the body of the last, and a
-    note.
+    """The limit loads on the finest affordable meshes (two at least), the last body, a note.
 
     most: memory, MB, and time. The note says why there are no more meshes.
 

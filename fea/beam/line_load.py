@@ -97,9 +97,7 @@ def _spread(
 
 
 def resultants(stations: Floats, w: Floats) -> tuple[Floats, Floats]:
-    """The sum (...), N, of loads per length (C, 2, ...), and their moment (...), N m, about z =
-    0.
-    """
+    """Sum (...), N, and moment (...), N m, about z = 0, of loads per length (C, 2, ...)."""
     h = np.diff(stations).reshape(-1, *[1] * (w.ndim - 2))
     z = stations[:-1].reshape(h.shape)
     force = w[:, 0] * h + w[:, 1] * h**2 / 2.0

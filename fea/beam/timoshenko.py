@@ -94,11 +94,13 @@ class InternalForces:
 def stepped_beam(
     pin: Pin, material: Material, loads: tuple[UnitLoad, ...], clamps: tuple[str, ...] = ()
 ) -> InternalForces:
-    """Internal forces of a pin clamped at `clamps` (names as in `pin.surface`): a face's section
-    stays where it is, a band is rigid. Without clamps each load is balanced by the closing
-    tractions on all connections (fea.core.tractions).
+    """The internal forces of a pin under unit loads.
 
-    Raises: GeometryError for a clamp that is not there; ValueError as fea.beam.line_load.
+    clamps: at which it is held (names as in `pin.surface`): a face's section stays where it is, a
+    band is rigid. Without clamps each load is balanced by the closing tractions on all connections
+    (fea.core.tractions).
+
+    Raises: GeometryError for a clamp that does not exist; ValueError as fea.beam.line_load.
     """
     constrained = [_constrained(pin, pin.surface(name)) for name in clamps]
     stations = _stations(pin, constrained)
@@ -195,9 +197,7 @@ def _at_gauss(lengths: Floats, coefficients: Floats) -> Floats:
 
 
 def _products(lengths: Floats, soft: Floats, one: Floats, other: Floats) -> Floats:
-    """Work integrals (I, K) of internal forces (C, G, 4, I) on the strains by others (C, G, 4,
-    K).
-    """
+    """Work integrals (I, K) of forces (C, G, 4, I) on the strains by others (C, G, 4, K)."""
     scaled = np.einsum("c,g,cq,cgqi->cgqi", lengths / 2.0, _GAUSS_WEIGHTS, soft, one)
     return np.asarray(np.einsum("cgqi,cgqk->ik", scaled, other))
 

@@ -37,8 +37,7 @@ class SolveError(CodedError, ArithmeticError):
 
 
 class Analysis:
-    """The symbolic analysis of a symmetric matrix's pattern, made once for all matrices of that
-    pattern.
+    """The symbolic analysis of a symmetric matrix's pattern, for all matrices of that pattern.
 
     It is the elimination order and the pattern of the factor. pattern: csr, both halves.
     node: (n,) node of each unknown, for an order by nested dissection of the nodes, the best for
@@ -53,8 +52,10 @@ class Analysis:
             self._factor = partial(_superlu, order=order)
 
     def factorize(self, K: sp.csr_matrix, check: bool = True) -> Solve:
-        """A function that solves K x = b for b (n,) or (n, k). It must not be called after
-        another matrix has been factored. check: whether it checks what it returns.
+        """A function that solves K x = b for b (n,) or (n, k).
+
+        It must not be called after another matrix has been factored. check: whether it checks what
+        it returns.
 
         Raises: SolveError when K is not positive definite (an unconstrained body), and from the
         returned function when a solution does not satisfy the equations, or when K is so nearly
@@ -117,8 +118,7 @@ def factorize(K: sp.csr_matrix, node: Ints) -> Solve:
 
 
 class ConstrainedSystem:
-    """Systems of equations with one matrix pattern, analysed once, of whose unknowns any may be
-    zero.
+    """Systems of equations with one matrix pattern, of whose unknowns any may be zero.
 
     K: csr, both halves. node: as for Analysis.
     """
@@ -131,23 +131,17 @@ class ConstrainedSystem:
         self._lock = threading.Lock()  # between factor and solution
 
     def solve(self, K: sp.csr_matrix, free: Floats, forces: Floats) -> Floats:
-        """Unknowns (n, K) under forces (n, K), zero where `free` (n,) is 0 instead of 1; K is
-        changed.
-        """
+        """Unknowns (n, K) under forces (n, K), zero where `free` (n,) is 0; K is changed."""
         held = self._constrained(K, free)
         with self._lock:
             return self._analysis.factorize(held)(forces * free[:, None])
 
     def factorize(self, K: sp.csr_matrix, free: Floats) -> Solve:
-        """A function that solves for forces that are zero on the constrained unknowns, without
-        checks.
-        """
+        """A function that solves for forces that are zero on constrained unknowns, unchecked."""
         return self._analysis.factorize(self._constrained(K, free), check=False)
 
     def _constrained(self, K: sp.csr_matrix, free: Floats) -> sp.csr_matrix:
-        """K with zero rows and columns for constrained unknowns, their diagonal set to its largest
-        entry.
-        """
+        """K with zero rows and columns for constrained unknowns but for their diagonal."""
         fixed = self._diagonal[free == 0.0]
         largest = K.data.max()
         key = free.tobytes()
@@ -205,8 +199,9 @@ class _Cholmod:
 
 
 def _dissection(K: sp.csr_matrix, node: Ints) -> Ints | None:
-    """A nested-dissection order of the unknowns from the graph of their nodes; None without
-    METIS.
+    """A nested-dissection order of the unknowns by the graph of their nodes, or None.
+
+    None where METIS is missing.
     """
     if not has_metis():
         return None

@@ -61,9 +61,7 @@ def continuation(samples: Floats, points: Floats, near: Ints | None = None) -> s
 
 
 def nearest(samples: Floats, points: Floats) -> Ints:
-    """Numbers (P, C) of the FIT_SAMPLES samples (S, 2) nearest to points (P, 2); all if there are
-    fewer.
-    """
+    """Numbers (P, C) of the FIT_SAMPLES (or all) samples (S, 2) nearest to points (P, 2)."""
     count = min(FIT_SAMPLES, len(samples))
     # A balanced tree takes longer to build and less to query.
     balanced = TREE_SAMPLE_RATIO * len(points) > len(samples)

@@ -173,8 +173,6 @@ def _read(path: Path) -> str:
 
 
 def _number(text: str) -> int | None:
-    """Bytes; None for a missing file, for "max" and for the number by which version 1 says the
-    same.
-    """
+    """Bytes; None for a missing file, "max" and the number by which version 1 says the same."""
     value = int(text) if text.strip().isdecimal() else UNLIMITED_BYTES
     return value if value < UNLIMITED_BYTES else None

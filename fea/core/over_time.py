@@ -44,8 +44,7 @@ def rise_between(answer: StressField, loads: PinLoads, between: Between) -> floa
 def _reached(
     answer: StressField, loads: PinLoads, off: LoadAmounts, largest: float
 ) -> tuple[Ints, Floats]:
-    """The intervals (I,) in which `largest` may be exceeded, and the stress (I,), Pa, they may
-    reach.
+    """Intervals (I,) in which `largest` may be exceeded, and the stress (I,), Pa, they may reach.
 
     off: deviations of the loads from their chords. largest: at the instants, Pa.
     """
@@ -73,8 +72,7 @@ def _chord_deviation(loads: PinLoads, between: Between) -> LoadAmounts:
 def through_time(
     answer: StressField, loads: PinLoads, between: Between, tolerance: float
 ) -> PinLoads:
-    """The loads with instants added until those between them hardly matter, the governing one
-    included.
+    """The loads with instants added until those between them hardly matter.
 
     tolerance: relative, of the maximum; what lies between instants may exceed it by
     TIME_ERROR_SHARE of that.

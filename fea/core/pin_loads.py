@@ -73,8 +73,9 @@ class UnitLoad(NamedTuple):
 
     @property
     def phases(self) -> tuple[int, ...]:
-        """The phases that exist: 0 and 1; for n = 0 only 0 (along the axis, pressure) or 1 (about
-        the axis).
+        """The phases that exist.
+
+        They are 0 and 1; for n = 0 only 0 (along the axis, pressure) or only 1 (about the axis).
         """
         if self.n:
             return (0, 1)
@@ -83,8 +84,7 @@ class UnitLoad(NamedTuple):
 
 @dataclass(frozen=True)
 class PinLoads:
-    """Loads on one pin in one case, in the pin's axes: a force and a moment at each surface's
-    middle.
+    """Loads on one pin in one case: a force and a moment at each surface's middle, in pin axes.
 
     surfaces: C names. forces: (T, C, 3) N. moments: (T, C, 3) N m, or what broadcasts to that
     shape.
@@ -115,9 +115,7 @@ class PinLoads:
 
     @property
     def links(self) -> PinLoads:
-        """The loads of the links on the pin: these loads themselves, unless contact carries
-        them.
-        """
+        """The loads of the links: these loads themselves, unless contact carries them."""
         return self
 
     @property

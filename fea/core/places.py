@@ -63,8 +63,7 @@ class SectionPlace:
 
 @dataclass(frozen=True)
 class ContactEdge:
-    """The edge of a lug, at the start or the end of its band, and the pressure that rises towards
-    it.
+    """The edge of a lug, at the start or the end of its band, and the pressure towards it.
 
     K, exponent: pressure is K distance^-exponent. yield_distance: at which that falls to yield.
     max_pressure, max_von_mises: of the pin at a rounded edge; error_estimate: of the pressure. None

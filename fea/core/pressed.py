@@ -75,8 +75,7 @@ class Rings:
         return np.where((part >= READ_RING_RANGE[0]) & (part <= READ_RING_RANGE[1]), ring, -1)
 
     def near(self, r: Floats, z: Floats, middle: Floats) -> Mask:
-        """Mask (P, 3 R) of the points that each ring shuts when it is pressed: under, before and
-        after it.
+        """Mask (P, 3 R) of the points that each ring shuts when pressed: under, before, after it.
 
         Before and after, up to the ring's own length or that of the next one, if that is shorter.
         r, z: (P,) m. middle: (P,) m, z of the middle of the element on which each point is.
@@ -92,9 +91,7 @@ class Rings:
 
     @cached_property
     def _beside(self) -> tuple[Floats, Floats]:
-        """Distances (R,), m, before and after each ring within which the step of its pressure is
-        felt.
-        """
+        """Distances (R,), m, before and after each ring within which its step is felt."""
         before, after = self.length.copy(), self.length.copy()
         here = self.follows
         before[1:][here] = np.minimum(before[1:], self.length[:-1])[here]
@@ -150,18 +147,14 @@ class PressedArcs:
         return replace(self, on=self.on[1:] & self.on[:-1])
 
     def last(self, instant: int) -> tuple[Mask, Mask]:
-        """The first and the last pressed arcs, (R, ARC_COUNT) each, of every stretch of rings
-        without a gap.
-        """
+        """The first and the last pressed arcs, (R, ARC_COUNT) each, of stretches without gaps."""
         on, follows = self.on[instant], self.rings.follows[:, None]
         before, after = np.zeros_like(on), np.zeros_like(on)
         before[1:], after[:-1] = on[:-1] & follows, on[1:] & follows
         return on & ~before, on & ~after
 
     def shut(self, instant: int) -> Mask:
-        """The arcs (3 R, ARC_COUNT) that each ring shuts: on itself, before itself and after
-        itself.
-        """
+        """The arcs (3 R, ARC_COUNT) that each ring shuts: on itself, before and after itself."""
         first, last = self.last(instant)
         return self.widened(np.concatenate([self.on[instant], first, last]))
 
@@ -185,7 +178,7 @@ class PressedArcs:
     def widened(self, arcs: Mask) -> Mask:
         """The arcs (.., ARC_COUNT) with one sector more on both sides."""
         k = self.sector
-        # A running count over the window of 2 k + 1 arcs, the ends joined round the axis.
+        # A running count over the window of 2 k + 1 arcs, the ends joined over the circumference.
         round_ = np.concatenate([arcs[..., -k - 1 :], arcs, arcs[..., :k]], axis=-1)
         count = np.cumsum(round_, axis=-1, dtype=np.int32)
         return np.asarray(count[..., 2 * k + 1 :] > count[..., : -2 * k - 1])

@@ -54,9 +54,7 @@ class Pattern:
         return matrix
 
     def _entries(self, d: int) -> tuple[Any, Any, Any]:
-        """Place among the blocks (d, d), column, and row pointer of each entry of a matrix; found
-        once.
-        """
+        """Block entry, column and row pointer of a matrix with blocks (d, d); found once."""
         if d not in self._known:
             size = d * (len(self.pointer) - 1)
             numbers = np.arange(d * d * len(self)).reshape(-1, d, d)

@@ -46,9 +46,7 @@ _NO_TRACTION = np.zeros(3)
 
 
 def tractions_of(pin: PinLike, load: UnitLoad) -> tuple[Traction, ...]:
-    """The tractions of a unit load on bands; none for a load on the whole pin or a motion of a
-    clamp.
-    """
+    """The tractions of a unit load on bands; none for a body load or a motion of a clamp."""
     if load.parts:
         bands = [(pin.band(name), amplitude) for name, amplitude in load.parts]
         return tuple(Traction(b.name, b.middle, x * INWARDS, _NO_TRACTION) for b, x in bands)

@@ -13,8 +13,7 @@ from pinbase.arrays import Floats
 
 
 def in_pin(moved: Floats, piece: Piece) -> Floats:
-    """Rigid motions (2, 6, L) in the pin's frame, about its origin, from those in the frame of a
-    piece.
+    """Rigid motions (2, 6, L) about the pin's origin, from those in the frame of a piece.
 
     moved: (2, 6, L) shifts (m) and turns (rad) of both ends of the piece.
     """

@@ -37,9 +37,7 @@ class FreePoints:
 
     @classmethod
     def of(cls, points: Floats, outline: Mask, rings: Rings) -> FreePoints:
-        """The free points among points (P, 3), m. outline: (P,) which are on the outline without
-        cuts.
-        """
+        """The free points among points (P, 3), m. outline: (P,) those on the uncut outline."""
         r, z = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
         off = np.abs(r[:, None] - rings.radius)
         ring = off.argmin(axis=1)
@@ -53,9 +51,7 @@ class FreePoints:
         return cls(arc_of(points), near, amid)
 
     def some(self, rows: Ints, plain: int) -> FreePoints:
-        """A selection of points (Q,): the first `plain` as they are, the others relieved of
-        pressure.
-        """
+        """A selection of points (Q,), the first `plain` as they are, the others relieved."""
         amid, near = self.amid[rows], self.near[rows]
         amid[:plain], near[plain:] = -1, False
         return FreePoints(self.arc[rows], near, amid)
@@ -140,9 +136,7 @@ class CutReading:
         return stress
 
     def largest(self, c: Floats, pressed: PressedArcs | None = None) -> tuple[Floats, Ints]:
-        """The largest von Mises stress (T,), Pa, at every instant, and the row of its point
-        (T,).
-        """
+        """The largest von Mises stress (T,), Pa, at every instant, and its row (T,)."""
         value, point = np.zeros(len(c)), np.zeros(len(c), dtype=np.int64)
         for k in range(0, len(c) if len(self.rows) else 0, INSTANT_BATCH):
             here = self.stress(c[k : k + INSTANT_BATCH], pressed, k)

@@ -130,9 +130,7 @@ class LocalFields:
         return CutReading(rows, squares(self.stress[rows]))
 
     def _free(self, rows: Ints, rings: Rings) -> CutReading:
-        """A reading of the rows where lugs leave them free, and of the middles of rings without
-        pressure.
-        """
+        """A reading of the rows that lugs leave free, and of the relieved middles of rings."""
         free = FreePoints.of(self.points, np.isin(np.arange(len(self.points)), self.outer), rings)
         amid = rows[free.amid[rows] >= 0]
         more = relieved(self.stress[amid], self.points[amid], self.nu)
@@ -145,24 +143,18 @@ class LocalFields:
         return self._reading(loads).largest(self.coefficients(loads), loads.pressed)
 
     def varied(self, loads: Loads, times: float) -> float:
-        """The largest von Mises stress, Pa, if `times` the usual distance from inner corners is
-        left out.
-        """
+        """The largest von Mises stress, Pa, for `times` the excluded distance from corners."""
         of = self._reading(loads, times)
         return float(of.largest(self.coefficients(loads), loads.pressed)[0].max())
 
     def beneath(self, loads: Loads, pressed: PressedArcs) -> tuple[Floats, Ints]:
-        """The largest von Mises stress (T,), Pa, beneath the contact (fea.core.places), and its
-        point (T,).
-        """
+        """The largest von Mises stress (T,), Pa, beneath contact, and its point (T,)."""
         rows = np.flatnonzero(self.outside())
         of = replace(self._plain(rows), free=AwayFromPressed.of(self.points[rows], pressed.rings))
         return of.largest(self.coefficients(loads), pressed)
 
     def depths(self, loads: Loads, pressed: PressedArcs, instant: int, least: float) -> Steps:
-        """Distances from pressed cells that stresses above `least`, Pa, reach
-        (fea.harmonic.beneath).
-        """
+        """Distances from pressed cells that stresses reach (fea.harmonic.beneath)."""
         rows = np.flatnonzero(self.outside())
         square = squares(self.stress[rows])(self.coefficients(loads)[[instant]])[:, 0]
         far = distance(self.points[rows], pressed, instant)
@@ -190,9 +182,7 @@ class LocalFields:
         return END_EFFECT_FACTOR * self._changed(loads, instant, self.ended)
 
     def felt_at(self, point: Point, loads: Loads, instant: int) -> float:
-        """The error of another piece's stress at a point (m) at an instant, Pa, since it lacks
-        these cuts.
-        """
+        """The error at a point (m) of another piece, Pa, which lacks these cuts."""
         if not self.piece.z0 < point[2] < self.piece.z1:
             return 0.0
         distance = np.linalg.norm(self.points[self.outer] - point, axis=1)
@@ -200,9 +190,7 @@ class LocalFields:
         return NEIGHBOUR_EFFECT_FACTOR * self._changed(loads, instant, about)
 
     def _changed(self, loads: Loads, instant: int, where: Mask) -> float:
-        """The largest von Mises stress, Pa, of the change by the cuts, over some points of the
-        outline.
-        """
+        """The largest von Mises stress, Pa, of the change by the cuts, on the outline."""
         square = squares(self.changed[where])(self.coefficients(loads)[instant][None])
         return float(np.sqrt(max(square.max(initial=0.0), 0.0)))
 

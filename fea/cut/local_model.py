@@ -120,9 +120,7 @@ class LocalModel:
 
     @cached_property
     def scatter(self) -> Floats:
-        """Relative scatter (P,) of the stress with the positions of nodes, beyond that of all
-        pieces.
-        """
+        """Relative scatter (P,) of stress with the positions of nodes, of rounded corners."""
         parts = [
             np.full(
                 len(r.nodes), ROUNDED_CORNER_SCATTER * r.face.name.endswith(("fillet", "mouth"))
@@ -197,8 +195,7 @@ class LocalModel:
         return Read(self.images.reshape(-1, 3), whole, changed, cut, displaced, moved)
 
     def _moved(self, u: Floats, parity: tuple[int, ...]) -> Floats:
-        """The rigid motions (2, 6, L) of both ends by displacements (3 N, L) of a class, about the
-        origin.
+        """The rigid motions (2, 6, L) of both ends by displacements (3 N, L) of a class.
 
         Mirror planes leave only those motions that belong to the class.
         """
@@ -245,8 +242,7 @@ class LocalModel:
     def _spread(
         self, stress: Floats, parity: tuple[int, ...], shears: Mask
     ) -> tuple[Floats, Floats]:
-        """The loads of a class on removed areas, moved to the rest of their bands
-        (fea.cut.lost_loads).
+        """The loads on removed areas, moved to the rest of their bands (lost_loads).
 
         Returns nodal forces (3 N, L), and tractions (P, 3, L) at the points. stress: (P, 6, L) Pa,
         the uncut pin's. shears: (L,).
@@ -391,8 +387,7 @@ class LocalModel:
         return np.asarray(forces - weight @ np.linalg.solve(modes.T @ weight, modes.T @ forces))
 
     def _stress(self, u: Floats, uncut: Floats, spread: Floats, c: int) -> Floats:
-        """The stress (P, 6, L) that displacements (3 N, L) add to the uncut one, along faces'
-        directions.
+        """The stress (P, 6, L) that displacements (3 N, L) add, along faces' directions.
 
         spread: (P, 3, L) Pa, tractions that act besides. c: number of the class.
         """

@@ -62,8 +62,7 @@ def bearings(piece: Piece, bands: Sequence[tuple[float, float]]) -> tuple[Bearin
 
 
 def trials(x: Floats, normal: Floats, shears: bool) -> Floats:
-    """Tractions (..., 3, 6) on a band, each with the resultant of a unit force or couple about an
-    axis.
+    """Tractions (..., 3, 6) on a band, each with the resultant of a unit force or couple.
 
     x, normal: (..., 3) points and outward normals. shears: of constant direction instead of normal
     to the band.

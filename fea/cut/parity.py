@@ -36,9 +36,7 @@ class Parities:
 
     @cached_property
     def images(self) -> Floats:
-        """Factors (G, 3) of a point's coordinates at its images; the first image is the point
-        itself.
-        """
+        """Factors (G, 3) of a point's coordinates at its images, the first being itself."""
         out = np.ones((len(self.classes), 3))
         for g, crossed in enumerate(self.classes):
             for mirror, sign in zip(self.mirrors, crossed, strict=True):
@@ -47,9 +45,7 @@ class Parities:
 
     @cached_property
     def characters(self) -> Floats:
-        """The factor (C, G) of a class's field at an image, apart from the mirroring of its
-        components.
-        """
+        """The factor (C, G) of a class's field at an image, besides the mirroring."""
         crossed = np.array(self.classes).reshape(len(self.classes), -1) < 0
         odd = crossed  # of a class, where its parity is -1
         return np.where((odd.astype(int) @ crossed.T.astype(int)) % 2, -1.0, 1.0)

@@ -244,9 +244,7 @@ def _end(pin: Pin, z: float, way: float) -> float:
 
 
 def _even(pin: Pin, z0: float, z1: float, middle: float) -> bool:
-    """Whether the profile is a plain cylinder on both sides of z = middle, as far as the piece
-    goes.
-    """
+    """Whether the profile is a plain cylinder on both sides of z = middle in the piece."""
     half = max(middle - z0, z1 - middle)
     inside = middle - half >= -pin.tolerance and middle + half <= pin.length + pin.tolerance
     ends = zip(pin.segments, pin.stations, pin.stations[1:], strict=False)

@@ -171,8 +171,10 @@ def _revolved(
 def _outside_of(
     z: Floats, rows: Ints, part: Floats, low: float, high: float
 ) -> tuple[Ints, Floats]:
-    """Edges between points `rows` (E, 2), from one to another part of their length (E, 2), without
-    what lies between two z.
+    """The parts of edges that lie outside an interval of z.
+
+    rows: (E, 2) points of the edges. part: (E, 2) where each begins and ends, of its length. low,
+    high: m.
     """
     out_rows, out_part = [], []
     for (a, b), (s, t) in zip(rows, part, strict=True):

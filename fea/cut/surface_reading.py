@@ -90,9 +90,7 @@ def read_face(
 
 
 def _directions(normal: Floats) -> Floats:
-    """Directions (P, 3, 3): two along the face and the normal, the first nearest to a coordinate
-    axis.
-    """
+    """Directions (P, 3, 3): two along the face, the first nearest to an axis, and the normal."""
     n = normal / np.linalg.norm(normal, axis=1, keepdims=True)
     along = np.eye(3)[np.argmin(np.abs(n), axis=1)]
     first = along - np.sum(along * n, axis=1, keepdims=True) * n

@@ -100,9 +100,7 @@ class TwoLevel:
         return None
 
     def _smoother(self, free: Floats) -> Callable[[Floats, Floats | None], Floats]:
-        """The smoother: from zero, or from what the coarse level has corrected; symmetric as a
-        pair.
-        """
+        """The smoother, from zero or from what the coarse level has corrected."""
         K = self._stiffness
         mask = free.reshape(-1, 3)
         blocks = self._diagonal_blocks * mask[:, :, None] * mask[:, None]

@@ -111,9 +111,7 @@ class Section:
         return pattern
 
     def shared(self, what: str, make: Callable[[], Any]) -> Any:
-        """A quantity that depends on the elements alone, made once for all meshes that share
-        them.
-        """
+        """A quantity that depends on the elements alone, for all meshes that share them."""
         shared = self.section.shared
         if shared is None:
             return make()
@@ -136,9 +134,7 @@ class Section:
 
     @cached_property
     def _products(self) -> list[Floats]:
-        """Integrals (P, 9), per radian, of the products of a, b, c of the nodes of each pair, by
-        part.
-        """
+        """Integrals (P, 9), per radian, of products of a, b, c of pairs of nodes, by part."""
         root = np.sqrt(self._weights[:, self._quadrature])
         parts = self._gradients[:, self._quadrature] * root[..., None, None]
         x = parts.reshape(len(parts), -1, 3, 6).transpose(0, 3, 2, 1).reshape(len(parts), 18, -1)
@@ -161,10 +157,9 @@ class Section:
         )
 
     def sampled_strains(self, n: Ints | int, u: Floats) -> Floats:
-        """Strains (M, 3, 6, K), shears doubled, at three points of each element, where they are
-        most exact.
+        """Strains (M, 3, 6, K), shears doubled, at three points of each element.
 
-        n: harmonics, one or (K,). u: displacements (N, 3, K), m.
+        There they are most exact. n: harmonics, one or (K,). u: displacements (N, 3, K), m.
         """
         return self._sampled(np.eye(6), n, u)
 
@@ -208,8 +203,7 @@ def elasticity(material: Material) -> Floats:
 
 @lru_cache
 def _rules() -> tuple[Floats, Floats, int]:
-    """The points of a reference triangle (2, Q) and their weights (Q,), and the count of the first
-    kind.
+    """Points (2, Q) of a reference triangle, weights (Q,), and the number of quadrature points.
 
     First come those of a rule of fourth degree, then three samples of strain, with no weight.
     """

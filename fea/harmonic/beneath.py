@@ -43,8 +43,7 @@ class Beneath:
 
 
 class Away:
-    """The part of the circumference that is farther than BENEATH_DISTANCE diameters from pressed
-    cells.
+    """The part of the circumference farther than BENEATH_DISTANCE diameters from pressed cells.
 
     points: (S, 2) m. It is a Region of fea.harmonic.superposition.
     """
@@ -75,8 +74,7 @@ class Away:
 
 
 def arcs_within(points: Floats, rings: Rings, distance: Floats) -> Ints:
-    """The number of arcs (S, R) from a pressed arc of a ring up to which a point is within a
-    distance.
+    """The number of arcs (S, R) from a pressed arc up to which a point is within a distance.
 
     points: (S, 2) m. distance: (R,) m. -1 where the point is farther from the ring anyway.
     """
@@ -106,9 +104,7 @@ def arcs_apart(on: Mask) -> Ints:
 
 
 def beneath(fields: MeridianFields, loads: Loads, zones: tuple[Zone, ...]) -> Beneath:
-    """The largest stress beneath contact of a pin on which lugs press, outside of singular
-    zones.
-    """
+    """The largest stress beneath contact, outside of singular zones."""
     assert loads.pressed is not None
     around = Circumference(fields, loads, Away(fields.points, loads.pressed))
     top = around.top(_away_from(zones, fields))
@@ -124,8 +120,7 @@ def depths(
     zones: tuple[Zone, ...],
     least: float,
 ) -> Steps:
-    """Pairs of a stress, Pa, and the distance, m, from every pressed cell that it reaches at an
-    instant.
+    """Pairs of a stress, Pa, and the distance, m, from pressed cells that it reaches at an instant.
 
     Stresses fall to `least` and distances grow: each is farther than all before.
     """
@@ -160,9 +155,7 @@ def _away_from(zones: tuple[Zone, ...], fields: MeridianFields) -> Mask:
 
 
 def _distance(points: Floats, pressed: PressedArcs, instant: int) -> Floats:
-    """Distances (S, A), m, from the nearest pressed cell, of points (S, 2) at every ARC_STRIDE-th
-    arc.
-    """
+    """Distances (S, A), m, of points (S, 2) from pressed cells, at every ARC_STRIDE-th arc."""
     rings, on = pressed.rings, pressed.on[instant]
     r, z = points[:, :1], points[:, 1:]
     apart = arcs_apart(on)[:, ::ARC_STRIDE]

@@ -88,8 +88,7 @@ class Outline:
         return np.asarray((_EDGE_GAUSS_WEIGHTS * along * (x[..., 0] @ values.T)) @ values)
 
     def _quadrature(self, surface: str) -> tuple[Floats, Floats]:
-        """z (E, Q), m, of the quadrature points of a surface, and the nodes' weights (E, Q, 3),
-        m^2.
+        """z (E, Q), m, of a surface's quadrature points, and nodes' weights (E, Q, 3), m^2.
 
         The weights are for integrals over length times r.
         """

@@ -92,16 +92,13 @@ def _surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfaceP
 
 
 def relief(nu: float) -> Floats:
-    """The local stress (6,) of a pressed half-plane's surface over its stress rr across the
-    surface.
-    """
+    """The local stress (6,) of a pressed half-plane's surface over its component rr."""
     return np.array([1.0, 2.0 * nu, 1.0, 0.0, 0.0, 0.0])
 
 
 @dataclass(frozen=True)
 class Cusp:
-    """The end of contact at the edge of a lug, and the points from which stress is extrapolated to
-    it.
+    """The end of contact at a lug's edge, and the points from which stress is extrapolated.
 
     place: (r, z), m. side: -1 towards lower z, else 1. ring: at which contact ends. exponent: of
     pressure.
@@ -148,8 +145,7 @@ def _cusps(x: Floats, middle: Floats, rings: Rings) -> list[Cusp]:
 def _beside(
     skin: tuple[Floats, Floats], rings: Rings, edge: tuple[int, float], closest: float
 ) -> Cusp | None:
-    """The cusp at the end of a ring, from points on the cylinder beside it; None for too few
-    points.
+    """The cusp at the end of a ring, from points beside it; None where they are too few.
 
     skin: points (P, 2), m, and z of the middle of each one's element. edge: ring and side. closest:
     m, distance at which the points begin.
@@ -168,9 +164,7 @@ def _beside(
 
 
 class FreeSurface:
-    """The part of the circumference on which points of a surface are read, at the instants of a
-    contact.
-    """
+    """The part of the circumference on which points of a surface in contact are read."""
 
     def __init__(self, of: SurfacePoints, pressed: PressedArcs) -> None:
         self.pressed, self.relieved = pressed, of.relieved
@@ -224,8 +218,7 @@ class FreeSurface:
         return np.asarray(out)
 
     def _arcs(self, instant: int) -> tuple[Floats32, Mask, Mask]:
-        """The arcs that each ring shuts, (3 R, ARC_COUNT), and those read at edges and middles of
-        rings.
+        """Arcs that each ring shuts, (3 R, ARC_COUNT), and those read at edges and in rings.
 
         Edges: (E, ARC_COUNT); middles: (R, ARC_COUNT).
         """

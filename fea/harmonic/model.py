@@ -198,8 +198,7 @@ class HarmonicModel(HarmonicBody):
         extra: Floats = NO_POINTS,
         ends: Iterable[tuple[float, float]] = (),
     ) -> MeridianFields:
-        """The unit fields of at least these loads, with those of former calls, which are not solved
-        again.
+        """The unit fields of at least these loads; earlier ones are not solved again.
 
         extra, ends: as for `solve`, the same in all calls. Pressures on several surfaces are
         superposed from those on each, since other such pressures may come later.
@@ -330,9 +329,7 @@ def applied(
 
 
 def body_force(material: Material, n: int, integrals: Floats) -> Floats:
-    """Forces on the unknowns of a pin's mass in a field of 1 m/s^2 along x, or along z where n =
-    0.
-    """
+    """Forces on the unknowns of a pin's mass in 1 m/s^2 along x, or along z for n = 0."""
     if material.density is None:
         raise SolveError(
             f"material {material.name} has no density, which weight and inertia need",

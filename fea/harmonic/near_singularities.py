@@ -47,9 +47,7 @@ def inside(
 
 
 def _places(fields: MeridianFields, singularity: Zone) -> tuple[Floats, Mask, Mask]:
-    """Distances (S,), m, from a singularity, which points lie in it, and at which of them it is
-    felt.
-    """
+    """Distances (S,), m, from a singularity, and masks of points in it and where it is felt."""
     r, z = fields.points.T
     distance = np.hypot(r - singularity.r, z - singularity.z)
     within = distance <= singularity.radius
@@ -110,8 +108,7 @@ def _growth(
 def interval(
     fields: MeridianFields, around: Circumference, singularities: Collection[Zone]
 ) -> tuple[float, float]:
-    """The least and the largest maximum (Pa) outside the singularities for varied excluded
-    distances.
+    """The least and the largest maximum (Pa) outside the singularities by excluded distance.
 
     They are half and twice as large, but no larger than where the next feature begins.
     """

@@ -63,8 +63,7 @@ def _turned(
     instant: int,
     stress: Floats,
 ) -> tuple[Floats, Floats, Floats]:
-    """Position (P, 3), displacement (P, 3) and stress (P, 6) along x, y, z, of rows on all
-    meridians.
+    """Position (P, 3), displacement (P, 3) and stress (P, 6) of rows on all meridians, in x, y, z.
 
     stress: (rows, A, 6) Pa, in cylindrical coordinates.
     """

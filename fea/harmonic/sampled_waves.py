@@ -34,9 +34,7 @@ def crest_all_round(n: Ints, back: Floats, forth: Floats, beat: Floats) -> tuple
 
 
 def crest_where_read(n: Ints, back: Floats, forth: Floats, read: Mask) -> tuple[Floats, Floats]:
-    """The largest von Mises stress (J,), Pa, over the arcs (J, ARC_COUNT) that are read, and its
-    angle.
-    """
+    """The largest von Mises stress (J,), Pa, over arcs (J, ARC_COUNT), and its angle."""
     square = at_angles(n, back, forth, ARC_ANGLES)
     square[~read] = -1.0
     value, angle = crest_of_samples(square)

@@ -72,9 +72,7 @@ def sectors_of(pressed: PressedArcs | None) -> int:
 
 
 def _first(x: Floats) -> Mask:
-    """Mask (S,) of the points of the skin that are the first ones in their place, in their
-    order.
-    """
+    """Mask (S,) of the points of the skin that are the first ones in their place."""
     step = np.linalg.norm(np.diff(x, axis=0), axis=1)
     return np.concatenate([[True], step > POINT_TOLERANCE * np.ptp(x[:, 1])])
 

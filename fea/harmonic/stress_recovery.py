@@ -75,9 +75,7 @@ class Reading:
         return points_of_nodes(self.outline, len(self.space.nodes))
 
     def at_points(self, forces: Floats) -> sp.csc_matrix:
-        """Forces (3 D, K) on the points that have a displacement, from those on the nodes, (N, 3,
-        K).
-        """
+        """Forces (3 D, K) on points with a displacement, from nodal ones, (N, 3, K)."""
         count, loads = self.skin + len(self.inner), forces.shape[2]
         dense = np.zeros((loads, count, 3))
         dense[:, self.rows] = forces.transpose(2, 0, 1)

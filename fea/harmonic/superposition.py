@@ -161,9 +161,7 @@ class Circumference:
         return np.sqrt(np.maximum(square, 0.0, out=square), out=square)
 
     def _of_summed_loads(self, five: Floats, wave: slice, instants: Instants) -> Floats:
-        """The same as `_of_harmonic` for stresses (J, 5, K) that are summed over the loads
-        first.
-        """
+        """The same for stresses (J, 5, K), which are summed over the loads first."""
         first, second = self._first[instants, wave].T, self._second[instants, wave].T
         flat = np.ascontiguousarray(five).reshape(-1, five.shape[2])
         shape = (len(five), 5, first.shape[1])
@@ -387,8 +385,7 @@ class Circumference:
     def _pair_waves(
         self, points: Ints, instants: Ints, waves: Sequence[slice]
     ) -> tuple[Floats, Floats]:
-        """The factors of cos n theta and of sin n theta in the five numbers of pairs, (J, 5, W)
-        each.
+        """The factors (J, 5, W) of cos n theta, and of sin n theta, in the five numbers.
 
         points, instants: (J,) each. waves: W harmonics.
         """
@@ -407,9 +404,9 @@ class Circumference:
         return back, forth
 
     def envelope(self, points: Ints, angles: Floats, read: Mask | None = None) -> Floats:
-        """The largest von Mises stress (J, A), Pa, over all instants at points (J,) and angles
-        (A,), rad.
+        """The largest von Mises stress (J, A), Pa, over all instants.
 
+        points: (J,) numbers. angles: (A,) rad.
         read: (J, A, T) where it counts, everywhere by default. -1 where it never does.
         """
         parts = (
@@ -445,8 +442,9 @@ class Circumference:
         return np.asarray(total.max(axis=2).T)
 
     def stress(self, points: Ints, instant: int, angles: Floats) -> Floats:
-        """Stress (J, A, 6), Pa, at points (J,) and angles (A,), rad, at an instant: rr, tt, zz, tz,
-        rz, rt.
+        """Stress (J, A, 6), Pa, at an instant: rr, tt, zz, tz, rz, rt.
+
+        points: (J,) numbers. angles: (A,) rad.
         """
         out = np.zeros((len(points), len(angles), 6))
         here = self.fields.stress[points]
@@ -473,8 +471,6 @@ def _update_best(best: Floats, point: Ints, t: Ints, value: Floats, at: Ints) ->
 
 
 def _forms(form: Floats, products: Floats) -> Floats:
-    """The values (J, T) of quadratic forms (J, K, K) for T pairs of vectors with products (T, K,
-    K).
-    """
+    """The values (J, T) of forms (J, K, K) for T pairs of vectors with products (T, K, K)."""
     size = form.shape[1] * form.shape[2]  # there may be no points
     return np.asarray(form.reshape(-1, size) @ products.reshape(-1, size).T)

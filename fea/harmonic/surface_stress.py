@@ -131,9 +131,7 @@ def _strains(
 
 
 def smooth_neighbours(outline: Outline, x: Floats, traction: Floats) -> tuple[Ints, Ints]:
-    """The edges (E,) before and after each across which surface and load go on smoothly; -1 for
-    none.
-    """
+    """Edges (E,) before and after each across which surface and load are smooth, or -1."""
     after = outline.after.copy()
     ends = np.einsum("qi,eia->eqa", slopes(np.array([-1.0, 1.0])), x)
     ends /= np.linalg.norm(ends, axis=2, keepdims=True)

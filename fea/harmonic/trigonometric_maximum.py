@@ -85,8 +85,7 @@ def crest_of_samples(square: Floats) -> tuple[Floats, Floats]:
 
 
 def _crests(c: Floats, low: Floats, angle: Floats, high: Floats) -> Floats:
-    """The angles (C,), rad, of the crests of polynomials, by Newton's method safeguarded by
-    bisection.
+    """The angles (C,), rad, of the crests of polynomials, by safeguarded Newton steps.
 
     c: (C, D + 1) complex Fourier coefficients. low, high: (C,) rad, where the slope is positive and
     negative. angle: (C,) rad, a guess.

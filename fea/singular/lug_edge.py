@@ -36,8 +36,7 @@ MIN_EXPONENT = 1e-9  # exponents below are those of no singularity
 
 
 def lug_edge_exponent(pin: Material, lug: Material, angle: float = RIGHT_ANGLE) -> float:
-    """Exponent s of pressure and stress ~ d^-s at the sharp edge of a lug in plane strain; 0 if
-    finite.
+    """Exponent s of pressure and stress ~ d^-s at the sharp edge of a lug; 0 where finite.
 
     lug: the material that touches the pin, a bushing's if there is one. angle: of the edge, rad.
 
@@ -47,8 +46,7 @@ def lug_edge_exponent(pin: Material, lug: Material, angle: float = RIGHT_ANGLE) 
 
 
 def edge_exponent(pin: float, lug: float, angle: float = RIGHT_ANGLE) -> float:
-    """The same from the plane compliances (1 - nu^2) / E of both; 0 is rigid. Only their ratio
-    counts.
+    """The same from the plane compliances (1 - nu^2) / E of both, whose ratio counts; 0 is rigid.
 
     Raises: ArgumentError if both are rigid or one is negative; as `lug_edge_exponent`.
     """

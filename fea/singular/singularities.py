@@ -31,8 +31,7 @@ MESH_SCALE_RATIO = 10.0  # length by which meshes are scaled, over the reach of 
 
 @dataclass(frozen=True)
 class Zone:
-    """A circle at (r, z), m, in which stress grows like d^-theory at the distance d and is not
-    read.
+    """A circle at (r, z), m, in which stress grows like d^-theory and is not read.
 
     between: the surfaces that meet there. theory: the exponent in plane strain, so for axial and
     bending loads; 0 at the edge of a load, where stress grows like log(1/d); None where the angle
@@ -73,8 +72,7 @@ class Zone:
 
     @property
     def measured(self) -> bool:
-        """Whether the growth of stress is measured, on meshes graded closely towards the
-        singularity.
+        """Whether the growth of stress is measured, on closely graded meshes.
 
         Not where the growth is a logarithm, nor under a lug, whose pressure is even on each ring.
         """
@@ -93,8 +91,9 @@ class Zone:
 
     @property
     def following_torsion(self) -> float:
-        """The same in torsion: eigenvalues are multiples of the first, odd ones if one side is
-        constrained.
+        """The same exponent in torsion.
+
+        Eigenvalues are multiples of the first, odd ones if one side is constrained.
         """
         times = 3.0 if self.kind == "edge of a clamp" else 2.0
         return times * (1.0 - self.torsion_theory) - 1.0
@@ -135,18 +134,16 @@ def find_singularities(
 
 
 def free_of_arcs(pin: Pin, r: Floats, z: Floats) -> Floats:
-    """Distances (S,), m, from points at r, z (S,), m, to the nearest fillet or groove of the
-    pin.
-    """
+    """Distances (S,), m, from points at r, z (S,), m, to the nearest fillet or groove."""
     arcs = _inner_arcs(pin)
     at = zip(r.tolist(), z.tolist(), strict=True)
     return np.array([min((_free_of(arc, x) for arc in arcs), default=math.inf) for x in at])
 
 
 def begins(gap: float, radius: float) -> float:
-    """Distance (m) from a singularity up to which stress is its own beside a fillet, groove or
-    hole.
+    """Distance (m) from a singularity up to which stress is its own beside a feature.
 
+    The feature is a fillet, a groove or a hole.
     gap: m, to the feature. radius: m, of the feature. Where the feature begins at the singularity
     or nearly so, it is STRAIGHT_ARC_SHARE of the radius.
     """

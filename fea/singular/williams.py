@@ -55,8 +55,7 @@ def plane_exponent(omega: float, nu: float, first: Side, second: Side) -> float:
 
 
 def plane_eigenvalue(omega: float, nu: float, first: Side, second: Side) -> complex:
-    """The least L of displacement ~ r^L, of a pair the one above the real axis; 1 if stress is
-    finite.
+    """The least L of displacement ~ r^L, of a pair the upper one; 1 where stress is finite.
 
     A complex one makes the stress change sign ever faster towards the corner. Arguments and Raises:
     as `plane_exponent`. Source: as the module.
@@ -115,9 +114,7 @@ def _equal_sides(omega: float, kappa: float) -> float:
 
 
 def _different_sides(omega: float, kappa: float) -> complex:
-    """The root z = 2 L omega for different sides; infinite if its real part would exceed 2
-    omega.
-    """
+    """The root z = 2 L omega for different sides; infinite if Re z would exceed 2 omega."""
     A = (kappa + 1.0 / kappa) / 2.0
     B = (math.sin(omega) / omega) ** 2 / (2.0 * kappa)
 

@@ -59,8 +59,10 @@ class Discretisation:
         return np.asarray(self.basis.dx)
 
     def stiffness(self, material: Material) -> sp.csr_matrix:
-        """Stiffness matrix, N/m: lambda S + mu S^T + mu tr S for a pair of nodes i, j, where S_ab
-        is the integral of dN_i/dx_a dN_j/dx_b.
+        """The stiffness matrix, N/m.
+
+        It is lambda S + mu S^T + mu tr S for a pair of nodes i, j, where S_ab is the integral of
+        dN_i/dx_a dN_j/dx_b.
         """
         lam, mu = material.lame
         pattern = Pattern(self.elements, int(self.basis.N))

@@ -22,8 +22,7 @@ _TRIANGLE_NODES = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5
 
 
 def _shapes(x: Floats, y: Floats, nodes: int) -> Floats:
-    """Shape functions (Q, K) on the triangle: six quadratic ones (corners, edges 01, 12, 02), or
-    three.
+    """Shape functions (Q, K) on the triangle, quadratic (corners, edges 01, 12, 02) or linear.
 
     nodes: 3 for the linear ones.
     """
@@ -47,9 +46,7 @@ def _slopes(x: Floats, y: Floats, nodes: int) -> Floats:
 
 
 def slopes_at(x: Floats, y: Floats) -> tuple[Floats, Floats]:
-    """The six quadratic shape functions at points (Q,) of a facet, (Q, 6), and derivatives (Q, 6,
-    2).
-    """
+    """The six quadratic shape functions at points (Q,), (Q, 6), and derivatives (Q, 6, 2)."""
     return _shapes(x, y, 6), _slopes(x, y, 6)
 
 

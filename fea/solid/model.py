@@ -55,9 +55,7 @@ class UnitFields:
 
     @property
     def points(self) -> Floats:
-        """The points (S + P, 3), m, where stress is read: nodes of the surface, then the extra
-        points.
-        """
+        """The points (S + P, 3), m, where stress is read: on the surface, then extra ones."""
         return np.concatenate([self.space.nodes[self.surface.nodes], self.extra])
 
     @cached_property
@@ -159,9 +157,7 @@ class SolidModel:
         )
 
     def _displace(self, F: Floats) -> tuple[Floats, Floats]:
-        """Displacements (N, 3, L) under nodal forces F (N, 3, L), and the clamps' resultants (6,
-        L).
-        """
+        """Displacements (N, 3, L) under nodal forces F (N, 3, L), and resultants of clamps."""
         shape, F = F.shape, F.reshape(self.unknowns, -1)
         free = np.setdiff1d(np.arange(self.unknowns), self.fixed)
         K = self.stiffness
