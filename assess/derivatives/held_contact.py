@@ -70,7 +70,7 @@ class FixedContact:
         x, y = (couples @ self._turn).tolist()
         return self._contact.asked(forces @ self._turn, (x, y))
 
-    def held(self, model: ContactModel) -> float:
+    def with_fixed_cells(self, model: ContactModel) -> float:
         """The stress, Pa, on another shape (ContactModel.reshaped) with the same cells in contact.
 
         To first order in what differs, without the elasticity of the bodies.

@@ -182,7 +182,7 @@ class _InLugs:
         """Derivatives by parameter, by its key."""
         # Under fixed pressures; then what changes the pressures: flexibility of the pin by shape
         # and material, gaps and equilibrium, flexibility of the lugs.
-        out = self.stress.held(changes)
+        out = self.stress.at_fixed_pressures(changes)
         shapes = [x.flexible for x in changes if x.flexible is not None]
         if shapes:
             moved = np.stack([motion.velocity for motion in shapes], axis=2)
@@ -191,7 +191,7 @@ class _InLugs:
             for motion, velocity in zip(shapes, velocities, strict=True):
                 out[motion.key] += self.pin_work.by_shape("", velocity)
         for change in changes:
-            total = float(change.rate(self.contact.held))
+            total = float(change.rate(self.contact.with_fixed_cells))
             if any(one.material != self.model.material for one in change.models):
                 D = change.rate(lambda one: elasticity(one.material))
                 total += self.pin_work.by_material("", [D])

@@ -68,7 +68,7 @@ class PressedStress(Protocol):
         Raises: OtherShapeError.
         """
 
-    def held(self, changes: Sequence[JointStep]) -> dict[str, float]:
+    def at_fixed_pressures(self, changes: Sequence[JointStep]) -> dict[str, float]:
         """The derivative by each change, by its key, under the same pressures."""
 
     def of_amounts(self, amounts: Mapping[UnitLoad, Floats]) -> float:
@@ -114,7 +114,7 @@ class OfSurface:
             nodes = self._adjoint.outline_nodes
             self._motions[change.key] = nodes.among(change.key, change.pins, change.step)
 
-    def held(self, changes: Sequence[JointStep]) -> dict[str, float]:
+    def at_fixed_pressures(self, changes: Sequence[JointStep]) -> dict[str, float]:
         moved = [self._motions[x.key] for x in changes if x.flexible is not None]
         out = self._adjoint.by_motions(moved)
         for x in changes:
@@ -184,7 +184,7 @@ class OfSections:
     def require(self, change: JointStep) -> None:
         self._value(change.models[0])
 
-    def held(self, changes: Sequence[JointStep]) -> dict[str, float]:
+    def at_fixed_pressures(self, changes: Sequence[JointStep]) -> dict[str, float]:
         return {x.key: float(x.rate(self._value)) for x in changes}
 
     def _value(self, model: ContactModel) -> float:

@@ -17,7 +17,7 @@ from typing import Protocol
 import numpy as np
 from scipy.spatial import cKDTree
 
-from fea.core.local_fit import FIT_SAMPLES, at_one_place
+from fea.core.local_fit import FIT_SAMPLES, fit_weights
 from fea.core.material import Material
 from fea.harmonic.assembly import Section, elasticity, strain_map
 from fea.harmonic.boundary import Outline, shapes
@@ -222,7 +222,7 @@ class FromInside:
             displacements = u[np.searchsorted(self.nodes, samples.nodes)]
             at, sampled = samples.read(material, state.nodes, n, displacements)
             distance = np.hypot(*(at - place).T)
-            weights = at_one_place(at - place, 1.0 - (distance / distance[-1]) ** 2)
+            weights = fit_weights(at - place, 1.0 - (distance / distance[-1]) ** 2)
             out += share * np.einsum("s,sck->ck", weights, sampled)
         return out
 

@@ -36,7 +36,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fea.beam.line_load import acting, shares
-from fea.beam.plastic_interaction import bent_and_pulled, plastic_torque
+from fea.beam.plastic_interaction import bending_and_axial_use, plastic_torque
 from fea.beam.round_section import Circle
 from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, Span, stepped_beam
 from fea.core.material import Material
@@ -133,7 +133,7 @@ def _bending_and_axial(sections: list[Circle], across: Floats) -> tuple[Floats, 
     for section in set(sections):
         same = np.array([s == section for s in sections])
         moment, axial = across[:, same, MOMENT], across[:, same, AXIAL]
-        most[:, same], least[:, same] = bent_and_pulled(section, moment, axial)
+        most[:, same], least[:, same] = bending_and_axial_use(section, moment, axial)
     squares = np.array(
         [
             (

@@ -63,8 +63,7 @@ class LimitLoad:
 
     All loads of the case at its governing instant grow in proportion. method: beam or solid; "none"
     without an answer, with the reason in `note`.
-    carries: whether the pin carries its loads (factor 1) without collapse; None where that is
-    undecided.
+    carries: whether the pin carries its loads (factor 1) without collapse; None where that is open.
     permanent_set: the part of the largest displacement that remains after the loads reached the
     factor permanent_at and were removed. curve, flow: of the finest mesh.
     stopped: there is no answer because it would have taken longer than a limit load may that nobody

@@ -25,7 +25,7 @@ from pinbase.arrays import Floats
 CURVE_POINTS = 201  # points of the curve, whose chords and tangents are within 1e-4 of it
 
 
-def bent_and_pulled(section: Circle, moment: Floats, axial: Floats) -> tuple[Floats, Floats]:
+def bending_and_axial_use(section: Circle, moment: Floats, axial: Floats) -> tuple[Floats, Floats]:
     """The use of the interaction curve by bending and axial force, an upper and a lower estimate.
 
     moment: M/Mp (...), axial: N/Np (...), not negative. The upper one is by a chord, the lower one
@@ -55,7 +55,7 @@ def plastic_use(
         np.array([moment / (strength * section.plastic_modulus)]),
         np.array([axial / (strength * section.area)]),
     )
-    bent = float(bent_and_pulled(section, M, N)[0][0]) if moment or axial else 0.0
+    bent = float(bending_and_axial_use(section, M, N)[0][0]) if moment or axial else 0.0
     in_shear = strength / math.sqrt(3.0)
     sheared = shear * section.vq_it / (section.area * in_shear)
     return math.hypot(bent, sheared + torque / (in_shear * plastic_torque(section)))

@@ -96,7 +96,7 @@ def circle(segment: Segment) -> Circle:
     return Circle(segment.diameter / 2.0, segment.bore / 2.0)
 
 
-def weakest(segment: Segment, start: float, end: float) -> Circle:
+def thinnest_section(segment: Segment, start: float, end: float) -> Circle:
     """The thinnest section between start and end, m from the segment's start."""
     (b0, r0), (b1, r1) = segment.radii(start), segment.radii(end)
     return Circle(min(r0, r1), max(b0, b1))

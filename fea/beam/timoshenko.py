@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam.line_load import line_loads
-from fea.beam.round_section import Circle, weakest
+from fea.beam.round_section import Circle, thinnest_section
 from fea.core.material import Material
 from fea.core.pin_loads import UnitLoad
 from geometry import Pin
@@ -154,7 +154,7 @@ def _on_cones(pin: Pin) -> Iterator[float]:
 def _section(pin: Pin, a: float, b: float) -> Circle:
     """The section from a to b (m): the thinnest of a cone's slice, which is on the safe side."""
     i = min(bisect_right(pin.stations, 0.5 * (a + b)), len(pin.segments)) - 1
-    return weakest(pin.segments[i], a - pin.stations[i], b - pin.stations[i])
+    return thinnest_section(pin.segments[i], a - pin.stations[i], b - pin.stations[i])
 
 
 def _spans(stations: Floats, constrained: list[tuple[float, float]]) -> tuple[Span, ...]:

@@ -169,7 +169,7 @@ def _refusal(pin: PinLike, shares: tuple[float, ...], carried: Carried) -> tuple
     return None, ""
 
 
-def closing(pin: PinLike, loads: PinLoads, instant: int) -> dict[str, Floats] | None:
+def balancing_forces(pin: PinLike, loads: PinLoads, instant: int) -> dict[str, Floats] | None:
     """The least change (2,) N of forces across the axis, by surface, that balances an instant.
 
     One force is changed if that is enough, else the two that need the least change. None where only

@@ -15,7 +15,7 @@ TREE_SAMPLE_RATIO = 4  # samples per point above which a quickly built tree save
 _REGULARISATION = 1e-10  # of the number of samples, where these leave slope or curvature open
 
 
-def extension(elements: Ints, samples: Floats, singularities: Floats) -> sp.csr_matrix:
+def nodal_extrapolation(elements: Ints, samples: Floats, singularities: Floats) -> sp.csr_matrix:
     """Matrix (N, M Q) that takes values at Q samples of each element to nodes.
 
     Each element's values are extrapolated linearly to its nodes and averaged there. elements: (M,
@@ -55,7 +55,7 @@ def continuation(samples: Floats, points: Floats, near: Ints | None = None) -> s
         np.subtract(sample.take(near), point[:, None], out=out)
     square = offsets[0] * offsets[0] + offsets[1] * offsets[1]
     confidence = 1.0 - square / square.max(axis=1, keepdims=True)
-    weights = at_one_place(offsets.transpose(1, 2, 0), confidence)
+    weights = fit_weights(offsets.transpose(1, 2, 0), confidence)
     ends = np.arange(0, near.size + 1, near.shape[1])
     return sp.csr_matrix((weights.ravel(), near.ravel(), ends), (len(points), len(samples)))
 
@@ -69,7 +69,7 @@ def nearest(samples: Floats, points: Floats) -> Ints:
     return np.asarray(rows, np.int64).reshape(len(points), count)
 
 
-def at_one_place(offsets: Floats, confidence: Floats) -> Floats:
+def fit_weights(offsets: Floats, confidence: Floats) -> Floats:
     """Weights (..., S) of samples in the value, at one place, of the quadratic fitted to them.
 
     offsets: (..., S, 2) of the samples from the place. confidence: (..., S) weight of each in the

@@ -57,7 +57,7 @@ class UnitLoad(NamedTuple):
         return (self.surface,) if self.surface else ()
 
     @property
-    def alone(self) -> dict[UnitLoad, float]:
+    def single_surface_loads(self) -> dict[UnitLoad, float]:
         """The unit loads of which it is the sum, with their amounts, Pa.
 
         For a pressure on several surfaces: one of unit amplitude on each of them. Otherwise itself.

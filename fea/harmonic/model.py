@@ -145,7 +145,7 @@ class Moved:
         return Moved(self.loads + other.loads, *(np.concatenate([*x], axis=-1) for x in both))
 
     def summed(self, loads: tuple[UnitLoad, ...]) -> Moved:
-        """The displacements under loads that are sums of these (UnitLoad.alone)."""
+        """The displacements under loads that are sums of these (UnitLoad.single_surface_loads)."""
         if loads == self.loads:
             return self
         share = shares(self.loads, loads)
@@ -165,7 +165,7 @@ def shares(alone: Sequence[UnitLoad], loads: Sequence[UnitLoad]) -> Floats:
     """The amount (A, K) of each load that acts on one surface in other loads."""
     number, out = {load: k for k, load in enumerate(alone)}, np.zeros((len(alone), len(loads)))
     for k, load in enumerate(loads):
-        for one, amount in load.alone.items():
+        for one, amount in load.single_surface_loads.items():
             out[number[one], k] = amount
     return out
 
@@ -214,7 +214,7 @@ class HarmonicModel(HarmonicBody):
     def _superposed(self, loads: tuple[UnitLoad, ...]) -> Moved:
         """The displacements under loads, superposed from those on single surfaces, solved once."""
         known = self._moved
-        alone = tuple(dict.fromkeys(one for load in loads for one in load.alone))
+        alone = tuple(dict.fromkeys(one for load in loads for one in load.single_surface_loads))
         new = alone if known is None else tuple(x for x in alone if x not in known.loads)
         if new:
             moved = self._solved(new)
@@ -302,7 +302,7 @@ def applied(
         forces = [generalised(outline.forces(part, n)) for part in parts]
         return np.stack(forces, axis=1), np.stack([outline.traction(p) for p in parts], axis=3)
 
-    alone = list(dict.fromkeys(one for load in loads for one in load.alone))
+    alone = list(dict.fromkeys(one for load in loads for one in load.single_surface_loads))
     forces, tractions = spread([tractions_of(pin, load) for load in alone])
     if alone != list(loads):
         share = shares(alone, loads)

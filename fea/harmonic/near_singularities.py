@@ -15,7 +15,7 @@ import numpy as np
 from fea.core.mesh_result import FEATURE_READING_DISTANCE, SingularIntensity, ZoneMaximum
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.superposition import Circumference
-from fea.singular.fit_exponent import growth_exponent, strength
+from fea.singular.fit_exponent import growth_exponent, singular_intensity
 from fea.singular.singularities import DISTANCE_VARIATIONS, Zone
 from fea.singular.williams import notch_factor
 from pinbase.arrays import Floats, Mask
@@ -87,7 +87,7 @@ def _growth(
     )
     if not len(near):
         return None, None
-    # The largest stress round the axis at points of the skin that are resolved and near enough.
+    # The largest stress over the circumference where the skin is resolved and near enough.
     value, _ = around.round(near, np.full(len(near), instant))
     first = int(np.argmin(skin))
     sides = [near < first, near > first]
@@ -97,7 +97,7 @@ def _growth(
     theory = singularity.torsion_theory if around.twists else singularity.theory
     if exponent is None or not theory:
         return exponent, None
-    along = strength(skin[near[side]], value[side], theory, following)
+    along = singular_intensity(skin[near[side]], value[side], theory, following)
     if singularity.kind != "sharp corner":
         return exponent, SingularIntensity(along, theory)
     return exponent, SingularIntensity(

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea.core.local_fit import at_one_place
+from fea.core.local_fit import fit_weights
 from fea.core.material import Material
 from fea.harmonic.assembly import Section
 from fea.harmonic.boundary import Outline
@@ -118,7 +118,7 @@ def at_edge(
     first, middle, last = nodes
     along = (last - first) / np.linalg.norm(last - first)
     normal = np.array([along[1], -along[0]])
-    weights = at_one_place(samples - middle, np.ones(len(samples)))
+    weights = fit_weights(samples - middle, np.ones(len(samples)))
     x, y = np.stack([along, -normal]) @ (samples - middle).T
     at_samples = _field(np.arctan2(y, x), along, nu)
     field = _field(np.linspace(0.0, np.pi, EDGE_DIRECTIONS), along, nu)

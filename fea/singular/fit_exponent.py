@@ -42,7 +42,9 @@ def growth_exponent(distance: Floats, stress: Floats, following: float = 0.0) ->
     return float(best.x) if amplitude > 0.0 and square < MAX_FIT_ERROR**2 else None
 
 
-def strength(distance: Floats, stress: Floats, exponent: float, following: float = 0.0) -> float:
+def singular_intensity(
+    distance: Floats, stress: Floats, exponent: float, following: float = 0.0
+) -> float:
     """The factor A, Pa m^s, of stress A d^-s + B d^q for a known exponent s.
 
     distance: (J,) m. stress: (J,) Pa. exponent: s. following: q.

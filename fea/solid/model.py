@@ -21,7 +21,7 @@ from fea.core.strain_energy import StrainEnergy
 from fea.singular.probes import interpolation
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import SurfaceMesh, clamped_nodes, resultants, surface
-from fea.solid.nodal_loads import Unit, closed, nodal_loads, part
+from fea.solid.nodal_loads import Unit, nodal_loads, relative_resultant, with_closing_tractions
 from fea.solid.stress_recovery import nodal_stress, with_known_traction
 from geometry import PinLike
 from geometry.mesh.solid_mesh import SolidMesh
@@ -138,7 +138,7 @@ class SolidModel:
         loads = nodal_loads(self.pin, self.material, self.space, boundary, units)
         if not self.clamps:
             pressing = np.array([not load.shears for load, _ in units])
-            loads = closed(self.pin, self.space, boundary, loads, pressing)
+            loads = with_closing_tractions(self.pin, self.space, boundary, loads, pressing)
         displacement, support = self._displace(loads.forces)
         clamped = boundary.on(self.space, self.clamps)
         stress = nodal_stress(self.space, self.material, displacement)
@@ -167,7 +167,7 @@ class SolidModel:
         reaction[self.fixed] = K[self.fixed] @ u - F[self.fixed]
         F = F.reshape(shape)
         support = resultants(self.space.nodes, reaction.reshape(shape))
-        lost = part(self.pin, support + resultants(self.space.nodes, F), F).max()
+        lost = relative_resultant(self.pin, support + resultants(self.space.nodes, F), F).max()
         if not lost < 1e-6:
             raise SolveError(
                 f"pin {self.pin.name}: reactions and loads differ by {lost:.1e} of the load, so "

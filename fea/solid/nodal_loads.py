@@ -77,7 +77,7 @@ def nodal_loads(
     return NodalLoads(t, F)
 
 
-def closed(
+def with_closing_tractions(
     pin: PinLike,
     space: Discretisation,
     boundary: SurfaceMesh,
@@ -183,7 +183,7 @@ def _body_forces(material: Material, space: Discretisation, units: list[Unit]) -
     return np.asarray(mass[:, None, None] * directions)
 
 
-def part(pin: PinLike, resultant: Floats, F: Floats) -> Floats:
+def relative_resultant(pin: PinLike, resultant: Floats, F: Floats) -> Floats:
     """Forces and moments (6, L) relative to the sum of the sizes of nodal forces.
 
     F: (N, 3, L) N. Moments are also divided by the pin's length.
@@ -197,7 +197,7 @@ def _check(pin: PinLike, name: str, wrong: Floats, F: Floats, rows: int) -> None
 
     Raises: SolveError.
     """
-    if not part(pin, wrong, F)[:rows].max() < RESULTANT_TOLERANCE:
+    if not relative_resultant(pin, wrong, F)[:rows].max() < RESULTANT_TOLERANCE:
         raise SolveError(
             f"pin {pin.name}: the nodal loads on {name} do not sum to its resultant",
             "resultant-mismatch",

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fea.core.local_fit import extension
+from fea.core.local_fit import nodal_extrapolation
 from fea.core.material import Material
 from fea.core.voigt import TENSOR_TO_VOIGT, VOIGT_TO_TENSOR
 from fea.solid.assembly import Discretisation
@@ -18,7 +18,7 @@ from pinbase.arrays import Floats, Mask
 
 def nodal_stress(space: Discretisation, material: Material, displacement: Floats) -> Floats:
     """Stress (N, 6, L), Pa, at the nodes, of L displacement fields (N, 3, L), m."""
-    to_nodes = extension(space.elements, space.basis.X, space.basis.elem.doflocs.T)
+    to_nodes = nodal_extrapolation(space.elements, space.basis.X, space.basis.elem.doflocs.T)
     fields = []
     for k in range(displacement.shape[2]):
         stress = material.stress(space.strain(displacement[:, :, k]))
