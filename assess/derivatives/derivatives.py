@@ -94,6 +94,8 @@ class Adjoint:
         self.space, self.outline = self.model.space, self.model.outline
         self.around = reader(self.fields, solved.loads, solved.material.poisson_ratio)
         self.read_at = self.around.fields
+        # The governing point, instant and angle; then what acts there, how its stress is read, and
+        # the adjoint of that.
         outside = self.read_at.outside(solved.zones)
         self.top = self.around.top(outside if among is None else outside & among)
         self.waves, self.weight = waves_of(self.fields_at, solved.loads, self.top)

@@ -42,6 +42,7 @@ def waves_of(
     out.
     """
     acting = loads.coefficients()
+    # Loads by harmonic and by the part that varies as cosine or sine at the governing angle.
     amounts: dict[tuple[int, int], dict[UnitLoad, float]] = {}
     for load, both in acting.items():
         for part, amount in enumerate(rotated(load.n, both[0], top.angle).tolist()):

@@ -58,6 +58,7 @@ def _of_section(
 ) -> ReadingPoint:
     """The reading point of a number among the points of a section."""
     space, outline, fields = model.space, model.outline, solved.solution.fields
+    # The order of points is that of Reading: skin, inner nodes, rims of zones, jumps.
     if number < fields.skin:
         edge, at = divmod(number, len(EDGE_STATIONS))
         clamped = outline.constrained(model.clamps)[edge]

@@ -53,6 +53,7 @@ class RingWork:
         self.on, self.space = on, on.body.space
         self._solved_pairs: dict[str, list[_SolvedPair]] = {name: [] for name in pairs}
         every = sorted(((x.n, name, x) for name, some in pairs.items() for x in some), key=_order)
+        # All pairs of a harmonic are solved at once, then sorted by body.
         for n, same in groupby(every, key=_order):
             some = list(same)
             forces = on.forces(n) @ np.stack([y for *_, x in some for y in (x.p, x.l)], axis=1)

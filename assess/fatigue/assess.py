@@ -189,6 +189,7 @@ def _by_fkm(
 
     damage: dict[float | None, float] = dict.fromkeys((None, *SHOWN_PROBABILITIES), 0.0)
     if sequence.any():
+        # The sequence ends at zero; lives at other probabilities follow from that at 50 %.
         whole = np.append(sequence, 0.0)
         middle = p_ram_life(whole, data)
         requested = middle

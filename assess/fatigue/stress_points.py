@@ -81,6 +81,7 @@ def _of_fields(fields: MeridianFields, loads: PinLoads) -> Stress:
     even = COSINE_COMPONENTS[:, None]
 
     def at(rows: Ints, angles: Floats, instants: Ints) -> Floats:
+        # Cosine and sine parts by phase, as psi = n theta - p pi / 2 has them.
         turns = np.outer(angles, n)[:, None, :]
         c, s = np.cos(turns), np.sin(turns)
         unit, now = fields.stress[rows][:, :, units], amounts[instants]

@@ -134,6 +134,8 @@ def _bending_and_axial(sections: list[Circle], across: Floats) -> tuple[Floats, 
         same = np.array([s == section for s in sections])
         moment, axial = across[:, same, MOMENT], across[:, same, AXIAL]
         most[:, same], least[:, same] = bending_and_axial_use(section, moment, axial)
+    # Mean square of the strain of bending, stretching and twisting: M, N and T weigh with these
+    # factors.
     squares = np.array(
         [
             (

@@ -125,6 +125,7 @@ class EquilibriumPath:
         """
         flow = self.body.flow(u + along, before)
         high, at_high = 1.0, self._slope(flow, along)
+        # The energy still falls at the full step, or has its least there: take it.
         if at_high <= 0.0:
             return u + along, flow
         low, at_low, at = 0.0, self._slope(self.body.flow(u, before), along), 1.0
@@ -132,6 +133,7 @@ class EquilibriumPath:
         for _ in range(MAX_STEP_HALVINGS):
             if abs(at_high) <= most or at_low >= 0.0:
                 break
+            # Regula falsi on the slope, away from the lower end by a tenth of the bracket at least.
             at = low + max((high - low) * at_low / (at_low - at_high), 0.1 * (high - low))
             flow = self.body.flow(u + at * along, before)
             middle = self._slope(flow, along)

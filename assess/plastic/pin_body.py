@@ -224,6 +224,7 @@ def _face_forces(pin: Pin, mesh: HexMesh, t: Traction, n: int, phase: int) -> Fl
     """Nodal forces (N, 3), N, of a traction of harmonic n and a phase on a band."""
     cells = mesh.elements[_on(pin, mesh, t.surface)]
     g, weight = _gauss(3)
+    # Quadrature on the outer faces of the cells: their shape functions, tangents and areas there.
     grid = np.stack([np.ones(9), np.repeat(g, 3), np.tile(g, 3)])
     basis = [ElementHexS2().lbasis(grid, k) for k in _OUTER_FACE_NODES]
     shapes, slopes = np.stack([b[0] for b in basis]), np.stack([b[1] for b in basis])

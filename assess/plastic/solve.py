@@ -68,6 +68,7 @@ def limit_load(
         return LimitLoad("none", note=TETRAHEDRA_NOTE)
     if not pin.stepped:
         return LimitLoad("none", note="only for pins of cylinders, without cones or rounded edges")
+    # First the beam, which costs little; the solid only where its error leaves the question open.
     bounds = of_beam(pin, material, clamps, loads)
     if bounds is not None and rung == "auto":
         carries = decided(bounds)
@@ -133,6 +134,7 @@ def _meshes(
         too_much = memory is not None and solid_memory(candidate.body.size) > memory
         if candidate.body.size > MAX_SOLID_UNKNOWNS or too_much:
             return meshes, last, SIZE_LIMIT_NOTE.format(MAX_SOLID_UNKNOWNS)
+        # Stop before a mesh that would exceed the budget.
         if last is None:
             budget.require(candidate.body.size * SECONDS_PER_UNKNOWN)
         else:

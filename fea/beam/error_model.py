@@ -83,6 +83,8 @@ def beam_estimate(beam: BeamStress, loads: PinLoads, clamps: tuple[str, ...] = (
     largest = float(maxima.von_mises[point, instant])
     unknown = _without_factor(beam, stress, maxima.von_mises, largest)
     local = _local(beam.pin, loads)
+    # The error is that of the largest upper estimate, which may be at another point than the
+    # maximum.
     upper = maxima.von_mises * (1.0 + _relative(beam))[:, None] + local
     r, z = beam.points[point]
     return BeamEstimate(
@@ -130,6 +132,7 @@ def _local(pin: Pin, loads: PinLoads) -> Floats:
         band = pin.band(name)
         (x, y, z), (mx, my, mz) = loads.forces[:, c].T, loads.moments[:, c].T
         d, length = 2.0 * band.radius, band.length
+        # Nominal pressures of transverse and axial forces, moments and torques on the band.
         across = np.hypot(x, y) / (d * length)
         tractions = np.abs(z) / (np.pi * d * length) + 2.0 * np.abs(mz) / (np.pi * d * d * length)
         here = (

@@ -68,6 +68,7 @@ def beam_stress(
     sections = [forces.sections[c] for c in cells]
     nu = material.poisson_ratio
     points, stress = [], []
+    # Surface, then axis or bore, at all sampled sections; notches follow, one point each.
     for radius in ("outer", "inner"):
         r = np.array([getattr(s, radius) for s in sections])
         points.append(np.stack([r, z], axis=1))

@@ -143,6 +143,8 @@ class PinLoads:
         zero = np.zeros(len(self))
         for c, name in enumerate(self.surfaces):
             (x, y, z), (mx, my, mz) = self.forces[:, c].T, self.moments[:, c].T
+            # Transverse force: a traction of constant direction, or the series of a bearing
+            # pressure, whose harmonic n turns n times as fast as the force.
             if self.distribution == "uniform":
                 add(UnitLoad(name, "force", 1), x, y)
             else:
@@ -151,6 +153,8 @@ class PinLoads:
                     turned = (size * np.cos(n * angle), size * np.sin(n * angle))
                     add(UnitLoad(name, "pressure", n), *turned)
             add(UnitLoad(name, "force", 0), z, zero)
+            # A moment about y is of phase 0, as a force along x; one about x of phase 1, with its
+            # sign changed.
             add(UnitLoad(name, "moment", 1), my, -mx)
             add(UnitLoad(name, "moment", 0), zero, mz)
         add(UnitLoad(BODY_SURFACE, "body", 1), *self.body[:, :2].T)

@@ -41,6 +41,7 @@ def on_skin(fields: MeridianFields, r: Floats, z: Floats) -> Floats:
     first = near[..., 0]
     step = skin[near] - skin[first][..., None, :]
     apart = np.linalg.norm(step, axis=-1)
+    # The nearest point that does not coincide with the first one, as points do at ends of edges.
     other = np.take_along_axis(
         near, (apart > 1e-9 * np.ptp(skin[:, 1])).argmax(axis=-1)[..., None], -1
     )[..., 0]

@@ -109,12 +109,14 @@ def _tips(model: LocalModel) -> dict[tuple[str, str], tuple[Ints, float]]:
             continue
         corners = model.surface.corners[reading.face.rows]
         normals = model.surface.normals[reading.face.rows].copy()
+        # On a mirror plane the normals of both halves average to one within it.
         for plane in model.piece.mirrors:
             axis = AXIS_NAMES.index(plane)
             normals[np.abs(model.space.nodes[corners][..., axis]) < 1e-12, axis] = 0.0
         where = np.searchsorted(reading.nodes, corners)
         total = np.zeros((len(reading.nodes), 3))
         np.add.at(total, where, normals)
+        # The mean of unit normals is shorter than one where they diverge.
         mean = np.linalg.norm(total, axis=1) / np.bincount(where.ravel())
         tip = reading.nodes[mean < MIN_SMOOTH_COSINE]
         if len(tip):

@@ -61,6 +61,7 @@ def refusal(pin: CutPin, clamps: tuple[str, ...], loaded: Sequence[str]) -> Reas
         low, high = feature.opens
         for name in dict.fromkeys((*loaded, *clamps)):
             z0, z1 = surface_ends(pin, name)
+            # A cut matters to a surface that it opens into or whose face it lies in.
             if not (low < z1 and z0 < high) and name not in feature.faces:
                 continue
             if name in clamps:
@@ -152,6 +153,8 @@ def pieces(
     groups = [dict(cuts[:1])]
     for name, cut in cuts[1:]:
         (low, high), end = cut.extent, _ends(groups[-1].values())[1]
+        # Cuts are merged if the gap to the group before is short, in proportion to the piece's
+        # reach.
         near = (
             MERGE_DISTANCE
             * apart

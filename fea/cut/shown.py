@@ -52,10 +52,12 @@ def shown(
     starts = np.cumsum([0, *(len(part.points) for part in parts)])
     points = np.concatenate([p.points for p in parts])
     displacement = np.concatenate([p.displacement for p in parts])
+    # Displacements add up: what lies above a piece moves with its upper end.
     for piece, start in zip(pieces, starts[1:], strict=False):
         displacement += _moved_by(piece, points, int(start))
     length = float(section.fields.points[:, 1].max())
     whole = np.sum([p.moved[1] - p.moved[0] for p in pieces], axis=0)
+    # Take off the rigid motion of the support.
     motion = reached(held, pieces) if held else axis_kept(whole, length)
     return ShownCut(
         points,
@@ -119,6 +121,8 @@ def _revolved(
     ends = np.arange(fields.skin).reshape(-1, 5)[:, [0, 4]]
     rows, part = [ends], [np.tile([0.0, 1.0], (len(ends), 1))]
     keep_rows, keep_part = np.concatenate(rows), np.concatenate(part)
+    # Edges of the outline, cut where pieces begin and end: each from a to b, from and to a part of
+    # its length.
     for low, high in pieces:
         keep_rows, keep_part = _outside_of(fields.points[:, 1], keep_rows, keep_part, low, high)
     a, b, t = keep_rows[:, 0].repeat(2), keep_rows[:, 1].repeat(2), keep_part.ravel()
@@ -145,6 +149,7 @@ def _revolved(
     turn[:, 1, 0] = np.sin(angle)
     turn[:, 0, 1] = -np.sin(angle)
     turn[:, 2, 2] = 1.0
+    # Unit stresses at each angle, rotated to Cartesian axes.
     tensor = np.einsum(
         "sai,psijl,sbj->psabl", turn, stress[:, :, TENSOR_TO_VOIGT], turn, optimize=True
     )

@@ -36,6 +36,7 @@ def free_picture(
         np.maximum(most, here.max(axis=1), out=most)
     stress, read = surface.stress @ c[instant], free.read(pressed, instant)
     on = _on(surface, free.arc, pressed, instant) & ~read
+    # Points that are neither read nor pressed take the stress of the nearest one that is read.
     left = ~read & ~on
     if left.any() and read.any():
         near = cKDTree(surface.points[read]).query(surface.points[left])[1]

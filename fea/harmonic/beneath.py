@@ -181,6 +181,7 @@ def just_beneath(pin: Pin, rings: tuple[str, ...]) -> Floats:
     turns = np.linspace(0.0, np.pi / 2.0, EDGE_CIRCLE_POINTS)[1:]
     ends = [(z, sign, b.radius) for b in bands for z, sign in ((b.z0, -1.0), (b.z1, 1.0))]
     near = RING_END_TOLERANCE * pin.length
+    # Ends that two rings share are inside what they make up; only the others have a quarter circle.
     alone = [x for x in ends if sum(abs(x[0] - z) <= near for z, *_ in ends) == 1]
     about = [
         (radius * (1.0 - away * float(np.cos(t))), z + sign * radius * away * float(np.sin(t)))
@@ -190,6 +191,7 @@ def just_beneath(pin: Pin, rings: tuple[str, ...]) -> Floats:
     points = np.array([*under, *about]).reshape(-1, 2)
     if not len(points):
         return points
+    # Keep what lies inside the pin.
     inside = (points[:, 1] > 0.0) & (points[:, 1] < pin.length)
     points = points[inside]
     inner, outer = pin.radii_at(points[:, 1])

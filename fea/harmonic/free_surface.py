@@ -68,12 +68,14 @@ def _surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfaceP
     middle = x[len(EDGE_STATIONS) // 2 :: len(EDGE_STATIONS), 1].repeat(len(EDGE_STATIONS))
     ring = rings.amid(x[:, 0], x[:, 1], middle)
     rows = np.flatnonzero(ring >= 0)
+    # Three kinds of points follow each other: the skin, middles of rings, edges of lugs.
     relieved = skin[rows] - relief(nu)[:, None] * skin[rows, :1]
     cusps = _cusps(x, middle, rings)
     continued = [np.einsum("p,pck->ck", c.weights(x[c.near, 1]), skin[c.near]) for c in cusps]
     places = np.array([c.place for c in cusps]).reshape(-1, 2)
     first, none = len(x) + len(rows), np.full(len(places), -1)
     rough = np.isin(np.arange(len(x)), fields.unread)
+    # A point is not read if any point that it is made of is too rough.
     unread = np.concatenate([rough, rough[rows], [rough[c.near].any() for c in cusps]]).astype(bool)
     return SurfacePoints(
         replace(

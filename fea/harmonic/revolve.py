@@ -39,6 +39,7 @@ def revolve_solid(fields: MeridianFields, loads: PinLoads, instant: int, nu: flo
     stress = Circumference(fields, loads).stress(rows, instant, shown.angles)
     pressed = np.zeros(stress.shape[:2], dtype=bool)
     if loads.pressed is not None:
+        # On the surface the stress that is shown replaces that of the section's points.
         outer = np.flatnonzero(rows < fields.skin)
         place = np.searchsorted(shown.rows, rows[outer], side="right") - 1
         on_skin, on = shown.stress(instant)
@@ -73,6 +74,7 @@ def _turned(
     rr, tt, zz, tz, rz, rt = stress.reshape(-1, 6).T
     u_r, u_t, u_z = _moved(fields, loads, rows, instant, shown.angles).T
     c, s = np.cos(angle), np.sin(angle)
+    # Rotation of the tensor from cylindrical to Cartesian axes.
     twice = 2.0 * c * s * rt
     return (
         np.stack([r * c, r * s, z], axis=1),

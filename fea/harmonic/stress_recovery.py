@@ -147,9 +147,12 @@ def reading(
     count = len(space.nodes)
     inner = np.flatnonzero(~_mask(count, outline.nodes))
     constrained = outline.constrained(clamps)
+    # Stress on clamped edges and on the axis comes from inside, at `rough` nodes.
     on_axis = ON_AXIS_TOLERANCE * space.nodes[:, 0].max()
     axis = outline.nodes[space.nodes[outline.nodes, 0] < on_axis]
     rough = np.flatnonzero(_mask(count, outline.nodes[constrained], axis))
+    # Points of the skin, inner nodes, further points inside, points of jumps; the last two have no
+    # displacement.
     points = [skin_at.reshape(-1, 2), space.nodes[inner], inside, on_jumps]
     targets = np.concatenate([space.nodes[inner], space.nodes[rough], inside])
     continued = continuation(space.samples, targets, _near(space, np.append(inner, rough), inside))

@@ -436,6 +436,8 @@ class Circumference:
             ]
             if amounts:
                 at = np.tensordot(np.concatenate(signed, axis=1), np.stack(amounts), axes=1)
+                # Each of the five numbers is combined from all harmonics at each angle, squared and
+                # summed.
                 total += np.square(at, out=at).sum(axis=2)
         if read is not None:
             total[~read.swapaxes(0, 1)] = -1.0

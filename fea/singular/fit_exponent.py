@@ -30,6 +30,7 @@ def growth_exponent(distance: Floats, stress: Floats, following: float = 0.0) ->
         or not np.all(stress > 0.0)
     ):
         return None
+    # Distances over their geometric mean keep both terms of comparable size.
     d = distance / np.exp(np.log(distance).mean())
 
     def fitted(s: float) -> tuple[float, float]:
@@ -37,6 +38,7 @@ def growth_exponent(distance: Floats, stress: Floats, following: float = 0.0) ->
         parts = np.linalg.lstsq(terms, np.ones(len(d)), rcond=None)[0]
         return float(np.mean((terms @ parts - 1.0) ** 2)), float(parts[0])
 
+    # The amplitudes follow from s, so the search is over s alone.
     best = minimize_scalar(lambda s: fitted(s)[0], bounds=EXPONENT_LIMITS, method="bounded")
     square, amplitude = fitted(float(best.x))
     return float(best.x) if amplitude > 0.0 and square < MAX_FIT_ERROR**2 else None

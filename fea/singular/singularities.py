@@ -205,6 +205,8 @@ def _singularity(
     torsion = antiplane_exponent(omega, first, second)
     reach = distance * 2.0 * v.r
     kind: Kind
+    # A corner or a clamp with an exponent; else the edge of a shear load on a smooth free surface,
+    # whose traction jumps there.
     if max(plane, torsion) > 0.0:
         clamped = "clamped" in (first, second)
         kind = "edge of a clamp" if clamped else "sharp corner"

@@ -127,6 +127,8 @@ def _different_sides(omega: float, kappa: float) -> complex:
         slope = 2.0 * B * (b / math.sinh(b) if b else 1.0)
         return _root(lambda a: math.sin(a) + slope * a, math.pi, STEEPEST_ANGLE)
 
+    # The cases of the module's docstring in turn: real root up to pi, none that matters, real root
+    # up to a0, and the complex root on the curve.
     if F(math.pi) <= 0.0:
         return complex(_root(F, 0.0, math.pi))
     if omega <= math.pi / 2.0:

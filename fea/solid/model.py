@@ -163,6 +163,7 @@ class SolidModel:
         K = self.stiffness
         u = np.zeros_like(F)
         u[free] = factorize(K[free][:, free], free // 3)(F[free])
+        # Reactions from the residual; they must balance the loads.
         reaction = np.zeros_like(F)
         reaction[self.fixed] = K[self.fixed] @ u - F[self.fixed]
         F = F.reshape(shape)

@@ -55,6 +55,8 @@ def nodal_loads(
         if loads[0][0].kind == "body":
             F[..., here] = _body_forces(material, space, loads)
             continue
+        # Surface by surface: a uniform traction where there is no band, otherwise that of the unit
+        # load, corrected to the exact resultants on this mesh.
         patch, band = Patch(space, boundary, name), _band(pin, name)
         if band is not None and pin.revolved and abs(patch.area / band.area - 1.0) > lost:
             raise SolveError(

@@ -45,6 +45,8 @@ class SharpEdges:
         zones = []
         for kind, points, reach, advice in kinds:
             if len(points):
+                # A point lies in the zone if it is within the reach of the nearest point of an
+                # edge.
                 distance, nearest = cKDTree(points).query(x)
                 at = points[0]
                 singularity = Zone(
