@@ -74,9 +74,10 @@ def derivatives(solved: SolvedCase, dimensions: Iterable[Dimension]) -> Derivati
 class Adjoint:
     """The adjoint solution at the governing point and angle of a solved case.
 
-    top: the maximum. waves: the parts of harmonics that act there.
-    among: (S,) points that may govern, all by default. like: another adjoint on the same mesh,
-    whose matrices it shares.
+    top: the maximum.
+    waves: the parts of harmonics that act there.
+    among: (S,) points that may govern, all by default.
+    like: another adjoint on the same mesh, whose matrices it shares.
     """
 
     def __init__(
@@ -313,8 +314,8 @@ class Adjoint:
         """The direct part of a derivative, with displacements as they are.
 
         It is by forces, tractions and the reading.
-        velocity: (N, 2) of the nodes. grown: (N,) rate of the shape functions' integrals, None
-        without body loads.
+        velocity: (N, 2) of the nodes.
+        grown: (N,) rate of the shape functions' integrals, None without body loads.
         """
         values = []
         for x, pin in zip(DIFFERENCE_STEPS, motion.pins, strict=True):

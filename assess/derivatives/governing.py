@@ -24,7 +24,8 @@ By = dict[tuple[str, str], float]
 class Wave:
     """The part of one harmonic that varies as cos psi (part 0) or sin psi (1) at an angle.
 
-    amounts: of unit loads. weight: (6,) derivative of von Mises stress by its stress components.
+    amounts: of unit loads.
+    weight: (6,) derivative of von Mises stress by its stress components.
     """
 
     n: int
@@ -83,7 +84,9 @@ def by_loads(
 ) -> tuple[By, By]:
     """Derivatives by forces, Pa/N, and by moments, Pa/(N m), by surface and axis.
 
-    Only loads that were solved in any case have one. at: as in `waves_of`. weight: (6,) gradient.
+    Only loads that were solved in any case have one.
+    at: as in `waves_of`.
+    weight: (6,) gradient.
     """
     derivatives: tuple[By, By] = {}, {}
     before = loads.coefficients()

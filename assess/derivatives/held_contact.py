@@ -34,8 +34,8 @@ SWITCHING_TOLERANCE = 1e-6
 class FixedContact:
     """Contact with fixed cells at the only instant of the links' loads, and its adjoint.
 
-    gradient: (N + 1, R, 2) of the stress by the amplitudes of pressures on the rings. changing:
-    number of cells that are about to open or to close.
+    gradient: (N + 1, R, 2) of the stress by the amplitudes of pressures on the rings.
+    changing: number of cells that are about to open or to close.
 
     Raises: SolveError.
     """

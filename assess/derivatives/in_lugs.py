@@ -51,7 +51,8 @@ Joint = tuple[Pin, Material, tuple[Lug, ...]]
 class JointParameter:
     """A parameter of a pin in its lugs.
 
-    scale: of which its steps are parts. changed: gives the joint with another value of it.
+    scale: of which its steps are parts.
+    changed: gives the joint with another value of it.
     """
 
     key: str
@@ -64,11 +65,14 @@ class JointParameter:
 class JointDerivatives:
     """Derivatives of the largest stress `maximum`, Pa, of a pin in its lugs.
 
-    by_parameter: per unit of it, by key; without: why others have none.
+    by_parameter: per unit of it, by key.
+    without: why others have none.
     by_force: Pa/N, by the force of each link, by connection and axis of the pin, the imbalance then
-    being shared by the links. by_moment: Pa/(N m), about its axis.
-    tied_places, tied_times: as in assess.derivatives.records.Derivatives. changing: number of cells
-    that are about to open or to close, with which the derivatives hold on one side only.
+    being shared by the links.
+    by_moment: Pa/(N m), about its axis.
+    tied_places, tied_times: as in assess.derivatives.records.Derivatives.
+    changing: number of cells that are about to open or to close, with which the derivatives hold on
+    one side only.
     """
 
     maximum: float
@@ -92,8 +96,9 @@ def joint_derivatives(
 ) -> JointDerivatives:
     """The derivatives of the maximum of a place under pressures at one instant.
 
-    solved: the pin with its bands cut into rings. links: the loads that the rings carry. alone: the
-    parameters only, without loads and ties.
+    solved: the pin with its bands cut into rings.
+    links: the loads that the rings carry.
+    alone: the parameters only, without loads and ties.
 
     Raises: MeshError, SolveError.
     """

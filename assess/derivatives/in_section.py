@@ -43,7 +43,9 @@ POISSON_STEP = 1e-3  # of Poisson's ratio: step of central differences; chosen b
 class SectionPoint:
     """The place in a cell of a beam where stress is read.
 
-    along: part of the way along the cell. across: part of the way from bore to outside. angle: rad.
+    along: part of the way along the cell.
+    across: part of the way from bore to outside.
+    angle: rad.
     """
 
     cell: int
@@ -89,7 +91,8 @@ class GoverningSection:
     """The largest section stress of a pin as it was solved under loads of one instant.
 
     at: stress (6,), Pa, of each unit load there, of all forces and moments on the surfaces of the
-    loads. weight: (6,) gradient of von Mises stress.
+    loads.
+    weight: (6,) gradient of von Mises stress.
     """
 
     def __init__(self, solved: SolvedCase, loads: PinLoads) -> None:

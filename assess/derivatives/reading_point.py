@@ -35,8 +35,9 @@ _TO_UNKNOWNS = np.array([[0.5, 0.5, 0.0], [0.5, -0.5, 0.0], [0.0, 0.0, 1.0]])
 class SectionState:
     """A section that may differ from the solved one.
 
-    nodes: (N, 2) m. traction: (E, 3, 3, K) Pa, on its outline's edges. places: (Z, 3) m, r, z and
-    radius of the excluded zones.
+    nodes: (N, 2) m.
+    traction: (E, 3, 3, K) Pa, on its outline's edges.
+    places: (Z, 3) m, r, z and radius of the excluded zones.
     """
 
     nodes: Floats
@@ -56,7 +57,8 @@ class ReadingPoint(Protocol):
     def stress(self, material: Material, state: SectionState, n: Ints, u: Floats) -> Floats:
         """Stress amplitudes (6, K), Pa.
 
-        n: (K,) harmonics. u: (L, 3, K) m, displacements of the point's nodes.
+        n: (K,) harmonics.
+        u: (L, 3, K) m, displacements of the point's nodes.
         """
         ...
 
@@ -66,8 +68,9 @@ class OnSkin:
     """Points (P,) of the skin.
 
     edges: the edges they are on, and the ones before and after these that go on smoothly.
-    neighbours: before and after each edge, as numbers among these, or -1. of: (P,) the edge of each
-    point, likewise. at: (P,) which of its five points it is.
+    neighbours: before and after each edge, as numbers among these, or -1.
+    of: (P,) the edge of each point, likewise.
+    at: (P,) which of its five points it is.
     """
 
     outline: Outline
@@ -174,7 +177,9 @@ class Samples:
     def read(self, material: Material, nodes: Floats, n: Ints, u: Floats) -> tuple[Floats, Floats]:
         """The sample points (S, 2), m, and the stress there, (S, 6, K), Pa.
 
-        nodes: (N, 2) m of the section. n: (K,) harmonics. u: (L, 3, K) m.
+        nodes: (N, 2) m of the section.
+        n: (K,) harmonics.
+        u: (L, 3, K) m.
         """
         members = self.space.elements[self.elements]
         x, moved = nodes[members], u[np.searchsorted(self.nodes, members)]

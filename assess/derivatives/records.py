@@ -15,8 +15,10 @@ from geometry import Pin
 class SolvedCase:
     """A pin as it was solved on one mesh under loads of one instant.
 
-    clamps: surfaces, by the pin's names. zones: the singularities that are left out. error: of the
-    maximum, relative. history: the loads at all instants of the case, if there are more.
+    clamps: surfaces, by the pin's names.
+    zones: the singularities that are left out.
+    error: of the maximum, relative.
+    history: the loads at all instants of the case, if there are more.
     """
 
     pin: Pin
@@ -33,12 +35,14 @@ class SolvedCase:
 class Derivatives:
     """Derivatives of the largest von Mises stress `maximum`, Pa, at the governing instant.
 
-    location: (x, y, z), m. by_dimension: Pa/m, by the key of each dimension; without: why others
-    have none.
+    location: (x, y, z), m.
+    by_dimension: Pa/m, by the key of each dimension.
+    without: why others have none.
     by_force, by_moment: Pa/N and Pa/(N m), by surface and axis of the pin ("x", "y", "z"), the
     other loads as they are.
-    poisson_ratio: Pa. youngs_modulus: 0, because a pin under given loads has the same stress with
-    any. density: Pa/(kg/m^3), by its own weight.
+    poisson_ratio: Pa.
+    youngs_modulus: 0, because a pin under given loads has the same stress with any.
+    density: Pa/(kg/m^3), by its own weight.
     tied_places, tied_times: others, (r, z) in m and s, whose stress is within the error of the
     maximum. One of them may govern as soon as anything changes, so that the derivatives hold on one
     side only.

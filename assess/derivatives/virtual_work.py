@@ -33,8 +33,8 @@ MOTION_BATCH = 32  # motions at once: limits memory
 def shape_gradient(space: Section, D: Floats, n: int, u: Floats, adjoint: Floats) -> Floats:
     """The rate (N, 2) of adjoint^T K u, N m per m, with the coordinates r, z of every node.
 
-    u, adjoint: (3 N,) unknowns of harmonic n. D: (6, 6), or that of each element, as
-    fea.harmonic.assembly.elasticity.
+    u, adjoint: (3 N,) unknowns of harmonic n.
+    D: (6, 6), or that of each element, as fea.harmonic.assembly.elasticity.
     """
     out = np.zeros((len(space.nodes), 2))
     for here, gradients, weights, (G, L) in _parts(space, (u, adjoint)):

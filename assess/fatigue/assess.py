@@ -36,8 +36,9 @@ MIN_SHOWN_AMPLITUDE = 0.01  # of the largest amplitude: smaller ones are not sho
 class Spectrum:
     """The load spectrum of a pin and how its damage is assessed.
 
-    occurrences: of cases per unit (a flight, say). probability: of failure at which damage is
-    assessed, by default that of the S-N data. life: design life, in units.
+    occurrences: of cases per unit (a flight, say).
+    probability: of failure at which damage is assessed, by default that of the S-N data.
+    life: design life, in units.
     """
 
     occurrences: Mapping[str, float]
@@ -59,8 +60,10 @@ class FatigueMaterial:
 class _MethodResult:
     """Damage per unit at each probability (None: the requested one), and the cycles behind it.
 
-    amplitude, mean: Pa, of the largest cycle. equivalent: (C,) Pa. units: until the spectrum
-    repeats. normal: of the critical plane.
+    amplitude, mean: Pa, of the largest cycle.
+    equivalent: (C,) Pa.
+    units: until the spectrum repeats.
+    normal: of the critical plane.
     """
 
     damage: dict[float | None, float]

@@ -68,7 +68,8 @@ def findley_k(sensitivity: float) -> float:
 def worst_plane(cases: Sequence[Floats], flight: Flight, k: float, life: Life) -> PlaneCycles:
     """The plane and direction with the largest damage, or without damage the largest cycle.
 
-    cases: stress (T, 6), Pa, of each case. life: S-N curve.
+    cases: stress (T, 6), Pa, of each case.
+    life: S-N curve.
     """
 
     def rank(frames: Floats) -> OnPlanes:
@@ -121,8 +122,8 @@ def _counted(
 ) -> PlaneCycles:
     """The cycles on one plane, counted by rainflow, with the largest normal stress within each.
 
-    tensors: stress (T, 3, 3), Pa, of each case, with zero before and after. plane: normal and
-    direction.
+    tensors: stress (T, 3, 3), Pa, of each case, with zero before and after.
+    plane: normal and direction.
     """
     normal, way = plane
     shears, tops = [], []

@@ -159,7 +159,9 @@ def _local_maxima(cases: Sequence[_Case]) -> Iterator[_Place]:
 def _score(cases: Sequence[_Case], points: Floats, turns: int, instants: int) -> Floats:
     """Amplitude plus a part of the mean, (P, A), Pa, over all cases, zero load included.
 
-    points: (P, 3) m. turns: number A of angles about the axis. instants: of each case, at most.
+    points: (P, 3) m.
+    turns: number A of angles about the axis.
+    instants: of each case, at most.
     """
     turns = turns if cases[0].known.revolved else 1
     angles = np.tile(2.0 * np.pi * np.arange(turns) / turns, len(points))

@@ -27,7 +27,9 @@ PA_PER_MPA, M_PER_MM = 1e6, 1e-3
 class FkmMaterial:
     """Data of a material and a notch for the FKM guideline.
 
-    ultimate: R_m, Pa. roughness: R_z, m. plastic: K_p, limit load over the load at yield.
+    ultimate: R_m, Pa.
+    roughness: R_z, m.
+    plastic: K_p, limit load over the load at yield.
     area, gradient: highly stressed surface (m^2) and related stress gradient (1/m), which give the
     notch its support; none by default.
     """
@@ -44,8 +46,9 @@ class FkmMaterial:
 class FkmLife:
     """Cycles and repetitions of the sequence until failure.
 
-    infinite: below the endurance limit. at: repetitions by failure probability, from the scatter of
-    the guideline without its least safety factor; only for a life at 50 %.
+    infinite: below the endurance limit.
+    at: repetitions by failure probability, from the scatter of the guideline without its least
+    safety factor; only for a life at 50 %.
     """
 
     cycles: float
@@ -62,8 +65,9 @@ def p_ram_life(
 ) -> FkmLife:
     """The life of a point under a sequence of elastic stress (T,), Pa, that is repeated.
 
-    probability: of failure, at most 50 %. loads: probability P_L (%) that loads do not exceed the
-    sequence, and their standard deviation (Pa).
+    probability: of failure, at most 50 %.
+    loads: probability P_L (%) that loads do not exceed the sequence, and their standard deviation
+    (Pa).
     """
     import pandas
     from pylife.strength.fkm_nonlinear.assessment_nonlinear_standard import (

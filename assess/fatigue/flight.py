@@ -32,8 +32,9 @@ RAINFLOW_PASSES = 3  # passes through the sequence, of which the last is counted
 class Flight:
     """The order of cases until the spectrum repeats itself.
 
-    order: their numbers. units: how many units these are. ends: of each unit in the order; by
-    default there is one.
+    order: their numbers.
+    units: how many units these are.
+    ends: of each unit in the order; by default there is one.
     """
 
     order: tuple[int, ...]
@@ -55,8 +56,9 @@ class Flight:
 class Cycles:
     """The cycles of a sequence.
 
-    amplitude, mean: (C,) Pa. first, last: (C,) places, in the sequence repeated RAINFLOW_PASSES
-    times, between which each cycle is.
+    amplitude, mean: (C,) Pa.
+    first, last: (C,) places, in the sequence repeated RAINFLOW_PASSES times, between which each
+    cycle is.
     """
 
     amplitude: Floats

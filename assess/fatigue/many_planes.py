@@ -30,8 +30,8 @@ T = TypeVar("T")
 class OnPlanes:
     """The damage (M,) on planes until the spectrum repeats itself.
 
-    softer: the same with a knee that is lower by SOFTENED_KNEE_RATIO (sn_curve). largest:
-    equivalent amplitude, Pa.
+    softer: the same with a knee that is lower by SOFTENED_KNEE_RATIO (sn_curve).
+    largest: equivalent amplitude, Pa.
     """
 
     damage: Floats
@@ -48,7 +48,9 @@ def on_planes(
 ) -> OnPlanes:
     """Damage on planes with normals (M, 3) and directions of the shear stress in them (M, 3).
 
-    cases: stress (T, 6), Pa, of each, which begins and ends at zero. k: Findley's. life: S-N curve.
+    cases: stress (T, 6), Pa, of each, which begins and ends at zero.
+    k: Findley's.
+    life: S-N curve.
     """
     normals, ways = planes
     longest = max(len(stress) for stress in cases)
@@ -161,7 +163,8 @@ class _Count:
     def step(self, x: Floats, raw: Floats, top: Floats, weight: int) -> None:
         """Advance to the next value of each history.
 
-        x, raw, top: (M,). weight: how many times the cycles that it closes count.
+        x, raw, top: (M,).
+        weight: how many times the cycles that it closes count.
         """
         n = self._n
         every = np.arange(len(n))

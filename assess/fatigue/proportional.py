@@ -30,8 +30,9 @@ SIGNED_SHEAR_RULE = "alternating shear, signed by its direction"
 class SignedCourse:
     """Signed stress (T,), Pa, of each case.
 
-    largest: von Mises stress, Pa. unseen: error of the representation, over that. note: how it was
-    signed, if not by the largest principal stress.
+    largest: von Mises stress, Pa.
+    unseen: error of the representation, over that.
+    note: how it was signed, if not by the largest principal stress.
     """
 
     cases: list[Floats]

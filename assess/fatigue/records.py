@@ -12,9 +12,9 @@ from pinbase.dimensions import Floats, Point, Stress, Stresses, Times
 class CaseHistory:
     """The stress (T, 6), Pa, at a point in one case.
 
-    von_mises, signed: (T,) Pa, without and with a sign (assess.fatigue.signed_stress). times: None
-    without a motion. Components are rr, tt, zz, tz, rz, rt for a body of revolution; xx, yy, zz,
-    yz, xz, xy for any other.
+    von_mises, signed: (T,) Pa, without and with a sign (assess.fatigue.signed_stress).
+    times: None without a motion. Components are rr, tt, zz, tz, rz, rt for a body of revolution;
+    xx, yy, zz, yz, xz, xy for any other.
     """
 
     case: str
@@ -28,8 +28,9 @@ class CaseHistory:
 class PointHistory:
     """A critical point of a pin, numbered from 1, with its stress in all solved cases.
 
-    location: in the pin's axes. chosen: the reason, in words. cylindrical: whether stresses have
-    the components of a body of revolution.
+    location: in the pin's axes.
+    chosen: the reason, in words.
+    cylindrical: whether stresses have the components of a body of revolution.
     """
 
     pin: str
@@ -51,13 +52,18 @@ class PointHistory:
 class PointFatigue:
     """Damage at a point per unit of the spectrum (a flight, say).
 
-    It is for the failure probability that the study requests. life: units until damage 1, None
-    without damage; lives: the same at 10, 50 and 90 %, empty without a scatter. utilisation: damage
-    times the design life.
-    amplitude, mean: of the largest cycle, uncorrected. amplitudes: (C,) Pa, of all cycles that may
-    do damage, corrected for the mean, the largest first; counts: of each per unit.
-    method: of the equivalent stress. note: remarks on the assessment. normal: of the critical
-    plane, in the pin's axes; amplitude and mean are then those of its shear stress.
+    It is for the failure probability that the study requests.
+    life: units until damage 1, None without damage.
+    lives: the same at 10, 50 and 90 %, empty without a scatter.
+    utilisation: damage times the design life.
+    amplitude, mean: of the largest cycle, uncorrected.
+    amplitudes: (C,) Pa, of all cycles that may do damage, corrected for the mean, the largest
+    first.
+    counts: of each per unit.
+    method: of the equivalent stress.
+    note: remarks on the assessment.
+    normal: of the critical plane, in the pin's axes; amplitude and mean are then those of its shear
+    stress.
     """
 
     pin: str

@@ -36,7 +36,8 @@ SOFTENED_KNEE_RATIO = 0.95  # of the knee's amplitude: ranks planes that do no d
 class Life:
     """An S-N curve at one failure probability, for many cycles in little time.
 
-    knee: amplitude, Pa, and cycles. slopes: above and below it.
+    knee: amplitude, Pa, and cycles.
+    slopes: above and below it.
     """
 
     knee: tuple[float, float]
@@ -59,9 +60,13 @@ class Life:
 class SnCurve:
     """A stress-life curve.
 
-    knee: amplitude S_D, Pa, and cycles N_D. slope: k above the knee. slope_below: below it.
-    scatter: T_N, 1 for none. probability: of failure, for which the curve holds.
-    rule: of mean stress; parameter: of the rule, M, R_m (Pa), or g.
+    knee: amplitude S_D, Pa, and cycles N_D.
+    slope: k above the knee.
+    slope_below: below it.
+    scatter: T_N, 1 for none.
+    probability: of failure, for which the curve holds.
+    rule: of mean stress.
+    parameter: of the rule, M, R_m (Pa), or g.
     """
 
     knee: tuple[float, float]
@@ -115,7 +120,8 @@ class SnCurve:
     ) -> float:
         """The damage of cycles with equivalent amplitudes (C,), Pa.
 
-        counts: occurrences of each. probability: of failure, by default that of the curve.
+        counts: occurrences of each.
+        probability: of failure, by default that of the curve.
         """
         if not len(equivalent):
             return 0.0

@@ -22,8 +22,10 @@ from pinbase.arrays import Floats, Ints, Mask
 class Elements:
     """M elements with K nodes and Q quadrature points each.
 
-    nodes: (N, 3) m. numbers: (M, K) node numbers. gradients: (M, Q, K, 3) of the shape functions,
-    1/m. weights: (M, Q) m^3.
+    nodes: (N, 3) m.
+    numbers: (M, K) node numbers.
+    gradients: (M, Q, K, 3) of the shape functions, 1/m.
+    weights: (M, Q) m^3.
     """
 
     nodes: Floats
@@ -46,8 +48,8 @@ class Elements:
 class Ties:
     """The relation of displacement components to free unknowns.
 
-    unknown: (3 N,) the free unknown of component 3 n + c, -1 where that is zero. sign: (3 N,) 1 or
-    -1.
+    unknown: (3 N,) the free unknown of component 3 n + c, -1 where that is zero.
+    sign: (3 N,) 1 or -1.
     """
 
     unknown: Ints

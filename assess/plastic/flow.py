@@ -31,8 +31,9 @@ DEVIATOR = np.diag([1.0, 1.0, 1.0, 0.5, 0.5, 0.5]) - np.outer(_IDENTITY, _IDENTI
 class Flow(NamedTuple):
     """The state of points (...) after a step.
 
-    stress: (..., 6) Pa. plastic: plastic strain (..., 6) with tensor shears. equivalent: equivalent
-    plastic strain (...).
+    stress: (..., 6) Pa.
+    plastic: plastic strain (..., 6) with tensor shears.
+    equivalent: equivalent plastic strain (...).
     tangent: (..., 6, 6) Pa, consistent with the step, for strains with doubled shears.
     """
 
@@ -78,8 +79,9 @@ class FlowRule:
     def step(self, strain: Floats, plastic: Floats, equivalent: Floats) -> Flow:
         """The state after a fully implicit step to a total strain, by radial return.
 
-        strain: (..., 6) total, with tensor shears, at the end of the step. plastic: (..., 6)
-        plastic strain, and equivalent: (...) equivalent plastic strain, at its start.
+        strain: (..., 6) total, with tensor shears, at the end of the step.
+        plastic: (..., 6) plastic strain, and equivalent: (...) equivalent plastic strain, at its
+        start.
 
         Source: Simo & Hughes, boxes 3.1 and 3.2.
         """
@@ -118,8 +120,9 @@ class FlowRule:
     def _tangent(self, ratio: Floats, normal: Floats, unit: Floats) -> Floats:
         """The consistent tangent (..., 6, 6), Pa, for strains with doubled shears.
 
-        ratio: (...) part of the elastic shear stiffness that all deviators keep. normal: (...) part
-        that is missing along the flow. unit: (..., 6) deviators of a Mises stress of one.
+        ratio: (...) part of the elastic shear stiffness that all deviators keep.
+        normal: (...) part that is missing along the flow.
+        unit: (..., 6) deviators of a Mises stress of one.
         """
         lam, shear = self.material.lame
         bulk = lam + 2.0 * shear / 3.0

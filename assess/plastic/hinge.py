@@ -153,7 +153,8 @@ def _bending_and_axial(sections: list[Circle], across: Floats) -> tuple[Floats, 
 def _static(sections: list[Circle], across: Floats, bent: Floats) -> Floats:
     """Lower bounds (T,) per Pa of yield stress.
 
-    across: (T, S, 4) used parts. bent: (T, S) use by bending and axial force.
+    across: (T, S, 4) used parts.
+    bent: (T, S) use by bending and axial force.
     """
     peak = np.array([s.vq_it for s in sections])
     sheared = across[..., SHEAR] * peak + across[..., TORQUE]
@@ -178,7 +179,9 @@ def _slip(span: Span, strong: Floats, inside: Floats) -> Floats:
 def _one_mechanism(room: Floats, across: Floats, bent: Floats) -> Floats:
     """Power over work (T,) of one section that twists, slips apart or is a hinge.
 
-    room: (S,) as in `_room`. across: (T, S, 4) used parts. bent: of a hinge, (T, S).
+    room: (S,) as in `_room`.
+    across: (T, S, 4) used parts.
+    bent: of a hinge, (T, S).
     """
     steep = np.minimum(room, 1.0)  # of a plane that ends before clamps and thicker sections
     apart = math.sqrt(3.0) * steep / (1.0 + steep**2) * across[..., AXIAL]
@@ -201,7 +204,10 @@ def _room(span: Span, sections: list[Circle], z: Floats) -> Floats:
 def _three_hinges(z: Floats, away: Mask, strong: Floats, moment: Floats) -> Floats:
     """Power over work (T,) of a hinge near each end of a span and one between.
 
-    z: (S,) m. away: (S,) where a hinge may be. strong: (S,) plastic moments. moment: (T, 2, S).
+    z: (S,) m.
+    away: (S,) where a hinge may be.
+    strong: (S,) plastic moments.
+    moment: (T, 2, S).
     """
     places = np.flatnonzero(away)
     if len(places) < 3:

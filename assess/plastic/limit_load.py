@@ -44,8 +44,11 @@ MIN_FLOW_WORK_RATIO = 0.97  # factor over work of flow, at least, where Newton's
 class MeshBracket:
     """The limit load on one mesh.
 
-    reached: the largest load factor in equilibrium, no bound by itself. above: the upper bound.
-    curve: load factors and displacements. steps, iterations: that it took. last: the last state.
+    reached: the largest load factor in equilibrium, no bound by itself.
+    above: the upper bound.
+    curve: load factors and displacements.
+    steps, iterations: that it took.
+    last: the last state.
     """
 
     unknowns: int

@@ -43,8 +43,8 @@ class RefinedElements:
 class UpperBound:
     """An upper bound of the load factor.
 
-    volume: change of volume over the equivalent strain, on average. charge: what that adds to the
-    factor.
+    volume: change of volume over the equivalent strain, on average.
+    charge: what that adds to the factor.
     """
 
     factor: float
@@ -57,7 +57,8 @@ def upper_bound(
 ) -> UpperBound:
     """The upper bound by a mechanism (U,), m, or by the one next to it with less change of volume.
 
-    forces: (U,) N. stress: (M, Q, 6) Pa of the last state.
+    forces: (U,) N.
+    stress: (M, Q, 6) Pa of the last state.
     """
     mean = stress[..., :3].mean(-1)
     pressure = mean @ finer.reading.T, np.ptp(mean, axis=1, keepdims=True) / 2.0

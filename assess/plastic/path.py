@@ -33,8 +33,11 @@ MAX_STEP_HALVINGS = 6
 class State:
     """A state in equilibrium.
 
-    factor: of the loads. unknowns: (U,) m. work: of the loads per load factor, J. flow: state of
-    the quadrature points. residuals: of the iterations, over the loads.
+    factor: of the loads.
+    unknowns: (U,) m.
+    work: of the loads per load factor, J.
+    flow: state of the quadrature points.
+    residuals: of the iterations, over the loads.
     """
 
     factor: float
@@ -47,7 +50,8 @@ class State:
 class EquilibriumPath:
     """The equilibrium of a body along its load path, by prescribed work.
 
-    forces: (U,) N. budget: asked before every iteration.
+    forces: (U,) N.
+    budget: asked before every iteration.
 
     Raises: SolveError for a body that is not constrained, from here and from the steps.
     """

@@ -39,8 +39,9 @@ Acting = tuple[tuple[UnitLoad, int, float], ...]  # unit loads with their phase 
 class Sector:
     """The modelled part of a turn.
 
-    quarters: their number, 1, 2 or 4. mirror: at the plane y = 0. odd: the solution changes sign by
-    half a turn.
+    quarters: their number, 1, 2 or 4.
+    mirror: at the plane y = 0.
+    odd: the solution changes sign by half a turn.
     """
 
     quarters: int
@@ -52,7 +53,8 @@ class Sector:
 class PinBody:
     """The modelled part of a pin as a flowing body.
 
-    forces: (U,) N, on its unknowns. mesh, sector: of which it is made.
+    forces: (U,) N, on its unknowns.
+    mesh, sector: of which it is made.
     """
 
     body: FlowingBody

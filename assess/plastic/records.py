@@ -15,9 +15,11 @@ from pinbase.dimensions import Floats, Length, Lengths, Stresses
 class PlasticMesh:
     """One mesh of the solid.
 
-    lower: the load factor that equilibrium reached, of which the lower bound is made. upper: the
-    upper bound. volume: change of volume over the equivalent strain of its mechanism; charge: what
-    that adds to the upper bound. steps, iterations: of the loads.
+    lower: the load factor that equilibrium reached, of which the lower bound is made.
+    upper: the upper bound.
+    volume: change of volume over the equivalent strain of its mechanism.
+    charge: what that adds to the upper bound.
+    steps, iterations: of the loads.
     """
 
     unknowns: int
@@ -45,8 +47,11 @@ class LoadCurve:
 class FlowField:
     """The pin, or the modelled part of its turn, when its limit load is reached, at a load factor.
 
-    points: (N, 3) in pin axes. cells: (M, 20) in the order of VTK. displacement: (N, 3).
-    plastic_strain: (N,) equivalent. von_mises: (N,).
+    points: (N, 3) in pin axes.
+    cells: (M, 20) in the order of VTK.
+    displacement: (N, 3).
+    plastic_strain: (N,) equivalent.
+    von_mises: (N,).
     """
 
     points: Lengths
@@ -61,11 +66,12 @@ class FlowField:
 class LimitLoad:
     """The load factor at which a pin collapses, between lower and upper.
 
-    All loads of the case at its governing instant grow in proportion. method: beam or solid; "none"
-    without an answer, with the reason in `note`.
+    All loads of the case at its governing instant grow in proportion.
+    method: beam or solid; "none" without an answer, with the reason in `note`.
     carries: whether the pin carries its loads (factor 1) without collapse; None where that is open.
     permanent_set: the part of the largest displacement that remains after the loads reached the
-    factor permanent_at and were removed. curve, flow: of the finest mesh.
+    factor permanent_at and were removed.
+    curve, flow: of the finest mesh.
     stopped: there is no answer because it would have taken longer than a limit load may that nobody
     asked for.
     """

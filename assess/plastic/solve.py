@@ -56,7 +56,9 @@ def limit_load(
 ) -> LimitLoad:
     """The limit load of a pin under the loads of one instant.
 
-    clamps: surfaces by name. rung: "solid" even if the beam decides. memory: MB that may be used.
+    clamps: surfaces by name.
+    rung: "solid" even if the beam decides.
+    memory: MB that may be used.
     seconds: of processor time that it may take; beyond that there is no answer, never a part of
     one.
 

@@ -56,9 +56,12 @@ CLAMP_EDGE_REMARK = " At the edges of clamps no maximum exists."
 class BeamEstimate:
     """A beam's largest von Mises stress with its error, Pa.
 
-    place: (r, z) in m. theta: rad. instant: its number.
+    place: (r, z) in m.
+    theta: rad.
+    instant: its number.
     without_factor: loaded notches for which the beam has no factor; then `maximum` excludes them,
-    and there is no error. leaves_out: what the model omits, for people.
+    and there is no error.
+    leaves_out: what the model omits, for people.
     """
 
     maximum: float
@@ -73,7 +76,8 @@ class BeamEstimate:
 def beam_estimate(beam: BeamStress, loads: PinLoads, clamps: tuple[str, ...] = ()) -> BeamEstimate:
     """The largest stress of a case with its error.
 
-    beam: with all unit loads that act. clamps: at which it is clamped.
+    beam: with all unit loads that act.
+    clamps: at which it is clamped.
 
     Raises: ValueError when the beam has no field for a part of the loads.
     """

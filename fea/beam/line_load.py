@@ -53,8 +53,8 @@ def line_loads(
 ) -> Floats:
     """Loads per length (C, 2, K), w0 and w1, of K unit loads between stations (C + 1,), m.
 
-    They are N/m, or N m/m about the axis, and per m. All bands end at stations. closed: with the
-    closing tractions that balance each load.
+    They are N/m, or N m/m about the axis, and per m. All bands end at stations.
+    closed: with the closing tractions that balance each load.
 
     Raises: ValueError for the weight of a material without density, or a balance without bands.
     """

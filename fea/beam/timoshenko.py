@@ -57,7 +57,9 @@ class InternalForces:
     """V (N), M (N m), N (N), T (N m) of K unit loads between stations (C + 1,), m.
 
     coefficients: (C, 4, 4, K) of the powers 0 to 3 of the distance (m) from the cell's left end,
-    for V, M, N, T. sections: of the C cells. spans: of cells outside the clamps.
+    for V, M, N, T.
+    sections: of the C cells.
+    spans: of cells outside the clamps.
     """
 
     stations: Floats
@@ -205,7 +207,8 @@ def _products(lengths: Floats, soft: Floats, one: Floats, other: Floats) -> Floa
 def _march(lengths: Floats, q: Floats, start: Floats) -> Floats:
     """Coefficients (C, 4, 4, K) of internal forces, cell after cell.
 
-    q: loads per length (C, 2, 4, K). start: V, M, N, T at the first cell's left end, (4, K).
+    q: loads per length (C, 2, 4, K).
+    start: V, M, N, T at the first cell's left end, (4, K).
     """
     out = np.zeros((len(lengths), 4, *q.shape[2:]))
     for c, h in enumerate(lengths):

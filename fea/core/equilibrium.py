@@ -38,8 +38,9 @@ SINGLE_FORCE_TOLERANCE = 1e-6
 class Carried(NamedTuple):
     """The loads that supports react besides the bands' small share.
 
-    force, couple: across the axis. along: forces and torques along the axis. lugs: whether the pin
-    sits in lugs.
+    force, couple: across the axis.
+    along: forces and torques along the axis.
+    lugs: whether the pin sits in lugs.
     """
 
     force: bool = False
@@ -55,10 +56,13 @@ NO_SUPPORT = Carried()
 class Balance:
     """The imbalance of the loads, the largest over all instants.
 
-    force: N; couple: N m, about the pin's middle. largest: the largest force in the case, N.
-    refusal: why the pin cannot be solved, or None; code: of the refusal.
-    left: force (N), couple across the axis and torque (N m) that no support carries; shares: the
-    same, relative to what the rule measures them by.
+    force: N.
+    couple: N m, about the pin's middle.
+    largest: the largest force in the case, N.
+    refusal: why the pin cannot be solved, or None.
+    code: of the refusal.
+    left: force (N), couple across the axis and torque (N m) that no support carries.
+    shares: the same, relative to what the rule measures them by.
     instant: number of the instant at which the worst of these occurs.
     """
 
@@ -82,8 +86,8 @@ def out_of_balance(
 ) -> Balance:
     """The balance of a pin without clamps under its loads.
 
-    density: kg/m^3; with it the pin's own weight and inertia count. carried: what its supports
-    react.
+    density: kg/m^3; with it the pin's own weight and inertia count.
+    carried: what its supports react.
     """
     force, couple = _left(pin, loads)
     largest = _largest(loads.forces)

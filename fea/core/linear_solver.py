@@ -39,7 +39,8 @@ class SolveError(CodedError, ArithmeticError):
 class Analysis:
     """The symbolic analysis of a symmetric matrix's pattern, for all matrices of that pattern.
 
-    It is the elimination order and the pattern of the factor. pattern: csr, both halves.
+    It is the elimination order and the pattern of the factor.
+    pattern: csr, both halves.
     node: (n,) node of each unknown, for an order by nested dissection of the nodes, the best for
     solids; otherwise an approximate minimum degree, as good for sections.
     """
@@ -54,8 +55,8 @@ class Analysis:
     def factorize(self, K: sp.csr_matrix, check: bool = True) -> Solve:
         """A function that solves K x = b for b (n,) or (n, k).
 
-        It must not be called after another matrix has been factored. check: whether it checks what
-        it returns.
+        It must not be called after another matrix has been factored.
+        check: whether it checks what it returns.
 
         Raises: SolveError when K is not positive definite (an unconstrained body), and from the
         returned function when a solution does not satisfy the equations, or when K is so nearly
@@ -120,7 +121,8 @@ def factorize(K: sp.csr_matrix, node: Ints) -> Solve:
 class ConstrainedSystem:
     """Systems of equations with one matrix pattern, of whose unknowns any may be zero.
 
-    K: csr, both halves. node: as for Analysis.
+    K: csr, both halves.
+    node: as for Analysis.
     """
 
     def __init__(self, K: sp.csr_matrix, node: Ints | None = None) -> None:

@@ -18,8 +18,8 @@ _REGULARISATION = 1e-10  # of the number of samples, where these leave slope or 
 def nodal_extrapolation(elements: Ints, samples: Floats, singularities: Floats) -> sp.csr_matrix:
     """Matrix (N, M Q) that takes values at Q samples of each element to nodes.
 
-    Each element's values are extrapolated linearly to its nodes and averaged there. elements: (M,
-    k) node numbers.
+    Each element's values are extrapolated linearly to its nodes and averaged there.
+    elements: (M, k) node numbers.
     samples: (d, Q), singularities: (d, k), where samples and nodes are in the reference element. Q
     = d + 1, or 1 where values are constant in an element.
     """
@@ -72,9 +72,10 @@ def nearest(samples: Floats, points: Floats) -> Ints:
 def fit_weights(offsets: Floats, confidence: Floats) -> Floats:
     """Weights (..., S) of samples in the value, at one place, of the quadratic fitted to them.
 
-    offsets: (..., S, 2) of the samples from the place. confidence: (..., S) weight of each in the
-    fit. Where several quadratics fit equally (long thin elements have their nearest samples in a
-    row), the one with the least slope and curvature counts.
+    offsets: (..., S, 2) of the samples from the place.
+    confidence: (..., S) weight of each in the fit. Where several quadratics fit equally (long thin
+    elements have their nearest samples in a row), the one with the least slope and curvature
+    counts.
     """
     x, y = np.moveaxis(offsets, -1, 0)
     largest = np.maximum(*(np.abs(part).max(axis=-1, keepdims=True) for part in (x, y)))

@@ -15,8 +15,8 @@ from pinbase.arrays import Floats
 class Material:
     """An isotropic linear-elastic material with its strengths.
 
-    youngs_modulus, strengths: Pa; shear_strength and bearing_strength are ultimate ones. density:
-    kg/m^3.
+    youngs_modulus, strengths: Pa; shear_strength and bearing_strength are ultimate ones.
+    density: kg/m^3.
     hardening: equivalent plastic strains and yield stresses (Pa) there, linear between them from
     the yield strength on and constant after the last.
 

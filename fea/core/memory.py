@@ -57,7 +57,8 @@ def local_memory(unknowns: float, loads: int) -> float:
 def free_memory(root: Path = Path("/")) -> float:
     """Memory available to new processes, MB, within the limits of control groups.
 
-    It is ASSUMED_FREE_MB where the system does not report it. root: of the file system, for tests.
+    It is ASSUMED_FREE_MB where the system does not report it.
+    root: of the file system, for tests.
     """
     if portable():
         return ASSUMED_FREE_MB
@@ -78,7 +79,8 @@ def too_much(
 ) -> str:
     """The memory that a model needs and the memory allowed, as text; empty if that is enough.
 
-    unknowns: of a solid, or of a section or local solid with that many unit loads. limit: MB.
+    unknowns: of a solid, or of a section or local solid with that many unit loads.
+    limit: MB.
     """
     allowed = allowed_memory(limit)
     if section_loads:
@@ -127,7 +129,8 @@ _CGROUP_V1 = _Version(
 def free_in_groups(root: Path = Path("/")) -> float:
     """Memory, MB, that this process may still take within the limits of its control groups.
 
-    It is infinite where there is no limit. root: of the file system, for tests.
+    It is infinite where there is no limit.
+    root: of the file system, for tests.
     """
     return min((_free(folder, version) for folder, version in _groups(root)), default=float("inf"))
 

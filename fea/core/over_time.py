@@ -46,7 +46,8 @@ def _reached(
 ) -> tuple[Ints, Floats]:
     """Intervals (I,) in which `largest` may be exceeded, and the stress (I,), Pa, they may reach.
 
-    off: deviations of the loads from their chords. largest: at the instants, Pa.
+    off: deviations of the loads from their chords.
+    largest: at the instants, Pa.
     """
     # A first bound, the same for all intervals, rules out most of them without a search at each.
     rise = CHORD_FACTOR * answer.largest(off)[0]
@@ -109,7 +110,8 @@ def with_crest(answer: StressField, loads: PinLoads, between: Between) -> PinLoa
 def knots(loads: PinLoads, straight: float, fewest: int) -> Ints:
     """Numbers of the instants between which loads at the others lie near their chord.
 
-    straight: largest deviation from the chord, of the largest load. fewest: intervals at least.
+    straight: largest deviation from the chord, of the largest load.
+    fewest: intervals at least.
     """
     times, count = _times(loads), len(loads)
     vectors = [

@@ -40,8 +40,8 @@ class UnitLoad(NamedTuple):
 
     Per N, N m, or (kind "body") m/s^2; kinds "shift" and "turn" are distributed as "force" and
     "moment" but are motions of a clamp, per m and rad about the pin's origin.
-    n: the harmonic. parts: instead of one surface, those of a pressure on several, each with its
-    amplitude, Pa.
+    n: the harmonic.
+    parts: instead of one surface, those of a pressure on several, each with its amplitude, Pa.
     """
 
     surface: str
@@ -86,12 +86,14 @@ class UnitLoad(NamedTuple):
 class PinLoads:
     """Loads on one pin in one case: a force and a moment at each surface's middle, in pin axes.
 
-    surfaces: C names. forces: (T, C, 3) N. moments: (T, C, 3) N m, or what broadcasts to that
-    shape.
+    surfaces: C names.
+    forces: (T, C, 3) N.
+    moments: (T, C, 3) N m, or what broadcasts to that shape.
     distribution: of transverse forces over their bands: "uniform" (a traction of constant
     direction) or "cosine" (a bearing pressure on the loaded half, with harmonics up to `terms`).
     body: (T, 3) m/s^2, or what broadcasts to it: gravity less the pin's own acceleration.
-    times: (T,) s, rising, of a motion. pressed: where lugs press on the pin.
+    times: (T,) s, rising, of a motion.
+    pressed: where lugs press on the pin.
     """
 
     case: str
@@ -200,7 +202,8 @@ class PinLoads:
 class LoadAmounts:
     """Amounts (T, 2) of unit loads, by phase, that need not be those of any forces.
 
-    count: T. pressed: where lugs press on the pin at these instants.
+    count: T.
+    pressed: where lugs press on the pin at these instants.
     """
 
     case: str

@@ -31,7 +31,9 @@ BENEATH_DISTANCE = (
 class SurfacePlace:
     """The largest stress of the surface with its error.
 
-    location: (x, y, z). time: s. verdict: as that of fea.core.peak.Maximum.
+    location: (x, y, z).
+    time: s.
+    verdict: as that of fea.core.peak.Maximum.
     """
 
     max_von_mises: Stress
@@ -45,8 +47,9 @@ class SurfacePlace:
 class SectionPlace:
     """The largest stress of a section with its error, its z, and the internal forces there.
 
-    Forces and moments are positive but for the axial force. plastic_utilisation: the used part of
-    what a fully plastic section carries (assess.plastic.hinge); None without a yield strength.
+    Forces and moments are positive but for the axial force.
+    plastic_utilisation: the used part of what a fully plastic section carries
+    (assess.plastic.hinge); None without a yield strength.
     """
 
     max_von_mises: Stress
@@ -65,9 +68,10 @@ class SectionPlace:
 class ContactEdge:
     """The edge of a lug, at the start or the end of its band, and the pressure towards it.
 
-    K, exponent: pressure is K distance^-exponent. yield_distance: at which that falls to yield.
-    max_pressure, max_von_mises: of the pin at a rounded edge; error_estimate: of the pressure. None
-    at a sharp edge, where pressure has no bound.
+    K, exponent: pressure is K distance^-exponent.
+    yield_distance: at which that falls to yield.
+    max_pressure, max_von_mises: of the pin at a rounded edge.
+    error_estimate: of the pressure. None at a sharp edge, where pressure has no bound.
     """
 
     band: str
@@ -92,8 +96,9 @@ PressedCell = tuple[Length, Length, float, float]  # z from and to, angle from a
 class BandPressure:
     """A band under its lug.
 
-    mean_pressure: force over diameter and length. bearing_share: its part of the bearing strength,
-    None without one. pressed: the cells with pressure.
+    mean_pressure: force over diameter and length.
+    bearing_share: its part of the bearing strength, None without one.
+    pressed: the cells with pressure.
     """
 
     name: str
@@ -139,7 +144,8 @@ class ContactPlace:
 class Places:
     """The three places of a pin in a case, each at its own governing instant.
 
-    section: None for a body that is no beam. contact: None where no lugs press on the pin.
+    section: None for a body that is no beam.
+    contact: None where no lugs press on the pin.
     """
 
     governs: Place

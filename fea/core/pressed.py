@@ -34,8 +34,9 @@ UNREAD_EDGE_RINGS = 1
 class Rings:
     """The rings (R,) of all bands along a pin, rising in z.
 
-    start, end, radius: (R,) m. band: (R,) the number of each ring's lug. edge: (R,) whether it is
-    under a rounded edge of the lug.
+    start, end, radius: (R,) m.
+    band: (R,) the number of each ring's lug.
+    edge: (R,) whether it is under a rounded edge of the lug.
     exponent: (R,) of the pressure at the lug's edges, were they sharp (fea.singular.lug_edge).
     """
 
@@ -68,7 +69,8 @@ class Rings:
     def amid(self, r: Floats, z: Floats, middle: Floats) -> Ints:
         """The ring (P,) in whose READ_RING_RANGE each point lies; -1 for none.
 
-        r, z: (P,) m. middle: (P,) m, z of the middle of the element on which each point is.
+        r, z: (P,) m.
+        middle: (P,) m, z of the middle of the element on which each point is.
         """
         ring = self.at(r, middle)
         part = np.where(ring >= 0, (z - self.start[ring]) / self.length[ring], 0.0)
@@ -78,7 +80,8 @@ class Rings:
         """Mask (P, 3 R) of the points that each ring shuts when pressed: under, before, after it.
 
         Before and after, up to the ring's own length or that of the next one, if that is shorter.
-        r, z: (P,) m. middle: (P,) m, z of the middle of the element on which each point is.
+        r, z: (P,) m.
+        middle: (P,) m, z of the middle of the element on which each point is.
         """
         middle, (before, after) = middle[:, None], self._beside
         off = np.abs(r[:, None] - self.radius)

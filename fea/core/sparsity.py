@@ -17,7 +17,9 @@ from pinbase.arrays import Floats, Ints
 class Pattern:
     """The pairs of nodes of a mesh that share an element: P pairs, by row, then by column.
 
-    elements: (M, k) node numbers. nodes: their count N. columns: (P,) second node of each pair.
+    elements: (M, k) node numbers.
+    nodes: their count N.
+    columns: (P,) second node of each pair.
     pointer: (N + 1,) where each first node's pairs begin.
     """
 

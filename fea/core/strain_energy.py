@@ -18,8 +18,8 @@ from pinbase.arrays import Floats
 class StrainEnergy:
     """The strain energy of a pin on one mesh under any loads.
 
-    units: L unit loads with their phases. work: (L, L) J, of each unit load on the displacements by
-    each of them.
+    units: L unit loads with their phases.
+    work: (L, L) J, of each unit load on the displacements by each of them.
     """
 
     units: tuple[tuple[UnitLoad, int], ...]

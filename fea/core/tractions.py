@@ -24,7 +24,8 @@ from pinbase.arrays import Floats
 class Traction:
     """Amplitudes along r, theta and z on a surface that vary linearly along z.
 
-    They are `mean` + `slope` (z - middle), (3,) each, Pa and Pa/m per unit of load; middle: m.
+    They are `mean` + `slope` (z - middle), (3,) each, Pa and Pa/m per unit of load.
+    middle: m.
     """
 
     surface: str

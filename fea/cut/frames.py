@@ -57,8 +57,9 @@ def on_skin(fields: MeridianFields, r: Floats, z: Floats) -> Floats:
 def cartesian(amplitude: Floats, angle: Floats, turned: float, units: tuple[Unit, ...]) -> Floats:
     """Stress (.., 6, L) along the axes of a frame that is turned about z by an angle (rad).
 
-    amplitude: (.., 6, L) along r, theta and z. angle: (..) rad of the points in that frame. turned:
-    rad, of the frame.
+    amplitude: (.., 6, L) along r, theta and z.
+    angle: (..) rad of the points in that frame.
+    turned: rad, of the frame.
     """
     n, phase = (np.array(x) for x in ([load.n for load, _ in units], [p for _, p in units]))
     psi = n * (angle[..., None] + turned) - phase * np.pi / 2.0

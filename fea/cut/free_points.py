@@ -27,8 +27,9 @@ RING_SIDE_OFFSET = 1e-6  # of a ring's length: separates the sides where two rin
 class FreePoints:
     """Points (P,) on a pin with rings, and what shuts them.
 
-    arc: (P,) the arc about the axis on which each is. near: (P, 3 R) which rings shut it
-    (fea.core.pressed). amid: (P,) the ring in whose middle it is, -1 in none.
+    arc: (P,) the arc about the axis on which each is.
+    near: (P, 3 R) which rings shut it (fea.core.pressed).
+    amid: (P,) the ring in whose middle it is, -1 in none.
     """
 
     arc: Ints
@@ -75,8 +76,9 @@ def arc_of(points: Floats) -> Ints:
 def relieved(stress: Floats, points: Floats, nu: float) -> Floats:
     """Stress (P, 6, L) at points of the outline without that of the pressure on it.
 
-    stress: (P, 6, L) along x, y and z. points: (P, 3) m. nu: Poisson's ratio. The formula is that
-    of fea.harmonic.free_surface.
+    stress: (P, 6, L) along x, y and z.
+    points: (P, 3) m.
+    nu: Poisson's ratio. The formula is that of fea.harmonic.free_surface.
     """
     outward = np.zeros((len(points), 3))
     outward[:, :2] = points[:, :2] / np.hypot(points[:, 0], points[:, 1])[:, None]
@@ -116,8 +118,8 @@ class AwayFromPressed:
 class CutReading:
     """Points (Q,) among which the maximum is looked for, by their rows.
 
-    squares: von Mises squared (Q, T), Pa^2, from amounts of unit loads (T, L). free: where lugs
-    leave the points free to be read, everywhere by default.
+    squares: von Mises squared (Q, T), Pa^2, from amounts of unit loads (T, L).
+    free: where lugs leave the points free to be read, everywhere by default.
     """
 
     rows: Ints

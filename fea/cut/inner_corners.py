@@ -40,8 +40,8 @@ class InnerCorner:
 def inner_corners(model: LocalModel, x: Floats, distance: float) -> tuple[InnerCorner, ...]:
     """The inner corners of a piece.
 
-    x: (P, 3) m, points of the meshed part of it. distance: of a cut's size (at most the pin's
-    diameter), within which stress is not read.
+    x: (P, 3) m, points of the meshed part of it.
+    distance: of a cut's size (at most the pin's diameter), within which stress is not read.
     """
     out = []
     for between, (nodes, angle) in sorted(_lines(model).items()):

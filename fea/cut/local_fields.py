@@ -64,17 +64,21 @@ class LocalFineness:
 class LocalFields:
     """The unit fields on one mesh of a piece, in the pin's frame.
 
-    units: L unit loads, each in one phase. points: (P, 3) m of the surface. triangles: (M, 3) of
-    these. stress: (P, 6, L) Pa.
-    uncut: (P, 3, L) m, the displacement of the uncut pin. displaced: (P, 3, L) m, what the cuts add
-    to it, relative to their piece's lower end.
+    units: L unit loads, each in one phase.
+    points: (P, 3) m of the surface.
+    triangles: (M, 3) of these.
+    stress: (P, 6, L) Pa.
+    uncut: (P, 3, L) m, the displacement of the uncut pin.
+    displaced: (P, 3, L) m, what the cuts add to it, relative to their piece's lower end.
     read: (P,) where the maximum is looked for, but for inner corners of cuts.
-    outer: rows on the outline of the uncut pin. changed: (O, 6, L) Pa, the change of their stress
-    by the cuts. ended: (O,) which of these are at an end of the piece.
+    outer: rows on the outline of the uncut pin.
+    changed: (O, 6, L) Pa, the change of their stress by the cuts.
+    ended: (O,) which of these are at an end of the piece.
     moved: (2, 6, L) the motions of the piece's ends by the cuts, a shift (m) and a turn (rad) about
     the pin's origin.
-    scatter: (P,) of the stress with the positions of nodes, relative. finer: fineness of the spots
-    relative to the first mesh. nu: Poisson's ratio.
+    scatter: (P,) of the stress with the positions of nodes, relative.
+    finer: fineness of the spots relative to the first mesh.
+    nu: Poisson's ratio.
     """
 
     piece: Piece
@@ -126,7 +130,7 @@ class LocalFields:
         return self._readings[key]
 
     def _plain(self, rows: Ints) -> CutReading:
-        """A reading of the rows wherever lugs press."""
+        """A reading of the rows irrespective of where lugs press."""
         return CutReading(rows, squares(self.stress[rows]))
 
     def _free(self, rows: Ints, rings: Rings) -> CutReading:
@@ -275,7 +279,8 @@ def mesh_of(
 ) -> LocalModel:
     """The mesh of a piece, finest about points where stress was high on the meshes before.
 
-    high: m, in the pin's frame. bands: loaded ones of the pin, with cuts in them.
+    high: m, in the pin's frame.
+    bands: loaded ones of the pin, with cuts in them.
 
     Raises: MeshError.
     """
@@ -316,8 +321,10 @@ def local_fields(
 ) -> LocalFields:
     """The unit fields of a piece on one mesh.
 
-    fields: of the uncut pin. at_points: its stress (S, 6, K) at the section_points. distance: as
-    for inner_corners. weight: as for LocalModel.solve.
+    fields: of the uncut pin.
+    at_points: its stress (S, 6, K) at the section_points.
+    distance: as for inner_corners.
+    weight: as for LocalModel.solve.
 
     Raises: SolveError.
     """

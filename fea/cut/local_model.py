@@ -55,11 +55,12 @@ END_SURFACES = ("start", "end")
 class Read:
     """The solution at points (P, 3), m, of a piece, image after image.
 
-    stress: (P, 6, L) Pa, of the cut pin. difference: (P, 6, L) Pa, from the uncut pin. cut: (P,)
-    which points are on a cut.
-    displaced: (P, 3, L) m, displacements by the cuts, up to a rigid motion of the whole. moved: (2,
-    6, L) motions of the piece's lower and upper ends by the cuts, up to the same motion, as a shift
-    (m) and a turn (rad) about the origin of its frame.
+    stress: (P, 6, L) Pa, of the cut pin.
+    difference: (P, 6, L) Pa, from the uncut pin.
+    cut: (P,) which points are on a cut.
+    displaced: (P, 3, L) m, displacements by the cuts, up to a rigid motion of the whole.
+    moved: (2, 6, L) motions of the piece's lower and upper ends by the cuts, up to the same motion,
+    as a shift (m) and a turn (rad) about the origin of its frame.
     """
 
     points: Floats
@@ -73,7 +74,8 @@ class Read:
 class LocalModel:
     """A piece on one mesh, `finer` than the first one.
 
-    clamps: names of its clamped surfaces. bearings: loaded bands with cuts in them.
+    clamps: names of its clamped surfaces.
+    bearings: loaded bands with cuts in them.
     """
 
     def __init__(
@@ -153,10 +155,10 @@ class LocalModel:
     ) -> Read:
         """The solution under what the cuts relieve of the uncut pin's stress.
 
-        uncut: (G, P, 6, L) Pa, the uncut pin's stress at all images, along x, y and z. most: (L,)
-        Pa, its largest anywhere in the pin.
-        shears: (L,) which loads shear the bands they act on, all by default. weight: (L,) how
-        accurate each load must be.
+        uncut: (G, P, 6, L) Pa, the uncut pin's stress at all images, along x, y and z.
+        most: (L,) Pa, its largest anywhere in the pin.
+        shears: (L,) which loads shear the bands they act on, all by default.
+        weight: (L,) how accurate each load must be.
 
         Raises: SolveError.
         """
@@ -244,8 +246,9 @@ class LocalModel:
     ) -> tuple[Floats, Floats]:
         """The loads on removed areas, moved to the rest of their bands (lost_loads).
 
-        Returns nodal forces (3 N, L), and tractions (P, 3, L) at the points. stress: (P, 6, L) Pa,
-        the uncut pin's. shears: (L,).
+        Returns nodal forces (3 N, L), and tractions (P, 3, L) at the points.
+        stress: (P, 6, L) Pa, the uncut pin's.
+        shears: (L,).
         """
         forces = np.zeros((self.unknowns, stress.shape[2]))
         at_points = np.zeros((len(self.points), 3, stress.shape[2]))
@@ -300,7 +303,9 @@ class LocalModel:
     def _displace(self, forces: Floats, parity: tuple[int, ...], whole: Floats) -> Floats:
         """Displacements (3 N, L) of a class, after balancing its forces.
 
-        forces: (3 N, L) N. parity: of the class. whole: (3 N,) size of all classes' forces.
+        forces: (3 N, L) N.
+        parity: of the class.
+        whole: (3 N,) size of all classes' forces.
         """
         free = np.ones(self.unknowns)
         free[self._fixed(parity)] = 0.0
@@ -368,8 +373,8 @@ class LocalModel:
     def _balanced(self, forces: Floats, modes: Floats, whole: Floats) -> Floats:
         """Forces without the small resultant that the mesh of the section leaves.
 
-        It is taken up by the cuts' nodes, in proportion to the forces there. modes: (3 N, m) rigid
-        motions.
+        It is taken up by the cuts' nodes, in proportion to the forces there.
+        modes: (3 N, m) rigid motions.
 
         Raises: SolveError when the resultant is more than that.
         """
@@ -389,7 +394,8 @@ class LocalModel:
     def _stress(self, u: Floats, uncut: Floats, spread: Floats, c: int) -> Floats:
         """The stress (P, 6, L) that displacements (3 N, L) add, along faces' directions.
 
-        spread: (P, 3, L) Pa, tractions that act besides. c: number of the class.
+        spread: (P, 3, L) Pa, tractions that act besides.
+        c: number of the class.
         """
         E, nu, mu = self.material.youngs_modulus, self.material.poisson_ratio, self.material.lame[1]
         out, first = np.zeros((*uncut.shape[:2], u.shape[1])), 0

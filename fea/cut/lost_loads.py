@@ -28,7 +28,8 @@ class Bearing:
     """A loaded band with cuts in it.
 
     z0, z1: m, its ends in the frame of the piece; on both sides of the piece's mirror plane, if it
-    has one across the axis. cuts: their names.
+    has one across the axis.
+    cuts: their names.
     """
 
     z0: float
@@ -64,8 +65,8 @@ def bearings(piece: Piece, bands: Sequence[tuple[float, float]]) -> tuple[Bearin
 def trials(x: Floats, normal: Floats, shears: bool) -> Floats:
     """Tractions (..., 3, 6) on a band, each with the resultant of a unit force or couple.
 
-    x, normal: (..., 3) points and outward normals. shears: of constant direction instead of normal
-    to the band.
+    x, normal: (..., 3) points and outward normals.
+    shears: of constant direction instead of normal to the band.
     """
     out = np.zeros((*x.shape, 6))
     z = x[..., 2, None]

@@ -25,7 +25,8 @@ def axis_kept(moved: Floats, length: float) -> Floats:
     """The rigid motion (6, L), about the pin's start, that keeps both ends of its axis in place.
 
     moved: (6, L) the motion of the pin's end while its start stays. This is how a pin that nothing
-    clamps is supported (fea.harmonic.model). length: m.
+    clamps is supported (fea.harmonic.model).
+    length: m.
     """
     out = np.zeros_like(moved)
     out[3] = moved[3] - moved[1] / length

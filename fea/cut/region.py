@@ -16,8 +16,7 @@ from geometry import Cut, CutPin, Pin
 from geometry.mesh.cut_piece import Piece, clipped
 
 # All are parts of the diameter. The reach was found on shafts, where ends at that distance change
-# stress by 0.1 % (docs/method.md); `python -m benchmarks cut-pins` checks it. The others are chosen
-# by judgement.
+# stress by 0.1 %; `python -m benchmarks cut-pins` checks it. The others are chosen by judgement.
 PIECE_REACH = 1.4  # length of a piece beyond its cuts
 REACH_FACTOR = 1.6  # times that, where the reach is seen not to be enough, as in tubes
 MERGE_DISTANCE = 0.5  # cuts closer to each other are in one piece
@@ -146,8 +145,9 @@ def pieces(
 ) -> tuple[Piece, ...]:
     """A piece about each cut, or about cuts that are close to each other, along the pin.
 
-    beyond: length of a piece past its cuts, of the diameter. bands: loaded ones with cuts in them
-    (loaded_bands). apart: factor of the usual distance up to which cuts share a piece.
+    beyond: length of a piece past its cuts, of the diameter.
+    bands: loaded ones with cuts in them (loaded_bands).
+    apart: factor of the usual distance up to which cuts share a piece.
     """
     cuts = sorted(pin.cuts.items(), key=lambda named: named[1].extent)
     groups = [dict(cuts[:1])]

@@ -27,8 +27,12 @@ PIECE_END_TOLERANCE = 1e-9  # of a piece's length
 class ShownCut:
     """The surface as it is shown, under L unit loads, each in one phase.
 
-    points: (P, 3) m. triangles: (M, 3). stress: (P, 6, L) Pa. displacement: (P, 3, L) m. read: (P,)
-    where the maximum is looked for. outline: (P,) what is on the outline of the pin without cuts.
+    points: (P, 3) m.
+    triangles: (M, 3).
+    stress: (P, 6, L) Pa.
+    displacement: (P, 3, L) m.
+    read: (P,) where the maximum is looked for.
+    outline: (P,) what is on the outline of the pin without cuts.
     """
 
     points: Floats
@@ -153,8 +157,8 @@ def _revolved(
     tensor = np.einsum(
         "sai,psijl,sbj->psabl", turn, stress[:, :, TENSOR_TO_VOIGT], turn, optimize=True
     )
-    along = np.broadcast_to(z[:, None], (len(z), CUT_VIEW_SECTORS))
-    points = np.stack([r[:, None] * np.cos(angle), r[:, None] * np.sin(angle), along], axis=2)
+    height = np.broadcast_to(z[:, None], (len(z), CUT_VIEW_SECTORS))
+    points = np.stack([r[:, None] * np.cos(angle), r[:, None] * np.sin(angle), height], axis=2)
     i = CUT_VIEW_SECTORS * 2 * np.arange(len(keep_rows))[:, None] + np.arange(CUT_VIEW_SECTORS)
     j = (
         CUT_VIEW_SECTORS * 2 * np.arange(len(keep_rows))[:, None]
@@ -178,7 +182,8 @@ def _outside_of(
 ) -> tuple[Ints, Floats]:
     """The parts of edges that lie outside an interval of z.
 
-    rows: (E, 2) points of the edges. part: (E, 2) where each begins and ends, of its length. low,
+    rows: (E, 2) points of the edges.
+    part: (E, 2) where each begins and ends, of its length. low,
     high: m.
     """
     out_rows, out_part = [], []

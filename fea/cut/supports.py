@@ -62,7 +62,8 @@ MOTION_SIGNS = np.array([1.0, 1.0, 1.0, -1.0, 1.0, 1.0])  # of the motions of on
 class ClampMotions:
     """The motions of clamps that go with loads.
 
-    motions: of clamps, as unit loads. amounts: (M, L) of each motion per unit of each of L units.
+    motions: of clamps, as unit loads.
+    amounts: (M, L) of each motion per unit of each of L units.
     """
 
     units: tuple[Unit, ...]

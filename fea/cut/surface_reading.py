@@ -33,7 +33,8 @@ _POWERS = [(i, j) for n in range(4) for i, j in ((n - k, k) for k in range(n + 1
 class Face:
     """A smooth face of a piece.
 
-    rows: (F,) its facets among the boundary's. cut: whether it belongs to a cut.
+    rows: (F,) its facets among the boundary's.
+    cut: whether it belongs to a cut.
     """
 
     name: str
@@ -45,8 +46,9 @@ class Face:
 class FaceReading:
     """The nodes (P,) of a face, with what is needed to read strains there.
 
-    directions: (P, 3, 3) two along the face and its outward normal. slopes: matrices (P, G P) that
-    give derivatives along the first two from values at the nodes and their images.
+    directions: (P, 3, 3) two along the face and its outward normal.
+    slopes: matrices (P, G P) that give derivatives along the first two from values at the nodes and
+    their images.
     """
 
     face: Face
@@ -57,7 +59,8 @@ class FaceReading:
     def strain(self, u: Floats, parities: Parities, character: Floats) -> Floats:
         """Strains 11, 22 and 12 in the surface, (P, 3, L).
 
-        u: (N, 3, L) m, displacements of one class. character: (G,) of the class.
+        u: (N, 3, L) m, displacements of one class.
+        character: (G,) of the class.
         """
         here = u[self.nodes]
         images = character[:, None] * parities.images  # (G, 3)
@@ -103,8 +106,9 @@ def _slopes(
 ) -> tuple[sp.csr_matrix, sp.csr_matrix]:
     """Matrices (P, G P) of the derivatives along the first two directions at nodes.
 
-    x: (P, 3) nodes. directions: (P, 3, 3). images, facing: (G P, 3) nodes, images included, and
-    their normals.
+    x: (P, 3) nodes.
+    directions: (P, 3, 3).
+    images, facing: (G P, 3) nodes, images included, and their normals.
     """
     count = min(FIT_NODES, len(images))
     distance, near = (np.asarray(result) for result in cKDTree(images).query(x, count))

@@ -122,7 +122,8 @@ class Section:
     def stiffness(self, materials: Material | Sequence[Material], n: int) -> sp.csr_matrix:
         """The stiffness matrix of harmonic n, for displacements as above and around the whole axis.
 
-        All harmonics have the same pattern. materials: one, or that of each part.
+        All harmonics have the same pattern.
+        materials: one, or that of each part.
         """
         by_part = (materials,) if isinstance(materials, Material) else materials
         E = strain_map(n)
@@ -159,7 +160,9 @@ class Section:
     def sampled_strains(self, n: Ints | int, u: Floats) -> Floats:
         """Strains (M, 3, 6, K), shears doubled, at three points of each element.
 
-        There they are most exact. n: harmonics, one or (K,). u: displacements (N, 3, K), m.
+        There they are most exact.
+        n: harmonics, one or (K,).
+        u: displacements (N, 3, K), m.
         """
         return self._sampled(np.eye(6), n, u)
 

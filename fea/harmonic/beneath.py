@@ -34,7 +34,8 @@ Steps = tuple[tuple[float, float], ...]  # of a stress, Pa, and the distance, m,
 class Beneath:
     """The largest von Mises stress beneath contact, Pa.
 
-    location: (x, y, z), m. instant: its number.
+    location: (x, y, z), m.
+    instant: its number.
     """
 
     value: float
@@ -76,7 +77,8 @@ class Away:
 def arcs_within(points: Floats, rings: Rings, distance: Floats) -> Ints:
     """The number of arcs (S, R) from a pressed arc up to which a point is within a distance.
 
-    points: (S, 2) m. distance: (R,) m. -1 where the point is farther from the ring anyway.
+    points: (S, 2) m.
+    distance: (R,) m. -1 where the point is farther from the ring anyway.
     """
     r, z = points[:, :1], points[:, 1:]
     along = np.maximum(0.0, np.maximum(rings.start - z, z - rings.end))

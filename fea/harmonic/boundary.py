@@ -26,8 +26,8 @@ def slopes(x: Floats) -> Floats:
 class Outline:
     """All edges of the outline off the axis.
 
-    nodes: (E, 3) ends and middle of each, counter-clockwise. after: (E,) which edge follows each,
-    -1 at the axis.
+    nodes: (E, 3) ends and middle of each, counter-clockwise.
+    after: (E,) which edge follows each, -1 at the axis.
     """
 
     def __init__(self, space: Section) -> None:

@@ -23,16 +23,18 @@ from pinbase.arrays import Floats, Ints, Mask
 class MeridianFields:
     """Amplitudes per unit of K loads on a section.
 
-    points: (S, 2) r, z in m. stress: (S, 6, K) Pa, components rr, tt, zz, tz, rz, rt; under a load
-    of harmonic n and phase p the first three and rz vary as cos psi, the others as sin psi, psi = n
-    theta - p pi / 2.
+    points: (S, 2) r, z in m.
+    stress: (S, 6, K) Pa, components rr, tt, zz, tz, rz, rt; under a load of harmonic n and phase p
+    the first three and rz vary as cos psi, the others as sin psi, psi = n theta - p pi / 2.
     displacement: (D, 3, K) m, of the first D points: r and z vary as cos psi, theta as sin psi.
-    skin: count of the first points, which follow the outline counter-clockwise. unknowns: of the
-    system that was solved.
-    triangles: (M, 3) of points, which fill the section, if the model has such. unread: points whose
-    stress is too rough to look for a maximum among (fea.harmonic.pressure_edge).
+    skin: count of the first points, which follow the outline counter-clockwise.
+    unknowns: of the system that was solved.
+    triangles: (M, 3) of points, which fill the section, if the model has such.
+    unread: points whose stress is too rough to look for a maximum among
+    (fea.harmonic.pressure_edge).
     forces: (3 D, K) N, along r, theta and z of those D points, which did the work of the loads,
-    integrated about the axis. mesh: of the section, if the model has one.
+    integrated about the axis.
+    mesh: of the section, if the model has one.
     """
 
     points: Floats

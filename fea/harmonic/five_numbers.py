@@ -25,7 +25,8 @@ COSINE_COMPONENTS = np.array([True, True, True, False, True, False])  # stresses
 class Numbers:
     """The five numbers of K unit loads at points.
 
-    five: (S, 5, K) Pa. reach: (S, K) Pa, the largest von Mises stress of each load by itself.
+    five: (S, 5, K) Pa.
+    reach: (S, K) Pa, the largest von Mises stress of each load by itself.
     """
 
     five: Floats

@@ -39,11 +39,12 @@ MAX_KEPT_INSTANTS = 256  # instants whose arcs are kept: about 50 MB
 class SurfacePoints:
     """The points of a surface at which stress is read, and their unit stress (`fields`).
 
-    middle: (S,) m, z of the middle of the element on which each is. relieved: (S,) the ring in
-    whose middle a point is that lacks the local stress of the pressure, -1 for others.
-    on_skin: (S,) the point of the section's skin that each is, -1 for none. cusps: by point at the
-    edge of a lug, how stress is extrapolated to it. arcs: what FreeSurface has found of what is
-    pressed at an instant.
+    middle: (S,) m, z of the middle of the element on which each is.
+    relieved: (S,) the ring in whose middle a point is that lacks the local stress of the pressure,
+    -1 for others.
+    on_skin: (S,) the point of the section's skin that each is, -1 for none.
+    cusps: by point at the edge of a lug, how stress is extrapolated to it.
+    arcs: what FreeSurface has found of what is pressed at an instant.
     """
 
     fields: MeridianFields
@@ -102,9 +103,12 @@ def relief(nu: float) -> Floats:
 class Cusp:
     """The end of contact at a lug's edge, and the points from which stress is extrapolated.
 
-    place: (r, z), m. side: -1 towards lower z, else 1. ring: at which contact ends. exponent: of
-    pressure.
-    near: points of the skin beside it for the fit. between: points nearer than these, for which the
+    place: (r, z), m.
+    side: -1 towards lower z, else 1.
+    ring: at which contact ends.
+    exponent: of pressure.
+    near: points of the skin beside it for the fit.
+    between: points nearer than these, for which the
     edge stands: they feel the last step of the pressure.
     """
 
@@ -149,8 +153,9 @@ def _beside(
 ) -> Cusp | None:
     """The cusp at the end of a ring, from points beside it; None where they are too few.
 
-    skin: points (P, 2), m, and z of the middle of each one's element. edge: ring and side. closest:
-    m, distance at which the points begin.
+    skin: points (P, 2), m, and z of the middle of each one's element.
+    edge: ring and side.
+    closest: m, distance at which the points begin.
     """
     (x, middle), (ring, side) = skin, edge
     radius, z = float(rings.radius[ring]), float((rings.start if side < 0.0 else rings.end)[ring])
@@ -237,7 +242,8 @@ def reader(fields: MeridianFields, loads: Loads, nu: float) -> Circumference:
     """The points among which the largest stress of a case is looked for.
 
     All of a section's points, or, where lugs press on the pin, its surface (what lies beneath:
-    fea.harmonic.beneath). nu: Poisson's ratio.
+    fea.harmonic.beneath).
+    nu: Poisson's ratio.
     """
     if loads.pressed is None:
         return Circumference(fields, loads)

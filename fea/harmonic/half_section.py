@@ -54,7 +54,8 @@ class MeridianPlane:
     def von_mises(self, loads: Loads, instant: int, angle: float, points: Floats) -> Floats:
         """Stress (2, ..), Pa, at points of the half plane at an angle and of the one opposite.
 
-        angle: rad. points: (.., 2) r and z in m.
+        angle: rad.
+        points: (.., 2) r and z in m.
         """
         rows = np.arange(len(self.fields.displacement))
         angles = np.array([angle, angle + np.pi])

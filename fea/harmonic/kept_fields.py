@@ -43,8 +43,8 @@ class FirstMesh:
 class EveryMesh(FirstMesh):
     """Unit fields of all meshes that were solved last, of any pins.
 
-    So other amounts of the same unit loads are only superposed. most: bytes that are kept, meshes
-    included.
+    So other amounts of the same unit loads are only superposed.
+    most: bytes that are kept, meshes included.
     """
 
     def __init__(self, most: int = 10**8) -> None:

@@ -69,7 +69,8 @@ class HarmonicBody:
     def motions(self, n: int, surfaces: Sequence[str], turns: Sequence[bool]) -> Floats:
         """Unknowns (unknowns, K) of harmonic n where clamps are shifted or turned by one.
 
-        surfaces: K names; for "" the column is zero. turns: (K,) whether each is a turn.
+        surfaces: K names; for "" the column is zero.
+        turns: (K,) whether each is a turn.
         """
         modes, out = rigid_motions(self.space.nodes, n), np.zeros((3 * len(self.space.nodes), 0))
         for surface, turn in zip(surfaces, turns, strict=True):
@@ -125,8 +126,9 @@ class HarmonicBody:
 class Moved:
     """Displacements of a section's nodes under K unit loads, and the loads themselves.
 
-    u: (N, 3, K) m. applied: (N, 3, K) N, nodal forces. tractions: (E, 3, 3, K) Pa, on the outline's
-    edges.
+    u: (N, 3, K) m.
+    applied: (N, 3, K) N, nodal forces.
+    tractions: (E, 3, 3, K) Pa, on the outline's edges.
     """
 
     loads: tuple[UnitLoad, ...]
@@ -230,8 +232,8 @@ class HarmonicModel(HarmonicBody):
     ) -> MeridianFields:
         """The unit fields of loads.
 
-        extra: (P, 2) m, further points inside the section. ends: (r, z), m, ends of pressures on
-        its outline.
+        extra: (P, 2) m, further points inside the section.
+        ends: (r, z), m, ends of pressures on its outline.
 
         Raises: SolveError when the pin is not constrained or a check fails.
         """
@@ -293,8 +295,8 @@ def applied(
 ) -> tuple[Floats, Floats]:
     """Nodal forces (unknowns, K) and tractions at the outline's nodes (E, 3, 3, K) of unit loads.
 
-    pin: like the model's, outline: of its section, whose nodes may be elsewhere. n: harmonic of all
-    loads.
+    pin: like the model's, outline: of its section, whose nodes may be elsewhere.
+    n: harmonic of all loads.
     integrals: of its shape functions (Section.integrals); those of the model by default.
     """
 

@@ -31,7 +31,8 @@ def inside(
 ) -> ZoneMaximum:
     """The largest stress in a singular zone and, on the finest grading, its exponent and strength.
 
-    close: element size at the singularity, of its scale. nu: Poisson's ratio.
+    close: element size at the singularity, of its scale.
+    nu: Poisson's ratio.
     """
     distance, within, felt = _places(fields, singularity)
     far = around.top(felt)
@@ -78,7 +79,8 @@ def _growth(
 ) -> tuple[float | None, SingularIntensity | None]:
     """Exponent and intensity on the side of the singularity where stress is larger.
 
-    distance: (S,) m of the points. nu: Poisson's ratio.
+    distance: (S,) m of the points.
+    nu: Poisson's ratio.
     """
     skin = distance[: fields.skin]
     d = skin / singularity.scale

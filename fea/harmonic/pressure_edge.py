@@ -39,10 +39,12 @@ CONTINUATION_SAMPLES = 45  # samples further on from which the smooth part is ex
 class Jump:
     """The end of a pressure on a smooth outline, and how stress is read there.
 
-    r, z: m. before, after: edges of the outline that meet there. normal: (2,) outwards. reach: m,
-    within which nothing else inside is read.
-    samples: (S,) numbers of those (3 M) that are extrapolated, with weights (S,). field: (D, 6)
-    what a pressure of 1 on `before` adds, by direction.
+    r, z: m.
+    before, after: edges of the outline that meet there.
+    normal: (2,) outwards.
+    reach: m, within which nothing else inside is read.
+    samples: (S,) numbers of those (3 M) that are extrapolated, with weights (S,).
+    field: (D, 6) what a pressure of 1 on `before` adds, by direction.
     """
 
     r: float
@@ -58,8 +60,8 @@ class Jump:
     def stress(self, sampled: Floats, traction: Floats) -> Floats:
         """Stress (D, 6, K), Pa, in all directions at the jump.
 
-        sampled: (3 M, 6, K) Pa at all samples. traction: (E, 3, 3, K) Pa at the nodes of the
-        outline's edges.
+        sampled: (3 M, 6, K) Pa at all samples.
+        traction: (E, 3, 3, K) Pa at the nodes of the outline's edges.
         """
         smooth = np.einsum("s,sck->ck", self.weights, sampled[self.samples])
         more = traction[self.after, 0] - traction[self.before, 1]
@@ -113,7 +115,8 @@ def at_edge(
 ) -> tuple[Floats, Floats, Floats]:
     """The normal (2,), weights (S,) and field (D, 6) of a jump at the middle one of three nodes.
 
-    nodes: (2,) m each. samples: (S, 2) m.
+    nodes: (2,) m each.
+    samples: (S, 2) m.
     """
     first, middle, last = nodes
     along = (last - first) / np.linalg.norm(last - first)

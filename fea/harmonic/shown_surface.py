@@ -32,7 +32,8 @@ POINT_TOLERANCE = 1e-9  # of the length: points that are one
 class ShownStress(Protocol):
     """The stress that is shown of a surface at the instants of a case.
 
-    rows: (P,) of the skin, the first one at each place. angles: (A,) rad.
+    rows: (P,) of the skin, the first one at each place.
+    angles: (A,) rad.
     """
 
     rows: Ints

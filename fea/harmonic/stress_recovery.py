@@ -50,8 +50,9 @@ class Reading:
     def of(self, n: Ints | int, u: Floats, traction: Floats) -> tuple[Floats, Floats]:
         """Displacement (D, 3, K), m, and stress (S, 6, K), Pa, amplitudes.
 
-        n: harmonics, one or (K,). u: (N, 3, K) m. traction: (E, 3, 3, K) Pa at the nodes of the
-        outline's edges.
+        n: harmonics, one or (K,).
+        u: (N, 3, K) m.
+        traction: (E, 3, 3, K) Pa at the nodes of the outline's edges.
         """
         K = u.shape[2]
         sampled = self.space.sampled_stress(self.material, n, u).reshape(-1, 6, K)
@@ -136,8 +137,9 @@ def reading(
 ) -> Reading:
     """The points at which stress is read on a mesh.
 
-    clamps: surfaces that are clamped. inside: further points (I, 2), m. ends: places (r, z), m, on
-    the outline where a pressure ends.
+    clamps: surfaces that are clamped.
+    inside: further points (I, 2), m.
+    ends: places (r, z), m, on the outline where a pressure ends.
     """
     every_jump = jumps(space, outline, material, ends)
     on_jumps = (

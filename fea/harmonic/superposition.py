@@ -82,7 +82,8 @@ class Region(Protocol):
 class Circumference:
     """The von Mises stress of one case at all points of a section, at any instant and angle.
 
-    fields: of the unit loads at S points. loads: T instants of the case.
+    fields: of the unit loads at S points.
+    loads: T instants of the case.
     region: where on the circumference points are read; all round by default.
 
     Raises: ArgumentError when a unit load that acts is not among the fields.
@@ -120,8 +121,8 @@ class Circumference:
     def bound(self, points: Ints, instants: Instants = ALL_INSTANTS) -> Floats:
         """An upper bound (J, T), Pa, of the von Mises stress over the circumference.
 
-        points: (J,) numbers. instants: T of them, all by default. Exact where one harmonic acts
-        alone.
+        points: (J,) numbers.
+        instants: T of them, all by default. Exact where one harmonic acts alone.
         """
         return self._sum(points, self._waves, instants)
 
@@ -214,9 +215,11 @@ class Circumference:
     ) -> tuple[Floats, Ints]:
         """The maximum (T,), Pa, at every instant and its point (T,), by branch and bound.
 
-        among: (S,) the points that are searched. together: only the largest of all instants is
-        needed; those of other instants may be too low.
-        least: Pa, the value to exceed. soon: stop at the first value beyond `least`.
+        among: (S,) the points that are searched.
+        together: only the largest of all instants is needed; those of other instants may be too
+        low.
+        least: Pa, the value to exceed.
+        soon: stop at the first value beyond `least`.
         """
         rows, reach = self._by_reach(np.flatnonzero(among))
         best = np.full(self.count, least)
@@ -259,8 +262,8 @@ class Circumference:
     def _likely_pairs(self, points: Ints, together: bool) -> tuple[Ints, Ints]:
         """Pairs of points and instants, (P,) each, with the greatest `reach`.
 
-        Their true values are the first incumbents of the search. together: the FIRST_PAIRS best of
-        all instants; otherwise the best point of each instant.
+        Their true values are the first incumbents of the search.
+        together: the FIRST_PAIRS best of all instants; otherwise the best point of each instant.
         """
         reach = self.reach(points)
         if not together:
@@ -273,7 +276,8 @@ class Circumference:
         """A bound (J, T), Pa, at the instants of a mask that is tighter where it exceeds `beat`.
 
         The lowest harmonics are sampled together there, which keeps their mutual cancellation; the
-        maxima of the higher ones are added. beat: Pa, one for all instants or (T,).
+        maxima of the higher ones are added.
+        beat: Pa, one for all instants or (T,).
         """
         at = np.flatnonzero(instants)
         low, high = self._waves[:LOW_HARMONICS], self._waves[LOW_HARMONICS:]
@@ -387,7 +391,8 @@ class Circumference:
     ) -> tuple[Floats, Floats]:
         """The factors (J, 5, W) of cos n theta, and of sin n theta, in the five numbers.
 
-        points, instants: (J,) each. waves: W harmonics.
+        points, instants: (J,) each.
+        waves: W harmonics.
         """
         back, forth = (np.empty((len(points), 5, len(waves))) for _ in range(2))
         one, i = np.unique(points, return_inverse=True)
@@ -406,7 +411,8 @@ class Circumference:
     def envelope(self, points: Ints, angles: Floats, read: Mask | None = None) -> Floats:
         """The largest von Mises stress (J, A), Pa, over all instants.
 
-        points: (J,) numbers. angles: (A,) rad.
+        points: (J,) numbers.
+        angles: (A,) rad.
         read: (J, A, T) where it counts, everywhere by default. -1 where it never does.
         """
         parts = (
@@ -446,7 +452,8 @@ class Circumference:
     def stress(self, points: Ints, instant: int, angles: Floats) -> Floats:
         """Stress (J, A, 6), Pa, at an instant: rr, tt, zz, tz, rz, rt.
 
-        points: (J,) numbers. angles: (A,) rad.
+        points: (J,) numbers.
+        angles: (A,) rad.
         """
         out = np.zeros((len(points), len(angles), 6))
         here = self.fields.stress[points]
@@ -463,8 +470,8 @@ class Circumference:
 def _update_best(best: Floats, point: Ints, t: Ints, value: Floats, at: Ints) -> None:
     """Replace the best values of instants, in place, by values that exceed them.
 
-    best, point: (T,) the best values so far and their points. t, value, at: (J,) instants, values
-    and points.
+    best, point: (T,) the best values so far and their points.
+    t, value, at: (J,) instants, values and points.
     """
     order = np.argsort(value, kind="stable")
     t, value, at = t[order], value[order], at[order]

@@ -35,8 +35,10 @@ _TRACTION_JUMP = 1e-9
 class Skin:
     """Stress and displacement, amplitudes, at five points on each edge of the outline.
 
-    points: (E, 5, 2) r, z in m. tangent: (E, 5, 2). displacement: (E, 5, 3, K) m. stress: (E, 5, 6,
-    K) Pa.
+    points: (E, 5, 2) r, z in m.
+    tangent: (E, 5, 2).
+    displacement: (E, 5, 3, K) m.
+    stress: (E, 5, 6, K) Pa.
     """
 
     points: Floats
@@ -50,8 +52,10 @@ def skin(
 ) -> Skin:
     """The stress on the outline of displacements under tractions.
 
-    n: harmonics, one or (K,). u: (N, 3, K) m. traction: (E, 3, 3, K) Pa, at the ends and middle of
-    the edges. On an axis (r = 0) stresses are finite and mean nothing.
+    n: harmonics, one or (K,).
+    u: (N, 3, K) m.
+    traction: (E, 3, 3, K) Pa, at the ends and middle of the edges. On an axis (r = 0) stresses are
+    finite and mean nothing.
     """
     x = space.nodes[outline.nodes]
     return on_edges(
@@ -69,8 +73,10 @@ def on_edges(
 ) -> Skin:
     """The stress on edges from the displacements of their nodes.
 
-    x: (E, 3, 2) m, nodes. moved: (E, 3, 3, K) m. traction: (E, 3, 3, K) Pa. neighbours: edges that
-    go on smoothly before and after each (`smooth_neighbours`).
+    x: (E, 3, 2) m, nodes.
+    moved: (E, 3, 3, K) m.
+    traction: (E, 3, 3, K) Pa.
+    neighbours: edges that go on smoothly before and after each (`smooth_neighbours`).
     """
     at = np.einsum("qi,eia->eqa", shapes(EDGE_STATIONS), x)
     tangent = np.einsum("qi,eia->eqa", slopes(EDGE_STATIONS), x)

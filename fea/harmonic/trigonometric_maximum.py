@@ -27,7 +27,8 @@ CREST_STEP_TOLERANCE = 1e-6
 def highest_crest(samples: Floats, degree: int, beat: Floats | float = -np.inf) -> Floats:
     """The angles (J,), rad, at which polynomials are largest.
 
-    samples: (J, A) values at the angles 2 pi k / A. degree: of the polynomials; A > 2 `degree`.
+    samples: (J, A) values at the angles 2 pi k / A.
+    degree: of the polynomials; A > 2 `degree`.
     beat: (J,), a value to exceed; where a polynomial cannot, the angle of its largest sample is
     returned.
     """
@@ -87,8 +88,9 @@ def crest_of_samples(square: Floats) -> tuple[Floats, Floats]:
 def _crests(c: Floats, low: Floats, angle: Floats, high: Floats) -> Floats:
     """The angles (C,), rad, of the crests of polynomials, by safeguarded Newton steps.
 
-    c: (C, D + 1) complex Fourier coefficients. low, high: (C,) rad, where the slope is positive and
-    negative. angle: (C,) rad, a guess.
+    c: (C, D + 1) complex Fourier coefficients.
+    low, high: (C,) rad, where the slope is positive and negative.
+    angle: (C,) rad, a guess.
     """
     k = np.arange(c.shape[1])
     for _ in range(MAX_CREST_STEPS):
@@ -107,7 +109,9 @@ def _crests(c: Floats, low: Floats, angle: Floats, high: Floats) -> Floats:
 def form_maximum(total: Floats, apart: Floats, mixed: Floats) -> Floats:
     """The largest value of A cos^2 + 2 B cos sin + C sin^2, in closed form.
 
-    total: A + C. apart: A - C. mixed: B.
+    total: A + C.
+    apart: A - C.
+    mixed: B.
     """
     return np.asarray(total / 2.0 + np.sqrt(apart * apart / 4.0 + mixed * mixed))
 
@@ -115,7 +119,8 @@ def form_maximum(total: Floats, apart: Floats, mixed: Floats) -> Floats:
 def one_wave(n: Ints, back: Floats, forth: Floats) -> tuple[Floats, Floats]:
     """The largest von Mises stress (J,) and its angle (J,), rad, where one harmonic acts, or none.
 
-    n: (1,) or (0,) the harmonic. back, forth: (J, 5, 1) the factors of cos n theta and sin n theta.
+    n: (1,) or (0,) the harmonic.
+    back, forth: (J, 5, 1) the factors of cos n theta and sin n theta.
     """
     A, B, C = ((x * y).sum(axis=(1, 2)) for x, y in ((back, back), (back, forth), (forth, forth)))
     if not n.any():

@@ -22,7 +22,8 @@ EXPONENT_LIMITS = (0.01, 0.95)
 def growth_exponent(distance: Floats, stress: Floats, following: float = 0.0) -> float | None:
     """The exponent s of stress A d^-s + B d^q fitted to samples; None if they show no such growth.
 
-    distance, stress: (J,) each. following: q.
+    distance, stress: (J,) each.
+    following: q.
     """
     if (
         len(distance) < MIN_FIT_POINTS
@@ -49,7 +50,10 @@ def singular_intensity(
 ) -> float:
     """The factor A, Pa m^s, of stress A d^-s + B d^q for a known exponent s.
 
-    distance: (J,) m. stress: (J,) Pa. exponent: s. following: q.
+    distance: (J,) m.
+    stress: (J,) Pa.
+    exponent: s.
+    following: q.
     """
     mean = float(np.exp(np.log(distance).mean()))
     d = distance / mean

@@ -38,7 +38,8 @@ MIN_EXPONENT = 1e-9  # exponents below are those of no singularity
 def lug_edge_exponent(pin: Material, lug: Material, angle: float = RIGHT_ANGLE) -> float:
     """Exponent s of pressure and stress ~ d^-s at the sharp edge of a lug; 0 where finite.
 
-    lug: the material that touches the pin, a bushing's if there is one. angle: of the edge, rad.
+    lug: the material that touches the pin, a bushing's if there is one.
+    angle: of the edge, rad.
 
     Raises: ArgumentError outside 0 < angle < pi. Source: as the module.
     """

@@ -33,14 +33,17 @@ MESH_SCALE_RATIO = 10.0  # length by which meshes are scaled, over the reach of 
 class Zone:
     """A circle at (r, z), m, in which stress grows like d^-theory and is not read.
 
-    between: the surfaces that meet there. theory: the exponent in plane strain, so for axial and
-    bending loads; 0 at the edge of a load, where stress grows like log(1/d); None where the angle
-    is not known. torsion_theory: the exponent in torsion; bending has this part too.
-    radius: m, within which stress is not read. limit: m, of the radius, where the next fillet or
-    groove begins. feature: m, how far the singular field reaches at most (the height of a small
-    step, say), no more than the radius.
-    angle: of the material, rad. scale: m, the length by which meshes are scaled near it, at most
-    the diameter. advice: what would make stress finite, for people.
+    between: the surfaces that meet there.
+    theory: the exponent in plane strain, so for axial and bending loads; 0 at the edge of a load,
+    where stress grows like log(1/d); None where the angle is not known.
+    torsion_theory: the exponent in torsion; bending has this part too.
+    radius: m, within which stress is not read.
+    limit: m, of the radius, where the next fillet or groove begins.
+    feature: m, how far the singular field reaches at most (the height of a small step, say), no
+    more than the radius.
+    angle: of the material, rad.
+    scale: m, the length by which meshes are scaled near it, at most the diameter.
+    advice: what would make stress finite, for people.
     """
 
     r: float
@@ -112,8 +115,10 @@ def find_singularities(
     The zone of each ends where a fillet or a groove begins: farther away its term K d^-theory does
     not govern stress. Zones of other singularities may overlap it, since neither has stress that
     counts.
-    clamps: surfaces (by the pin's names) that are clamped. loaded: those under a traction that does
-    not fade towards their edges; a bearing pressure's shear does. nu: Poisson's ratio.
+    clamps: surfaces (by the pin's names) that are clamped.
+    loaded: those under a traction that does not fade towards their edges; a bearing pressure's
+    shear does.
+    nu: Poisson's ratio.
     distance: of the local diameter, within which stress is not read; a tenth of it at the edge of a
     load.
 
@@ -144,8 +149,9 @@ def begins(gap: float, radius: float) -> float:
     """Distance (m) from a singularity up to which stress is its own beside a feature.
 
     The feature is a fillet, a groove or a hole.
-    gap: m, to the feature. radius: m, of the feature. Where the feature begins at the singularity
-    or nearly so, it is STRAIGHT_ARC_SHARE of the radius.
+    gap: m, to the feature.
+    radius: m, of the feature. Where the feature begins at the singularity or nearly so, it is
+    STRAIGHT_ARC_SHARE of the radius.
     """
     return max(gap, STRAIGHT_ARC_SHARE * radius)
 
@@ -168,8 +174,8 @@ def smooth_edges(
 ) -> tuple[tuple[float, float], ...]:
     """Rims (r, z), m, of surfaces across which the outline goes on smoothly, neither side clamped.
 
-    surfaces, clamps: by the pin's names. cells: surfaces of one pressure, between which there is no
-    rim.
+    surfaces, clamps: by the pin's names.
+    cells: surfaces of one pressure, between which there is no rim.
     """
     names, constrained = (
         {pin.surface(name) for name in surface_names} for surface_names in (surfaces, clamps)
@@ -195,8 +201,8 @@ def _singularity(
 ) -> Zone | None:
     """The singularity at a vertex, or None where stress stays finite.
 
-    constrained, pushed: surfaces that are clamped, or loaded up to their edges. distance: as in
-    `find_singularities`.
+    constrained, pushed: surfaces that are clamped, or loaded up to their edges.
+    distance: as in `find_singularities`.
     """
     first, second = (_side(name, constrained) for name in v.between)
     smooth = abs(v.angle - math.pi) <= SMOOTH_ANGLE_TOLERANCE

@@ -46,7 +46,9 @@ EXPONENT_ROUND_OFF = 1e-12  # exponents below are those of no singularity
 def plane_exponent(omega: float, nu: float, first: Side, second: Side) -> float:
     """Exponent s of stress ~ d^-s in plane strain at a corner; 0 where stress stays finite.
 
-    omega: angle (rad) of the material, 0 to 2 pi. nu: Poisson's ratio. first, second: its sides.
+    omega: angle (rad) of the material, 0 to 2 pi.
+    nu: Poisson's ratio.
+    first, second: its sides.
 
     Raises: ValueError outside 0 < omega <= 2 pi or -1 < nu < 0.5.
     Source: as the module.
@@ -77,7 +79,8 @@ def plane_eigenvalue(omega: float, nu: float, first: Side, second: Side) -> comp
 def antiplane_exponent(omega: float, first: Side, second: Side) -> float:
     """Exponent s of stress ~ d^-s in torsion at a corner; 0 where stress stays finite.
 
-    omega: angle (rad) of the material, 0 to 2 pi. first, second: its sides.
+    omega: angle (rad) of the material, 0 to 2 pi.
+    first, second: its sides.
 
     Raises: ValueError outside 0 < omega <= 2 pi.
     Source: the displacement is harmonic: r^L cos L theta, L = pi / omega, or half that if the sides

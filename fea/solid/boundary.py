@@ -60,8 +60,10 @@ def quadrature() -> tuple[Floats, Floats]:
 class SurfaceMesh:
     """The boundary of a solid mesh.
 
-    nodes: (S,) node numbers. facets: (F,) facet numbers. corners: (F, K) node numbers, K = 6, or 3
-    on linear elements. normals: (F, K, 3) outward unit vectors at those nodes.
+    nodes: (S,) node numbers.
+    facets: (F,) facet numbers.
+    corners: (F, K) node numbers, K = 6, or 3 on linear elements.
+    normals: (F, K, 3) outward unit vectors at those nodes.
     """
 
     nodes: Ints
@@ -107,8 +109,9 @@ def clamped_nodes(space: Discretisation, surfaces: tuple[str, ...]) -> Ints:
 class Patch:
     """One named surface and the tractions that load it.
 
-    rows: (P,) its facets among the boundary's. area: m^2. Tractions (P, K, 3, L), Pa per unit of
-    each load, are values at the nodes of its facets, and quadratic between them.
+    rows: (P,) its facets among the boundary's.
+    area: m^2. Tractions (P, K, 3, L), Pa per unit of each load, are values at the nodes of its
+    facets, and quadratic between them.
     """
 
     def __init__(self, space: Discretisation, boundary: SurfaceMesh, name: str) -> None:

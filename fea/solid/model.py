@@ -34,8 +34,10 @@ _NO_POINTS = np.zeros((0, 3))
 class UnitFields:
     """Fields of L unit loads, each in one phase, per unit of load.
 
-    displacement: (N, 3, L) m. stress: (N, 6, L) Pa. forces: (N, 3, L) N, on the nodes. extra: (P,
-    3) m, further points inside the body where stress is read.
+    displacement: (N, 3, L) m.
+    stress: (N, 6, L) Pa.
+    forces: (N, 3, L) N, on the nodes.
+    extra: (P, 3) m, further points inside the body where stress is read.
     fixed: numbers of constrained displacement components, 3 n + c for component c of node n.
     support: (6, L) force and moment of the clamps about (0, 0, 0), from the residual of the system;
     minus those of the load if the solution is right.

@@ -27,8 +27,8 @@ MAX_STRAIGHT_AREA_LOSS = 0.1  # with plane ones
 class NodalLoads:
     """L unit loads on a mesh.
 
-    traction: (F, K, 3, L) Pa, at the nodes of the boundary's facets. forces: (N, 3, L) N, on the
-    nodes. Both per unit of load.
+    traction: (F, K, 3, L) Pa, at the nodes of the boundary's facets.
+    forces: (N, 3, L) N, on the nodes. Both per unit of load.
     """
 
     traction: Floats

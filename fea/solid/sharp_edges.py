@@ -22,7 +22,8 @@ FACET_SIDES = ((0, 1, 2), (1, 2, 0), (0, 2, 1))  # of a facet: ends and the corn
 class SharpEdges:
     """Points (K, 3), m, along inner corners and along edges of clamps.
 
-    radius: (K,) m, of the body at their z. limit: (K,) m, to which their zones reach at most.
+    radius: (K,) m, of the body at their z.
+    limit: (K,) m, to which their zones reach at most.
     """
 
     corner: Floats
@@ -33,8 +34,9 @@ class SharpEdges:
     def singularities(self, x: Floats, part: float) -> list[tuple[Zone, Mask]]:
         """The zones near inner corners and near edges of clamps, with the points in each.
 
-        x: (S, 3) m. part: of the diameter, radius of the zones. All inner corners make one zone,
-        all edges of clamps another; of several corners the nearest counts.
+        x: (S, 3) m.
+        part: of the diameter, radius of the zones. All inner corners make one zone, all edges of
+        clamps another; of several corners the nearest counts.
         """
         first = len(self.corner)
         every = np.minimum(part * 2.0 * self.radius, self.limit)
@@ -70,7 +72,9 @@ _RADIUS_ADVICE = "a radius there would make it finite"
 class TurnedEdges:
     """The E edges between facets.
 
-    facets: (2, E) rows of the two facets among the boundary's. nodes: (E, 2 or 3). turn: (E,) rad,
+    facets: (2, E) rows of the two facets among the boundary's.
+    nodes: (E, 2 or 3).
+    turn: (E,) rad,
     by which the surface turns inwards: above zero at an inner corner.
     """
 

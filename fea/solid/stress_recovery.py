@@ -31,9 +31,9 @@ def with_known_traction(
 ) -> Floats:
     """Stress (N, 6, L) corrected on the surface to carry the given traction.
 
-    traction: (F, .., 3, L) Pa, at the nodes of the facets. clamped: (F,) facets whose traction is
-    unknown. Nodes there and on edges of the body are not changed; where two tractions meet on a
-    smooth surface their mean is taken.
+    traction: (F, .., 3, L) Pa, at the nodes of the facets.
+    clamped: (F,) facets whose traction is unknown. Nodes there and on edges of the body are not
+    changed; where two tractions meet on a smooth surface their mean is taken.
     """
     n_nodes = len(stress)
     node = surface.corners.ravel()

@@ -35,10 +35,12 @@ DIRECTION_COUNT = 9
 class Envelope:
     """The largest von Mises stress of a case.
 
-    maximum: Pa, at the governing `instant`, the mean over directions. maxima: (T,) the same at
-    every instant. scatter: half its range over the directions, Pa.
-    location: m, with the loads as they are. field: (S,) each surface node's largest over all
-    instants, Pa. inside: the largest stress (Pa) and its location (m) in each excluded region.
+    maximum: Pa, at the governing `instant`, the mean over directions.
+    maxima: (T,) the same at every instant.
+    scatter: half its range over the directions, Pa.
+    location: m, with the loads as they are.
+    field: (S,) each surface node's largest over all instants, Pa.
+    inside: the largest stress (Pa) and its location (m) in each excluded region.
     """
 
     maximum: float
@@ -59,9 +61,10 @@ def envelope(
 ) -> Envelope:
     """The largest von Mises stress over the points of the fields and all instants of a case.
 
-    fields: with all the unit loads of which `loads` are made. outside: (S + P,) points among which
-    the maximum is looked for, all by default. within: regions of which the largest stress is wanted
-    as well. directions: number of turned loads for a body of revolution.
+    fields: with all the unit loads of which `loads` are made.
+    outside: (S + P,) points among which the maximum is looked for, all by default.
+    within: regions of which the largest stress is wanted as well.
+    directions: number of turned loads for a body of revolution.
     """
     points, surface = fields.points, len(fields.surface.nodes)
     among = np.ones(len(points), dtype=bool) if outside is None else outside
