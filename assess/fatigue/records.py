@@ -10,11 +10,12 @@ from pinbase.dimensions import Floats, Point, Stress, Stresses, Times
 
 @dataclass(frozen=True)
 class CaseHistory:
-    """The stress (T, 6), Pa, at a point in one case.
+    """The stress at a point in one case.
 
+    stress: (T, 6) Pa; rr, tt, zz, tz, rz, rt for a body of revolution; xx, yy, zz, yz, xz, xy for
+    any other.
     von_mises, signed: (T,) Pa, without and with a sign (assess.fatigue.signed_stress).
-    times: None without a motion. Components are rr, tt, zz, tz, rz, rt for a body of revolution;
-    xx, yy, zz, yz, xz, xy for any other.
+    times: (T,) s, None without a motion.
     """
 
     case: str

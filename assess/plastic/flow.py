@@ -80,8 +80,8 @@ class FlowRule:
         """The state after a fully implicit step to a total strain, by radial return.
 
         strain: (..., 6) total, with tensor shears, at the end of the step.
-        plastic: (..., 6) plastic strain, and equivalent: (...) equivalent plastic strain, at its
-        start.
+        plastic: (..., 6) plastic strain at its start.
+        equivalent: (...) equivalent plastic strain at its start.
 
         Source: Simo & Hughes, boxes 3.1 and 3.2.
         """

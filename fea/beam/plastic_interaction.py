@@ -48,8 +48,9 @@ def plastic_use(
 ) -> float:
     """The part of what a fully plastic section carries that these forces use, at most.
 
+    It is sqrt(g^2 + (V/Vs + T/Tp)^2), as in assess.plastic.hinge.
     shear, moment, axial, torque: N and N m, not negative.
-    strength: yield, Pa. It is sqrt(g^2 + (V/Vs + T/Tp)^2), as in assess.plastic.hinge.
+    strength: yield, Pa.
     """
     M, N = (
         np.array([moment / (strength * section.plastic_modulus)]),

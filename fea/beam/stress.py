@@ -30,10 +30,11 @@ POINTS_PER_CELL = 33  # points in a cell, in addition to where a moment is large
 class BeamStress:
     """Stress amplitudes of K unit loads at points of a beam.
 
+    The last points are those of the `notches` at which the thinner shaft is free of a clamp, in
+    order, with their factors where there are any, otherwise nominal.
+
     points: (S, 2) r, z in m.
-    stress: (S, 6, K) Pa per unit of load, order rr, tt, zz, tz, rz, rt. The last points are those
-    of the `notches` at which the thinner shaft is free of a clamp, in order, with their factors
-    where there are any, otherwise nominal.
+    stress: (S, 6, K) Pa per unit of load, order rr, tt, zz, tz, rz, rt.
     """
 
     pin: Pin

@@ -72,10 +72,10 @@ def nearest(samples: Floats, points: Floats) -> Ints:
 def fit_weights(offsets: Floats, confidence: Floats) -> Floats:
     """Weights (..., S) of samples in the value, at one place, of the quadratic fitted to them.
 
+    Where several quadratics fit equally (long thin elements have their nearest samples in a row),
+    the one with the least slope and curvature counts.
     offsets: (..., S, 2) of the samples from the place.
-    confidence: (..., S) weight of each in the fit. Where several quadratics fit equally (long thin
-    elements have their nearest samples in a row), the one with the least slope and curvature
-    counts.
+    confidence: (..., S) weight of each in the fit.
     """
     x, y = np.moveaxis(offsets, -1, 0)
     largest = np.maximum(*(np.abs(part).max(axis=-1, keepdims=True) for part in (x, y)))

@@ -70,8 +70,9 @@ class ContactEdge:
 
     K, exponent: pressure is K distance^-exponent.
     yield_distance: at which that falls to yield.
-    max_pressure, max_von_mises: of the pin at a rounded edge.
-    error_estimate: of the pressure. None at a sharp edge, where pressure has no bound.
+    max_pressure, max_von_mises: of the pin at a rounded edge; None at a sharp one, where pressure
+    has no bound.
+    error_estimate: of that pressure; None likewise.
     """
 
     band: str
