@@ -1,6 +1,4 @@
-"""The pieces of a pin about its cuts that are solid, and the cut pins that can be solved this
-way.
-"""
+"""The pieces of a pin about its cuts that are solid, and the pins to which this applies."""
 
 from __future__ import annotations
 
@@ -10,8 +8,8 @@ from functools import cached_property
 from itertools import combinations
 
 from fea.core.peak import Reason
+from fea.core.zone import Zone
 from fea.cut.inside import crosses_end, is_inside
-from fea.singular.singularities import Zone
 from geometry import Cut, CutPin, Pin
 from geometry.mesh.cut_piece import Piece, clipped
 

@@ -1,6 +1,4 @@
-"""Stress and displacement on a section from the unknowns of one harmonic: on its skin and
-inside.
-"""
+"""Stress and displacement on a section, on its skin and inside, from the unknowns of a harmonic."""
 
 from __future__ import annotations
 

@@ -1,105 +1,28 @@
-"""The stress singularities of a pin: where they are, how stress grows towards them, their
-remedies.
-"""
+"""The stress singularities of a pin: their places, their exponents and their remedies."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
-from typing import Literal
 
 import numpy as np
 
+from fea.core.material import Material
+from fea.core.pin_loads import PinLoads
+from fea.core.zone import MESH_SCALE_RATIO, Kind, Zone
 from fea.singular.williams import Side, antiplane_exponent, plane_exponent
-from geometry import Arc, Pin, Vertex, meridian, vertices
+from geometry import Arc, Pin, PinLike, Vertex, meridian, vertices
 from geometry.shape.polygon import SMOOTH_ANGLE_TOLERANCE
 from pinbase.arrays import Floats, Mask
 
-Kind = Literal["sharp corner", "edge of a clamp", "edge of a load"]
-
-DISTANCE_VARIATIONS = (0.5, 2.0)  # times the excluded distance, which is a convention
 # Chosen by judgement:
 MIN_ADVISED_FILLET = 0.1  # of the smaller diameter: the radius to try
 # Excluded distance at a logarithm over that at a power: a logarithm is felt that much closer only.
 LOGARITHM_DISTANCE_RATIO = 0.1
 # Of the radius of an arc that begins at a singularity: up to there it is nearly straight.
 STRAIGHT_ARC_SHARE = 0.25
-MESH_SCALE_RATIO = 10.0  # length by which meshes are scaled, over the reach of a singular field
-
-
-@dataclass(frozen=True)
-class Zone:
-    """A circle at (r, z), m, in which stress grows like d^-theory and is not read.
-
-    between: the surfaces that meet there.
-    theory: the exponent in plane strain, so for axial and bending loads; 0 at the edge of a load,
-    where stress grows like log(1/d); None where the angle is not known.
-    torsion_theory: the exponent in torsion; bending has this part too.
-    radius: m, within which stress is not read.
-    limit: m, of the radius, where the next fillet or groove begins.
-    feature: m, how far the singular field reaches at most (the height of a small step, say), no
-    more than the radius.
-    angle: of the material, rad.
-    scale: m, the length by which meshes are scaled near it, at most the diameter.
-    advice: what would make stress finite, for people.
-    """
-
-    r: float
-    z: float
-    kind: Kind
-    between: tuple[str, str]
-    theory: float | None
-    torsion_theory: float
-    radius: float
-    advice: str
-    feature: float = math.inf
-    angle: float = math.nan
-    limit: float = math.inf
-    scale: float = math.inf
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "radius", min(self.radius, self.limit))
-        object.__setattr__(self, "feature", min(self.feature, self.radius))
-        object.__setattr__(self, "scale", min(self.scale, 2.0 * self.r))
-
-    def varied(self, times: float) -> Zone:
-        """The zone with so many times the radius, but not beyond where the next feature begins."""
-        return replace(self, radius=times * self.radius)
-
-    def up_to(self, *distances: float) -> Zone:
-        """The zone limited by features whose stress counts from these distances, m, on."""
-        limit = min(self.limit, *distances, math.inf)
-        return replace(self, limit=limit, scale=min(self.scale, MESH_SCALE_RATIO * limit))
-
-    @property
-    def measured(self) -> bool:
-        """Whether the growth of stress is measured, on closely graded meshes.
-
-        Not where the growth is a logarithm, nor under a lug, whose pressure is even on each ring.
-        """
-        return self.kind in ("sharp corner", "edge of a clamp")
-
-    @property
-    def following(self) -> float:
-        """Exponent q of the term d^q that stands for all regular terms in plane strain.
-
-        The theoretical one where one side of a smooth surface is clamped; at inner corners the
-        value that fits twenty of them best (`python -m benchmarks corners`).
-        """
-        if self.kind == "sharp corner":
-            return 0.2
-        return 0.5 if self.theory == 0.5 else 0.0
-
-    @property
-    def following_torsion(self) -> float:
-        """The same exponent in torsion.
-
-        Eigenvalues are multiples of the first, odd ones if one side is constrained.
-        """
-        times = 3.0 if self.kind == "edge of a clamp" else 2.0
-        return times * (1.0 - self.torsion_theory) - 1.0
 
 
 @lru_cache(256)
@@ -284,3 +207,21 @@ def _fillet_advice(pin: Pin, v: Vertex) -> str:
         f"a fillet here would make it finite, as large as fits: {what}, {limit / d:.2g} x the "
         f"smaller diameter"
     )
+
+
+def singularities_of(
+    pin: PinLike,
+    material: Material,
+    clamps: tuple[str, ...],
+    cases: tuple[PinLoads, ...],
+    distance: float = 0.1,
+) -> tuple[Zone, ...]:
+    """Zones of unbounded stress in any of the cases; for bodies of revolution only."""
+    if not isinstance(pin, Pin):
+        return ()
+    acting = {load for case in cases for load in case.coefficients() if load.shears}
+    loaded = {load.surface for load in acting}
+    if acting and not clamps:  # all bands react the imbalance
+        loaded |= set(pin.connections)
+    nu = material.poisson_ratio
+    return find_singularities(pin, clamps, tuple(sorted(loaded)), nu, distance)
