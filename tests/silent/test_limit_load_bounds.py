@@ -22,7 +22,7 @@ from assess.plastic.limit_load import bracket
 from assess.plastic.solve import MESH_SIZES, limit_load
 from assess.strength.collapse import collapse_margin
 from assess.strength.situation import LoadFactors
-from fea.beam.plastic_interaction import bent_and_pulled
+from fea.beam.plastic_interaction import bending_and_axial_use
 from fea.beam.round_section import Circle
 from fea.core.pin_loads import PinLoads
 from geometry import Pin, Segment
@@ -94,7 +94,7 @@ def test_bending_with_tension_is_what_strips_carry(bore: float, m: float, n: flo
     assert found.lower[0] <= exact * (1.0 + 1e-5) <= found.upper[0] * (1.0 + 3e-5)  # of strips
     assert found.lower[0] >= 0.93 * exact  # couples on bands leave shear in these
     assert found.upper[0] == pytest.approx(exact, rel=2e-4)
-    most, least = bent_and_pulled(Circle(R, bore * R), np.array(m), np.array(n))
+    most, least = bending_and_axial_use(Circle(R, bore * R), np.array(m), np.array(n))
     assert 1.0 / most == pytest.approx(exact, rel=1e-4)
     assert 1.0 / most <= 1.0 / least * (1.0 + 1e-12)
     circle = 1.0 / math.hypot(m, n)

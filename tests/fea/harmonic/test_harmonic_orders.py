@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from skfem import ElementTriP2
 
-from fea.core.local_fit import extension
+from fea.core.local_fit import nodal_extrapolation
 from fea.core.material import Material
 from fea.core.pin_loads import Floats
 from fea.harmonic.assembly import Section, elasticity
@@ -168,7 +168,7 @@ def test_order_of_recovered_stress(case: str, steel: Material) -> None:
 def _by_averages(space: Section, steel: Material, exact: Exact, u: Floats) -> float:
     """Largest error of stress at nodes off the ends, of the largest stress."""
     stress = elasticity(steel) @ space.sampled_strains(exact.n, u)
-    averaged = extension(space.elements, space.sampled_at, ElementTriP2.doflocs.T)
+    averaged = nodal_extrapolation(space.elements, space.sampled_at, ElementTriP2.doflocs.T)
     inside = (space.nodes[:, 1] > 0.0) & (space.nodes[:, 1] < 1.2)
     true = exact.stress(*space.nodes[inside].T)
     wrong = np.abs((averaged @ stress.reshape(-1, 6))[inside] - true).max()

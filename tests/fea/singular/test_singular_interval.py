@@ -11,7 +11,7 @@ from fea.core.material import Material
 from fea.core.peak import ErrorParts, Maximum, meets_limit
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Model, Requirement
-from fea.singular.fit_exponent import strength
+from fea.singular.fit_exponent import singular_intensity
 from fea.singular.singularities import find_singularities
 from fea.singular.williams import notch_factor, plane_exponent
 from fea.solve.solve import solve_pin
@@ -220,8 +220,10 @@ def test_features_are_as_long_as_the_outline_goes_on() -> None:
 def test_strength_of_a_power_that_is_known() -> None:
     """A d^-s + B d^q, exact, in any unit of length."""
     d = np.geomspace(1e-6, 1e-4, 40)
-    assert strength(d, 3.0 * d**-0.45 + 50.0 * d**0.2, 0.45, 0.2) == pytest.approx(3.0, rel=1e-9)
-    millimetres = strength(1e3 * d, 3.0 * d**-0.45 + 50.0 * d**0.2, 0.45, 0.2)
+    assert singular_intensity(d, 3.0 * d**-0.45 + 50.0 * d**0.2, 0.45, 0.2) == pytest.approx(
+        3.0, rel=1e-9
+    )
+    millimetres = singular_intensity(1e3 * d, 3.0 * d**-0.45 + 50.0 * d**0.2, 0.45, 0.2)
     assert millimetres == pytest.approx(3.0 * 1e3**0.45, rel=1e-9)
 
 
