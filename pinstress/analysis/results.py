@@ -13,6 +13,7 @@ from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.solve import keep_none, solve_tasks
 from pinstress.processes.pool import processes
 from pinstress.processes.threads import one_thread
+from pinstress.study.extras import require_fatigue
 from pinstress.study.file import Study
 from reports.data.results import Field, Results
 from reports.format.words import headline
@@ -178,7 +179,11 @@ def run(
 
 
 def solve(plan: Plan, *, fields: bool = False, jobs: int | None = 1) -> Found:
-    """Solve what `prepare` returned; fields, jobs: as in `run`."""
+    """Solve what `prepare` returned; fields, jobs: as in `run`.
+
+    Raises: InputError where the study has [fatigue] and its extra is not installed.
+    """
+    require_fatigue(plan.study)
     kept: dict[tuple[str, str], Field] = {}
 
     def keep(field: Field) -> None:

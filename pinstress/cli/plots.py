@@ -20,6 +20,7 @@ from pinstress.processes.apart import NO_MEMORY, Failed, apart
 from pinstress.processes.interrupts import Unfinished
 from pinstress.processes.pool import preload
 from pinstress.study.errors import InputError
+from pinstress.study.extras import require_package
 from pinstress.study.file_names import field_name
 from reports.folder.damaged import Damaged
 from reports.folder.inside import NotPlain, is_inside, read_inside, write_inside
@@ -68,6 +69,7 @@ def pdf(directory: Path) -> int:
 
     Raises: InputError.
     """
+    require_package("typst", "pdf")
     known = require_results(directory)
     if PDF in _entries(directory) - known:
         raise _strange(directory, PDF)

@@ -35,6 +35,7 @@ from pinstress.model.balance import other_warnings
 from pinstress.processes.pool import Died, Job, Progress, Tell, preload, processes, side_by_side
 from pinstress.processes.system import portable
 from pinstress.study.choices import Chosen
+from pinstress.study.extras import require_fatigue, require_package
 from pinstress.study.file import Study
 from pinstress.study.file_names import field_name
 from reports.data.results import Field, Results, Units
@@ -82,6 +83,9 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
 
     chosen: what pinstress.analysis.plan.prepare takes. Raises: InputError.
     """
+    require_fatigue(study)
+    if wanted.pdf:
+        require_package("typst", "--pdf")
     require_replaceable(directory)
     also: Any = wanted.vtk if wanted.vtk in ("motion", "solid") else None
     plan = replace(prepare(study, also=also, **chosen), sensitive=wanted.sensitive)
