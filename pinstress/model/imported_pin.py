@@ -6,15 +6,10 @@ more memory than there is.
 
 from __future__ import annotations
 
-import os
-import pickle
 import signal
-import subprocess
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 from geometry import CutPin, GeometryError, Pin, PinLike
@@ -23,22 +18,19 @@ from geometry.imported.imported_pin import MEASURE, SolidBody
 from geometry.imported.recognise import NotTurnedError, Turned, turned
 from geometry.mesh.solid_mesh import MeshError
 from geometry.shape.polyline import Stripe, with_stripes
-from loads import MB, FileError, require_regular
-from pinstress.processes.current_folder import trusting_python
-from pinstress.processes.limits import Limits, keep_within, passed
-from pinstress.processes.parent import end_with_parent
-from pinstress.processes.pool import Died, Job, Tell, ended, processes, side_by_side
+from loads import FileError, require_regular
+from pinstress.processes.limits import MB, Limits
+from pinstress.processes.pool import Died, Job, Tell, can_fork, side_by_side
 from pinstress.processes.system import portable
 
 KINDS = "hole", "flat", "slot", "passage"
 LARGEST_BODY = 1024 * MB
-CODE = "import sys; from pinstress.model.imported_pin import serve; serve(sys.argv[1])"
+MEMORY = 4096 * MB
 
 Work = Callable[..., Any]
 
-
-CAD = Limits(30, 300)  # to measure it; a sound pin takes about a second
-LARGE = Limits(600, 6000)  # for a mesh file, and to mesh a CAD file more finely
+CAD = Limits(30, 300, MEMORY)  # to measure it; a sound pin takes about a second
+LARGE = Limits(600, 6000, MEMORY)  # for a mesh file, and to mesh a CAD file more finely
 
 
 def read_body(file: BodyFile, clamps: Iterable[str] = ()) -> PinLike:
@@ -119,14 +111,16 @@ def apart(work: Work, file: BodyFile, *arguments: object) -> Any:
     """
     quick = work is turned or arguments in ((), (MEASURE,))
     limits = CAD if quick and not file.meshed else LARGE
-    job = partial(_limited, limits, work, file, *arguments)
-    if processes(2) == 1:  # with other threads running no process can be forked
-        made = _started(job)
-    else:
-        (made,) = side_by_side([Job(f"pin {file.name}", partial(_silent, job))], 2)
+    job: Job[Any] = Job(
+        f"pin {file.name}", partial(_read, work, file, arguments, limits.memory), limits
+    )
+    (made,) = side_by_side([job], 2, anew=not can_fork())
     if isinstance(made, Died):
+        why = made.reason
+        if made.status == -signal.SIGABRT and not portable():
+            why += f"; its memory limit is {limits.memory / 2**30:g} GB"
         raise GeometryError(
-            f"pin {file.name}: reading {file.path.name} failed ({_why(made, limits)}): it is "
+            f"pin {file.name}: reading {file.path.name} failed ({why}): it is "
             "damaged, too large, or has very small faces or edges; repair and export it again, "
             "or mesh it in another program and give the mesh",
             "reading-crashed",
@@ -134,13 +128,8 @@ def apart(work: Work, file: BodyFile, *arguments: object) -> Any:
     return made
 
 
-def _silent(job: Work, _: Tell) -> Any:
-    return job()
-
-
-def _limited(limits: Limits, work: Work, file: BodyFile, *arguments: object) -> Any:
-    """Run `work` within limits, beyond which this process ends."""
-    keep_within(limits)
+def _read(work: Work, file: BodyFile, arguments: tuple[object, ...], memory: float, _: Tell) -> Any:
+    """Run `work` in the other process, whose limit of memory is so many bytes."""
     try:
         return work(file, *arguments)
     except (MemoryError, GeometryError, MeshError) as error:
@@ -149,42 +138,6 @@ def _limited(limits: Limits, work: Work, file: BodyFile, *arguments: object) -> 
             raise
         raise GeometryError(
             f"pin {file.name}: reading {file.path.name} needs more than the limit of "
-            f"{limits.memory / 2**30:g} GB of memory; it is damaged, or too fine: give a coarser "
-            "mesh",
+            f"{memory / 2**30:g} GB of memory; it is damaged, or too fine: give a coarser mesh",
             code,
         ) from None
-
-
-def _why(died: Died, limits: Limits) -> str:
-    if died.status == -signal.SIGABRT and not portable():
-        return f"{died.reason}; its memory limit is {limits.memory / 2**30:g} GB"
-    return passed(died.status, limits) or died.reason
-
-
-def _started(job: Work) -> Any:
-    """The result of a job in a new Python process; Died if that ends without one."""
-    with TemporaryDirectory(prefix="pinstress-") as folder:
-        place = Path(folder)
-        (place / "job").write_bytes(pickle.dumps((os.getpid(), job)))
-        command, environment = trusting_python(CODE, folder)
-        done = subprocess.run(
-            command, env=environment, stdin=subprocess.DEVNULL, capture_output=True, check=False
-        )
-        try:
-            raised, found = pickle.loads((place / "result").read_bytes())
-        except (OSError, EOFError):
-            return Died(ended(done.returncode), done.returncode)
-    if raised:
-        raise found
-    return found
-
-
-def serve(folder: str) -> None:
-    """Run in the new Python: read a job from a folder, write its result there."""
-    parent, job = pickle.loads((Path(folder) / "job").read_bytes())
-    end_with_parent(parent)
-    try:
-        found = False, job()
-    except Exception as error:
-        found = True, error
-    (Path(folder) / "result").write_bytes(pickle.dumps(found))

@@ -31,14 +31,6 @@ def leave_out_current_folder() -> None:
     os.environ["PATH"] = os.pathsep.join(p for p in entries if os.path.isabs(p))
 
 
-def trusting_python(code: str, *arguments: str) -> tuple[list[str], dict[str, str]]:
-    """Command line and environment of a Python that runs `code`, importing from where this process
-    does, without the current folder.
-    """
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(trusted_path())}
-    return [sys.executable, "-P", "-c", code, *arguments], environment
-
-
 @contextmanager
 def elsewhere() -> Iterator[None]:
     """In our own folder meanwhile: matplotlib, when it is imported, takes its settings from a
